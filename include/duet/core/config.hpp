@@ -1,0 +1,33 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+/// \file
+/// What duet needs to know of the compiler and its target.
+
+#if (defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)) &&         \
+    !defined(DUET_ALLOW_FAST_MATH)
+#error                                                                                             \
+    "duet: -ffast-math drops NaN, infinities and signed zeros, on which structural zeros rely; compile without it, or define DUET_ALLOW_FAST_MATH to take that risk"
+#endif
+
+/// Width in bytes of the vectors that packed partials are stored in: the target's own width, save
+/// that clang does better with two 256-bit vectors than with one of 512 bits.
+#if defined(__AVX512F__) && !defined(__clang__)
+#define DUET_VECTOR_BYTES 64
+#define DUET_ABI_NAMESPACE vector_512
+#elif defined(__AVX__)
+#define DUET_VECTOR_BYTES 32
+#define DUET_ABI_NAMESPACE vector_256
+#else
+#define DUET_VECTOR_BYTES 16
+#define DUET_ABI_NAMESPACE vector_128
+#endif
+
+/// The vector width follows the compiler's -m flags and is part of the layout of `dual`. This
+/// inline namespace makes it part of the name too: files built with different flags do not link.
+#define DUET_ABI_BEGIN inline namespace DUET_ABI_NAMESPACE {
+#define DUET_ABI_END }
+
+/// The arithmetic of small numbers must be inlined whatever the compiler's size heuristics think:
+/// a call spills every partial to memory.
+#define DUET_ALWAYS_INLINE inline __attribute__((always_inline))

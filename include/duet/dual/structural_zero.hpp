@@ -1,0 +1,66 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+
+/// \file
+/// The chain rule, with zeros that survive infinite slopes.
+///
+/// An exactly zero partial means "does not depend on". Multiplied by the infinite or undefined
+/// slope of √, log, pow or a division at a singular point it must stay zero, or constants would
+/// poison gradients with NaN.
+
+namespace duet::detail {
+
+/// Is `x`, with every infinitesimal part, an exact zero?
+template <class T>
+[[nodiscard]] constexpr bool is_structural_zero(const T& x) {
+  if constexpr (infinitesimal<T>) {
+    return x.all_of([](const auto& part) { return is_structural_zero(part); });
+  } else {
+    return x == T(0);
+  }
+}
+
+/// Are `x` and all its infinitesimal parts finite? (x − x is NaN for infinities and NaN.)
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_all_finite(const T& x) {
+  if constexpr (infinitesimal<T>) {
+    return x.all_of([](const auto& part) { return is_all_finite(part); });
+  } else {
+    return x - x == T(0);
+  }
+}
+
+/// slope · partial, zero where the partial is a structural zero.
+template <class T>
+[[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial) {
+  return is_structural_zero(partial) ? T(0) : T(slope * partial);
+}
+
+/// slope · row
+template <class Partials, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr Partials chain(const T& slope, const Partials& row) {
+  if (is_all_finite(slope)) [[likely]] {
+    return Partials::map([&](const auto& p) { return p * slope; }, row);
+  }
+  return Partials::map_elements([&](const T& p) { return guarded_product(slope, p); }, row);
+}
+
+/// slope_a · a + slope_b · b
+template <class Partials, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr Partials chain(const T& slope_a, const Partials& a,
+                                                          const T& slope_b, const Partials& b) {
+  if (is_all_finite(slope_a) && is_all_finite(slope_b)) [[likely]] {
+    return Partials::map([&](const auto& p, const auto& q) { return p * slope_a + q * slope_b; }, a,
+                         b);
+  }
+  return Partials::map_elements(
+      [&](const T& p, const T& q) {
+        return T(guarded_product(slope_a, p) + guarded_product(slope_b, q));
+      },
+      a, b);
+}
+
+} // namespace duet::detail

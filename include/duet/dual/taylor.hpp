@@ -1,0 +1,185 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/algebra.hpp>
+#include <duet/dual/partials.hpp>
+#include <duet/dual/promotion.hpp>
+#include <duet/dual/structural_zero.hpp>
+#include <duet/dual/tag.hpp>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <utility>
+
+/// \file
+/// Truncated Taylor series x₀ + x₁ε + … + x_K ε^K, ε^{K+1} = 0: a value and its first K derivatives
+/// along one direction, in one pass.
+
+namespace duet {
+DUET_ABI_BEGIN
+
+/// \tparam T    the scalar below
+/// \tparam K    highest power of ε kept
+/// \tparam Tag  what the ε means
+///
+/// Coefficients are the Taylor coefficients x_k = x^(k)/k!; `derivative(k)` multiplies by k!.
+template <class T, int K, class Tag = derivative_tag<>>
+class taylor : detail::infinitesimal_operators<taylor<T, K, Tag>, T> {
+  static_assert(scalar<T>, "duet: taylor<T, K> needs a real number or a scalar of duet as T");
+  static_assert(K >= 1, "duet: taylor<T, K> needs at least the first power");
+  static_assert(!detail::contains_tag<T, Tag>(),
+                "duet: this differentiation happens inside another one with the same tag, and their "
+                "infinitesimals could not be told apart; give it its own: "
+                "derivatives<K, struct my_tag>(f, x)");
+
+public:
+  using value_type = T;
+  using coefficients_type = std::array<T, std::size_t(K) + 1>;
+
+  /// Zero.
+  constexpr taylor() : coefficients_{} {}
+  /// A constant.
+  template <constant_of<taylor> U>
+  DUET_ALWAYS_INLINE constexpr taylor(const U& constant) : coefficients_{static_cast<T>(constant)} {}
+  DUET_ALWAYS_INLINE constexpr explicit taylor(const coefficients_type& coefficients)
+      : coefficients_(coefficients) {}
+  /// The same level over another scalar; implicit where no precision or level is lost.
+  template <class U>
+    requires(!std::same_as<U, T> && std::constructible_from<T, U>)
+  constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
+      taylor(const taylor<U, K, Tag>& other) {
+    for (int k = 0; k <= K; ++k) { set_coefficient(k, static_cast<T>(other.coefficient(k))); }
+  }
+
+  /// value + ε, the variable of differentiation.
+  [[nodiscard]] static constexpr taylor variable(const T& value) {
+    taylor result(value);
+    result.coefficients_[1] = T(1);
+    return result;
+  }
+
+  [[nodiscard]] constexpr const T& value() const { return coefficients_[0]; }
+  /// x_k
+  [[nodiscard]] constexpr const T& coefficient(int k) const { return coefficients_[std::size_t(k)]; }
+  constexpr void set_coefficient(int k, const T& x) { coefficients_[std::size_t(k)] = x; }
+  /// The k-th derivative, k! x_k.
+  [[nodiscard]] constexpr T derivative(int k) const {
+    T result = coefficient(k);
+    for (int i = 2; i <= k; ++i) { result = result * i; }
+    return result;
+  }
+
+  /// Does the predicate hold for every coefficient?
+  template <class Predicate>
+  [[nodiscard]] constexpr bool all_of(Predicate&& predicate) const {
+    bool result = true;
+    for (int k = 0; k <= K; ++k) { result = result && predicate(coefficient(k)); }
+    return result;
+  }
+
+  /// Drops the derivatives; explicit for that reason.
+  template <arithmetic U>
+  [[nodiscard]] constexpr explicit operator U() const {
+    return static_cast<U>(value());
+  }
+
+  // The kernels behind the operators of detail::infinitesimal_operators. `each` calls them with
+  // indices that are constants after inlining, which is what keeps coefficients in registers.
+
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor negated() const {
+    return each([&](int k) { return T(-coefficient(k)); });
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor plus(const T& c) const {
+    taylor result = *this;
+    result.coefficients_[0] = coefficients_[0] + c;
+    return result;
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor times(const T& c) const {
+    return each([&](int k) { return T(coefficient(k) * c); });
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor divided_by(const T& c) const {
+    const T inverse = T(1) / c;
+    taylor result = each([&](int k) { return detail::guarded_product(inverse, coefficient(k)); });
+    result.coefficients_[0] = coefficients_[0] / c;
+    return result;
+  }
+  /// c / *this
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor dividing(const T& c) const {
+    return quotient(taylor(coefficients_type{c}), *this);
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor sum(const taylor& a, const taylor& b) {
+    return each([&](int k) { return T(a.coefficient(k) + b.coefficient(k)); });
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor difference(const taylor& a,
+                                                                      const taylor& b) {
+    return each([&](int k) { return T(a.coefficient(k) - b.coefficient(k)); });
+  }
+  /// c_k = Σ_j a_j b_{k−j}
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor product(const taylor& a,
+                                                                   const taylor& b) {
+    return [&]<int... I>(std::integer_sequence<int, I...>) {
+      return taylor(coefficients_type{product_coefficient<I>(a, b)...});
+    }(std::make_integer_sequence<int, K + 1>{});
+  }
+  /// q_k = (a_k − Σ_{j≥1} b_j q_{k−j}) / b_0
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor quotient(const taylor& a,
+                                                                    const taylor& b) {
+    const T inverse = T(1) / b.value();
+    taylor result;
+    result.coefficients_[0] = a.value() / b.value();
+    detail::unrolled<K>([&](int i) {
+      const int k = i + 1;
+      T remainder = a.coefficient(k);
+      detail::unrolled<K>([&](int j) {
+        if (j < k) {
+          remainder = remainder - detail::guarded_product(result.coefficient(k - j - 1),
+                                                          b.coefficient(j + 1));
+        }
+      });
+      result.set_coefficient(k, detail::guarded_product(inverse, remainder));
+    });
+    return result;
+  }
+
+private:
+  template <class F>
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor each(F&& f) {
+    return [&]<int... I>(std::integer_sequence<int, I...>) {
+      return taylor(coefficients_type{f(I)...});
+    }(std::make_integer_sequence<int, K + 1>{});
+  }
+
+  template <int Power>
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr T product_coefficient(const taylor& a,
+                                                                          const taylor& b) {
+    return [&]<int... J>(std::integer_sequence<int, J...>) {
+      T sum = a.coefficient(0) * b.coefficient(Power);
+      ((sum = sum + a.coefficient(J + 1) * b.coefficient(Power - J - 1)), ...);
+      return sum;
+    }(std::make_integer_sequence<int, Power>{});
+  }
+
+  coefficients_type coefficients_;
+};
+
+DUET_ABI_END
+
+template <class T, int K, class Tag>
+struct scalar_traits<taylor<T, K, Tag>> {
+  using value_type = T;
+  using real_type = typename scalar_traits<T>::real_type;
+  static constexpr bool is_infinitesimal = true;
+  static constexpr int order = scalar_traits<T>::order + K;
+};
+
+template <class T, int K, class Tag>
+struct level_traits<taylor<T, K, Tag>> {
+  using tag = Tag;
+  template <class U>
+  using rebind = taylor<U, K, Tag>;
+};
+
+} // namespace duet

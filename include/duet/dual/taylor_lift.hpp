@@ -1,0 +1,163 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual/rules.hpp>
+#include <duet/dual/structural_zero.hpp>
+#include <duet/dual/taylor.hpp>
+
+#include <array>
+#include <cstddef>
+
+/// \file
+/// From the rule of a function to the function over Taylor numbers.
+///
+/// For y = f(x) the chain rule y′ = f′(x) x′ gives, coefficient by coefficient,
+/// k y_k = Σ_{j=1…k} j x_j s_{k−j}, where s is the series of the slope f′(x). The slope is needed to
+/// order K−1 only, so the rule is applied to shorter and shorter series.
+
+namespace duet::detail {
+
+/// x with the powers above L dropped; a plain value for L = 0.
+template <int L, class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto truncated(const taylor<T, K, Tag>& x) {
+  if constexpr (L == 0) {
+    return x.value();
+  } else if constexpr (L == K) {
+    return x;
+  } else {
+    taylor<T, L, Tag> result;
+    unrolled<L + 1>([&](int k) { result.set_coefficient(k, x.coefficient(k)); });
+    return result;
+  }
+}
+
+/// The k-th coefficient of a series, or of a plain value.
+template <class T, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& coefficient_of(const S& s,
+                                                                   [[maybe_unused]] int k) {
+  if constexpr (std::same_as<T, S>) {
+    return s;
+  } else {
+    return s.coefficient(k);
+  }
+}
+
+/// Σ_{j=1…K} j x_j s_{K−j}, zero coefficients of x not touching infinite slopes.
+template <class T, int K, class Tag, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr T chain_coefficient(const taylor<T, K, Tag>& x,
+                                                               const S& slope) {
+  T sum(0);
+  unrolled<K>([&](int i) {
+    const int j = i + 1;
+    const T& s = coefficient_of<T>(slope, K - j);
+    const T term = is_all_finite(s) ? T(s * x.coefficient(j)) : guarded_product(s, x.coefficient(j));
+    sum = j == 1 ? T(sum + term) : T(sum + term * j);
+  });
+  return sum;
+}
+
+/// `shorter`, the series to order K−1, extended by the coefficient of ε^K.
+template <class D, class S, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr D extended(const S& shorter, const T& last, int order) {
+  D result;
+  unrolled<scalar_traits<D>::order - scalar_traits<T>::order>(
+      [&](int k) { result.set_coefficient(k, coefficient_of<T>(shorter, k)); });
+  result.set_coefficient(order, last);
+  return result;
+}
+
+template <class Rule, class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const Rule& rule,
+                                                        const taylor<T, K, Tag>& x) {
+  const auto shorter_x = truncated<K - 1>(x);
+  if constexpr (K == 1) {
+    const T y = rule.value(shorter_x);
+    return extended<taylor<T, K, Tag>>(y, chain_coefficient(x, rule.slope(shorter_x, y)), K);
+  } else {
+    const auto y = lift(rule, shorter_x);
+    const T last = chain_coefficient(x, rule.slope(shorter_x, y)) / K;
+    return extended<taylor<T, K, Tag>>(y, last, K);
+  }
+}
+
+template <class Rule, class T, int K, class Tag, class... Rest>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const Rule& rule,
+                                                        const taylor<T, K, Tag>& x,
+                                                        const taylor<T, K, Tag>& y,
+                                                        const Rest&... rest) {
+  const auto z = [&] {
+    if constexpr (K == 1) {
+      return rule.value(x.value(), y.value(), rest.value()...);
+    } else {
+      return lift(rule, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
+    }
+  }();
+  const auto slopes = rule.slopes(z, truncated<K - 1>(x), truncated<K - 1>(y),
+                                  truncated<K - 1>(rest)...);
+  T last = chain_coefficient(x, slopes[0]) + chain_coefficient(y, slopes[1]);
+  if constexpr (sizeof...(rest) > 0) {
+    static_assert(sizeof...(rest) == 1);
+    last = last + (chain_coefficient(rest, slopes[2]) + ...);
+  }
+  return extended<taylor<T, K, Tag>>(z, T(last / K), K);
+}
+
+/// sin and cos share one recurrence, sinh and cosh another: each is the slope of its partner, and
+/// applying their rules one by one would evaluate the pair at every order.
+template <int Sign, class T, int K, class Tag>
+DUET_ALWAYS_INLINE void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
+                                        taylor<T, K, Tag>& c) {
+  unrolled<K>([&](int i) {
+    const int k = i + 1;
+    T ds(0);
+    T dc(0);
+    unrolled<K>([&](int m) {
+      const int j = m + 1;
+      if (j <= k) {
+        const T jx = x.coefficient(j) * j;
+        ds = ds + jx * c.coefficient(k - j);
+        dc = dc + jx * s.coefficient(k - j);
+      }
+    });
+    s.set_coefficient(k, T(ds / k));
+    c.set_coefficient(k, T(dc * Sign / k));
+  });
+}
+
+template <class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::sin&,
+                                                        const taylor<T, K, Tag>& x) {
+  taylor<T, K, Tag> s(rule::sin{}.value(x.value()));
+  taylor<T, K, Tag> c(rule::cos{}.value(x.value()));
+  sine_and_cosine<-1>(x, s, c);
+  return s;
+}
+
+template <class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::cos&,
+                                                        const taylor<T, K, Tag>& x) {
+  taylor<T, K, Tag> s(rule::sin{}.value(x.value()));
+  taylor<T, K, Tag> c(rule::cos{}.value(x.value()));
+  sine_and_cosine<-1>(x, s, c);
+  return c;
+}
+
+template <class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::sinh&,
+                                                        const taylor<T, K, Tag>& x) {
+  taylor<T, K, Tag> s(rule::sinh{}.value(x.value()));
+  taylor<T, K, Tag> c(rule::cosh{}.value(x.value()));
+  sine_and_cosine<1>(x, s, c);
+  return s;
+}
+
+template <class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::cosh&,
+                                                        const taylor<T, K, Tag>& x) {
+  taylor<T, K, Tag> s(rule::sinh{}.value(x.value()));
+  taylor<T, K, Tag> c(rule::cosh{}.value(x.value()));
+  sine_and_cosine<1>(x, s, c);
+  return c;
+}
+
+} // namespace duet::detail
