@@ -5,5 +5,16 @@
 /// All of duet but `interop/`.
 
 #include <duet/core/version.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/gradient.hpp>
+#include <duet/derivative/implicit_function.hpp>
+#include <duet/derivative/jacobian.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>

@@ -31,3 +31,6 @@
 /// The arithmetic of small numbers must be inlined whatever the compiler's size heuristics think:
 /// a call spills every partial to memory.
 #define DUET_ALWAYS_INLINE inline __attribute__((always_inline))
+
+/// The same for a lambda, between its parameters and its body.
+#define DUET_INLINE_LAMBDA __attribute__((always_inline))

@@ -84,6 +84,11 @@ struct infinitesimal_operators {
   friend DUET_ALWAYS_INLINE constexpr D& operator/=(D& a, const U& b) {
     return a = a / b;
   }
+  friend DUET_ALWAYS_INLINE constexpr void swap(D& a, D& b) {
+    const D c = a;
+    a = b;
+    b = c;
+  }
   friend constexpr D& operator++(D& a) { return a = a.plus(T(1)); }
   friend constexpr D& operator--(D& a) { return a = a.plus(T(-1)); }
   friend constexpr D operator++(D& a, int) {
@@ -105,8 +110,9 @@ concept mixed_scalars = (infinitesimal<A> || infinitesimal<B>)&&(scalar<A> || ar
 
 /// Neither is a constant for the other: both must be brought to their common nesting first.
 template <class A, class B>
-concept different_nestings = infinitesimal<A> && infinitesimal<B> && !std::is_same_v<A, B> &&
-                             promotable<A, B> && !constant_of<A, B> && !constant_of<B, A>;
+concept different_nestings = (infinitesimal<A> || infinitesimal<B>)&&scalar<A>&& scalar<B> &&
+                             !std::is_same_v<A, B> && promotable<A, B> && !constant_of<A, B> &&
+                             !constant_of<B, A>;
 
 } // namespace duet::detail
 

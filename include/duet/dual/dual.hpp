@@ -102,13 +102,15 @@ public:
   // The kernels behind the operators of detail::infinitesimal_operators.
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual negated() const {
-    return {T(-value_), partials_type::map([](const auto& p) { return -p; }, partials_)};
+    return {T(-value_),
+            partials_type::map([](const auto& p) DUET_INLINE_LAMBDA { return -p; }, partials_)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual plus(const T& c) const {
     return {T(value_ + c), partials_};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual times(const T& c) const {
-    return {T(value_ * c), partials_type::map([&](const auto& p) { return p * c; }, partials_)};
+    return {T(value_ * c),
+            partials_type::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * c; }, partials_)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual divided_by(const T& c) const {
     return {T(value_ / c), detail::chain<partials_type>(T(T(1) / c), partials_)};
@@ -119,21 +121,21 @@ public:
     return {quotient, detail::chain<partials_type>(T(-(quotient / value_)), partials_)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual sum(const dual& a, const dual& b) {
-    return {T(a.value_ + b.value_),
-            partials_type::map([](const auto& p, const auto& q) { return p + q; }, a.partials_,
-                               b.partials_)};
+    return {T(a.value_ + b.value_), partials_type::map([](const auto& p, const auto& q)
+                                                           DUET_INLINE_LAMBDA { return p + q; },
+                                                       a.partials_, b.partials_)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual difference(const dual& a, const dual& b) {
-    return {T(a.value_ - b.value_),
-            partials_type::map([](const auto& p, const auto& q) { return p - q; }, a.partials_,
-                               b.partials_)};
+    return {T(a.value_ - b.value_), partials_type::map([](const auto& p, const auto& q)
+                                                           DUET_INLINE_LAMBDA { return p - q; },
+                                                       a.partials_, b.partials_)};
   }
   /// N10: (a₁ + εb₁)(a₂ + εb₂) = a₁a₂ + ε(a₁b₂ + b₁a₂)
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual product(const dual& a, const dual& b) {
     return {T(a.value_ * b.value_),
-            partials_type::map(
-                [&](const auto& p, const auto& q) { return p * b.value_ + q * a.value_; },
-                a.partials_, b.partials_)};
+            partials_type::map([&](const auto& p, const auto& q)
+                                   DUET_INLINE_LAMBDA { return p * b.value_ + q * a.value_; },
+                               a.partials_, b.partials_)};
   }
   /// N11: (a₁ + εb₁)/(a₂ + εb₂) = a₁/a₂ + ε(b₁ − (a₁/a₂)b₂)/a₂
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual quotient(const dual& a, const dual& b) {

@@ -5,6 +5,11 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <concepts>
+#include <limits>
+#include <type_traits>
+
 /// \file
 /// Dual and Taylor numbers as scalars of Eigen, in mixed expressions with double too.
 
@@ -43,3 +48,15 @@ struct ScalarBinaryOpTraits<A, B, Operation> {
 };
 
 } // namespace Eigen
+
+namespace duet {
+
+/// A column of scalars, each brought to the common type: `column(x, 2, sin(x))`.
+template <class... S>
+[[nodiscard]] auto column(const S&... s) {
+  using common = std::common_type_t<S...>;
+  return Eigen::Matrix<common, int(sizeof...(S)), 1>(
+      std::array<common, sizeof...(S)>{static_cast<common>(s)...}.data());
+}
+
+} // namespace duet

@@ -6,12 +6,14 @@
 #include <duet/dual/lift.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/rules.hpp>
+#include <duet/dual/rules_hyperbolic.hpp>
 #include <duet/dual/rules_of_many.hpp>
+#include <duet/dual/rules_special.hpp>
 #include <duet/dual/taylor_lift.hpp>
 
 /// \file
 /// The smooth functions of `<cmath>` over dual and Taylor numbers. Values are those of `<cmath>`;
-/// derivatives are in rules.hpp.
+/// derivatives are in rules.hpp and its like.
 
 namespace duet {
 
@@ -107,6 +109,14 @@ template <infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D erfc(const D& x) {
   return detail::lift(rule::erfc{}, x);
 }
+template <infinitesimal D>
+[[nodiscard]] D tgamma(const D& x) {
+  return detail::lift(rule::tgamma{}, x);
+}
+template <infinitesimal D>
+[[nodiscard]] D lgamma(const D& x) {
+  return detail::lift(rule::lgamma{}, x);
+}
 
 namespace detail {
 
@@ -181,6 +191,23 @@ template <class A, class B>
   requires detail::mixed_scalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto remainder(const A& x, const B& y) {
   return detail::lift_promoted(rule::remainder{}, x, y);
+}
+
+/// remainder(x, y), and the low bits of the quotient.
+template <class A, class B>
+  requires detail::mixed_scalars<A, B>
+[[nodiscard]] auto remquo(const A& x, const B& y, int* quotient) {
+  using std::remquo;
+  using real = real_type_t<promote_t<A, B>>;
+  static_cast<void>(remquo(real(innermost(x)), real(innermost(y)), quotient));
+  return remainder(x, y);
+}
+
+/// a + t (b − a), exact at t = 0 and t = 1.
+template <class A, class B, class C>
+  requires detail::mixed_scalars<A, promote_t<B, C>>
+[[nodiscard]] DUET_ALWAYS_INLINE auto lerp(const A& a, const B& b, const C& t) {
+  return detail::lift_promoted(rule::lerp{}, a, b, t);
 }
 
 } // namespace duet

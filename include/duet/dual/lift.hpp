@@ -14,23 +14,22 @@
 namespace duet::detail {
 
 template <class Rule, class T, int N, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const Rule& rule,
-                                                      const dual<T, N, Tag>& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const Rule& rule, const dual<T, N, Tag>& x) {
   const T y = rule.value(x.value());
   return {y, chain<partials<T, N>>(rule.slope(x.value(), y), x.partials())};
 }
 
 template <class Rule, class T, int N, class Tag, class... Rest>
-[[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const Rule& rule, const dual<T, N, Tag>& x,
-                                                      const dual<T, N, Tag>& y,
-                                                      const Rest&... rest) {
+[[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag>
+lift(const Rule& rule, const dual<T, N, Tag>& x, const dual<T, N, Tag>& y, const Rest&... rest) {
   const T value = rule.value(x.value(), y.value(), rest.value()...);
   const auto slopes = rule.slopes(value, x.value(), y.value(), rest.value()...);
   auto result = chain(slopes[0], x.partials(), slopes[1], y.partials());
   if constexpr (sizeof...(rest) > 0) {
     static_assert(sizeof...(rest) == 1);
-    result = partials<T, N>::map([](const auto& p, const auto& q) { return p + q; }, result,
-                                 chain(slopes[2], rest.partials()...));
+    result =
+        partials<T, N>::map([](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p + q; },
+                            result, chain(slopes[2], rest.partials()...));
   }
   return {value, result};
 }

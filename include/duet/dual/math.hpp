@@ -8,5 +8,6 @@
 #include <duet/dual/functions.hpp>
 #include <duet/dual/limits.hpp>
 #include <duet/dual/piecewise.hpp>
+#include <duet/dual/scaling.hpp>
 #include <duet/dual/stream.hpp>
 #include <duet/dual/taylor.hpp>

@@ -33,7 +33,7 @@ inline constexpr int unroll_limit = 16;
 template <int Count, class F>
 DUET_ALWAYS_INLINE constexpr void unrolled(F&& f) {
   if constexpr (Count <= unroll_limit) {
-    [&]<int... I>(std::integer_sequence<int, I...>) { (f(I), ...); }
+    [&]<int... I>(std::integer_sequence<int, I...>) DUET_INLINE_LAMBDA { (f(I), ...); }
     (std::make_integer_sequence<int, Count>{});
   } else {
     for (int i = 0; i < Count; ++i) {
@@ -55,7 +55,7 @@ public:
   template <class F, class... Rows>
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr array_partials map(F&& f, const Rows&... rows) {
     array_partials result;
-    unrolled<N>([&](int i) { result.set(i, f(rows.get(i)...)); });
+    unrolled<N>([&](int i) DUET_INLINE_LAMBDA { result.set(i, f(rows.get(i)...)); });
     return result;
   }
 
@@ -85,9 +85,9 @@ class packed_partials {
 public:
   constexpr packed_partials() {
     if (std::is_constant_evaluated()) {
-      fill_elements([](int) { return T(0); });
+      fill_elements([](int) DUET_INLINE_LAMBDA { return T(0); });
     } else {
-      unrolled<count>([&](int i) { packets_[i] = packet{}; });
+      unrolled<count>([&](int i) DUET_INLINE_LAMBDA { packets_[i] = packet{}; });
     }
   }
   DUET_ALWAYS_INLINE constexpr packed_partials(const packed_partials& other) { assign(other); }
@@ -115,10 +115,10 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr packed_partials unit(int i) {
     packed_partials result(uninitialised{});
     if (std::is_constant_evaluated()) {
-      result.fill_elements([i](int k) { return T(k == i); });
+      result.fill_elements([i](int k) DUET_INLINE_LAMBDA { return T(k == i); });
     } else {
-      unrolled<count>([&](int p) {
-        result.packets_[p] = [&]<int... L>(std::integer_sequence<int, L...>) {
+      unrolled<count>([&](int p) DUET_INLINE_LAMBDA {
+        result.packets_[p] = [&]<int... L>(std::integer_sequence<int, L...>) DUET_INLINE_LAMBDA {
           return packet{T(p * width + L == i)...};
         }
         (std::make_integer_sequence<int, width>{});
@@ -134,9 +134,10 @@ public:
                                                                         const Rows&... rows) {
     packed_partials result(uninitialised{});
     if (std::is_constant_evaluated()) {
-      result.fill_elements([&](int i) { return f(rows.elements_[i]...); });
+      result.fill_elements([&](int i) DUET_INLINE_LAMBDA { return f(rows.elements_[i]...); });
     } else {
-      unrolled<count>([&](int i) { result.packets_[i] = f(rows.packets_[i]...); });
+      unrolled<count>([&](int i)
+                          DUET_INLINE_LAMBDA { result.packets_[i] = f(rows.packets_[i]...); });
     }
     return result;
   }
@@ -167,7 +168,7 @@ private:
     if (std::is_constant_evaluated()) {
       elements_ = other.elements_;
     } else {
-      unrolled<count>([&](int i) { packets_[i] = other.packets_[i]; });
+      unrolled<count>([&](int i) DUET_INLINE_LAMBDA { packets_[i] = other.packets_[i]; });
     }
   }
 

@@ -45,6 +45,30 @@ template <infinitesimal D>
   return fpclassify(innermost(x));
 }
 
+// The quiet comparisons of <cmath>: false, and no exception, where either is NaN.
+
+template <class A, class B>
+  requires detail::mixed_scalars<A, B>
+[[nodiscard]] bool isunordered(const A& a, const B& b) {
+  using std::isnan;
+  return isnan(innermost(a)) || isnan(innermost(b));
+}
+template <class A, class B>
+  requires detail::mixed_scalars<A, B>
+[[nodiscard]] bool isless(const A& a, const B& b) { return !isunordered(a, b) && a < b; }
+template <class A, class B>
+  requires detail::mixed_scalars<A, B>
+[[nodiscard]] bool islessequal(const A& a, const B& b) { return !isunordered(a, b) && a <= b; }
+template <class A, class B>
+  requires detail::mixed_scalars<A, B>
+[[nodiscard]] bool isgreater(const A& a, const B& b) { return !isunordered(a, b) && a > b; }
+template <class A, class B>
+  requires detail::mixed_scalars<A, B>
+[[nodiscard]] bool isgreaterequal(const A& a, const B& b) { return !isunordered(a, b) && a >= b; }
+template <class A, class B>
+  requires detail::mixed_scalars<A, B>
+[[nodiscard]] bool islessgreater(const A& a, const B& b) { return !isunordered(a, b) && a != b; }
+
 /// |x|; at 0 the derivative from the side of the sign bit.
 template <infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D abs(const D& x) {
@@ -87,14 +111,6 @@ template <class A, class B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fdim(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return a <= b ? common(0) : common(a - b);
-}
-
-/// a + t (b − a), exact at t = 0 and t = 1.
-template <class A, class B, class C>
-  requires detail::mixed_scalars<A, promote_t<B, C>>
-[[nodiscard]] DUET_ALWAYS_INLINE auto lerp(const A& a, const B& b, const C& t) {
-  using common = promote_t<A, promote_t<B, C>>;
-  return t < 0.5 ? common(a + t * (b - a)) : common(b - (1 - t) * (b - a));
 }
 
 // Rounding: flat wherever it is differentiable.
@@ -148,46 +164,6 @@ template <infinitesimal D>
 [[nodiscard]] long long llrint(const D& x) {
   using std::llrint;
   return llrint(innermost(x));
-}
-
-/// x = integer + fraction; the fraction keeps the derivatives.
-template <infinitesimal D>
-[[nodiscard]] D modf(const D& x, D* integer) {
-  *integer = trunc(x);
-  return x - *integer;
-}
-
-// Scaling by powers of the radix: linear.
-
-template <infinitesimal D>
-[[nodiscard]] int ilogb(const D& x) {
-  using std::ilogb;
-  return ilogb(innermost(x));
-}
-template <infinitesimal D>
-[[nodiscard]] D logb(const D& x) {
-  using std::logb;
-  return D(logb(innermost(x)));
-}
-
-/// x · 2^exponent, in two steps so that the factor itself neither overflows nor vanishes.
-template <infinitesimal D>
-[[nodiscard]] D ldexp(const D& x, int exponent) {
-  using std::ldexp;
-  using real = real_type_t<D>;
-  const int half = exponent / 2;
-  return x * real(ldexp(real(1), half)) * real(ldexp(real(1), exponent - half));
-}
-template <infinitesimal D>
-[[nodiscard]] D scalbn(const D& x, int exponent) {
-  return ldexp(x, exponent);
-}
-/// x = m · 2^exponent with |m| in [½, 1).
-template <infinitesimal D>
-[[nodiscard]] D frexp(const D& x, int* exponent) {
-  using std::frexp;
-  static_cast<void>(frexp(innermost(x), exponent));
-  return ldexp(x, -*exponent);
 }
 
 } // namespace duet

@@ -3,16 +3,29 @@
 
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 
 #include <cmath>
-#include <concepts>
 
 /// \file
-/// The derivatives of the elementary functions: the one place where each stands.
+/// The derivatives of roots, exponentials, logarithms and circular functions: the one place where
+/// each stands. (Hyperbolic and special functions: rules_hyperbolic.hpp, rules_special.hpp.)
 ///
-/// A rule has `value(x)`, the function over any scalar, and `slope(x, y)`, its derivative at x where
-/// the value there is y. Both are generic: for a nested scalar they recurse, for a taylor number the
-/// slope is itself a series. Forms are chosen to be accurate over the whole domain.
+/// A rule has `value(x)`, the function over any scalar, and `slope(x, y)`, its derivative at x
+/// where the value there is y. Both are generic: for a nested scalar they recurse, for a taylor
+/// number the slope is itself a series. Forms are chosen to be accurate over the whole domain.
+
+namespace duet::detail {
+
+/// 1 − x². Factors are accurate near ±1; near 0 the derivative of their product would cancel.
+template <class T>
+[[nodiscard]] T one_minus_square(const T& x) {
+  return select(
+      innermost(x) * innermost(x) < 0.25, [&] { return T(1 - x * x); },
+      [&] { return T((1 - x) * (1 + x)); });
+}
+
+} // namespace duet::detail
 
 namespace duet::rule {
 
@@ -172,7 +185,7 @@ struct asin {
   template <class T>
   T slope(const T& x, const T&) const {
     using std::sqrt;
-    return 1 / sqrt((1 - x) * (1 + x));
+    return 1 / sqrt(detail::one_minus_square(x));
   }
 };
 
@@ -185,7 +198,7 @@ struct acos {
   template <class T>
   T slope(const T& x, const T&) const {
     using std::sqrt;
-    return -1 / sqrt((1 - x) * (1 + x));
+    return -1 / sqrt(detail::one_minus_square(x));
   }
 };
 
@@ -197,111 +210,14 @@ struct atan {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    return 1 / (1 + x * x);
-  }
-};
-
-struct sinh {
-  template <class T>
-  T value(const T& x) const {
-    using std::sinh;
-    return sinh(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::cosh;
-    return cosh(x);
-  }
-};
-
-struct cosh {
-  template <class T>
-  T value(const T& x) const {
-    using std::cosh;
-    return cosh(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::sinh;
-    return sinh(x);
-  }
-};
-
-struct tanh {
-  template <class T>
-  T value(const T& x) const {
-    using std::tanh;
-    return tanh(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::cosh;
-    const T secant = 1 / cosh(x); // 1 − y² would cancel where tanh saturates
-    return secant * secant;
-  }
-};
-
-struct asinh {
-  template <class T>
-  T value(const T& x) const {
-    using std::asinh;
-    return asinh(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::hypot;
-    return 1 / hypot(T(1), x);
-  }
-};
-
-struct acosh {
-  template <class T>
-  T value(const T& x) const {
-    using std::acosh;
-    return acosh(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::sqrt;
-    return 1 / (sqrt(x - 1) * sqrt(x + 1));
-  }
-};
-
-struct atanh {
-  template <class T>
-  T value(const T& x) const {
-    using std::atanh;
-    return atanh(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    return 1 / ((1 - x) * (1 + x));
-  }
-};
-
-struct erf {
-  template <class T>
-  T value(const T& x) const {
-    using std::erf;
-    return erf(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::exp;
-    return constant::two_over_sqrt_pi<real_type_t<T>>() * exp(-(x * x));
-  }
-};
-
-struct erfc {
-  template <class T>
-  T value(const T& x) const {
-    using std::erfc;
-    return erfc(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::exp;
-    return -constant::two_over_sqrt_pi<real_type_t<T>>() * exp(-(x * x));
+    using std::abs;
+    // x² would overflow long before its reciprocal vanishes.
+    return select(
+        abs(innermost(x)) <= 1, [&] { return T(1 / (1 + x * x)); },
+        [&] {
+          const T r = 1 / x;
+          return T(r * r / (1 + r * r));
+        });
   }
 };
 

@@ -2,17 +2,20 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/parts.hpp>
+#include <duet/dual/structural_zero.hpp>
 
 #include <array>
 #include <cmath>
+#include <concepts>
 
 /// \file
-/// The derivatives of pow, atan2, hypot and the remainders. `slopes(y, x…)` returns the partial
-/// derivatives where the value is y.
+/// The derivatives of pow, atan2, hypot, fma, lerp and the remainders. `slopes(y, x…)` returns the
+/// partial derivatives where the value is y.
 
 namespace duet::rule {
 
-/// x ↦ x^p, p a constant. A zero exponent has no slope, even at x = 0.
+/// x ↦ x^p. A zero exponent has no slope, even at x = 0.
 template <class Exponent>
 struct power {
   Exponent exponent;
@@ -25,12 +28,14 @@ struct power {
   template <class T>
   T slope(const T& x, const T&) const {
     using std::pow;
-    if (innermost(exponent) == 0) { return T(0); }
+    if (detail::is_structural_zero(exponent) || (innermost(exponent) == 0 && innermost(x) == 0)) {
+      return T(0);
+    }
     return exponent * pow(x, Exponent(exponent - 1));
   }
 };
 
-/// x ↦ b^x, b a constant. Where b = 0 the value jumps at x = 0 and is flat beyond.
+/// x ↦ b^x. Where b = 0 the value jumps at x = 0 and is flat beyond.
 template <class Base>
 struct exponential {
   Base base;
@@ -43,8 +48,18 @@ struct exponential {
   template <class T>
   T slope(const T& x, const T& y) const {
     using std::log;
-    if (innermost(base) == 0 && innermost(x) > 0) { return T(0); }
+    if (innermost(base) == 0 && innermost(x) > 0) {
+      // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
+      const bool flat = is_constant(base) || innermost(x) > scalar_traits<T>::order;
+      return flat ? T(0) : detail::with_innermost(T(y * log(base)), real_type_t<T>(0));
+    }
     return y * log(base);
+  }
+
+private:
+  template <class U>
+  static bool is_constant(const U& u) {
+    return detail::is_structural_zero(detail::with_innermost(u, real_type_t<U>(0)));
   }
 };
 
@@ -130,6 +145,23 @@ struct remainder {
   template <class T>
   std::array<T, 2> slopes(const T& r, const T& x, const T& y) const {
     return fmod{}.slopes(r, x, y);
+  }
+};
+
+/// a + t (b − a)
+struct lerp {
+  template <class T>
+  T value(const T& a, const T& b, const T& t) const {
+    if constexpr (std::floating_point<T> || infinitesimal<T>) {
+      using std::lerp;
+      return lerp(a, b, t);
+    } else { // <cmath> knows built-in types only
+      return t < T(0.5) ? T(a + t * (b - a)) : T(b - (1 - t) * (b - a));
+    }
+  }
+  template <class T>
+  std::array<T, 3> slopes(const T&, const T& a, const T& b, const T& t) const {
+    return {1 - t, t, b - a};
   }
 };
 

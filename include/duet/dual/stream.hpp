@@ -6,34 +6,60 @@
 
 #include <istream>
 #include <ostream>
+#include <sstream>
 
 /// \file
 /// Streams: a dual prints as `value[partial, …]`, a Taylor number as its coefficients
-/// `x0 + x1 e + x2 e^2`; what is read is a constant's value.
+/// `(x0 + x1 e + x2 e^2)`; what is read is a constant's value. Digits, decimal point and width are
+/// the stream's own; the width counts for the whole number, as for `std::complex`.
 
 namespace duet {
+namespace detail {
+
+/// Writes through a buffer of the same format, so that padding surrounds the whole text.
+template <class Char, class Write>
+std::basic_ostream<Char>& write_padded(std::basic_ostream<Char>& out, Write&& write) {
+  std::basic_ostringstream<Char> text;
+  text.copyfmt(out);
+  text.width(0);
+  text.exceptions(std::ios_base::goodbit);
+  write(text);
+  return out << text.str();
+}
+
+} // namespace detail
 
 template <class Char, class T, int N, class Tag>
 std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const dual<T, N, Tag>& x) {
-  out << x.value() << "[";
-  for (int i = 0; i < N; ++i) { out << (i == 0 ? "" : ", ") << x.partial(i); }
-  return out << "]";
+  return detail::write_padded(out, [&](auto& text) {
+    text << x.value() << "[";
+    for (int i = 0; i < N; ++i) {
+      text << (i == 0 ? "" : ", ") << x.partial(i);
+    }
+    text << "]";
+  });
 }
 
 template <class Char, class T, int K, class Tag>
 std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const taylor<T, K, Tag>& x) {
-  out << "(" << x.value();
-  for (int k = 1; k <= K; ++k) {
-    out << " + " << x.coefficient(k) << " e";
-    if (k > 1) { out << "^" << k; }
-  }
-  return out << ")";
+  return detail::write_padded(out, [&](auto& text) {
+    text << "(" << x.value();
+    for (int k = 1; k <= K; ++k) {
+      text << " + " << x.coefficient(k) << " e";
+      if (k > 1) {
+        text << "^" << k;
+      }
+    }
+    text << ")";
+  });
 }
 
 template <class Char, infinitesimal D>
 std::basic_istream<Char>& operator>>(std::basic_istream<Char>& in, D& x) {
   typename scalar_traits<D>::value_type value{};
-  if (in >> value) { x = D(value); }
+  if (in >> value) {
+    x = D(value);
+  }
   return in;
 }
 

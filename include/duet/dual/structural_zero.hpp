@@ -33,19 +33,46 @@ template <class T>
   }
 }
 
-/// slope · partial, zero where the partial is a structural zero.
+/// slope · partial, zero where the partial is a structural zero; for nested scalars part by part,
+/// or what does not depend on the inner variable would be poisoned by it.
 template <class T>
 [[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial) {
-  return is_structural_zero(partial) ? T(0) : T(slope * partial);
+  if (is_structural_zero(partial)) {
+    return T(0);
+  }
+  if constexpr (!infinitesimal<T>) {
+    return slope * partial;
+  } else if constexpr (requires { slope.partials(); }) {
+    using part = typename T::value_type;
+    return T(guarded_product(slope.value(), partial.value()),
+             T::partials_type::map_elements(
+                 [&](const part& s, const part& p) {
+                   return part(guarded_product(slope.value(), p) +
+                               guarded_product(s, partial.value()));
+                 },
+                 slope.partials(), partial.partials()));
+  } else {
+    T result;
+    constexpr int highest = scalar_traits<T>::order - scalar_traits<typename T::value_type>::order;
+    for (int k = 0; k <= highest; ++k) {
+      auto sum = guarded_product(slope.value(), partial.coefficient(k));
+      for (int j = 1; j <= k; ++j) {
+        sum = sum + guarded_product(slope.coefficient(j), partial.coefficient(k - j));
+      }
+      result.set_coefficient(k, sum);
+    }
+    return result;
+  }
 }
 
 /// slope · row
 template <class Partials, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Partials chain(const T& slope, const Partials& row) {
   if (is_all_finite(slope)) [[likely]] {
-    return Partials::map([&](const auto& p) { return p * slope; }, row);
+    return Partials::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * slope; }, row);
   }
-  return Partials::map_elements([&](const T& p) { return guarded_product(slope, p); }, row);
+  return Partials::map_elements(
+      [&](const T& p) DUET_INLINE_LAMBDA { return guarded_product(slope, p); }, row);
 }
 
 /// slope_a · a + slope_b · b
@@ -53,11 +80,12 @@ template <class Partials, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Partials chain(const T& slope_a, const Partials& a,
                                                           const T& slope_b, const Partials& b) {
   if (is_all_finite(slope_a) && is_all_finite(slope_b)) [[likely]] {
-    return Partials::map([&](const auto& p, const auto& q) { return p * slope_a + q * slope_b; }, a,
-                         b);
+    return Partials::map([&](const auto& p, const auto& q)
+                             DUET_INLINE_LAMBDA { return p * slope_a + q * slope_b; },
+                         a, b);
   }
   return Partials::map_elements(
-      [&](const T& p, const T& q) {
+      [&](const T& p, const T& q) DUET_INLINE_LAMBDA {
         return T(guarded_product(slope_a, p) + guarded_product(slope_b, q));
       },
       a, b);

@@ -30,10 +30,11 @@ template <class T, int K, class Tag = derivative_tag<>>
 class taylor : detail::infinitesimal_operators<taylor<T, K, Tag>, T> {
   static_assert(scalar<T>, "duet: taylor<T, K> needs a real number or a scalar of duet as T");
   static_assert(K >= 1, "duet: taylor<T, K> needs at least the first power");
-  static_assert(!detail::contains_tag<T, Tag>(),
-                "duet: this differentiation happens inside another one with the same tag, and their "
-                "infinitesimals could not be told apart; give it its own: "
-                "derivatives<K, struct my_tag>(f, x)");
+  static_assert(
+      !detail::contains_tag<T, Tag>(),
+      "duet: this differentiation happens inside another one with the same tag, and their "
+      "infinitesimals could not be told apart; give it its own: "
+      "derivatives<K, struct my_tag>(f, x)");
 
 public:
   using value_type = T;
@@ -43,7 +44,8 @@ public:
   constexpr taylor() : coefficients_{} {}
   /// A constant.
   template <constant_of<taylor> U>
-  DUET_ALWAYS_INLINE constexpr taylor(const U& constant) : coefficients_{static_cast<T>(constant)} {}
+  DUET_ALWAYS_INLINE constexpr taylor(const U& constant)
+      : coefficients_{static_cast<T>(constant)} {}
   DUET_ALWAYS_INLINE constexpr explicit taylor(const coefficients_type& coefficients)
       : coefficients_(coefficients) {}
   /// The same level over another scalar; implicit where no precision or level is lost.
@@ -51,7 +53,9 @@ public:
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
       taylor(const taylor<U, K, Tag>& other) {
-    for (int k = 0; k <= K; ++k) { set_coefficient(k, static_cast<T>(other.coefficient(k))); }
+    for (int k = 0; k <= K; ++k) {
+      set_coefficient(k, static_cast<T>(other.coefficient(k)));
+    }
   }
 
   /// value + ε, the variable of differentiation.
@@ -63,12 +67,16 @@ public:
 
   [[nodiscard]] constexpr const T& value() const { return coefficients_[0]; }
   /// x_k
-  [[nodiscard]] constexpr const T& coefficient(int k) const { return coefficients_[std::size_t(k)]; }
+  [[nodiscard]] constexpr const T& coefficient(int k) const {
+    return coefficients_[std::size_t(k)];
+  }
   constexpr void set_coefficient(int k, const T& x) { coefficients_[std::size_t(k)] = x; }
   /// The k-th derivative, k! x_k.
   [[nodiscard]] constexpr T derivative(int k) const {
     T result = coefficient(k);
-    for (int i = 2; i <= k; ++i) { result = result * i; }
+    for (int i = 2; i <= k; ++i) {
+      result = result * i;
+    }
     return result;
   }
 
@@ -76,7 +84,9 @@ public:
   template <class Predicate>
   [[nodiscard]] constexpr bool all_of(Predicate&& predicate) const {
     bool result = true;
-    for (int k = 0; k <= K; ++k) { result = result && predicate(coefficient(k)); }
+    for (int k = 0; k <= K; ++k) {
+      result = result && predicate(coefficient(k));
+    }
     return result;
   }
 
@@ -90,7 +100,7 @@ public:
   // indices that are constants after inlining, which is what keeps coefficients in registers.
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor negated() const {
-    return each([&](int k) { return T(-coefficient(k)); });
+    return each([&](int k) DUET_INLINE_LAMBDA { return T(-coefficient(k)); });
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor plus(const T& c) const {
     taylor result = *this;
@@ -98,11 +108,11 @@ public:
     return result;
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor times(const T& c) const {
-    return each([&](int k) { return T(coefficient(k) * c); });
+    return each([&](int k) DUET_INLINE_LAMBDA { return T(coefficient(k) * c); });
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor divided_by(const T& c) const {
     const T inverse = T(1) / c;
-    taylor result = each([&](int k) { return detail::guarded_product(inverse, coefficient(k)); });
+    taylor result = each([&](int k) DUET_INLINE_LAMBDA { return detail::guarded_product(inverse, coefficient(k)); });
     result.coefficients_[0] = coefficients_[0] / c;
     return result;
   }
@@ -111,18 +121,19 @@ public:
     return quotient(taylor(coefficients_type{c}), *this);
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor sum(const taylor& a, const taylor& b) {
-    return each([&](int k) { return T(a.coefficient(k) + b.coefficient(k)); });
+    return each([&](int k) DUET_INLINE_LAMBDA { return T(a.coefficient(k) + b.coefficient(k)); });
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor difference(const taylor& a,
                                                                       const taylor& b) {
-    return each([&](int k) { return T(a.coefficient(k) - b.coefficient(k)); });
+    return each([&](int k) DUET_INLINE_LAMBDA { return T(a.coefficient(k) - b.coefficient(k)); });
   }
   /// c_k = Σ_j a_j b_{k−j}
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor product(const taylor& a,
                                                                    const taylor& b) {
-    return [&]<int... I>(std::integer_sequence<int, I...>) {
+    return [&]<int... I>(std::integer_sequence<int, I...>) DUET_INLINE_LAMBDA {
       return taylor(coefficients_type{product_coefficient<I>(a, b)...});
-    }(std::make_integer_sequence<int, K + 1>{});
+    }
+    (std::make_integer_sequence<int, K + 1>{});
   }
   /// q_k = (a_k − Σ_{j≥1} b_j q_{k−j}) / b_0
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor quotient(const taylor& a,
@@ -130,13 +141,13 @@ public:
     const T inverse = T(1) / b.value();
     taylor result;
     result.coefficients_[0] = a.value() / b.value();
-    detail::unrolled<K>([&](int i) {
+    detail::unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
       const int k = i + 1;
       T remainder = a.coefficient(k);
-      detail::unrolled<K>([&](int j) {
+      detail::unrolled<K>([&](int j) DUET_INLINE_LAMBDA {
         if (j < k) {
-          remainder = remainder - detail::guarded_product(result.coefficient(k - j - 1),
-                                                          b.coefficient(j + 1));
+          remainder = remainder -
+                      detail::guarded_product(result.coefficient(k - j - 1), b.coefficient(j + 1));
         }
       });
       result.set_coefficient(k, detail::guarded_product(inverse, remainder));
@@ -147,19 +158,21 @@ public:
 private:
   template <class F>
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor each(F&& f) {
-    return [&]<int... I>(std::integer_sequence<int, I...>) {
+    return [&]<int... I>(std::integer_sequence<int, I...>) DUET_INLINE_LAMBDA {
       return taylor(coefficients_type{f(I)...});
-    }(std::make_integer_sequence<int, K + 1>{});
+    }
+    (std::make_integer_sequence<int, K + 1>{});
   }
 
   template <int Power>
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr T product_coefficient(const taylor& a,
                                                                           const taylor& b) {
-    return [&]<int... J>(std::integer_sequence<int, J...>) {
+    return [&]<int... J>(std::integer_sequence<int, J...>) DUET_INLINE_LAMBDA {
       T sum = a.coefficient(0) * b.coefficient(Power);
       ((sum = sum + a.coefficient(J + 1) * b.coefficient(Power - J - 1)), ...);
       return sum;
-    }(std::make_integer_sequence<int, Power>{});
+    }
+    (std::make_integer_sequence<int, Power>{});
   }
 
   coefficients_type coefficients_;

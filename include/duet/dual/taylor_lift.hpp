@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/dual/rules.hpp>
+#include <duet/dual/rules_hyperbolic.hpp>
 #include <duet/dual/structural_zero.hpp>
 #include <duet/dual/taylor.hpp>
 
@@ -12,8 +13,8 @@
 /// From the rule of a function to the function over Taylor numbers.
 ///
 /// For y = f(x) the chain rule y′ = f′(x) x′ gives, coefficient by coefficient,
-/// k y_k = Σ_{j=1…k} j x_j s_{k−j}, where s is the series of the slope f′(x). The slope is needed to
-/// order K−1 only, so the rule is applied to shorter and shorter series.
+/// k y_k = Σ_{j=1…k} j x_j s_{k−j}, where s is the series of the slope f′(x). The slope is needed
+/// to order K−1 only, so the rule is applied to shorter and shorter series.
 
 namespace duet::detail {
 
@@ -26,7 +27,7 @@ template <int L, class T, int K, class Tag>
     return x;
   } else {
     taylor<T, L, Tag> result;
-    unrolled<L + 1>([&](int k) { result.set_coefficient(k, x.coefficient(k)); });
+    unrolled<L + 1>([&](int k) DUET_INLINE_LAMBDA { result.set_coefficient(k, x.coefficient(k)); });
     return result;
   }
 }
@@ -47,10 +48,11 @@ template <class T, int K, class Tag, class S>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr T chain_coefficient(const taylor<T, K, Tag>& x,
                                                                const S& slope) {
   T sum(0);
-  unrolled<K>([&](int i) {
+  unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
     const int j = i + 1;
     const T& s = coefficient_of<T>(slope, K - j);
-    const T term = is_all_finite(s) ? T(s * x.coefficient(j)) : guarded_product(s, x.coefficient(j));
+    const T term =
+        is_all_finite(s) ? T(s * x.coefficient(j)) : guarded_product(s, x.coefficient(j));
     sum = j == 1 ? T(sum + term) : T(sum + term * j);
   });
   return sum;
@@ -61,13 +63,13 @@ template <class D, class S, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr D extended(const S& shorter, const T& last, int order) {
   D result;
   unrolled<scalar_traits<D>::order - scalar_traits<T>::order>(
-      [&](int k) { result.set_coefficient(k, coefficient_of<T>(shorter, k)); });
+      [&](int k) DUET_INLINE_LAMBDA { result.set_coefficient(k, coefficient_of<T>(shorter, k)); });
   result.set_coefficient(order, last);
   return result;
 }
 
 template <class Rule, class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const Rule& rule,
+[[nodiscard]] inline taylor<T, K, Tag> lift(const Rule& rule,
                                                         const taylor<T, K, Tag>& x) {
   const auto shorter_x = truncated<K - 1>(x);
   if constexpr (K == 1) {
@@ -81,10 +83,9 @@ template <class Rule, class T, int K, class Tag>
 }
 
 template <class Rule, class T, int K, class Tag, class... Rest>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const Rule& rule,
-                                                        const taylor<T, K, Tag>& x,
-                                                        const taylor<T, K, Tag>& y,
-                                                        const Rest&... rest) {
+[[nodiscard]] inline taylor<T, K, Tag>
+lift(const Rule& rule, const taylor<T, K, Tag>& x, const taylor<T, K, Tag>& y,
+     const Rest&... rest) {
   const auto z = [&] {
     if constexpr (K == 1) {
       return rule.value(x.value(), y.value(), rest.value()...);
@@ -92,8 +93,8 @@ template <class Rule, class T, int K, class Tag, class... Rest>
       return lift(rule, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
     }
   }();
-  const auto slopes = rule.slopes(z, truncated<K - 1>(x), truncated<K - 1>(y),
-                                  truncated<K - 1>(rest)...);
+  const auto slopes =
+      rule.slopes(z, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
   T last = chain_coefficient(x, slopes[0]) + chain_coefficient(y, slopes[1]);
   if constexpr (sizeof...(rest) > 0) {
     static_assert(sizeof...(rest) == 1);
@@ -105,18 +106,23 @@ template <class Rule, class T, int K, class Tag, class... Rest>
 /// sin and cos share one recurrence, sinh and cosh another: each is the slope of its partner, and
 /// applying their rules one by one would evaluate the pair at every order.
 template <int Sign, class T, int K, class Tag>
-DUET_ALWAYS_INLINE void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
+inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
                                         taylor<T, K, Tag>& c) {
-  unrolled<K>([&](int i) {
+  // Where the values overflow or do not exist, constants must keep their zero derivatives.
+  const bool regular = is_all_finite(s.value()) && is_all_finite(c.value());
+  const auto product = [&](const T& slope, const T& part) DUET_INLINE_LAMBDA {
+    return regular ? T(slope * part) : guarded_product(slope, part);
+  };
+  unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
     const int k = i + 1;
     T ds(0);
     T dc(0);
-    unrolled<K>([&](int m) {
+    unrolled<K>([&](int m) DUET_INLINE_LAMBDA {
       const int j = m + 1;
       if (j <= k) {
         const T jx = x.coefficient(j) * j;
-        ds = ds + jx * c.coefficient(k - j);
-        dc = dc + jx * s.coefficient(k - j);
+        ds = ds + product(c.coefficient(k - j), jx);
+        dc = dc + product(s.coefficient(k - j), jx);
       }
     });
     s.set_coefficient(k, T(ds / k));
@@ -125,7 +131,7 @@ DUET_ALWAYS_INLINE void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K,
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::sin&,
+[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sin&,
                                                         const taylor<T, K, Tag>& x) {
   taylor<T, K, Tag> s(rule::sin{}.value(x.value()));
   taylor<T, K, Tag> c(rule::cos{}.value(x.value()));
@@ -134,7 +140,7 @@ template <class T, int K, class Tag>
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::cos&,
+[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cos&,
                                                         const taylor<T, K, Tag>& x) {
   taylor<T, K, Tag> s(rule::sin{}.value(x.value()));
   taylor<T, K, Tag> c(rule::cos{}.value(x.value()));
@@ -143,7 +149,7 @@ template <class T, int K, class Tag>
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::sinh&,
+[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sinh&,
                                                         const taylor<T, K, Tag>& x) {
   taylor<T, K, Tag> s(rule::sinh{}.value(x.value()));
   taylor<T, K, Tag> c(rule::cosh{}.value(x.value()));
@@ -152,7 +158,7 @@ template <class T, int K, class Tag>
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::cosh&,
+[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cosh&,
                                                         const taylor<T, K, Tag>& x) {
   taylor<T, K, Tag> s(rule::sinh{}.value(x.value()));
   taylor<T, K, Tag> c(rule::cosh{}.value(x.value()));

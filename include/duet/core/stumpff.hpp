@@ -1,0 +1,106 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+
+/// \file
+/// Stumpff functions c_n(s) = Σ_k (−s)^k / (2k+n)! of a real s ≥ 0: c₀ = cos √s, c₁ = sin √s / √s,
+/// c₂ = (1 − c₀)/s, c₃ = (1 − c₁)/s, … They are what is left of sine and cosine when the removable
+/// singularities of exp and log at the identity are taken out.
+
+namespace duet::detail {
+
+/// 1/(2k+n)!, k = 0, 1, …
+template <class T, int N, int Terms>
+[[nodiscard]] constexpr std::array<T, Terms> stumpff_coefficients() {
+  std::array<T, Terms> result{};
+  long double factorial = 1;
+  for (int i = 2; i <= N; ++i) {
+    factorial *= i;
+  }
+  for (int k = 0; k < Terms; ++k) {
+    result[std::size_t(k)] = static_cast<T>(1 / factorial);
+    factorial *= (2.0L * k + N + 1) * (2.0L * k + N + 2);
+  }
+  return result;
+}
+
+template <int N, int Terms, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_polynomial(T s) {
+  static constexpr auto coefficients = stumpff_coefficients<T, N, Terms>();
+  T sum = coefficients[Terms - 1];
+  for (int k = Terms - 2; k >= 0; --k) {
+    sum = coefficients[std::size_t(k)] - s * sum;
+  }
+  return sum;
+}
+
+/// The series, summed until its terms vanish, for types without a fixed number of digits.
+template <int N, class T>
+[[nodiscard]] T stumpff_series(const T& s) {
+  T term(1);
+  for (int i = 2; i <= N; ++i) {
+    term /= i;
+  }
+  T sum = term;
+  for (int k = 0; abs(term) > std::numeric_limits<T>::epsilon() * abs(sum) / 8; ++k) {
+    term *= -s / ((2 * k + N + 1) * (2 * k + N + 2));
+    sum += term;
+  }
+  return sum;
+}
+
+/// 1/(n−2)!, the value that the recurrence c_n = (1/(n−2)! − c_{n−2})/s starts from.
+template <class T>
+[[nodiscard]] constexpr T inverse_factorial(int n) {
+  T factorial(1);
+  for (int i = 2; i <= n; ++i) {
+    factorial = factorial * i;
+  }
+  return T(1) / factorial;
+}
+
+/// c_n(s) of a real number.
+///
+/// Below s = 1 the series converges in a dozen terms. For n ≥ 2 the closed forms cancel well beyond
+/// that, so the series serves until s = π²; its largest term is then still only four times its
+/// first.
+template <int N, real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_real(const T& s) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  constexpr bool built_in = std::floating_point<T>;
+  constexpr int digits = std::numeric_limits<T>::digits;
+  if (s <= T(1)) {
+    if constexpr (built_in) {
+      return stumpff_polynomial < N, digits <= 53 ? 10 : 13 > (s);
+    } else {
+      return stumpff_series<N>(s);
+    }
+  }
+  if constexpr (N == 0) {
+    return cos(T(sqrt(s)));
+  } else if constexpr (N == 1) {
+    const T root = sqrt(s);
+    return sin(root) / root;
+  } else {
+    if (s <= T(9.8696)) {
+      if constexpr (built_in) {
+        return stumpff_polynomial < N, digits <= 53 ? 20 : 24 > (s);
+      } else {
+        return stumpff_series<N>(s);
+      }
+    }
+    return (inverse_factorial<T>(N - 2) - stumpff_of_real<N - 2>(s)) / s;
+  }
+}
+
+} // namespace duet::detail

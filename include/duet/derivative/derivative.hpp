@@ -1,0 +1,53 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/derivative/structure.hpp>
+#include <duet/dual/math.hpp>
+
+#include <array>
+#include <cstddef>
+#include <utility>
+
+/// \file
+/// Derivatives of functions of one scalar.
+
+namespace duet {
+
+template <class Y, class DY>
+struct value_and_derivative {
+  Y value;
+  DY derivative;
+};
+template <class Y, class DY>
+value_and_derivative(Y, DY) -> value_and_derivative<Y, DY>;
+
+/// f(x) and f′(x), of a function of one scalar.
+///
+/// The result may be a scalar, an Eigen matrix, an array, a tuple, a quaternion or a dual
+/// quaternion; the derivative has the same shape. Calls may nest: each marks its ε with the type of
+/// its function, or with `Tag` where the caller gives one.
+///
+/// Example: `auto [y, dy] = derivative([](auto x) { return sin(x); }, 0.3);`
+template <class Tag = void, class F, class X>
+  requires(scalar<X> || arithmetic<X>)
+[[nodiscard]] auto derivative(F&& f, const X& x) {
+  using T = detail::differentiable_t<X>;
+  using tag = detail::tag_for<Tag, F>;
+  const auto y = detail::evaluated(std::forward<F>(f)(dual<T, 1, tag>::variable(T(x))));
+  return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};
+}
+
+/// f(x), f′(x), …, f^(K)(x) in one pass over Taylor numbers; element k is the k-th derivative.
+template <int K, class Tag = void, class F, class X>
+  requires(scalar<X> || arithmetic<X>)
+[[nodiscard]] auto derivatives(F&& f, const X& x) {
+  using T = detail::differentiable_t<X>;
+  using tag = detail::tag_for<Tag, F>;
+  const auto y = detail::evaluated(std::forward<F>(f)(taylor<T, K, tag>::variable(T(x))));
+  return [&]<int... I>(std::integer_sequence<int, I...>) {
+    return std::array{detail::parts<tag>(y, I)...};
+  }
+  (std::make_integer_sequence<int, K + 1>{});
+}
+
+} // namespace duet

@@ -1,0 +1,84 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/seed.hpp>
+
+#include <Eigen/Core>
+
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// Gradients and Hessians of scalar functions of a vector.
+
+namespace duet {
+
+template <class Y, class G>
+struct value_and_gradient {
+  Y value;
+  G gradient;
+};
+
+template <class Y, class G, class H>
+struct value_gradient_and_hessian {
+  Y value;
+  G gradient;
+  H hessian;
+};
+
+/// f(x) and ∇f(x): x an Eigen vector or a `std::array` of n components, f scalar; the gradient is a
+/// column of n. Up to 32 components known at compile time take one evaluation of f.
+template <class Tag = void, class F, vector_like X>
+[[nodiscard]] auto gradient(F&& f, const X& x) {
+  using argument = detail::vector_argument<X>;
+  using T = typename argument::scalar;
+  using tag = detail::tag_for<Tag, F>;
+  constexpr int n = detail::partials_per_pass<X>;
+  using output =
+      std::decay_t<decltype(detail::evaluated(f(detail::seeded<dual<T, n, tag>, n>(x, 0))))>;
+  static_assert(scalar<output>, "duet: gradient needs a function that returns a scalar");
+  using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
+  using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
+  value_and_gradient<S, vector> result{S(0), vector::Zero(argument::size(x))};
+  if (argument::size(x) == 0) {
+    throw invalid_input("duet: gradient of a function of no variables");
+  }
+  detail::for_each_pass<tag>(f, x, [&](const auto& y, Eigen::Index first, Eigen::Index count) {
+    result.value = detail::part<tag>(y, 0);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      result.gradient[first + i] = detail::part<tag>(y, int(i) + 1);
+    }
+  });
+  return result;
+}
+
+/// f(x), ∇f(x) and the symmetric Hessian, for up to 32 components known at compile time.
+template <class Tag = void, class F, vector_like X>
+[[nodiscard]] auto hessian(F&& f, const X& x) {
+  using argument = detail::vector_argument<X>;
+  using T = typename argument::scalar;
+  constexpr int n = argument::size_at_compile_time;
+  static_assert(n > 0 && n <= detail::single_pass_limit,
+                "duet: hessian needs a vector of at most 32 components, known at compile time");
+  using outer_tag = detail::tag_for<Tag, F>;
+  using inner_tag = derivative_tag<outer_tag, struct second_order>;
+  using inner_dual = dual<T, n, inner_tag>;
+  using outer_dual = dual<inner_dual, n, outer_tag>;
+  const auto variables = detail::seeded<outer_dual, n>(detail::seeded<inner_dual, n>(x, 0), 0);
+  const auto y = detail::evaluated(f(variables));
+  const auto value = detail::part<outer_tag>(y, 0);
+  using S = decltype(detail::part<inner_tag>(value, 0));
+  value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
+  result.value = detail::part<inner_tag>(value, 0);
+  for (int i = 0; i < n; ++i) {
+    const auto row = detail::part<outer_tag>(y, i + 1);
+    result.gradient[i] = detail::part<inner_tag>(row, 0);
+    for (int j = 0; j < n; ++j) {
+      result.hessian(i, j) = detail::part<inner_tag>(row, j + 1);
+    }
+  }
+  return result;
+}
+
+} // namespace duet

@@ -1,0 +1,85 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/seed.hpp>
+
+#include <Eigen/Core>
+
+#include <string>
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// Jacobians and directional derivatives of functions of a vector.
+
+namespace duet {
+
+template <class Y, class J>
+struct value_and_jacobian {
+  Y value;
+  J jacobian;
+};
+
+/// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors or `std::array`s.
+template <class Tag = void, class F, vector_like X>
+[[nodiscard]] auto jacobian(F&& f, const X& x) {
+  using argument = detail::vector_argument<X>;
+  using T = typename argument::scalar;
+  using tag = detail::tag_for<Tag, F>;
+  constexpr int n = detail::partials_per_pass<X>;
+  using output =
+      std::decay_t<decltype(detail::evaluated(f(detail::seeded<dual<T, n, tag>, n>(x, 0))))>;
+  static_assert(vector_like<output>, "duet: jacobian needs a function that returns a vector");
+  using result_argument = detail::vector_argument<output>;
+  using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
+  using S = typename detail::vector_argument<value>::scalar;
+  value_and_jacobian<value, Eigen::Matrix<S, result_argument::size_at_compile_time,
+                                          argument::size_at_compile_time>>
+      result{};
+  if (argument::size(x) == 0) {
+    throw invalid_input("duet: jacobian of a function of no variables");
+  }
+  detail::for_each_pass<tag>(f, x, [&](const output& y, Eigen::Index first, Eigen::Index count) {
+    const Eigen::Index rows = result_argument::size(y);
+    if (first == 0) {
+      result.value = detail::parts<tag>(y, 0);
+      result.jacobian.resize(rows, argument::size(x));
+    }
+    for (Eigen::Index j = 0; j < count; ++j) {
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        result.jacobian(i, first + j) = detail::part<tag>(y[std::size_t(i)], int(j) + 1);
+      }
+    }
+  });
+  return result;
+}
+
+/// f(x) and d/dt f(x + t v) at t = 0: x and v scalars or vectors of one size, f(x) of any shape.
+template <class Tag = void, class F, class X>
+[[nodiscard]] auto directional_derivative(F&& f, const X& x, const X& v) {
+  using tag = detail::tag_for<Tag, F>;
+  const auto y = [&] {
+    if constexpr (vector_like<X>) {
+      using argument = detail::vector_argument<X>;
+      using D = dual<typename argument::scalar, 1, tag>;
+      if (argument::size(x) != argument::size(v)) {
+        throw invalid_input("duet: directional_derivative: the point has " +
+                            std::to_string(argument::size(x)) + " components, the direction " +
+                            std::to_string(argument::size(v)));
+      }
+      auto point = argument::template make<D>(x);
+      for (Eigen::Index i = 0; i < argument::size(x); ++i) {
+        point[std::size_t(i)] = D(argument::get(x, i), argument::get(v, i));
+      }
+      return detail::evaluated(f(point));
+    } else {
+      using T = detail::differentiable_t<X>;
+      return detail::evaluated(f(dual<T, 1, tag>(T(x), T(v))));
+    }
+  }();
+  return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};
+}
+
+} // namespace duet

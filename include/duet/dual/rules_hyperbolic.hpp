@@ -1,0 +1,98 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
+#include <duet/dual/rules.hpp>
+
+#include <cmath>
+
+/// \file
+/// The derivatives of the hyperbolic functions and their inverses; see rules.hpp.
+
+namespace duet::rule {
+
+struct sinh {
+  template <class T>
+  T value(const T& x) const {
+    using std::sinh;
+    return sinh(x);
+  }
+  template <class T>
+  T slope(const T& x, const T&) const {
+    using std::cosh;
+    return cosh(x);
+  }
+};
+
+struct cosh {
+  template <class T>
+  T value(const T& x) const {
+    using std::cosh;
+    return cosh(x);
+  }
+  template <class T>
+  T slope(const T& x, const T&) const {
+    using std::sinh;
+    return sinh(x);
+  }
+};
+
+struct tanh {
+  template <class T>
+  T value(const T& x) const {
+    using std::tanh;
+    return tanh(x);
+  }
+  template <class T>
+  T slope(const T& x, const T& y) const {
+    // 1 − y² would cancel where tanh saturates, and 1/cosh² overflow within.
+    return select(
+        innermost(y) * innermost(y) < 0.5, [&] { return T(1 - y * y); },
+        [&] {
+          using std::exp;
+          const T e = exp(innermost(x) < 0 ? T(2 * x) : T(-2 * x));
+          return T(4 * e / ((1 + e) * (1 + e)));
+        });
+  }
+};
+
+struct asinh {
+  template <class T>
+  T value(const T& x) const {
+    using std::asinh;
+    return asinh(x);
+  }
+  template <class T>
+  T slope(const T& x, const T&) const {
+    using std::hypot;
+    return 1 / hypot(T(1), x);
+  }
+};
+
+struct acosh {
+  template <class T>
+  T value(const T& x) const {
+    using std::acosh;
+    return acosh(x);
+  }
+  template <class T>
+  T slope(const T& x, const T&) const {
+    using std::sqrt;
+    return 1 / (sqrt(x - 1) * sqrt(x + 1));
+  }
+};
+
+struct atanh {
+  template <class T>
+  T value(const T& x) const {
+    using std::atanh;
+    return atanh(x);
+  }
+  template <class T>
+  T slope(const T& x, const T&) const {
+    return 1 / detail::one_minus_square(x);
+  }
+};
+
+} // namespace duet::rule

@@ -1,0 +1,91 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/stumpff.hpp>
+#include <duet/dual/lift.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/dual/taylor_lift.hpp>
+
+#include <array>
+#include <cmath>
+
+/// \file
+/// The two functions that exp and log of quaternions are made of, over every scalar: regular where
+/// sine, cosine and arctangent forms are not, with exact derivatives of every order.
+
+namespace duet {
+namespace rule {
+
+template <int N>
+struct stumpff;
+
+} // namespace rule
+
+/// Stumpff function c_n(s) = Σ_k (−s)^k/(2k+n)!, s ≥ 0: c₀ = cos √s, c₁ = sin √s/√s, c₂ = (1 −
+/// c₀)/s … Its derivative is c_n′ = (n c_{n+2} − c_{n+1})/2.
+template <int N, scalar T>
+[[nodiscard]] inline T stumpff(const T& s) {
+  if constexpr (infinitesimal<T>) {
+    return detail::lift(rule::stumpff<N>{}, s);
+  } else {
+    return detail::stumpff_of_real<N>(s);
+  }
+}
+
+namespace rule {
+
+template <int N>
+struct stumpff {
+  template <class T>
+  inline T value(const T& s) const {
+    return duet::stumpff<N>(s);
+  }
+  template <class T>
+  inline T slope(const T& s, const T&) const {
+    if constexpr (N == 0) {
+      return -duet::stumpff<1>(s) / 2;
+    } else {
+      return (N * duet::stumpff<N + 2>(s) - duet::stumpff<N + 1>(s)) / 2;
+    }
+  }
+};
+
+/// L(s, w) = atan2(√s, w)/√s.
+///
+/// With φ = atan2(√s, w): ∂L/∂w = −1/(s + w²) and ∂L/∂s = (sin φ cos φ − φ)/(2 (√s)³) = −2 L³
+/// c₃(4φ²), where φ² = L² s. Nothing cancels and nothing is divided by s.
+struct arc_ratio {
+  template <class T>
+  T value(const T& s, const T& w) const;
+  template <class T>
+  std::array<T, 2> slopes(const T& ratio, const T& s, const T& w) const {
+    const T squared = ratio * ratio;
+    return {-2 * squared * ratio * duet::stumpff<3>(T(4 * squared * s)), -1 / (s + w * w)};
+  }
+};
+
+} // namespace rule
+
+/// L(s, w) = atan2(√s, w)/√s, s ≥ 0: what turns the vector part v of a quaternion, s = v·v, into
+/// that of its logarithm. At s = 0 it is 1/w for w > 0; for w < 0 it is infinite there.
+template <scalar T>
+[[nodiscard]] inline T arc_ratio(const T& s, const T& w) {
+  if constexpr (infinitesimal<T>) {
+    return detail::lift(rule::arc_ratio{}, s, w);
+  } else {
+    using std::atan2;
+    using std::sqrt;
+    if (s == T(0) && w > T(0)) {
+      return T(1) / w;
+    }
+    const T root = sqrt(s);
+    return atan2(root, w) / root;
+  }
+}
+
+template <class T>
+T rule::arc_ratio::value(const T& s, const T& w) const {
+  return duet::arc_ratio(s, w);
+}
+
+} // namespace duet

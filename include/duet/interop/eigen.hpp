@@ -1,0 +1,30 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/quaternion/quaternion.hpp>
+
+#include <Eigen/Geometry>
+
+/// \file
+/// To and from the rotations of Eigen, which share duet's conventions: Hamilton product, active.
+
+namespace duet {
+
+/// Careful where components are listed: Eigen's constructor takes w first but stores x, y, z, w.
+template <class T>
+[[nodiscard]] Eigen::Quaternion<T> to_eigen(const quaternion<T>& q) {
+  return Eigen::Quaternion<T>(q.w(), q.x(), q.y(), q.z());
+}
+
+template <class T, int Options>
+[[nodiscard]] quaternion<T> from_eigen(const Eigen::Quaternion<T, Options>& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+/// The rotation of an axis of unit length and an angle in radians.
+template <class T>
+[[nodiscard]] quaternion<T> from_eigen(const Eigen::AngleAxis<T>& rotation) {
+  return from_eigen(Eigen::Quaternion<T>(rotation));
+}
+
+} // namespace duet

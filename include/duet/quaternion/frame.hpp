@@ -1,0 +1,37 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <type_traits>
+
+/// \file
+/// In which axes a velocity is expressed, as constants of distinct types: `frame::spatial` …
+
+namespace duet {
+
+struct spatial_frame {};
+struct body_frame {};
+struct hybrid_frame {};
+
+namespace frame {
+
+/// Fixed axes; linear velocities are of the body point at the fixed origin.
+inline constexpr spatial_frame spatial{};
+/// Axes and origin of the moving body.
+inline constexpr body_frame body{};
+/// Fixed axes; linear velocities are of the moving body's origin.
+inline constexpr hybrid_frame hybrid{};
+
+} // namespace frame
+
+namespace detail {
+
+/// Spatial or body; what turns only knows these two.
+template <class Frame>
+[[nodiscard]] constexpr bool is_spatial(Frame) {
+  static_assert(std::is_same_v<Frame, spatial_frame> || std::is_same_v<Frame, body_frame>,
+                "duet: an angular velocity is given in frame::spatial or frame::body");
+  return std::is_same_v<Frame, spatial_frame>;
+}
+
+} // namespace detail
+} // namespace duet

@@ -1,0 +1,165 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/eigen_traits.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/dual/promotion.hpp>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <ostream>
+
+/// \file
+/// Quaternions and their algebra (N1–N3).
+
+namespace duet {
+
+/// A column of three scalars.
+template <class T>
+using vector3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using matrix3 = Eigen::Matrix<T, 3, 3>;
+
+/// A quaternion w + x i + y j + z k: Hamilton product (ij = k), scalar part first.
+///
+/// \tparam T  any scalar. Over a real number a unit quaternion is a rotation, acting as v ↦ q v q*.
+///            Over derivative duals it carries its derivatives, over `dual<T, 1, screw_tag>` it is
+///            a dual quaternion, a rigid motion. There is no other implementation.
+template <scalar T>
+class quaternion {
+public:
+  using scalar_type = T;
+
+  /// Zero.
+  constexpr quaternion() : w_(T(0)), x_(T(0)), y_(T(0)), z_(T(0)) {}
+  constexpr quaternion(const T& w, const T& x, const T& y, const T& z)
+      : w_(w), x_(x), y_(y), z_(z) {}
+  /// A scalar as a quaternion: 1 is the identity rotation.
+  constexpr explicit quaternion(const T& w) : w_(w), x_(T(0)), y_(T(0)), z_(T(0)) {}
+  quaternion(const T& w, const vector3<T>& v) : w_(w), x_(v[0]), y_(v[1]), z_(v[2]) {}
+  /// The same quaternion over another scalar; implicit where no precision or level is lost.
+  template <class U>
+    requires(!std::same_as<U, T> && std::constructible_from<T, U>)
+  constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
+      quaternion(const quaternion<U>& q)
+      : w_(static_cast<T>(q.w())), x_(static_cast<T>(q.x())), y_(static_cast<T>(q.y())),
+        z_(static_cast<T>(q.z())) {}
+
+  [[nodiscard]] constexpr const T& w() const { return w_; }
+  [[nodiscard]] constexpr const T& x() const { return x_; }
+  [[nodiscard]] constexpr const T& y() const { return y_; }
+  [[nodiscard]] constexpr const T& z() const { return z_; }
+  /// The vector part (x, y, z).
+  [[nodiscard]] vector3<T> vec() const { return {x_, y_, z_}; }
+
+  [[nodiscard]] friend constexpr quaternion operator+(const quaternion& q) { return q; }
+  [[nodiscard]] friend constexpr quaternion operator-(const quaternion& q) {
+    return {-q.w_, -q.x_, -q.y_, -q.z_};
+  }
+
+  template <class U>
+    requires std::convertible_to<quaternion<U>, quaternion>
+  constexpr quaternion& operator+=(const quaternion<U>& q) { return *this = *this + q; }
+  template <class U>
+    requires std::convertible_to<quaternion<U>, quaternion>
+  constexpr quaternion& operator-=(const quaternion<U>& q) { return *this = *this - q; }
+  template <class U>
+    requires std::convertible_to<quaternion<U>, quaternion>
+  constexpr quaternion& operator*=(const quaternion<U>& q) { return *this = *this * q; }
+  template <std::convertible_to<T> U>
+  constexpr quaternion& operator*=(const U& a) {
+    return *this = *this * a;
+  }
+  template <std::convertible_to<T> U>
+  constexpr quaternion& operator/=(const U& a) {
+    return *this = *this / a;
+  }
+
+  friend std::ostream& operator<<(std::ostream& out, const quaternion& q) {
+    return out << "(" << q.w_ << ", " << q.x_ << ", " << q.y_ << ", " << q.z_ << ")";
+  }
+
+private:
+  T w_, x_, y_, z_;
+};
+
+template <class T>
+inline constexpr bool is_quaternion = false;
+template <class T>
+inline constexpr bool is_quaternion<quaternion<T>> = true;
+
+/// A scalar that may multiply a quaternion over T.
+template <class S, class T>
+concept scalar_for = (scalar<S> || arithmetic<S>)&&promotable<S, T>;
+
+template <class A, class B>
+  requires promotable<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
+operator+(const quaternion<A>& p, const quaternion<B>& q) {
+  return {p.w() + q.w(), p.x() + q.x(), p.y() + q.y(), p.z() + q.z()};
+}
+template <class A, class B>
+  requires promotable<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
+operator-(const quaternion<A>& p, const quaternion<B>& q) {
+  return {p.w() - q.w(), p.x() - q.x(), p.y() - q.y(), p.z() - q.z()};
+}
+
+/// N1: pq = (p₀q₀ − p⃗·q⃗, p₀q⃗ + q₀p⃗ + p⃗×q⃗)
+template <class A, class B>
+  requires promotable<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
+operator*(const quaternion<A>& p, const quaternion<B>& q) {
+  return {p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
+          p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),
+          p.w() * q.y() - p.x() * q.z() + p.y() * q.w() + p.z() * q.x(),
+          p.w() * q.z() + p.x() * q.y() - p.y() * q.x() + p.z() * q.w()};
+}
+
+template <class T, scalar_for<T> S>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
+operator*(const quaternion<T>& q, const S& a) {
+  return {q.w() * a, q.x() * a, q.y() * a, q.z() * a};
+}
+template <class T, scalar_for<T> S>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
+operator*(const S& a, const quaternion<T>& q) {
+  return q * a;
+}
+template <class T, scalar_for<T> S>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
+operator/(const quaternion<T>& q, const S& a) {
+  return {q.w() / a, q.x() / a, q.y() / a, q.z() / a};
+}
+
+/// Componentwise, by value. q and −q are the same rotation but not the same quaternion.
+template <class A, class B>
+  requires promotable<A, B>
+[[nodiscard]] constexpr bool operator==(const quaternion<A>& p, const quaternion<B>& q) {
+  return p.w() == q.w() && p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
+}
+
+/// N2: q* = (q₀, −q⃗); (pq)* = q* p*
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<T> conj(const quaternion<T>& q) {
+  return {q.w(), -q.x(), -q.y(), -q.z()};
+}
+
+/// The scalar product of p and q as vectors of R⁴.
+template <class A, class B>
+  requires promotable<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr promote_t<A, B> dot(const quaternion<A>& p,
+                                                               const quaternion<B>& q) {
+  return p.w() * q.w() + p.x() * q.x() + p.y() * q.y() + p.z() * q.z();
+}
+
+/// N3: |q|² = q q*
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr T norm2(const quaternion<T>& q) {
+  return dot(q, q);
+}
+
+} // namespace duet

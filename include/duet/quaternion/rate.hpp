@@ -1,0 +1,59 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/quaternion/frame.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <Eigen/Core>
+
+/// \file
+/// Rates of unit quaternions and angular velocities (N6–N8). ω in rad per unit of the parameter.
+
+namespace duet {
+
+/// N7: ω^s = vec(2 q̇ q*) in spatial axes, ω^b = vec(2 q* q̇) in body axes; q of unit norm.
+template <class A, class B, class Frame>
+  requires promotable<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>>
+angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame_of_result) {
+  const auto half = [&] {
+    if constexpr (detail::is_spatial(frame_of_result)) {
+      return q_dot * conj(q);
+    } else {
+      return conj(q) * q_dot;
+    }
+  }();
+  return {2 * half.x(), 2 * half.y(), 2 * half.z()};
+}
+
+/// N7: q̇ = ½ ω^s q = ½ q ω^b
+template <class A, class B, class Frame>
+  requires promotable<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<A, B>>
+quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_omega) {
+  const quaternion<B> half(B(0), vector3<B>(omega[0] / 2, omega[1] / 2, omega[2] / 2));
+  if constexpr (detail::is_spatial(frame_of_omega)) {
+    return half * q;
+  } else {
+    return q * half;
+  }
+}
+
+/// N8: the 3×4 matrix with ω = 2 M q̇ in the order (w, x, y, z): E(q) for spatial, G(q) for body
+/// axes. E Gᵀ = R.
+template <class T, class Frame>
+[[nodiscard]] Eigen::Matrix<T, 3, 4> rate_matrix(const quaternion<T>& q, Frame frame_of_omega) {
+  Eigen::Matrix<T, 3, 4> m;
+  if constexpr (detail::is_spatial(frame_of_omega)) {
+    m << -q.x(), q.w(), -q.z(), q.y(), //
+        -q.y(), q.z(), q.w(), -q.x(),  //
+        -q.z(), -q.y(), q.x(), q.w();
+  } else {
+    m << -q.x(), q.w(), q.z(), -q.y(), //
+        -q.y(), -q.z(), q.w(), q.x(),  //
+        -q.z(), q.y(), -q.x(), q.w();
+  }
+  return m;
+}
+
+} // namespace duet

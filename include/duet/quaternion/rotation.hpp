@@ -1,0 +1,142 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <sstream>
+
+/// \file
+/// Unit quaternions as active rotations v ↦ q v q*: vectors, axis and angle, rotation vectors,
+/// matrices. Angles in radians.
+
+namespace duet {
+
+/// q v q* for a unit quaternion: v turned by the rotation.
+template <class T, class U>
+  requires promotable<T, U>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<T, U>> rotate(const quaternion<T>& q,
+                                                                 const vector3<U>& v) {
+  // v + 2 q₀ (q⃗ × v) + 2 q⃗ × (q⃗ × v)
+  using R = promote_t<T, U>;
+  const R tx = 2 * (q.y() * v[2] - q.z() * v[1]);
+  const R ty = 2 * (q.z() * v[0] - q.x() * v[2]);
+  const R tz = 2 * (q.x() * v[1] - q.y() * v[0]);
+  return {v[0] + q.w() * tx + (q.y() * tz - q.z() * ty),
+          v[1] + q.w() * ty + (q.z() * tx - q.x() * tz),
+          v[2] + q.w() * tz + (q.x() * ty - q.y() * tx)};
+}
+
+/// Rotation by the angle a about the direction n of any length.
+/// \throws invalid_input where n is zero
+template <class T, class S>
+  requires promotable<T, S>
+[[nodiscard]] quaternion<promote_t<T, S>> from_axis_angle(const vector3<T>& n, const S& a) {
+  using std::cos;
+  using std::sin;
+  const quaternion<T> direction(T(0), n);
+  if (innermost(norm2(direction)) == 0 &&
+      detail::largest_component(detail::innermost_of(direction)) == 0) {
+    throw invalid_input("duet: from_axis_angle: the axis is the zero vector");
+  }
+  const quaternion<T> axis = normalized(direction);
+  using R = promote_t<T, S>;
+  const R half = R(a) / 2;
+  const R s = sin(half);
+  return {cos(half), axis.x() * s, axis.y() * s, axis.z() * s};
+}
+
+/// Rotation by |r| about r: exp(r/2).
+template <class T>
+[[nodiscard]] quaternion<T> from_rotation_vector(const vector3<T>& r) {
+  return duet::exp(vector3<T>(r[0] / 2, r[1] / 2, r[2] / 2));
+}
+
+/// The rotation vector of q, angle times axis, of length at most π: the same for q and −q, q of any
+/// norm. At a half turn (q₀ = 0) both r and −r would do; the one of q's own sign is returned.
+/// \throws invalid_input for the zero quaternion
+template <class T>
+[[nodiscard]] vector3<T> rotation_vector(const quaternion<T>& q) {
+  const quaternion<T> l = log(innermost(q.w()) < 0 ? -q : q);
+  return {2 * l.x(), 2 * l.y(), 2 * l.z()};
+}
+
+/// The shortest rotation that takes the direction of a to that of b. For opposite directions the
+/// axis is undetermined: one perpendicular to a is chosen. \throws invalid_input where a or b is
+/// zero
+template <class T>
+[[nodiscard]] quaternion<T> from_two_vectors(const vector3<T>& a, const vector3<T>& b) {
+  const vector3<T> u = normalized(quaternion<T>(T(0), a)).vec();
+  const vector3<T> v = normalized(quaternion<T>(T(0), b)).vec();
+  // |u + v|²/2 = 1 + u·v, without the cancellation of the right side near opposite directions.
+  const vector3<T> sum = u + v;
+  const T w = sum.squaredNorm() / 2;
+  const quaternion<T> q(w, vector3<T>(u.cross(v)));
+  if (innermost(norm2(q)) != 0) {
+    return normalized(q);
+  }
+  return {T(0), vector3<T>(u.unitOrthogonal())};
+}
+
+/// The matrix R with R v = q v q*, for a unit quaternion.
+template <class T>
+[[nodiscard]] matrix3<T> rotation_matrix(const quaternion<T>& q) {
+  const T x2 = 2 * q.x();
+  const T y2 = 2 * q.y();
+  const T z2 = 2 * q.z();
+  const T xx = x2 * q.x(), yy = y2 * q.y(), zz = z2 * q.z();
+  const T xy = x2 * q.y(), yz = y2 * q.z(), zx = z2 * q.x();
+  const T wx = x2 * q.w(), wy = y2 * q.w(), wz = z2 * q.w();
+  matrix3<T> r;
+  r << 1 - (yy + zz), xy - wz, zx + wy, //
+      xy + wz, 1 - (zz + xx), yz - wx,  //
+      zx - wy, yz + wx, 1 - (xx + yy);
+  return r;
+}
+
+/// The unit quaternion of a rotation matrix, its largest component positive.
+/// \throws invalid_input where R Rᵀ differs from 1 by more than 1e-6 (1e-3 in single precision), or
+/// det R < 0
+template <class T>
+[[nodiscard]] quaternion<T> from_rotation_matrix(const matrix3<T>& r) {
+  using std::sqrt;
+  using real = real_type_t<T>;
+  const matrix3<real> values = r.unaryExpr([](const T& x) { return real(innermost(x)); });
+  const real defect =
+      (values * values.transpose() - matrix3<real>::Identity()).cwiseAbs().maxCoeff();
+  const real tolerance = std::numeric_limits<real>::digits > 24 ? real(1e-6) : real(1e-3);
+  if (!(defect <= tolerance) || values.determinant() < 0) {
+    std::ostringstream message;
+    message << "duet: from_rotation_matrix: not a rotation: |R R^T - 1| = " << defect
+            << ", det R = " << values.determinant();
+    throw invalid_input(message.str());
+  }
+  // 4q₀², 4q₁² … from the diagonal; dividing by the largest never loses digits.
+  const T s[4] = {1 + r(0, 0) + r(1, 1) + r(2, 2), 1 + r(0, 0) - r(1, 1) - r(2, 2),
+                  1 - r(0, 0) + r(1, 1) - r(2, 2), 1 - r(0, 0) - r(1, 1) + r(2, 2)};
+  int k = 0;
+  for (int i = 1; i < 4; ++i) {
+    k = s[i] > s[k] ? i : k;
+  }
+  const T root = sqrt(s[k]);
+  const T f = 1 / (2 * root);
+  const T a = (r(2, 1) - r(1, 2)) * f, b = (r(0, 2) - r(2, 0)) * f, c = (r(1, 0) - r(0, 1)) * f;
+  const T d = (r(1, 0) + r(0, 1)) * f, e = (r(2, 1) + r(1, 2)) * f, g = (r(0, 2) + r(2, 0)) * f;
+  switch (k) {
+  case 0:
+    return {root / 2, a, b, c};
+  case 1:
+    return {a, root / 2, d, g};
+  case 2:
+    return {b, d, root / 2, e};
+  default:
+    return {c, g, e, root / 2};
+  }
+}
+
+} // namespace duet
