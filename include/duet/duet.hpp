@@ -18,3 +18,6 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/printed.hpp>

@@ -79,7 +79,7 @@ struct acosh {
   template <class T>
   T slope(const T& x, const T&) const {
     using std::sqrt;
-    return 1 / (sqrt(x - 1) * sqrt(x + 1));
+    return 1 / sqrt(x - 1) / sqrt(x + 1); // the radicand x² − 1 would cancel and overflow
   }
 };
 

@@ -1,0 +1,89 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+
+#include <cstddef>
+#include <sstream>
+#include <vector>
+
+/// \file
+/// Knot vectors.
+
+namespace duet {
+namespace detail {
+
+/// \throws invalid_input unless the knots are finite, do not decrease, leave a domain for splines
+/// of this order and repeat none more often than `order` times
+template <real R>
+void check_knots(const std::vector<R>& knots, int order) {
+  const auto fail = [](const auto&... what) {
+    std::ostringstream message;
+    message << "duet: knots: ";
+    (message << ... << what);
+    throw invalid_input(message.str());
+  };
+  const auto k = std::size_t(order);
+  if (knots.size() < 2 * k) {
+    fail("order ", order, " needs at least ", 2 * k, " of them, got ", knots.size());
+  }
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    if (!(knots[i] - knots[i] == 0)) {
+      fail("knot ", i, " is ", knots[i]);
+    }
+    if (i > 0 && knots[i] < knots[i - 1]) {
+      fail("knot ", i, " = ", knots[i], " is less than knot ", i - 1, " = ", knots[i - 1]);
+    }
+    if (i >= k && knots[i] == knots[i - k]) {
+      fail("knot ", i, " = ", knots[i], " is repeated more than ", order, " times");
+    }
+  }
+  if (!(knots[k - 1] < knots[knots.size() - k])) {
+    fail("the domain is empty");
+  }
+}
+
+} // namespace detail
+
+/// The knots of a spline of this order through data at the given parameters: each once, the first
+/// and the last `order` times, so that the curve ends in its first and last control elements.
+template <real R>
+[[nodiscard]] std::vector<R> clamped_knots(const std::vector<R>& parameters, int order) {
+  std::vector<R> knots;
+  knots.reserve(parameters.size() + 2 * std::size_t(order) - 2);
+  knots.insert(knots.end(), std::size_t(order) - 1, parameters.front());
+  knots.insert(knots.end(), parameters.begin(), parameters.end());
+  knots.insert(knots.end(), std::size_t(order) - 1, parameters.back());
+  return knots;
+}
+
+/// B_i^k(u) by the recurrence of de Boor and Cox (P1): order k, degree k − 1.
+///
+/// The intervals are half-open, [u_i, u_{i+1}); only the last non-empty one of the domain is
+/// closed. (Closed at both ends, as the paper prints them, two would count at every knot and the
+/// functions would not sum to 1.) A term whose denominator is zero is zero. This is the definition;
+/// `bspline_basis` is the fast way.
+template <real R>
+[[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u) {
+  if (order == 1) {
+    if (knots[i] <= u && u < knots[i + 1]) {
+      return R(1);
+    }
+    const bool ends_the_knots = knots[i] < knots[i + 1] && knots[i + 1] == knots.back();
+    return R(ends_the_knots && u == knots[i + 1] ? 1 : 0);
+  }
+  const auto k = std::size_t(order);
+  const R left = knots[i + k - 1] - knots[i];
+  const R right = knots[i + k] - knots[i + 1];
+  R sum(0);
+  if (left > 0) {
+    sum += (u - knots[i]) / left * bspline_value(knots, i, order - 1, u);
+  }
+  if (right > 0) {
+    sum += (knots[i + k] - u) / right * bspline_value(knots, i + 1, order - 1, u);
+  }
+  return sum;
+}
+
+} // namespace duet

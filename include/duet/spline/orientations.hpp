@@ -1,0 +1,73 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <string>
+#include <vector>
+
+/// \file
+/// Sequences of orientations, as read from a table.
+
+namespace duet {
+
+/// A row of a table that no curve can be put through.
+class invalid_row : public invalid_input {
+public:
+  invalid_row(std::size_t row, const std::string& reason)
+      : invalid_input("duet: row " + std::to_string(row) + ": " + reason), row_(row),
+        reason_(reason) {}
+
+  /// Counted from 0.
+  [[nodiscard]] std::size_t row() const { return row_; }
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+private:
+  std::size_t row_;
+  std::string reason_;
+};
+
+/// How far from 1 the norm of a given unit quaternion may be: tables are printed with few digits.
+inline constexpr double unit_norm_tolerance = 1e-3;
+
+/// The same rotations, normalised, each with the sign nearer to its predecessor's.
+///
+/// \throws invalid_row for a quaternion that is not finite or whose norm is not 1, and where two
+/// neighbours are half a turn apart, so that either way round is as short
+template <class T>
+[[nodiscard]] std::vector<quaternion<T>> aligned_orientations(std::vector<quaternion<T>> q) {
+  using std::abs;
+  const auto fail = [&](std::size_t row, const auto&... what) {
+    std::ostringstream reason;
+    (reason << ... << what);
+    throw invalid_row(row, reason.str());
+  };
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const auto length = norm(detail::innermost_of(q[i]));
+    if (!(length - length == 0)) {
+      fail(i, "quaternion ", q[i], " is not finite");
+    }
+    if (abs(length - 1) > unit_norm_tolerance) {
+      fail(i, "quaternion ", q[i], " has norm ", length, ", not 1");
+    }
+    q[i] = normalized(q[i]);
+    if (i == 0) {
+      continue;
+    }
+    const auto cosine = innermost(dot(q[i - 1], q[i]));
+    if (abs(cosine) < 1e-9) {
+      fail(i, "half a turn from the row before: either way round is as short");
+    }
+    if (cosine < 0) {
+      q[i] = -q[i];
+    }
+  }
+  return q;
+}
+
+} // namespace duet

@@ -1,0 +1,76 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/knots.hpp>
+
+#include <cstddef>
+
+/// \file
+/// The derivatives of the cumulative curve as the paper prints them (P3, P4). They are not the
+/// derivatives of the curve: it is for comparison that they stand here.
+
+namespace duet {
+
+/// First and second derivative of Q, twice: the letter of the print, and its spirit.
+template <class T>
+struct printed_derivatives {
+  /// P3 and P4 to the letter: a lone scalar B̃′_0 (B̃″_0) where ω_0 B̃′_0 belongs, the ω_i summed as
+  /// if they commuted, B̃″_i one term short.
+  quaternion<T> literal_first, literal_second;
+  /// The same commuting sums over all i, with the true B̃′_i and B̃″_i.
+  quaternion<T> commuting_first, commuting_second;
+};
+
+/// P3 and P4 as printed, at u; for the true derivatives use `cumulative_bspline::derivatives`.
+/// \throws invalid_input outside the domain
+template <class T, int Order>
+[[nodiscard]] printed_derivatives<T> printed_derivative(const cumulative_bspline<T, Order>& s,
+                                                        const T& u) {
+  static_assert(Order >= 3, "duet: the printed second derivative needs order 3 or more");
+  using Q = quaternion<T>;
+  const auto& knots = s.basis().knots();
+  const std::size_t span = s.basis().span_of(u);
+  const std::size_t first = s.basis().first_function(span);
+  const auto weights = s.basis().template weights<2>(span, u);
+  constexpr auto k = std::size_t(Order);
+
+  vector3<T> commuting_sum = vector3<T>::Zero();
+  vector3<T> commuting_sum_of_second = vector3<T>::Zero();
+  vector3<T> literal_sum = vector3<T>::Zero();
+  vector3<T> literal_sum_of_second = vector3<T>::Zero();
+  T lone_first(0);
+  T lone_second(0);
+  for (std::size_t j = 0; j + 1 < k; ++j) {
+    const std::size_t i = first + 1 + j; // the paper's i − 1: its products start at q_{−1}
+    const vector3<T>& omega = s.increments()[i];
+    commuting_sum += omega * weights.derivative[1][j];
+    commuting_sum_of_second += omega * weights.derivative[2][j];
+    const T width = knots[i + k - 1] - knots[i];
+    const T shorter_width = knots[i + k - 2] - knots[i];
+    const T printed_first = (k - 1) / width * bspline_value(knots, i, Order - 1, u);
+    const T printed_second =
+        shorter_width > 0
+            ? T((k - 1) * (k - 2) / (width * shorter_width) * bspline_value(knots, i, Order - 2, u))
+            : T(0);
+    if (i == 1) { // the paper's B̃_0
+      lone_first = printed_first;
+      lone_second = printed_second;
+    } else {
+      literal_sum += omega * printed_first;
+      literal_sum_of_second += omega * printed_second;
+    }
+  }
+  const Q q = s(u);
+  printed_derivatives<T> result;
+  result.literal_first = q * Q(lone_first, literal_sum);
+  result.literal_second = result.literal_first * Q(lone_second, literal_sum) +
+                          q * Q(lone_second, literal_sum_of_second);
+  result.commuting_first = q * Q(T(0), commuting_sum);
+  result.commuting_second =
+      result.commuting_first * Q(T(0), commuting_sum) + q * Q(T(0), commuting_sum_of_second);
+  return result;
+}
+
+} // namespace duet
