@@ -4,14 +4,17 @@
 #include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/manifold.hpp>
+#include <duet/derivative/seed.hpp>
 #include <duet/derivative/structure.hpp>
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -27,54 +30,53 @@ struct newton_options {
 
 namespace detail {
 
-/// The scalar type of a residual, and its values at the bottom of all nesting.
-template <class R>
-using residual_scalar = std::decay_t<decltype(std::declval<const R&>()[0])>;
+/// What F returned, as something that counts as many residuals as the unknown has coordinates.
+template <int N, class R>
+[[nodiscard]] auto residuals(R&& returned) {
+  auto r = evaluated(std::forward<R>(returned));
+  using type = decltype(r);
+  if constexpr (scalar<type>) {
+    static_assert(N == 1, "duet: implicit_function: F returns one residual, but the unknown has "
+                          "several coordinates");
+    return std::array<type, 1>{r};
+  } else {
+    static_assert(vector_like<type>, "duet: implicit_function: F must return a scalar, an Eigen "
+                                     "vector or a std::array");
+    constexpr int size = vector_argument<type>::size_at_compile_time;
+    static_assert(size == N || size == Eigen::Dynamic,
+                  "duet: implicit_function: F must return as many residuals as the unknown has "
+                  "coordinates, of which a rotation has three");
+    if (vector_argument<type>::size(r) != N) {
+      throw invalid_input("duet: implicit_function: F returned " +
+                          std::to_string(vector_argument<type>::size(r)) +
+                          " residuals for an unknown of " + std::to_string(N) + " coordinates");
+    }
+    return r;
+  }
+}
 
-/// Newton's method with AD Jacobian on the innermost real values. Returns the solution and the
+/// Damped Newton's method with AD Jacobian on the innermost real values: the solution and the
 /// factorised Jacobian there.
+///
+/// Progress is measured by how far the old Jacobian would still move x, ‖J⁻¹F(x_new)‖, which
+/// depends neither on the units nor on the mixture of the residuals.
 template <class F, class X, class P>
 class newton {
   static constexpr int n = manifold<X>::dimension;
   using tag = derivative_tag<newton>;
 
 public:
-  using real = double;
-  using vector = Eigen::Matrix<real, n, 1>;
-  using matrix = Eigen::Matrix<real, n, n>;
+  using vector = Eigen::Matrix<double, n, 1>;
+  using matrix = Eigen::Matrix<double, n, n>;
 
   newton(const F& f, const X& start, const P& p, const newton_options& options) : x(start) {
-    // A full step is halved while it makes the residual grow; near the solution it never does, and
-    // the residual stops falling at the level of rounding, which ends the iteration.
     linearise(f, p);
-    real best_step = std::numeric_limits<real>::infinity();
     for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-      const vector step = lu.solve(-residual);
-      if (!lu.isInvertible() || !step.allFinite()) {
-        fail("has a singular Jacobian", iteration);
-      }
-      const real size = step.norm();
-      const X previous = x;
-      const real previous_residual = residual.norm();
-      x = moved(previous, step);
-      linearise(f, p);
-      for (real fraction = 0.5;
-           !(residual.norm() <= previous_residual) && size > small() && fraction > 1e-6;
-           fraction /= 2) {
-        x = moved(previous, vector(fraction * step));
-        linearise(f, p);
-      }
-      if (size <= small() && size >= 0.5 * best_step) {
+      if (advance(f, p, iteration)) {
         return;
       }
-      if (residual.norm() == 0) {
-        return;
-      }
-      best_step = std::min(best_step, size);
     }
-    if (best_step > small()) {
-      fail("did not converge", options.max_iterations);
-    }
+    fail("did not converge", options.max_iterations);
   }
 
   X x;
@@ -83,18 +85,56 @@ public:
 private:
   vector residual;
 
-  /// Steps below this are in the quadratic range: the next one ends at rounding.
-  static real small() { return std::sqrt(std::numeric_limits<real>::epsilon()); }
+  /// One step, halved while it does not bring x nearer to the solution. True where x is as accurate
+  /// as it gets.
+  [[nodiscard]] bool advance(const F& f, const P& p, int iteration) {
+    const vector step = lu.solve(-residual);
+    if (!lu.isInvertible() || !step.allFinite()) {
+      fail("met a singular Jacobian", iteration);
+    }
+    const X previous = x;
+    const Eigen::FullPivLU<matrix> previous_lu = lu;
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    for (double fraction = 1; fraction > 1e-6; fraction /= 2) {
+      x = manifold<X>::plus(previous, vector(fraction * step));
+      linearise(f, p);
+      const vector remaining = previous_lu.solve(-residual);
+      if (remaining.norm() <= epsilon / 4 * magnitude() && lu.isInvertible()) {
+        return true;
+      }
+      if (remaining.norm() <= (1 - fraction / 4) * step.norm()) {
+        return false;
+      }
+      // Small steps over which the Jacobian does not change, and yet no gain: what is left of the
+      // residual is rounding.
+      const vector next = lu.solve(-residual);
+      if (fraction == 1 && step.norm() <= std::sqrt(epsilon) * std::max(1.0, magnitude()) &&
+          (next - remaining).norm() <= next.norm() / 2 && lu.isInvertible()) {
+        return true;
+      }
+    }
+    fail("cannot reduce the residual", iteration);
+  }
 
-  static X moved(const X& x, const vector& step) { return X(manifold<X>::plus(x, step)); }
+  /// The largest number in x.
+  [[nodiscard]] double magnitude() const {
+    double largest = 0;
+    static_cast<void>(map_scalars(
+        [&](double component) {
+          largest = std::max(largest, std::abs(component));
+          return component;
+        },
+        x));
+    return largest;
+  }
 
   void linearise(const F& f, const P& p) {
-    using D = dual<real, n, tag>;
+    using D = dual<double, n, tag>;
     Eigen::Matrix<D, n, 1> delta;
     for (int i = 0; i < n; ++i) {
       delta[i] = D::variable(0, i);
     }
-    const auto r = evaluated(f(manifold<X>::plus(x, delta), p));
+    const auto r = residuals<n>(f(manifold<X>::plus(x, delta), p));
     matrix jacobian;
     for (int i = 0; i < n; ++i) {
       residual[i] = innermost(part<tag>(r[std::size_t(i)], 0));
@@ -117,29 +157,32 @@ private:
 
 /// The x with F(x, p) = 0 near x0, over the scalars of p and of whatever F captures.
 ///
-/// \param f   F(x, p): an Eigen vector or array of as many residuals as x has coordinates,
-/// templated
-///            over the scalars of both
-/// \param x0  start: a scalar, a fixed-size vector, a rotation, or a tuple of them, of doubles
+/// \param f   F(x, p), templated over the scalars of both: an Eigen vector or array of as many
+///            residuals as x has coordinates, or a scalar where that is one
+/// \param x0  start: a scalar, a fixed-size vector, a unit quaternion, or a tuple of them
 /// \param p   parameters, of any scalars of duet and any shape
 ///
-/// Newton's method with AD Jacobian runs on the real values only. The derivatives follow by the
-/// implicit function theorem, order by order: with J = ∂F/∂x at the solution, each step
-/// x ← x − J⁻¹F(x, p) in the algebra of the infinitesimals makes one more order exact.
+/// Newton's method with AD Jacobian runs on the real values only, in double precision, to the level
+/// of rounding. The derivatives follow by the implicit function theorem, order by order: with
+/// J = ∂F/∂x at the solution, each step x ← x − J⁻¹F(x, p) in the algebra of the infinitesimals
+/// makes one more order exact.
 ///
-/// \throws no_convergence where Newton's method fails or ∂F/∂x is singular.
+/// \throws no_convergence where there is no solution near x0 or ∂F/∂x is singular.
 template <class F, class X, class P>
 [[nodiscard]] auto implicit_solution(const F& f, const X& x0, const P& p,
                                      const newton_options& options = {}) {
-  constexpr int n = manifold<X>::dimension;
+  const auto start = map_scalars([](const auto& s) { return double(innermost(s)); }, x0);
+  using unknown = std::remove_const_t<decltype(start)>;
+  constexpr int n = manifold<unknown>::dimension;
   const auto real_p = map_scalars([](const auto& s) { return innermost(s); }, p);
-  const detail::newton<F, X, std::decay_t<decltype(real_p)>> solved(f, x0, real_p, options);
-  using S = detail::residual_scalar<std::decay_t<decltype(detail::evaluated(f(solved.x, p)))>>;
+  const detail::newton<F, unknown, std::remove_const_t<decltype(real_p)>> solved(f, start, real_p,
+                                                                                 options);
+  using S = std::decay_t<decltype(detail::residuals<n>(f(solved.x, p))[0])>;
   auto x = map_scalars([](const auto& s) { return S(s); }, solved.x);
   if constexpr (scalar_traits<S>::order > 0) {
     const Eigen::Matrix<double, n, n> inverse = solved.lu.inverse();
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
-      const auto r = detail::evaluated(f(x, p));
+      const auto r = detail::residuals<n>(f(x, p));
       Eigen::Matrix<S, n, 1> step;
       for (int i = 0; i < n; ++i) {
         step[i] = S(0);

@@ -57,25 +57,29 @@ template <class Tag = void, class F, vector_like X>
 }
 
 /// f(x) and d/dt f(x + t v) at t = 0: x and v scalars or vectors of one size, f(x) of any shape.
-template <class Tag = void, class F, class X>
-[[nodiscard]] auto directional_derivative(F&& f, const X& x, const X& v) {
+template <class Tag = void, class F, class X, class V>
+  requires(vector_like<X> && vector_like<V>) ||
+          ((scalar<X> || arithmetic<X>)&&(scalar<V> || arithmetic<V>))
+[[nodiscard]] auto directional_derivative(F&& f, const X& x, const V& v) {
   using tag = detail::tag_for<Tag, F>;
   const auto y = [&] {
     if constexpr (vector_like<X>) {
       using argument = detail::vector_argument<X>;
-      using D = dual<typename argument::scalar, 1, tag>;
-      if (argument::size(x) != argument::size(v)) {
+      using direction = detail::vector_argument<V>;
+      using T = promote_t<typename argument::scalar, typename direction::scalar>;
+      using D = dual<T, 1, tag>;
+      if (argument::size(x) != direction::size(v)) {
         throw invalid_input("duet: directional_derivative: the point has " +
                             std::to_string(argument::size(x)) + " components, the direction " +
-                            std::to_string(argument::size(v)));
+                            std::to_string(direction::size(v)));
       }
       auto point = argument::template make<D>(x);
       for (Eigen::Index i = 0; i < argument::size(x); ++i) {
-        point[std::size_t(i)] = D(argument::get(x, i), argument::get(v, i));
+        point[std::size_t(i)] = D(T(argument::get(x, i)), T(direction::get(v, i)));
       }
       return detail::evaluated(f(point));
     } else {
-      using T = detail::differentiable_t<X>;
+      using T = promote_t<detail::differentiable_t<X>, detail::differentiable_t<V>>;
       return detail::evaluated(f(dual<T, 1, tag>(T(x), T(v))));
     }
   }();

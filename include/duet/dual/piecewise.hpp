@@ -118,32 +118,32 @@ template <class A, class B>
 template <infinitesimal D>
 [[nodiscard]] D floor(const D& x) {
   using std::floor;
-  return D(floor(innermost(x)));
+  return D(real_type_t<D>(floor(innermost(x))));
 }
 template <infinitesimal D>
 [[nodiscard]] D ceil(const D& x) {
   using std::ceil;
-  return D(ceil(innermost(x)));
+  return D(real_type_t<D>(ceil(innermost(x))));
 }
 template <infinitesimal D>
 [[nodiscard]] D trunc(const D& x) {
   using std::trunc;
-  return D(trunc(innermost(x)));
+  return D(real_type_t<D>(trunc(innermost(x))));
 }
 template <infinitesimal D>
 [[nodiscard]] D round(const D& x) {
   using std::round;
-  return D(round(innermost(x)));
+  return D(real_type_t<D>(round(innermost(x))));
 }
 template <infinitesimal D>
 [[nodiscard]] D rint(const D& x) {
   using std::rint;
-  return D(rint(innermost(x)));
+  return D(real_type_t<D>(rint(innermost(x))));
 }
 template <infinitesimal D>
 [[nodiscard]] D nearbyint(const D& x) {
   using std::nearbyint;
-  return D(nearbyint(innermost(x)));
+  return D(real_type_t<D>(nearbyint(innermost(x))));
 }
 template <infinitesimal D>
 [[nodiscard]] long lround(const D& x) {

@@ -31,7 +31,7 @@ template <infinitesimal D>
 template <infinitesimal D>
 [[nodiscard]] D logb(const D& x) {
   using std::logb;
-  return D(logb(innermost(x)));
+  return D(real_type_t<D>(logb(innermost(x))));
 }
 
 /// x · 2^exponent, each part rounded once.
@@ -65,7 +65,7 @@ template <infinitesimal D>
 template <infinitesimal D>
 [[nodiscard]] D nextafter(const D& x, const D& target) {
   using std::nextafter;
-  return detail::with_innermost(x, nextafter(innermost(x), innermost(target)));
+  return detail::with_innermost(x, real_type_t<D>(nextafter(innermost(x), innermost(target))));
 }
 template <infinitesimal D>
 [[nodiscard]] D nexttoward(const D& x, long double target) {

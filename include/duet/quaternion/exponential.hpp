@@ -1,9 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/constants.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/undetermined.hpp>
 
 #include <cmath>
 #include <limits>
@@ -33,54 +35,65 @@ template <class T>
 
 namespace detail {
 
-/// π, which no neighbouring quaternion's logarithm tends to: the slope is undefined.
-struct undetermined_axis {
-  template <class T>
-  T value(const T&) const {
-    return T(constant::pi<real_type_t<T>>());
-  }
-  template <class T>
-  T slope(const T&, const T&) const {
-    return T(std::numeric_limits<real_type_t<T>>::quiet_NaN());
-  }
-};
+/// Below this ratio of squares of vector part and whole, a full turn is near: |v|⁻³ and higher
+/// powers in the derivatives by s would overflow before those by v do.
+template <real R>
+inline constexpr auto near_full_turn = R(std::numeric_limits<R>::max_exponent >= 1024 ? 0x1p-100
+                                                                                       : 0x1p-20);
 
+/// û φ where |q| is out of range or a full turn is near.
 template <class T>
-[[nodiscard]] T pi_of_undetermined_axis(const T& x) {
-  if constexpr (infinitesimal<T>) {
-    return lift(undetermined_axis{}, x);
-  } else {
-    return undetermined_axis{}.value(x);
+[[nodiscard]] vector3<T> log_vector_of_extreme(const quaternion<T>& q, const char* function) {
+  using real = real_type_t<T>;
+  require_not_zero(q, function);
+  const quaternion<T> near_one =
+      scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
+  const quaternion<T> v(T(0), near_one.x(), near_one.y(), near_one.z());
+  const T s = norm2(v);
+  if (innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>) {
+    return vector3<T>(v.vec() * arc_ratio(s, near_one.w()));
   }
+  const real pi = constant::pi<real>();
+  if (is_zero(v)) {
+    return {undetermined(pi, q.x(), q.y(), q.z()), undetermined(real(0), q.x(), q.y(), q.z()),
+            undetermined(real(0), q.x(), q.y(), q.z())};
+  }
+  // atan2(|v|, w) = π − atan2(|v|, −w)
+  const T short_way = arc_ratio(s, T(-near_one.w()));
+  const quaternion<T> axis = normalized(v);
+  return {axis.x() * pi - v.x() * short_way, axis.y() * pi - v.y() * short_way,
+          axis.z() * pi - v.z() * short_way};
 }
 
-/// The logarithm where |q|² is out of range, or where a full turn's vector part is so small that
-/// its square loses digits: L is homogeneous of degree −1, so both arguments are scaled.
+/// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|².
 template <class T>
-[[nodiscard]] quaternion<T> log_scaled(const quaternion<T>& q) {
-  using std::ldexp;
-  using std::log;
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> log_vector(const quaternion<T>& q, const T& s,
+                                                       const T& square, const char* function) {
   using real = real_type_t<T>;
-  const auto values = innermost_of(q);
-  const real largest = largest_component(values);
-  if (largest == 0) {
-    throw_zero_quaternion("log");
+  const real& value = innermost(square);
+  if (!is_moderate(value) ||
+      (innermost(q.w()) < 0 && innermost(s) < value * near_full_turn<real>)) [[unlikely]] {
+    return log_vector_of_extreme(q, function);
   }
-  const int e = binary_exponent(largest);
-  const quaternion<T> near_one = scaled_down(q, e);
-  const T magnitude = log(norm2(near_one)) / 2 + e * constant::ln2<real>();
-  const real largest_of_vector =
-      largest_component(quaternion<real>(real(0), values.x(), values.y(), values.z()));
-  if (largest_of_vector == 0 && values.w() < 0) {
-    const T zero = q.x() * 0 + q.y() * 0;
-    return {magnitude, pi_of_undetermined_axis(T(q.x() + q.y() + q.z())), zero, zero};
+  const T ratio = arc_ratio(s, q.w());
+  return {q.x() * ratio, q.y() * ratio, q.z() * ratio};
+}
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> log_vector(const quaternion<T>& q,
+                                                       const char* function) {
+  const T s = q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
+  return log_vector(q, s, T(s + q.w() * q.w()), function);
+}
+
+/// log|q|; `square` = |q|².
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE T log_norm(const quaternion<T>& q, const T& square) {
+  using std::log;
+  if (is_moderate(innermost(square))) [[likely]] {
+    return log(square) / 2;
   }
-  const bool near_full_turn = values.w() < 0 && largest_of_vector < ldexp(real(1), e - 100);
-  const quaternion<T> r =
-      near_full_turn ? scaled_down(q, binary_exponent(largest_of_vector)) : near_one;
-  const vector3<T> v = r.vec();
-  const T ratio = arc_ratio(T(v.squaredNorm()), r.w());
-  return {magnitude, v[0] * ratio, v[1] * ratio, v[2] * ratio};
+  const int e = binary_exponent(largest_component(innermost_of(q)));
+  return log(norm2(scaled_down(q, e))) / 2 + e * constant::ln2<real_type_t<T>>();
 }
 
 } // namespace detail
@@ -89,38 +102,43 @@ template <class T>
 ///
 /// Never flips the sign of q, so log(−q) is the logarithm the long way round. Singular at q = −|q|,
 /// a full turn, where the axis is undetermined: the value there is (log|q|, π, 0, 0), and
-/// derivatives are NaN. \throws invalid_input for the zero quaternion
+/// derivatives by the vector part are NaN. \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<T> log(const quaternion<T>& q) {
-  using std::log;
   const T s = q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
   const T square = s + q.w() * q.w();
-  const auto& value = innermost(square);
-  if (!detail::is_moderate(value) ||
-      (innermost(q.w()) < 0 && innermost(s) < value * real_type_t<T>(0x1p-100))) [[unlikely]] {
-    return detail::log_scaled(q);
-  }
-  const T ratio = arc_ratio(s, q.w());
-  return {log(square) / 2, q.x() * ratio, q.y() * ratio, q.z() * ratio};
+  const vector3<T> v = detail::log_vector(q, s, square, "log");
+  return {detail::log_norm(q, square), v[0], v[1], v[2]};
 }
 
-/// q^ρ = exp(ρ log q) = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar.
+/// q^ρ = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar. Where q = −|q| the axis is undetermined, see
+/// `log`.
 /// \throws invalid_input for the zero quaternion
 template <class T, scalar_for<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow(const quaternion<T>& q, const S& exponent) {
-  return exp(log(q) * exponent);
+  using std::pow;
+  using R = promote_t<T, S>;
+  const vector3<T> v = detail::log_vector(q, "pow");
+  return duet::exp(vector3<R>(v[0] * exponent, v[1] * exponent, v[2] * exponent)) *
+         R(pow(norm(q), exponent));
 }
 
 /// SLERP from a to b, both of unit norm: a (a* b)^τ (N9), along the shorter arc: b's sign is
 /// aligned with a's first. Where a and b are a half turn apart the arcs are equal and b is taken as
-/// it is.
+/// it is. \throws invalid_input where a or b is zero
 template <class A, class B, class S>
   requires promotable<A, B> && scalar_for<S, promote_t<A, B>>
 [[nodiscard]] auto slerp(const quaternion<A>& a, const quaternion<B>& b, const S& tau) {
-  const auto relative = conj(a) * b;
-  const auto v = log(innermost(relative.w()) < 0 ? -relative : relative).vec();
-  using T = promote_t<promote_t<A, B>, S>;
-  return a * duet::exp(vector3<T>(v[0] * tau, v[1] * tau, v[2] * tau));
+  using T = promote_t<A, B>;
+  const T cosine = dot(a, b);
+  const bool other_side = innermost(cosine) < 0;
+  // a* a has no vector part. Subtracting it first keeps all digits of a small rotation.
+  const quaternion<T> difference = conj(a) * ((other_side ? -b : b) - a);
+  const quaternion<T> relative(other_side ? -cosine : cosine, difference.x(), difference.y(),
+                               difference.z());
+  const vector3<T> v = detail::log_vector(relative, "slerp");
+  using R = promote_t<T, S>;
+  return a * duet::exp(vector3<R>(v[0] * tau, v[1] * tau, v[2] * tau));
 }
 
 } // namespace duet

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <string>
 
 /// \file
 /// Norm, normalisation and inverse (N3), safe from overflow and underflow.
@@ -28,15 +28,22 @@ template <real R>
   return max(max(R(abs(q.w())), R(abs(q.x()))), max(R(abs(q.y())), R(abs(q.z()))));
 }
 
-/// Squares beyond these limits lose digits, or their products do in the derivatives.
+/// Squares beyond these limits, or their powers in derivatives of the first orders, overflow or lose
+/// digits.
 template <real R>
 [[nodiscard]] bool is_moderate(const R& square) {
-  using std::ldexp;
   if constexpr (std::numeric_limits<R>::max_exponent >= 1024) {
-    return square > R(0x1p-200) && square < R(0x1p200);
+    return square > R(0x1p-100) && square < R(0x1p100);
   } else {
-    return square > R(0x1p-30) && square < R(0x1p30);
+    return square > R(0x1p-20) && square < R(0x1p20);
   }
+}
+
+/// Exactly zero in all components: squares of small numbers vanish too, and NaN is not zero.
+template <class T>
+[[nodiscard]] bool is_zero(const quaternion<T>& q) {
+  return innermost(q.w()) == 0 && innermost(q.x()) == 0 && innermost(q.y()) == 0 &&
+         innermost(q.z()) == 0;
 }
 
 /// e such that 2^−e brings a number near 1.
@@ -55,8 +62,11 @@ template <class T>
   return {ldexp(q.w(), -e), ldexp(q.x(), -e), ldexp(q.y(), -e), ldexp(q.z(), -e)};
 }
 
-[[noreturn]] inline void throw_zero_quaternion(const char* function) {
-  throw invalid_input(std::string("duet: ") + function + " of the zero quaternion");
+template <class T>
+void require_not_zero(const quaternion<T>& q, const char* function) {
+  if (is_zero(q)) {
+    throw invalid_input(std::string("duet: ") + function + " of the zero quaternion");
+  }
 }
 
 } // namespace detail
@@ -87,10 +97,8 @@ template <class T>
   if (detail::is_moderate(innermost(square))) [[likely]] {
     return q / T(sqrt(square));
   }
+  detail::require_not_zero(q, "normalized");
   const auto largest = detail::largest_component(detail::innermost_of(q));
-  if (largest == 0) {
-    detail::throw_zero_quaternion("normalized");
-  }
   const auto near_one = detail::scaled_down(q, detail::binary_exponent(largest));
   return near_one / norm(near_one);
 }
@@ -103,10 +111,8 @@ template <class T>
   if (detail::is_moderate(innermost(square))) [[likely]] {
     return conj(q) / square;
   }
+  detail::require_not_zero(q, "inverse");
   const auto largest = detail::largest_component(detail::innermost_of(q));
-  if (largest == 0) {
-    detail::throw_zero_quaternion("inverse");
-  }
   const int e = detail::binary_exponent(largest);
   const auto near_one = detail::scaled_down(q, e);
   return detail::scaled_down(conj(near_one) / norm2(near_one), e);

@@ -40,8 +40,7 @@ template <class T, class S>
   using std::cos;
   using std::sin;
   const quaternion<T> direction(T(0), n);
-  if (innermost(norm2(direction)) == 0 &&
-      detail::largest_component(detail::innermost_of(direction)) == 0) {
+  if (detail::is_zero(direction)) {
     throw invalid_input("duet: from_axis_angle: the axis is the zero vector");
   }
   const quaternion<T> axis = normalized(direction);
@@ -62,25 +61,32 @@ template <class T>
 /// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] vector3<T> rotation_vector(const quaternion<T>& q) {
-  const quaternion<T> l = log(innermost(q.w()) < 0 ? -q : q);
-  return {2 * l.x(), 2 * l.y(), 2 * l.z()};
+  const vector3<T> half = detail::log_vector(innermost(q.w()) < 0 ? -q : q, "rotation_vector");
+  return {2 * half[0], 2 * half[1], 2 * half[2]};
 }
 
 /// The shortest rotation that takes the direction of a to that of b. For opposite directions the
-/// axis is undetermined: one perpendicular to a is chosen. \throws invalid_input where a or b is
-/// zero
+/// axis is undetermined: one perpendicular to a is chosen, without derivatives.
+/// \throws invalid_input where a or b is zero
 template <class T>
 [[nodiscard]] quaternion<T> from_two_vectors(const vector3<T>& a, const vector3<T>& b) {
+  using real = real_type_t<T>;
   const vector3<T> u = normalized(quaternion<T>(T(0), a)).vec();
   const vector3<T> v = normalized(quaternion<T>(T(0), b)).vec();
-  // |u + v|²/2 = 1 + u·v, without the cancellation of the right side near opposite directions.
+  // 1 + u·v = |u + v|²/2 and u × v = u × (v ± u). The sum of opposite unit vectors and the
+  // difference of equal ones are exact, so nothing cancels.
   const vector3<T> sum = u + v;
   const T w = sum.squaredNorm() / 2;
-  const quaternion<T> q(w, vector3<T>(u.cross(v)));
-  if (innermost(norm2(q)) != 0) {
+  const quaternion<T> q(w, vector3<T>(innermost(w) < 1 ? u.cross(sum) : u.cross(v - u)));
+  if (!detail::is_zero(q)) {
     return normalized(q);
   }
-  return {T(0), vector3<T>(u.unitOrthogonal())};
+  const auto chosen =
+      vector3<real>(innermost(u[0]), innermost(u[1]), innermost(u[2])).unitOrthogonal().eval();
+  const auto component = [&](real value) {
+    return detail::undetermined(value, T(u[0] + v[0]), T(u[1] + v[1]), T(u[2] + v[2]));
+  };
+  return {component(real(0)), component(chosen[0]), component(chosen[1]), component(chosen[2])};
 }
 
 /// The matrix R with R v = q v q*, for a unit quaternion.

@@ -71,7 +71,7 @@ public:
   /// Value, angular velocity, acceleration and jerk with respect to u.
   /// \throws invalid_input outside the domain
   template <class S, class Frame>
-  [[nodiscard]] auto motion(const S& u, Frame frame_of_result) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame_of_result) const {
     auto m = evaluate<3>(u);
     using D = typename decltype(m.value)::scalar_type;
     if constexpr (detail::is_spatial(frame_of_result)) {

@@ -1,0 +1,121 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "carrier.hpp"
+
+#include <duet/core/number_text.hpp>
+
+#include <boost/program_options.hpp>
+
+#include <cmath>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+/// \file
+/// The command line.
+
+namespace wheel_carrier {
+
+struct end_rates {
+  vector3 start, end;
+};
+
+struct options {
+  std::optional<std::string> table, hardpoints, ends;
+  std::optional<int> rows;
+  std::optional<end_rates> rates;
+  std::string out = "wheel_carrier_out";
+};
+
+/// Six numbers, comma-separated.
+inline end_rates parse_end_rates(const std::string& text) {
+  std::istringstream cells(text);
+  std::string cell;
+  std::array<double, 6> x{};
+  std::size_t count = 0;
+  for (; std::getline(cells, cell, ','); ++count) {
+    const auto number = duet::parse_number(cell);
+    if (!number || !std::isfinite(*number)) {
+      throw std::runtime_error("--end-rates: '" + cell + "' is not a finite number");
+    }
+    if (count < 6) {
+      x[count] = *number;
+    }
+  }
+  if (count != 6) {
+    throw std::runtime_error("--end-rates: six numbers expected, got " + std::to_string(count));
+  }
+  return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+}
+
+/// Nothing where only help was asked for.
+/// \throws std::exception with a one-line message
+inline std::optional<options> parse_options(int argc, char** argv) {
+  namespace po = boost::program_options;
+  po::options_description description(
+      "Interpolates the orientations of a car's wheel carrier by a cumulative B-spline and "
+      "compares its\n"
+      "angular velocity and acceleration per unit of wheel height u with the mechanism's.\n"
+      "Metres, radians; quaternions scalar first; rates in fixed axes. Options");
+  description.add_options()("help", "print this and stop")(
+      "hardpoints", po::value<std::string>()->value_name("FILE"),
+      "another carrier: five lines `name, ax, ay, az, px, py, pz` (chassis and carrier end of a "
+      "rod) "
+      "and one `wheel centre, x, y, z`")(
+      "table", po::value<std::string>()->value_name("FILE"),
+      "a look-up table of your own: lines `u, qw, qx, qy, qz`, u increasing. Compared with the "
+      "carrier only where --hardpoints is given too")(
+      "rows", po::value<int>()->value_name("N"),
+      "rows of the table made from the carrier, at equal arcs (default: 0.003 rad apart)")(
+      "ends", po::value<std::string>()->value_name("natural|clamped"),
+      "end conditions (default: clamped where end rates are known, else natural)")(
+      "end-rates", po::value<std::string>()->value_name("X,Y,Z,X,Y,Z"),
+      "angular velocity per unit of u at the first and the last row (default: the carrier's)")(
+      "out", po::value<std::string>()->value_name("DIR"),
+      "folder for tables and pictures (default: wheel_carrier_out)");
+  po::variables_map given;
+  po::store(po::command_line_parser(argc, argv)
+                .options(description)
+                .positional(po::positional_options_description())
+                .run(),
+            given);
+  if (given.count("help") != 0) {
+    std::cout << description;
+    return std::nullopt;
+  }
+  options result;
+  const auto text = [&](const char* name) -> std::optional<std::string> {
+    if (given.count(name) == 0) {
+      return std::nullopt;
+    }
+    return given[name].as<std::string>();
+  };
+  result.table = text("table");
+  result.hardpoints = text("hardpoints");
+  result.ends = text("ends");
+  result.out = text("out").value_or(result.out);
+  if (given.count("rows") != 0) {
+    result.rows = given["rows"].as<int>();
+  }
+  if (const auto rates = text("end-rates")) {
+    result.rates = parse_end_rates(*rates);
+  }
+  if (result.ends && *result.ends != "natural" && *result.ends != "clamped") {
+    throw std::runtime_error("--ends: '" + *result.ends + "' is neither natural nor clamped");
+  }
+  if (result.rows && *result.rows < 3) {
+    throw std::runtime_error("--rows: 3 or more");
+  }
+  if (result.rows && result.table) {
+    throw std::runtime_error("--rows and --table exclude each other");
+  }
+  if (result.rates && result.ends == "natural") {
+    throw std::runtime_error("--end-rates and --ends natural exclude each other");
+  }
+  return result;
+}
+
+} // namespace wheel_carrier

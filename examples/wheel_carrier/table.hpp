@@ -1,0 +1,141 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "carrier.hpp"
+#include "csv.hpp"
+
+#include <duet/spline/interpolate.hpp>
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// \file
+/// The look-up table: orientations over u, made from the mechanism or read from a file.
+
+namespace wheel_carrier {
+
+struct table {
+  std::vector<double> u;
+  std::vector<rotation> q;
+};
+
+/// The range the wheel travels over (P7), metres.
+inline constexpr double lowest = -0.19;
+inline constexpr double highest = 0.20;
+
+/// The angle between neighbouring rows of the paper's table, rad (P7).
+inline constexpr double paper_angle = 0.003;
+
+/// Arc length of the orientation from `lowest` on: s(u) = ∫ |ω| du, tabulated once so that it can
+/// be inverted quickly.
+class arc_length {
+public:
+  explicit arc_length(const carrier& mechanism) : mechanism_(mechanism), sums_{0} {
+    for (int i = 0; i < pieces; ++i) {
+      sums_.push_back(sums_.back() + integral(node(i), node(i + 1)));
+    }
+  }
+
+  [[nodiscard]] double total() const { return sums_.back(); }
+
+  /// The u with s(u) = arc.
+  [[nodiscard]] double inverse(double arc) const {
+    if (arc <= 0) {
+      return lowest;
+    }
+    if (arc >= total()) {
+      return highest;
+    }
+    const auto i = int(std::upper_bound(sums_.begin(), sums_.end(), arc) - sums_.begin()) - 1;
+    const auto missing = [&](double u) {
+      return sums_[std::size_t(i)] + (u > node(i) ? integral(node(i), u) : 0.0) - arc;
+    };
+    std::uintmax_t iterations = 100;
+    const auto [below, above] = boost::math::tools::toms748_solve(
+        missing, node(i), node(i + 1), boost::math::tools::eps_tolerance<double>(46), iterations);
+    return (below + above) / 2;
+  }
+
+private:
+  static constexpr int pieces = 40;
+
+  [[nodiscard]] static double node(int i) { return lowest + (highest - lowest) * i / pieces; }
+  [[nodiscard]] double integral(double from, double to) const {
+    const auto speed = [this](double u) { return mechanism_.at(u).omega().norm(); };
+    return boost::math::quadrature::gauss<double, 7>::integrate(speed, from, to);
+  }
+
+  const carrier& mechanism_;
+  std::vector<double> sums_;
+};
+
+/// Rows at equal arcs over the whole range; their u values are not uniform.
+inline table equal_arc_table(const carrier& mechanism, const arc_length& arcs, int rows) {
+  table result;
+  for (int i = 0; i < rows; ++i) {
+    const double u = arcs.inverse(arcs.total() * i / (rows - 1));
+    result.u.push_back(u);
+    result.q.push_back(mechanism.at(u).q);
+  }
+  return result;
+}
+
+/// Reads u, qw, qx, qy, qz. Rows a curve cannot go through are reported here, where their line is
+/// known. \throws file_error
+inline table read_table(const std::string& path) {
+  const csv_file file(path, 5);
+  table result;
+  for (const csv_row& row : file.rows()) {
+    result.u.push_back(row.numbers[0]);
+    result.q.emplace_back(row.numbers[1], row.numbers[2], row.numbers[3], row.numbers[4]);
+  }
+  if (result.u.size() < 2) {
+    throw file_error(path, "needs two rows or more");
+  }
+  try {
+    duet::detail::check_parameters(result.u);
+    result.q = duet::aligned_orientations(result.q);
+  } catch (const duet::invalid_row& error) {
+    throw file_error(path, file.rows()[error.row()].line, error.reason());
+  }
+  return result;
+}
+
+/// Reads five rows `name, ax, ay, az, px, py, pz` (chassis, carrier) and one `wheel centre, x, y,
+/// z`. \throws file_error
+inline hardpoints read_hardpoints(const std::string& path) {
+  const csv_file file(path);
+  hardpoints result;
+  bool has_centre = false;
+  std::size_t rods = 0;
+  for (const csv_row& row : file.rows()) {
+    const auto& x = row.numbers;
+    if (row.name == "wheel centre" && x.size() == 3 && !has_centre) {
+      result.wheel_centre = {x[0], x[1], x[2]};
+      has_centre = true;
+    } else if (row.name == "wheel centre") {
+      throw file_error(path, row.line, "the wheel centre has three coordinates, once");
+    } else if (x.size() != 6) {
+      throw file_error(path, row.line, "a rod is name, ax, ay, az, px, py, pz");
+    } else if (rods == 5) {
+      throw file_error(path, row.line, "a sixth rod; the carrier has five");
+    } else {
+      result.rods[rods++] = {row.name, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+    }
+  }
+  if (rods != 5) {
+    throw file_error(path, std::to_string(rods) + " rods instead of five");
+  }
+  if (!has_centre) {
+    throw file_error(path, "no line `wheel centre, x, y, z`");
+  }
+  return result;
+}
+
+} // namespace wheel_carrier

@@ -1,0 +1,38 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <charconv>
+#include <concepts>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+/// \file
+/// Numbers as text in files, the same under every locale.
+
+namespace duet {
+
+/// The shortest text that reads back as exactly `x`, with a decimal point.
+template <std::floating_point T>
+[[nodiscard]] std::string to_text(T x) {
+  char buffer[64];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, x);
+  return error == std::errc() ? std::string(buffer, end) : std::string();
+}
+
+/// The number that the whole text spells, blanks around it and a leading plus sign aside; `inf` and
+/// `nan` are numbers too. Nothing where the text is anything else.
+[[nodiscard]] inline std::optional<double> parse_number(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) { return std::nullopt; }
+  text = text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') { text.remove_prefix(1); }
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) { return std::nullopt; }
+  return value;
+}
+
+} // namespace duet
