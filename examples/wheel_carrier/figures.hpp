@@ -6,7 +6,9 @@
 #include "csv.hpp"
 #include "table.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <numbers>
 #include <string>
@@ -18,16 +20,17 @@
 
 namespace wheel_carrier {
 
-/// u, W, q, and toe-in and camber of the left wheel, degrees.
-inline std::string path_csv(const std::vector<state>& states) {
-  std::string text = "u,x,y,z,qw,qx,qy,qz,toe_in_deg,camber_deg\n";
+/// u, W, q, toe-in and camber of the left wheel in degrees, W from its design position.
+inline std::string path_csv(const std::vector<state>& states, const vector3& design) {
+  std::string text = "u,x,y,z,qw,qx,qy,qz,toe_in_deg,camber_deg,dx,dy\n";
   constexpr double degrees = 180 / std::numbers::pi;
   for (const state& s : states) {
     const vector3 heading = rotate(s.q, vector3(1, 0, 0));
     const vector3 up = rotate(s.q, vector3(0, 0, 1));
-    text += csv_line({s.u, s.centre[0], s.centre[1], s.centre[2], s.q.w(), s.q.x(), s.q.y(),
-                      s.q.z(), -std::atan2(heading[1], heading[0]) * degrees,
-                      std::atan2(up[1], up[2]) * degrees});
+    text +=
+        csv_line({s.u, s.centre[0], s.centre[1], s.centre[2], s.q.w(), s.q.x(), s.q.y(), s.q.z(),
+                  -std::atan2(heading[1], heading[0]) * degrees, std::atan2(up[1], up[2]) * degrees,
+                  s.centre[0] - design[0], s.centre[1] - design[1]});
   }
   return text;
 }
@@ -72,32 +75,35 @@ inline std::string errors_csv(const std::vector<double>& samples,
   return text;
 }
 
-/// Figure 1 of the paper: both errors over u, every curve, logarithmic.
+/// Figure 1 of the paper: both errors over u, every curve, logarithmic. The first curve, the one
+/// that counts, is drawn last and so on top.
 inline std::string errors_script(const std::vector<named_curve>& curves) {
   std::string text = "set datafile separator ','\nset logscale y\nset format y '10^{%T}'\n"
-                     "set xlabel 'wheel height u [m]'\nset grid\nset key below\n"
-                     "set xrange [:] noextend\nset multiplot layout 1,2\n";
-  const std::pair<const char*, std::size_t> panels[] = {{"{/Symbol d}_E [%]", 2},
-                                                        {"d{/Symbol d}_E [%]", 3}};
-  for (const auto& [label, first_column] : panels) {
-    text += std::string("set ylabel '") + label + "'\nplot ";
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-      text += (i == 0 ? "" : ", \\\n     ") + std::string("'errors.csv' using 1:") +
-              std::to_string(first_column + 2 * i) + " skip 1 with lines lw 1.5 title '" +
-              curves[i].first + "'";
+                     "set xlabel 'wheel height u [m]'\nset grid\nset xrange [:] noextend\n"
+                     "set key outside right center reverse Left samplen 2\n"
+                     "set multiplot layout 2,1\n";
+  const char* const colours[] = {"#000000", "#d62728", "#1f77b4", "#ff7f0e", "#9a9a9a"};
+  const std::array<std::string, 2> panels[] = {{"{/Symbol d}_E [%]", "[1e-8:1e3]"},
+                                               {"d{/Symbol d}_E [%]", "[1e-5:1e5]"}};
+  for (std::size_t panel = 0; panel < 2; ++panel) {
+    text += "set ylabel '" + panels[panel][0] + "'\nset yrange " + panels[panel][1] + "\nplot ";
+    for (std::size_t i = curves.size(); i-- > 0;) {
+      text += "'errors.csv' using 1:" + std::to_string(2 + panel + 2 * i) +
+              " skip 1 with lines lw 1.5 lc rgb '" + colours[i % 5] + "' title '" +
+              curves[i].first + "'" + (i > 0 ? ", \\\n     " : "\n");
     }
-    text += "\n";
   }
   return text + "unset multiplot\n";
 }
 
+/// Where the wheel centre goes from the design position, and how the wheel turns.
 inline const char* path_script() {
-  return "set datafile separator ','\nset grid\nset key top left\nset multiplot layout 1,2\n"
-         "set xlabel 'displacement of the wheel centre [mm]'\nset ylabel 'wheel height u [mm]'\n"
-         "plot 'path.csv' using (1000*$2):(1000*$1) skip 1 with lines lw 2 title 'x, forward', \\\n"
-         "     'path.csv' using (1000*($3-0.95)):(1000*$1) skip 1 with lines lw 2 title 'y - 0.95 "
-         "m, "
-         "left'\n"
+  return "set datafile separator ','\nset grid\nset key bottom left\nset multiplot layout 1,2\n"
+         "set ylabel 'wheel height u [mm]'\nset xlabel 'wheel centre from its design position "
+         "[mm]'\n"
+         "plot 'path.csv' using (1000*$11):(1000*$1) skip 1 with lines lw 2 title 'x, forward', "
+         "\\\n"
+         "     'path.csv' using (1000*$12):(1000*$1) skip 1 with lines lw 2 title 'y, left'\n"
          "set xlabel 'angle [degrees]'\n"
          "plot 'path.csv' using 9:(1000*$1) skip 1 with lines lw 2 title 'toe-in', \\\n"
          "     'path.csv' using 10:(1000*$1) skip 1 with lines lw 2 title 'camber'\n"
@@ -105,12 +111,12 @@ inline const char* path_script() {
 }
 
 /// Draws folder/name.svg and folder/name.png; false where gnuplot is absent or fails.
-inline bool draw(const std::string& folder, const std::string& name, const std::string& script) {
+inline bool draw(const std::string& folder, const std::string& name, const std::string& size,
+                 const std::string& script) {
   write_file(folder + "/" + name + ".gnuplot",
-             "set terminal svg size 1100,480 background rgb 'white'\nset output '" + name +
-                 ".svg'\n" + script +
-                 "set output\nset terminal pngcairo size 1100,480\nset output '" + name +
-                 ".png'\n" + script);
+             "set terminal svg size " + size + " background rgb 'white'\nset output '" + name +
+                 ".svg'\n" + script + "set output\nset terminal pngcairo size " + size +
+                 "\nset output '" + name + ".png'\n" + script);
   std::string quoted = "'";
   for (const char c : folder) {
     quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -165,7 +165,7 @@ void run(const options& given) {
     const std::string names[] = {"clamped", "natural"};
     curves = compare_ways(states, chosen, names[is_natural], other, names[!is_natural]);
     files.emplace_back("errors.csv", errors_csv(samples, curves));
-    files.emplace_back("path.csv", path_csv(states));
+    files.emplace_back("path.csv", path_csv(states, mechanism.points().wheel_centre));
   }
   if (arcs) {
     files.emplace_back("convergence.csv", convergence(mechanism, *arcs, states));
@@ -177,8 +177,8 @@ void run(const options& given) {
   }
   bool drawn = true;
   if (has_reference) {
-    drawn =
-        draw(given.out, "errors", errors_script(curves)) && draw(given.out, "path", path_script());
+    drawn = draw(given.out, "errors", "1000,720", errors_script(curves)) &&
+            draw(given.out, "path", "1000,420", path_script());
   }
   std::printf("\nTables%s are in %s\n", has_reference && drawn ? " and pictures (SVG, PNG)" : "",
               given.out.c_str());
