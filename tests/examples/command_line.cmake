@@ -1,0 +1,87 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Runs the wheel carrier on good and bad input: bad input must end with status 1, one line that says what and
+# where, and nothing written.
+#
+# cmake -Dprogram=<wheel_carrier> -Dfolder=<for files> -P command_line.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+file(REMOVE_RECURSE ${folder})
+file(MAKE_DIRECTORY ${folder})
+
+function(run expected_result expected_text)
+  file(REMOVE_RECURSE ${folder}/out)
+  execute_process(COMMAND ${program} --out out ${ARGN} WORKING_DIRECTORY ${folder}
+    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  if(NOT result EQUAL expected_result)
+    message(FATAL_ERROR "${ARGN}: status ${result}, expected ${expected_result}\n${output}${error}")
+  endif()
+  if(expected_result EQUAL 1)
+    if(NOT error MATCHES "^wheel_carrier: [^\n]*${expected_text}[^\n]*\n$")
+      message(FATAL_ERROR "${ARGN}: says\n${error}instead of one line with: ${expected_text}")
+    endif()
+    if(EXISTS ${folder}/out)
+      message(FATAL_ERROR "${ARGN}: bad input, yet something was written")
+    endif()
+  elseif(NOT output MATCHES "${expected_text}")
+    message(FATAL_ERROR "${ARGN}: prints\n${output}without: ${expected_text}")
+  endif()
+endfunction()
+
+function(bad_table text expected_text)
+  file(WRITE ${folder}/bad.csv "${text}")
+  run(1 "${expected_text}" --table bad.csv)
+endfunction()
+
+set(good "u,qw,qx,qy,qz\n0,1,0,0,0\n1,0.8,0.6,0,0\n2,0.6,0.8,0,0\n3,0.28,0.96,0,0\n")
+set(line "wheel carrier: rows=[0-9]+")
+set(errors " delta_E_max=[0-9.e+-]+ ddelta_E_max=[0-9.e+-]+")
+set(rest " ad_vs_closed_form=[0-9.e+-]+ printed_formula_error=[0-9.e+-]+\n$")
+
+run(0 "Options" --help)
+run(0 "${line}${errors}${rest}" --rows 30)
+foreach(file IN ITEMS table rates errors path convergence)
+  if(NOT EXISTS ${folder}/out/${file}.csv)
+    message(FATAL_ERROR "no ${file}.csv")
+  endif()
+endforeach()
+file(COPY ${folder}/out/table.csv DESTINATION ${folder})
+run(0 "30 rows.*natural ends.*${line}${rest}" --table table.csv)
+file(WRITE ${folder}/good.csv "${good}")
+run(0 "clamped ends.*${line}${rest}" --table good.csv --end-rates 1.2,0,0,0.6,0,0)
+
+run(1 "nowhere.csv: cannot be read" --table nowhere.csv)
+bad_table("u,qw\n" "bad.csv: holds no rows")
+bad_table("0,1,0,0,0\n" "bad.csv: needs two rows")
+bad_table("0,1,0,0,0\n1,1,0,0\n" "bad.csv:2: 5 numbers expected, got 4")
+bad_table("0,1,0,0,0\n1,1,0,0,0,0\n" "bad.csv:2: 5 numbers expected, got 6")
+bad_table("0,1,0,0,0\n1,one,0,0,0\n" "bad.csv:2: column 2 is not a number: 'one'")
+bad_table("0,1,0,0,0\n# remark\n1,nan,0,0,0\n" "bad.csv:3: column 2 is nan")
+bad_table("0,1,0,0,0\n1,0,0,0,0\n" "bad.csv:2: .* norm 0")
+bad_table("0,1,0,0,0\n1,0.5,0,0,0\n" "bad.csv:2: .* norm 0.5")
+bad_table("0,1,0,0,0\n0,1,0,0,0\n" "bad.csv:2: parameter 0 does not increase")
+bad_table("0,1,0,0,0\n1,0,1,0,0\n" "bad.csv:2: half a turn")
+
+run(1 "neither natural nor clamped" --ends free)
+run(1 "a bare table has no end rates" --table good.csv --ends clamped)
+run(1 "six numbers expected, got 2" --end-rates 1,2)
+run(1 "'x' is not a finite number" --end-rates x,0,0,0,0,0)
+run(1 "--rows: 3 or more" --rows 2)
+run(1 "exclude each other" --rows 30 --table good.csv)
+
+set(rods "a,0.06,0.547,0.082,0.056,0.864,0.151\nb,-0.157,0.508,0.062,0.056,0.864,0.151\n")
+string(APPEND rods "c,0.036,0.338,-0.133,0.029,0.842,-0.093\nd,0.723,0.599,-0.072,0,0.864,-0.156\n")
+file(WRITE ${folder}/rods.csv "${rods}")
+run(1 "rods.csv: 4 rods instead of five" --hardpoints rods.csv)
+string(APPEND rods "e,-0.257,0.320,-0.116,-0.144,0.862,-0.056\n")
+file(WRITE ${folder}/rods.csv "${rods}")
+run(1 "rods.csv: no line `wheel centre" --hardpoints rods.csv)
+file(WRITE ${folder}/rods.csv "${rods}wheel centre,0,0.95\n")
+run(1 "rods.csv:6: the wheel centre has three" --hardpoints rods.csv)
+file(WRITE ${folder}/rods.csv "${rods}wheel centre,0,0.95,0\n")
+run(0 "105 rows.*${line}${errors}${rest}" --hardpoints rods.csv)
+run(0 "30 rows.*clamped.*${line}${errors}${rest}" --hardpoints rods.csv --table table.csv)
+string(REPLACE "0.338" "0.8" rods "${rods}")
+file(WRITE ${folder}/rods.csv "${rods}wheel centre,0,0.95,0\n")
+run(1 "the rods cannot close at u = -0.19 m" --hardpoints rods.csv)

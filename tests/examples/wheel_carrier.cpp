@@ -1,0 +1,122 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// The wheel carrier's mechanism against values on which three independent solvers agree, and the
+// errors of the interpolated table against those of an independent prototype.
+
+#include "../../examples/wheel_carrier/carrier.hpp"
+#include "../../examples/wheel_carrier/comparison.hpp"
+#include "../../examples/wheel_carrier/table.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+using namespace wheel_carrier;
+
+namespace {
+
+struct reference {
+  double u;
+  vector2 xy;
+  rotation q;
+  vector3 omega, omega_first;
+};
+
+const std::vector<reference> references{
+    {-0.19,
+     {0.028114268213, 0.931205477399},
+     {0.999392182193, -0.012204994244, -0.031794307145, 0.007444885562},
+     {-0.29516302816, 0.428068087641, -0.169406642509},
+     {5.6926830606, -1.0740275764, 1.4676072695}},
+    {0.0,
+     {0.0, 0.95},
+     {1, 0, 0, 0},
+     {0.526646994515, 0.248648617129, -0.039914418756},
+     {4.5358754104, -0.7621400487, 0.0625172908}},
+    {0.20,
+     {-0.001952841610, 0.879161123870},
+     {0.993481401791, 0.112039582875, 0.020089517772, -0.006184451578},
+     {1.927114776517, 0.197925164613, -0.127372543603},
+     {11.0163100237, 0.5908726713, -0.9258931868}}};
+
+std::vector<state> sampled(const carrier& mechanism, int count) {
+  std::vector<state> states;
+  for (int i = 0; i < count; ++i) {
+    states.push_back(mechanism.at(lowest + (highest - lowest) * i / (count - 1)));
+  }
+  return states;
+}
+
+} // namespace
+
+TEST_CASE("the closed loop meets the reference values, derivatives included") {
+  const carrier mechanism(published_hardpoints());
+  for (const reference& expected : references) {
+    CAPTURE(expected.u);
+    const state s = mechanism.at(expected.u);
+    CHECK((s.centre.head<2>() - expected.xy).cwiseAbs().maxCoeff() < 1e-10);
+    CHECK(s.centre[2] == expected.u);
+    CHECK(norm(s.q - expected.q) < 1e-10);
+    CHECK((s.omega() - expected.omega).cwiseAbs().maxCoeff() < 1e-10);
+    CHECK((s.omega_first() - expected.omega_first).cwiseAbs().maxCoeff() < 1e-9);
+  }
+}
+
+TEST_CASE("P7: 105 rows, 0.003 rad apart, over heights that are not uniform") {
+  const carrier mechanism(published_hardpoints());
+  const arc_length arcs(mechanism);
+  CHECK(std::abs(arcs.total() - 0.311551898) < 1e-9);
+  const table t = equal_arc_table(mechanism, arcs, 105);
+  for (std::size_t i = 1; i < t.q.size(); ++i) {
+    const double angle = duet::rotation_vector(t.q[i] * conj(t.q[i - 1])).norm();
+    // The angle between two rows is a chord of the arc: shorter where the axis turns.
+    CHECK(angle < arcs.total() / 104 * (1 + 1e-12));
+    CHECK(angle > arcs.total() / 104 * (1 - 5e-4));
+  }
+  CHECK(t.u[1] - t.u[0] > 1.5 * (t.u[104] - t.u[103]));
+}
+
+TEST_CASE("P5, P6: errors of the spline against the mechanism") {
+  const carrier mechanism(published_hardpoints());
+  const arc_length arcs(mechanism);
+  const table t = equal_arc_table(mechanism, arcs, 105);
+  const auto states = sampled(mechanism, 401);
+  std::vector<double> samples;
+  for (const state& s : states) {
+    samples.push_back(s.u);
+  }
+  const spline clamped = duet::interpolate<spline>(
+      t.u, t.q, duet::clamped{states.front().omega(), states.back().omega()});
+  const spline natural = duet::interpolate<spline>(t.u, t.q, duet::natural{});
+
+  SUBCASE("clamped ends, every exact way") {
+    for (const way& w : {ways[0], ways[1], ways[2]}) {
+      CAPTURE(w.name);
+      const error_curve e = errors(states, clamped, w);
+      CHECK(summarise(e.delta).maximum < 0.001);
+      CHECK(summarise(e.delta_first).maximum < 0.06);
+      CHECK(summarise(e.delta).median < 0.00005);
+      CHECK(summarise(e.delta_first).median < 0.007);
+    }
+  }
+  SUBCASE("natural ends are wrong at the ends and right between them") {
+    const error_curve e = errors(states, natural, ways[0]);
+    CHECK(summarise(e.delta).ends > 1);
+    CHECK(summarise(e.delta_first).ends == doctest::Approx(100).epsilon(0.01));
+    CHECK(summarise(e.delta_first).median < 0.01);
+  }
+  SUBCASE("automatic differentiation is the closed form; the print is not") {
+    CHECK(automatic_against_closed_form(clamped, samples) < 1e-12);
+    const double printed = printed_formula_error(clamped, samples);
+    CHECK(printed > 1e-4);
+    CHECK(printed < 1e-3);
+    CHECK(summarise(errors(states, clamped, ways[3]).delta_first).median > 100);
+  }
+}
+
+TEST_CASE("rods that cannot close are reported") {
+  hardpoints points = published_hardpoints();
+  points.rods[2].chassis[1] = 0.8;
+  CHECK_THROWS_AS(static_cast<void>(carrier(points).at(-0.19)), duet::no_convergence);
+}
