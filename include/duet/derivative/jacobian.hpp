@@ -58,9 +58,9 @@ template <class Tag = void, class F, vector_like X>
 
 /// f(x) and d/dt f(x + t v) at t = 0: x and v scalars or vectors of one size, f(x) of any shape.
 template <class Tag = void, class F, class X, class V>
-  requires(vector_like<X> && vector_like<V>) ||
-          ((scalar<X> || arithmetic<X>)&&(scalar<V> || arithmetic<V>))
-[[nodiscard]] auto directional_derivative(F&& f, const X& x, const V& v) {
+  requires(vector_like<X>&& vector_like<V>)
+|| ((scalar<X> || arithmetic<X>)&&(scalar<V> || arithmetic<V>))
+        [[nodiscard]] auto directional_derivative(F&& f, const X& x, const V& v) {
   using tag = detail::tag_for<Tag, F>;
   const auto y = [&] {
     if constexpr (vector_like<X>) {

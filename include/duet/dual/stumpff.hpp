@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/select.hpp>
 #include <duet/core/stumpff.hpp>
 #include <duet/dual/lift.hpp>
 #include <duet/dual/math.hpp>
@@ -22,7 +23,7 @@ struct stumpff;
 } // namespace rule
 
 /// Stumpff function c_n(s) = Σ_k (−s)^k/(2k+n)!, s ≥ 0: c₀ = cos √s, c₁ = sin √s/√s, c₂ = (1 −
-/// c₀)/s … Its derivative is c_n′ = (n c_{n+2} − c_{n+1})/2.
+/// c₀)/s … Its derivative is c_n′ = (n c_{n+2} − c_{n+1})/2 = (c_{n−1} − n c_n)/(2s).
 template <int N, scalar T>
 [[nodiscard]] inline T stumpff(const T& s) {
   if constexpr (infinitesimal<T>) {
@@ -45,7 +46,12 @@ struct stumpff {
     if constexpr (N == 0) {
       return -duet::stumpff<1>(s) / 2;
     } else {
-      return (N * duet::stumpff<N + 2>(s) - duet::stumpff<N + 1>(s)) / 2;
+      // The first form is regular at 0. The second keeps the smallness of high derivatives at large
+      // s, and asks for no functions but the pair that the closed forms start from.
+      return select(
+          !detail::is_beyond_series(innermost(s)),
+          [&] { return T((N * duet::stumpff<N + 2>(s) - duet::stumpff<N + 1>(s)) / 2); },
+          [&] { return T((duet::stumpff<N - 1>(s) - N * duet::stumpff<N>(s)) / (2 * s)); });
     }
   }
 };

@@ -39,7 +39,19 @@ namespace detail {
 /// powers in the derivatives by s would overflow before those by v do.
 template <real R>
 inline constexpr auto near_full_turn = R(std::numeric_limits<R>::max_exponent >= 1024 ? 0x1p-100
-                                                                                       : 0x1p-20);
+                                                                                      : 0x1p-20);
+
+/// The unit vector û along the vector part of q; undetermined where that is zero.
+template <class T>
+[[nodiscard]] quaternion<T> axis_of(const quaternion<T>& q) {
+  using real = real_type_t<T>;
+  const quaternion<T> v(T(0), q.x(), q.y(), q.z());
+  if (!is_zero(v)) {
+    return normalized(v);
+  }
+  const auto component = [&](int value) { return undetermined(real(value), q.x(), q.y(), q.z()); };
+  return {T(0), component(1), component(0), component(0)};
+}
 
 /// û φ where |q| is out of range or a full turn is near.
 template <class T>
@@ -53,16 +65,9 @@ template <class T>
   if (innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>) {
     return vector3<T>(v.vec() * arc_ratio(s, near_one.w()));
   }
-  const real pi = constant::pi<real>();
-  if (is_zero(v)) {
-    return {undetermined(pi, q.x(), q.y(), q.z()), undetermined(real(0), q.x(), q.y(), q.z()),
-            undetermined(real(0), q.x(), q.y(), q.z())};
-  }
   // atan2(|v|, w) = π − atan2(|v|, −w)
   const T short_way = arc_ratio(s, T(-near_one.w()));
-  const quaternion<T> axis = normalized(v);
-  return {axis.x() * pi - v.x() * short_way, axis.y() * pi - v.y() * short_way,
-          axis.z() * pi - v.z() * short_way};
+  return (axis_of(near_one) * constant::pi<real>() - v * short_way).vec();
 }
 
 /// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|².
@@ -71,8 +76,8 @@ template <class T>
                                                        const T& square, const char* function) {
   using real = real_type_t<T>;
   const real& value = innermost(square);
-  if (!is_moderate(value) ||
-      (innermost(q.w()) < 0 && innermost(s) < value * near_full_turn<real>)) [[unlikely]] {
+  if (!is_moderate(value) || (innermost(q.w()) < 0 && innermost(s) < value * near_full_turn<real>))
+      [[unlikely]] {
     return log_vector_of_extreme(q, function);
   }
   const T ratio = arc_ratio(s, q.w());
@@ -111,16 +116,54 @@ template <class T>
   return {detail::log_norm(q, square), v[0], v[1], v[2]};
 }
 
-/// q^ρ = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar. Where q = −|q| the axis is undetermined, see
-/// `log`.
+namespace detail {
+
+template <class T, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>>
+pow_of_regular(const quaternion<T>& q, const vector3<T>& v, const S& exponent) {
+  using std::pow;
+  using R = promote_t<T, S>;
+  return duet::exp(vector3<R>(v[0] * exponent, v[1] * exponent, v[2] * exponent)) *
+         R(pow(norm(q), exponent));
+}
+
+/// q^ρ = (−1)^n exp(ûπ(ρ − n)) (−q)^ρ with the whole number n next to ρ.
+///
+/// Near a full turn û turns arbitrarily fast with q, and the last factor, being near 1, does not
+/// depend on it. For whole ρ nothing does.
+template <class T, class S>
+[[nodiscard]] quaternion<promote_t<T, S>> pow_near_full_turn(const quaternion<T>& q,
+                                                             const S& exponent) {
+  using std::cos;
+  using std::fmod;
+  using std::round;
+  using std::sin;
+  using R = promote_t<T, S>;
+  using real = real_type_t<R>;
+  const real whole = round(real(innermost(exponent)));
+  const auto rest = exponent - whole;
+  const auto power = pow_of_regular(-q, log_vector(-q, "pow"), exponent);
+  const auto half_turns = fmod(whole, real(2)) == 0 ? power : -power;
+  if (is_structural_zero(rest)) {
+    return half_turns;
+  }
+  const R angle = constant::pi<real>() * rest;
+  return (quaternion<R>(cos(angle)) + axis_of(q) * R(sin(angle))) * half_turns;
+}
+
+} // namespace detail
+
+/// q^ρ = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar. At q = −|q| the axis û is undetermined: x is
+/// chosen, and derivatives are NaN unless ρ is whole.
 /// \throws invalid_input for the zero quaternion
 template <class T, scalar_for<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow(const quaternion<T>& q, const S& exponent) {
-  using std::pow;
-  using R = promote_t<T, S>;
-  const vector3<T> v = detail::log_vector(q, "pow");
-  return duet::exp(vector3<R>(v[0] * exponent, v[1] * exponent, v[2] * exponent)) *
-         R(pow(norm(q), exponent));
+  const auto s = innermost(q.x()) * innermost(q.x()) + innermost(q.y()) * innermost(q.y()) +
+                 innermost(q.z()) * innermost(q.z());
+  if (innermost(q.w()) < 0 && 64 * s < innermost(q.w()) * innermost(q.w())) [[unlikely]] {
+    return detail::pow_near_full_turn(q, exponent);
+  }
+  return detail::pow_of_regular(q, detail::log_vector(q, "pow"), exponent);
 }
 
 /// SLERP from a to b, both of unit norm: a (a* b)^τ (N9), along the shorter arc: b's sign is

@@ -28,8 +28,8 @@ template <real R>
   return max(max(R(abs(q.w())), R(abs(q.x()))), max(R(abs(q.y())), R(abs(q.z()))));
 }
 
-/// Squares beyond these limits, or their powers in derivatives of the first orders, overflow or lose
-/// digits.
+/// Squares beyond these limits, or their powers in derivatives of the first orders, overflow or
+/// lose digits.
 template <real R>
 [[nodiscard]] bool is_moderate(const R& square) {
   if constexpr (std::numeric_limits<R>::max_exponent >= 1024) {

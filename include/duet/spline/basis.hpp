@@ -10,6 +10,8 @@
 #include <array>
 #include <cstddef>
 #include <sstream>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,19 +21,17 @@
 
 namespace duet {
 
-/// The cumulative basis functions that are neither 0 nor 1 at some u, and their derivatives.
-///
-/// `derivative[d][j]` is the d-th derivative of B̃_{first+1+j}, j = 0 … Order−2.
+/// The cumulative basis functions that are neither 0 nor 1 at some u, and their derivatives:
+/// element [d][j] is the d-th derivative of B̃_{first+1+j}, j = 0 … Order−2.
 template <class S, int Order, int Derivatives>
-struct cumulative_weights {
-  std::array<std::array<S, std::size_t(Order) - 1>, std::size_t(Derivatives) + 1> derivative;
-};
+using cumulative_weights =
+    std::array<std::array<S, std::size_t(Order) - 1>, std::size_t(Derivatives) + 1>;
 
 /// The B-spline basis of order k (degree k − 1) over non-decreasing knots u_0 … u_{m+k−1}: m
 /// functions, C^{k−2} at simple knots, on the domain [u_{k−1}, u_m].
 ///
-/// B̃_i = Σ_{j≥i} B_j (P2). On every span the k − 1 of them that vary are stored as polynomials of
-/// the local parameter, so that non-uniform knots cost no more than uniform ones.
+/// B̃_i = Σ_{j≥i} B_j (P2). On every span the k − 1 of them that vary are stored as polynomials, so
+/// that non-uniform knots cost no more than uniform ones.
 template <int Order, real R = double>
 class bspline_basis {
   static_assert(Order >= 2, "duet: a B-spline basis needs order 2 or more");
@@ -80,90 +80,111 @@ public:
   /// Index of the first of the k functions that do not vanish on a span.
   [[nodiscard]] std::size_t first_function(std::size_t span) const { return spans_[span].first; }
 
-  /// The varying cumulative functions of a span at u, with derivatives, over the scalar of u. Like
-  /// any polynomial they may be evaluated outside the span.
+  /// The varying cumulative functions of a span at u, with derivatives, over the scalar of u; a
+  /// built-in number counts as an R. Like any polynomial they may be evaluated outside the span.
   template <int Derivatives, class S>
-  [[nodiscard]] DUET_ALWAYS_INLINE cumulative_weights<S, Order, Derivatives>
-  weights(std::size_t span, const S& u) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE auto weights(std::size_t span, const S& u) const {
+    using P = std::conditional_t<arithmetic<S>, R, S>;
+    using number = real_type_t<P>;
     const span_data& data = spans_[span];
-    const S x = (u - breaks_[span]) * data.inverse_width;
-    cumulative_weights<S, Order, Derivatives> result;
-    R scale(1);
-    for (int d = 0; d <= Derivatives; ++d) {
-      for (std::size_t j = 0; j + 1 < std::size_t(Order); ++j) {
-        result.derivative[std::size_t(d)][j] = derivative_at(data.polynomials[j], d, x) * scale;
-      }
-      scale *= data.inverse_width;
+    const P t = P(u) - data.middle;
+    return [&]<std::size_t... K>(std::index_sequence<K...>) DUET_INLINE_LAMBDA {
+      const std::array<P, sizeof...(K)> steps{P(t * (number(1) / number(K + 1)))...};
+      cumulative_weights<P, Order, Derivatives> result;
+      fill<0>(result, data, steps);
+      return result;
     }
-    return result;
+    (std::make_index_sequence<std::size_t(Order) - 1>{});
   }
 
 private:
+  /// Derivatives 0 … k−1 at the middle of the span. About the middle no term of the Taylor series
+  /// exceeds the sum by much.
   using polynomial = std::array<R, std::size_t(Order)>;
   struct span_data {
     std::size_t first;
-    R inverse_width;
+    R middle;
     std::array<polynomial, std::size_t(Order) - 1> polynomials;
   };
 
-  /// d-th derivative of Σ c_k x^k by Horner's rule.
-  template <class S>
-  [[nodiscard]] DUET_ALWAYS_INLINE static S derivative_at(const polynomial& c, int d, const S& x) {
-    if (d >= Order) {
-      return S(R(0));
-    }
-    const auto coefficient = [&](int k) {
-      int falling = 1;
-      for (int i = 0; i < d; ++i) {
-        falling *= k - i;
+  /// Rows D, D + 1 … of the result.
+  template <std::size_t D, class Weights, class Steps>
+  DUET_ALWAYS_INLINE static void fill(Weights& result, const span_data& data, const Steps& steps) {
+    if constexpr (D < std::tuple_size_v<Weights>) {
+      [&]<std::size_t... J>(std::index_sequence<J...>) DUET_INLINE_LAMBDA {
+        ((result[D][J] = series<D>(data.polynomials[J], steps)), ...);
       }
-      return R(falling * c[std::size_t(k)]);
-    };
-    S sum(coefficient(Order - 1));
-    for (int k = Order - 2; k >= d; --k) {
-      sum = sum * x + coefficient(k);
+      (std::make_index_sequence<std::size_t(Order) - 1>{});
+      fill<D + 1>(result, data, steps);
     }
-    return sum;
   }
 
-  /// The recurrence P1 carried out on polynomials of x = (u − u_i)/(u_{i+1} − u_i), for the span
-  /// [u_i, u_{i+1}).
-  [[nodiscard]] span_data make_span(std::size_t i) const {
-    const R width = knots_[i + 1] - knots_[i];
-    std::array<polynomial, std::size_t(Order)> basis{}; // basis[j] is B_{i-k+1+j}
-    basis[std::size_t(Order) - 1][0] = R(1);
-    for (int r = 2; r <= Order; ++r) {
-      for (int j = Order - r; j < Order; ++j) {
-        const std::size_t knot = i + 1 + std::size_t(j) - std::size_t(Order);
-        polynomial sum{};
-        const auto add = [&](const polynomial& p, const R& constant, const R& slope) {
-          for (std::size_t c = 0; c < std::size_t(Order); ++c) {
-            sum[c] += p[c] * constant;
-            if (c > 0) {
-              sum[c] += p[c - 1] * slope;
-            }
-          }
-        };
-        const auto ur = std::size_t(r);
-        if (const R left = knots_[knot + ur - 1] - knots_[knot]; left > 0) {
-          add(basis[std::size_t(j)], (knots_[i] - knots_[knot]) / left, width / left);
-        }
-        if (j + 1 < Order) {
-          const R right = knots_[knot + ur] - knots_[knot + 1];
-          if (right > 0) {
-            add(basis[std::size_t(j) + 1], (knots_[knot + ur] - knots_[i]) / right, -width / right);
-          }
-        }
-        basis[std::size_t(j)] = sum;
-      }
+  /// c_D + t (c_{D+1} + t/2 (c_{D+2} + t/3 (…))), from the K-th term on. steps: t, t/2, t/3 …
+  template <std::size_t D, std::size_t K = D, class Steps>
+  [[nodiscard]] DUET_ALWAYS_INLINE static typename Steps::value_type series(const polynomial& c,
+                                                                            const Steps& steps) {
+    using S = typename Steps::value_type;
+    if constexpr (K >= std::size_t(Order)) {
+      return S(R(0));
+    } else if constexpr (K + 1 == std::size_t(Order)) {
+      return S(c[K]);
+    } else {
+      return series<D, K + 1>(c, steps) * steps[K - D] + c[K];
     }
-    span_data result{i + 1 - std::size_t(Order), R(1) / width, {}};
-    polynomial sum{};
-    for (std::size_t j = std::size_t(Order) - 1; j >= 1; --j) {
-      for (std::size_t c = 0; c < std::size_t(Order); ++c) {
-        sum[c] += basis[j][c];
+  }
+
+  /// For the span [u_i, u_{i+1}): de Boor and Cox's recurrence (P1) and its derivative (P4),
+  ///   (B_i^r)′ = (r−1) [B_i^{r−1}/(u_{i+r−1} − u_i) − B_{i+1}^{r−1}/(u_{i+r} − u_{i+1})],
+  /// at the middle of the span, where all values are positive. Then P3,
+  ///   B̃_i′ = (k−1)/(u_{i+k−1} − u_i) B_i^{k−1}.
+  /// The factors (k−1)(k−2)… are left to the end, where they are one exact number.
+  [[nodiscard]] span_data make_span(std::size_t i) const {
+    constexpr auto k = std::size_t(Order);
+    const R middle = knots_[i] + (knots_[i + 1] - knots_[i]) / 2;
+    // b[d][j] is the d-th derivative of B_{i−r+1+j}^r.
+    std::array<std::array<R, k>, k> b{};
+    b[0][0] = R(1);
+    const auto raise = [&](std::size_t r) {
+      auto next = decltype(b){};
+      for (std::size_t j = 0; j + 1 < r; ++j) { // B_{f+1}^{r−1} passes on to its two neighbours
+        const std::size_t f = i + 1 + j - r;
+        const R left = knots_[f + 1];
+        const R right = knots_[f + r];
+        next[0][j] += b[0][j] * (right - middle) / (right - left);
+        next[0][j + 1] += b[0][j] * (middle - left) / (right - left);
+        for (std::size_t d = 1; d < r; ++d) {
+          const R slope = b[d - 1][j] / (right - left);
+          next[d][j] -= slope;
+          next[d][j + 1] += slope;
+        }
       }
-      result.polynomials[j - 1] = sum;
+      b = next;
+    };
+    for (std::size_t r = 2; r < k; ++r) {
+      raise(r);
+    }
+    span_data result{i + 1 - k, middle, {}};
+    R highest(0);
+    for (std::size_t j = 0; j + 1 < k; ++j) {
+      const std::size_t f = i + 2 + j - k;
+      R factor(1);
+      for (std::size_t d = 1; d < k; ++d) {
+        factor *= R(k - d);
+        result.polynomials[j][d] = factor * b[d - 1][j] / (knots_[f + k - 1] - knots_[f]);
+      }
+      highest += result.polynomials[j][k - 1];
+    }
+    if (!(highest - highest == 0)) {
+      std::ostringstream message;
+      message << "duet: knots: knot " << i << " = " << knots_[i] << " and knot " << i + 1 << " = "
+              << knots_[i + 1] << " are too close: a derivative overflows";
+      throw invalid_input(message.str());
+    }
+    raise(k);
+    R sum(0);
+    for (std::size_t j = k - 1; j >= 1; --j) {
+      sum += b[0][j];
+      result.polynomials[j - 1][0] = sum;
     }
     return result;
   }

@@ -75,16 +75,13 @@ public:
     auto m = evaluate<3>(u);
     using D = typename decltype(m.value)::scalar_type;
     if constexpr (detail::is_spatial(frame_of_result)) {
-      const vector3<D> jerk = 2 * m.jerk + 4 * detail::cross(m.velocity, m.acceleration);
-      m.velocity = rotate(m.value, vector3<D>(2 * m.velocity));
-      m.acceleration = rotate(m.value, vector3<D>(2 * m.acceleration));
-      m.jerk = rotate(m.value, jerk);
-    } else {
-      m.velocity *= 2;
-      m.acceleration *= 2;
-      m.jerk *= 2;
+      m.jerk = detail::sum(m.jerk, 2, detail::cross(m.velocity, m.acceleration));
+      m.velocity = rotate(m.value, m.velocity);
+      m.acceleration = rotate(m.value, m.acceleration);
+      m.jerk = rotate(m.value, m.jerk);
     }
-    return m;
+    using detail::product;
+    return duet::motion<D>{m.value, product(2, m.velocity), product(2, m.acceleration), product(2, m.jerk)};
   }
 
   /// Q, Q′ = Q w and Q″ = Q (a − |w|²) (P3, P4 in their true form).
@@ -106,20 +103,13 @@ private:
     const P u(parameter);
     const std::size_t span = basis_.span_of(innermost(u));
     const std::size_t first = basis_.first_function(span);
-    const auto w = basis_.template weights<Rates>(span, u);
-    constexpr std::size_t factors = std::size_t(Order) - 1;
-    std::array<std::array<P, std::size_t(Rates) + 1>, factors> weights;
-    for (std::size_t j = 0; j < factors; ++j) {
-      for (std::size_t d = 0; d <= std::size_t(Rates); ++d) {
-        weights[j][d] = w.derivative[d][j];
-      }
-    }
+    const auto weights = basis_.template weights<Rates>(span, u);
     if constexpr (std::same_as<D, T>) {
       return detail::product_of_exponentials<Rates>(controls_[first], &increments_[first + 1],
                                                     weights);
     } else {
-      std::array<vector3<D>, factors> increments;
-      for (std::size_t j = 0; j < factors; ++j) {
+      std::array<vector3<D>, std::size_t(Order) - 1> increments;
+      for (std::size_t j = 0; j < increments.size(); ++j) {
         increments[j] = increments_[first + 1 + j].template cast<D>();
       }
       return detail::product_of_exponentials<Rates>(quaternion<D>(controls_[first]),

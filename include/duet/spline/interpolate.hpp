@@ -131,10 +131,10 @@ private:
     const bool at_end = i == last;
     const std::size_t span = at_end ? i - 1 : i;
     const auto all = basis_.template weights<2>(span, at_end ? basis_.back() : basis_.breaks()[i]);
-    std::array<std::array<R, 3>, 2> weights;
+    std::array<std::array<R, 2>, 3> weights;
     for (std::size_t j = 0; j < 2; ++j) {
       for (std::size_t d = 0; d < 3; ++d) {
-        weights[j][d] = all.derivative[d][at_end ? j + 1 : j];
+        weights[d][j] = all[d][at_end ? j + 1 : j];
       }
     }
     const auto m = product_of_exponentials<2>(c[0], increments.data(), weights);

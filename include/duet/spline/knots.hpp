@@ -42,6 +42,9 @@ void check_knots(const std::vector<R>& knots, int order) {
   if (!(knots[k - 1] < knots[knots.size() - k])) {
     fail("the domain is empty");
   }
+  if (const R width = knots.back() - knots.front(); !(width - width == 0)) {
+    fail("the distance from ", knots.front(), " to ", knots.back(), " overflows");
+  }
 }
 
 } // namespace detail
@@ -58,32 +61,42 @@ template <real R>
   return knots;
 }
 
-/// B_i^k(u) by the recurrence of de Boor and Cox (P1): order k, degree k − 1.
-///
-/// The intervals are half-open, [u_i, u_{i+1}); only the last non-empty one of the domain is
-/// closed. (Closed at both ends, as the paper prints them, two would count at every knot and the
-/// functions would not sum to 1.) A term whose denominator is zero is zero. This is the definition;
-/// `bspline_basis` is the fast way.
+namespace detail {
+
+/// `bspline_value` where the domain is known to end at `end`: functions of lower order, as in
+/// derivatives, have the domain of the spline that they belong to.
 template <real R>
-[[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u) {
+[[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u,
+                              const R& end) {
   if (order == 1) {
-    if (knots[i] <= u && u < knots[i + 1]) {
-      return R(1);
-    }
-    const bool ends_the_knots = knots[i] < knots[i + 1] && knots[i + 1] == knots.back();
-    return R(ends_the_knots && u == knots[i + 1] ? 1 : 0);
+    const bool inside =
+        u == end ? knots[i] < u && u == knots[i + 1] : knots[i] <= u && u < knots[i + 1];
+    return R(inside ? 1 : 0);
   }
   const auto k = std::size_t(order);
   const R left = knots[i + k - 1] - knots[i];
   const R right = knots[i + k] - knots[i + 1];
   R sum(0);
   if (left > 0) {
-    sum += (u - knots[i]) / left * bspline_value(knots, i, order - 1, u);
+    sum += (u - knots[i]) / left * bspline_value(knots, i, order - 1, u, end);
   }
   if (right > 0) {
-    sum += (knots[i + k] - u) / right * bspline_value(knots, i + 1, order - 1, u);
+    sum += (knots[i + k] - u) / right * bspline_value(knots, i + 1, order - 1, u, end);
   }
   return sum;
+}
+
+} // namespace detail
+
+/// B_i^k(u) by the recurrence of de Boor and Cox (P1): order k, degree k − 1.
+///
+/// The intervals are half-open, [u_i, u_{i+1}); only the last non-empty one of the domain [u_{k−1},
+/// u_m] is closed. (Closed at both ends, as the paper prints them, two would count at every knot
+/// and the functions would not sum to 1.) A term whose denominator is zero is zero. This is the
+/// definition; `bspline_basis` is the fast way.
+template <real R>
+[[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u) {
+  return detail::bspline_value(knots, i, order, u, knots[knots.size() - std::size_t(order)]);
 }
 
 } // namespace duet

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 /// \file
 /// Products of exponentials and their exact rates: the recursion behind every cumulative curve.
@@ -25,9 +26,58 @@ struct motion {
 
 namespace detail {
 
+// Coefficient by coefficient: Eigen's expressions would load two coefficients at once just after
+// they were stored one by one, and the processor waits for that.
+
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> cross(const vector3<T>& a, const vector3<T>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// a + f b
+template <class T, class F>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> sum(const vector3<T>& a, const F& f,
+                                                const vector3<T>& b) {
+  return {a[0] + f * b[0], a[1] + f * b[1], a[2] + f * b[2]};
+}
+
+template <class T, class F>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> product(const F& f, const vector3<T>& a) {
+  return {f * a[0], f * a[1], f * a[2]};
+}
+
+/// One step of the recursion below, with the i-th factor.
+template <int Rates, class T, class Weights>
+DUET_ALWAYS_INLINE void take_in_factor(motion<T>& m, std::size_t i, const vector3<T>& omega,
+                                       const Weights& b) {
+  const quaternion<T> e = duet::exp(product(b[0][i], omega));
+  m.value = m.value * e;
+  if constexpr (Rates >= 1) {
+    const vector3<T> first = product(b[1][i], omega);
+    if (i == 0) {
+      m.velocity = first;
+      if constexpr (Rates >= 2) {
+        m.acceleration = product(b[2][i], omega);
+      }
+      if constexpr (Rates >= 3) {
+        m.jerk = product(b[3][i], omega);
+      }
+      return;
+    }
+    const quaternion<T> back = conj(e);
+    const vector3<T> w_hat = rotate(back, m.velocity);
+    m.velocity = sum(w_hat, 1, first);
+    if constexpr (Rates >= 2) {
+      const vector3<T> a_hat = rotate(back, m.acceleration);
+      const vector3<T> turn = cross(w_hat, first);
+      m.acceleration = sum(sum(a_hat, b[2][i], omega), 2, turn);
+      if constexpr (Rates >= 3) {
+        const vector3<T> second = product(b[2][i], omega);
+        m.jerk = sum(sum(rotate(back, m.jerk), b[3][i], omega), 2, cross(w_hat, second));
+        m.jerk = sum(m.jerk, 4, sum(cross(a_hat, first), 1, cross(turn, first)));
+      }
+    }
+  }
 }
 
 /// c0 exp(ω_1 b_1) exp(ω_2 b_2) … and its rates in body axes, halved (P3, P4 in their true form).
@@ -35,48 +85,24 @@ template <class T>
 /// With e = exp(ω b) the factors are taken in one after the other:
 ///   w ← e* w e + b′ω,
 ///   a ← e* a e + b″ω + 2 ŵ × b′ω,               ŵ = e* w e,
-///   j ← e* j e + b‴ω + 2 ŵ × b″ω + 4 â × b′ω + 4 (ŵ × b′ω) × b′ω.
+///   j ← e* j e + b‴ω + 2 ŵ × b″ω + 4 â × b′ω + 4 (ŵ × b′ω) × b′ω,   â = e* a e.
 /// Q′ = Q w, and 2w, 2a, 2j are angular velocity, acceleration and jerk.
 ///
 /// \tparam Rates  how many of w, a, j are wanted
-template <int Rates, class T, std::size_t Factors, class Weights>
+/// \param weights  element [d][i] is the d-th derivative of b_{i+1}
+template <int Rates, class T, class W, std::size_t Factors>
 [[nodiscard]] DUET_ALWAYS_INLINE motion<T>
 product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments,
-                        const std::array<Weights, Factors>& weights) {
+                        const std::array<std::array<W, Factors>, std::size_t(Rates) + 1>& weights) {
   motion<T> m{start, {}, {}, {}};
-  vector3<T>& w = m.velocity;
-  vector3<T>& a = m.acceleration;
-  vector3<T>& j = m.jerk;
-  for (std::size_t i = 0; i < Factors; ++i) {
-    const vector3<T>& omega = increments[i];
-    const auto& b = weights[i];
-    const quaternion<T> e = duet::exp(vector3<T>(omega * b[0]));
-    m.value = m.value * e;
-    if constexpr (Rates >= 1) {
-      const vector3<T> first = omega * b[1];
-      if (i == 0) {
-        w = first;
-        if constexpr (Rates >= 2) {
-          a = omega * b[2];
-        }
-        if constexpr (Rates >= 3) {
-          j = omega * b[3];
-        }
-        continue;
-      }
-      const quaternion<T> back = conj(e);
-      const vector3<T> w_hat = rotate(back, w);
-      w = w_hat + first;
-      if constexpr (Rates >= 2) {
-        const vector3<T> a_hat = rotate(back, a);
-        const vector3<T> second = omega * b[2];
-        const vector3<T> turn = cross(w_hat, first);
-        a = a_hat + second + T(2) * turn;
-        if constexpr (Rates >= 3) {
-          j = rotate(back, j) + omega * b[3] + T(2) * cross(w_hat, second) +
-              T(4) * (cross(a_hat, first) + cross(turn, first));
-        }
-      }
+  if constexpr (real<T>) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
+      (take_in_factor<Rates>(m, I, increments[I], weights), ...);
+    }
+    (std::make_index_sequence<Factors>{});
+  } else { // unrolled, dual numbers would take the compiler too long
+    for (std::size_t i = 0; i < Factors; ++i) {
+      take_in_factor<Rates>(m, i, increments[i], weights);
     }
   }
   return m;

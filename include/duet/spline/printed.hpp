@@ -45,14 +45,14 @@ template <class T, int Order>
   for (std::size_t j = 0; j + 1 < k; ++j) {
     const std::size_t i = first + 1 + j; // the paper's i − 1: its products start at q_{−1}
     const vector3<T>& omega = s.increments()[i];
-    commuting_sum += omega * weights.derivative[1][j];
-    commuting_sum_of_second += omega * weights.derivative[2][j];
+    commuting_sum += omega * weights[1][j];
+    commuting_sum_of_second += omega * weights[2][j];
     const T width = knots[i + k - 1] - knots[i];
     const T shorter_width = knots[i + k - 2] - knots[i];
-    const T printed_first = (k - 1) / width * bspline_value(knots, i, Order - 1, u);
+    const T printed_first = (k - 1) / width * detail::bspline_value(knots, i, Order - 1, u, s.basis().back());
     const T printed_second =
         shorter_width > 0
-            ? T((k - 1) * (k - 2) / (width * shorter_width) * bspline_value(knots, i, Order - 2, u))
+            ? T((k - 1) * (k - 2) / (width * shorter_width) * detail::bspline_value(knots, i, Order - 2, u, s.basis().back()))
             : T(0);
     if (i == 1) { // the paper's B̃_0
       lone_first = printed_first;

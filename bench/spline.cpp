@@ -1,0 +1,232 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+/// \file
+/// A uniform cubic spline of 100 segments at random parameters: value, and value with angular
+/// velocity and acceleration. By hand: one kernel for this one curve, in plain doubles. Beside
+/// them, the same rates by Taylor numbers, and the fitting of 104 orientations.
+
+#include "support/contest.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/euler.hpp>
+#include <duet/spline/interpolate.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <string_view>
+#include <vector>
+
+namespace duet_bench {
+namespace {
+
+constexpr int segments = 100;
+constexpr double knot_distance = 0.1;
+
+/// Value, angular velocity and acceleration in body axes.
+using numbers = std::array<double, 10>;
+
+/// A smooth tumble, up to 0.25 rad a segment.
+duet::quaternion<double> orientation(double t) {
+  return duet::from_euler<duet::zyx>(1.9 * std::sin(t), 0.8 * std::sin(1.3 * t + 1), 2 * std::cos(0.7 * t));
+}
+
+/// Control quaternions one knot apart; the domain is [0, segments · knot_distance].
+std::vector<duet::quaternion<double>> controls() {
+  std::vector<duet::quaternion<double>> result;
+  for (int i = 0; i < segments + 3; ++i) { result.push_back(orientation((i - 1) * knot_distance)); }
+  return result;
+}
+
+duet::cumulative_bspline<double> make_spline() {
+  std::vector<double> knots;
+  for (int i = -3; i <= segments + 3; ++i) { knots.push_back(i * knot_distance); }
+  return {knots, controls()};
+}
+
+/// The cubic as one writes it by hand for uniform knots and nothing else: logarithms cached as axis
+/// and half angle, the segment found by one product, polynomials written out.
+class hand_written_spline {
+public:
+  explicit hand_written_spline(const std::vector<duet::quaternion<double>>& controls) {
+    duet::quaternion<double> previous = controls.front();
+    for (duet::quaternion<double> q : controls) {
+      if (dot(previous, q) < 0) { q = -q; }
+      const duet::vector3<double> omega = log(conj(previous) * q).vec();
+      const double angle = omega.norm();
+      const duet::vector3<double> axis = angle > 0 ? duet::vector3<double>(omega / angle) : omega;
+      nodes_.push_back({{q.w(), q.x(), q.y(), q.z()}, {axis[0], axis[1], axis[2]}, angle});
+      previous = q;
+    }
+  }
+
+  [[nodiscard]] std::array<double, 4> value(double u) const {
+    const location at(u);
+    const node* n = &nodes_[at.segment];
+    std::array<double, 4> q = n->q;
+    const auto b = weights(at.x);
+    for (int i = 0; i < 3; ++i) { q = product(q, exponential(*++n, b[i])); }
+    return q;
+  }
+
+  [[nodiscard]] numbers motion(double u) const {
+    const location at(u);
+    const node* n = &nodes_[at.segment];
+    const double x = at.x;
+    constexpr double r = 1 / knot_distance;
+    const auto b = weights(x);
+    const double first[] = {r * (1 - x) * (1 - x) / 2, r * (0.5 + x - x * x), r * x * x / 2};
+    const double second[] = {r * r * (x - 1), r * r * (1 - 2 * x), r * r * x};
+    std::array<double, 4> q = n->q;
+    std::array<double, 3> w{}, a{};
+    for (int i = 0; i < 3; ++i) {
+      ++n;
+      const auto e = exponential(*n, b[i]);
+      q = product(q, e);
+      const double w1 = n->angle * first[i], w2 = n->angle * second[i];
+      const double d[] = {n->axis[0] * w1, n->axis[1] * w1, n->axis[2] * w1};
+      if (i == 0) {
+        w = {d[0], d[1], d[2]};
+        a = {n->axis[0] * w2, n->axis[1] * w2, n->axis[2] * w2};
+        continue;
+      }
+      w = turned_back(e, w);
+      a = turned_back(e, a);
+      a = {a[0] + n->axis[0] * w2 + 2 * (w[1] * d[2] - w[2] * d[1]),
+           a[1] + n->axis[1] * w2 + 2 * (w[2] * d[0] - w[0] * d[2]),
+           a[2] + n->axis[2] * w2 + 2 * (w[0] * d[1] - w[1] * d[0])};
+      w = {w[0] + d[0], w[1] + d[1], w[2] + d[2]};
+    }
+    return {q[0],     q[1],     q[2],     q[3],     2 * w[0],
+            2 * w[1], 2 * w[2], 2 * a[0], 2 * a[1], 2 * a[2]};
+  }
+
+private:
+  struct node {
+    std::array<double, 4> q;
+    std::array<double, 3> axis;
+    double angle;
+  };
+
+  struct location {
+    explicit location(double u) {
+      const double s = u * (1 / knot_distance);
+      segment = static_cast<std::size_t>(s);
+      x = s - double(segment);
+    }
+    std::size_t segment;
+    double x;
+  };
+
+  static std::array<double, 3> weights(double x) {
+    const double x2 = x * x, x3 = x2 * x;
+    return {(5 + 3 * x - 3 * x2 + x3) / 6, (1 + 3 * x + 3 * x2 - 2 * x3) / 6, x3 / 6};
+  }
+  static std::array<double, 4> exponential(const node& n, double b) {
+    const double s = std::sin(n.angle * b), c = std::cos(n.angle * b);
+    return {c, n.axis[0] * s, n.axis[1] * s, n.axis[2] * s};
+  }
+  static std::array<double, 4> product(const std::array<double, 4>& p,
+                                       const std::array<double, 4>& q) {
+    return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+            p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+            p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+            p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
+  }
+  /// e* v e
+  static std::array<double, 3> turned_back(const std::array<double, 4>& e,
+                                           const std::array<double, 3>& v) {
+    const double tx = 2 * (e[2] * v[2] - e[3] * v[1]);
+    const double ty = 2 * (e[3] * v[0] - e[1] * v[2]);
+    const double tz = 2 * (e[1] * v[1] - e[2] * v[0]);
+    return {v[0] - e[0] * tx + (e[2] * tz - e[3] * ty), v[1] - e[0] * ty + (e[3] * tx - e[1] * tz),
+            v[2] - e[0] * tz + (e[1] * ty - e[2] * tx)};
+  }
+
+  std::vector<node> nodes_;
+};
+
+/// Parameters in random order, one after the other.
+class random_parameters {
+public:
+  random_parameters() {
+    std::mt19937_64 engine(1);
+    for (double& u : values_) {
+      u = double(engine() >> 11) * 0x1p-53 * segments * knot_distance;
+    }
+  }
+  double next() { return values_[next_++ % values_.size()]; }
+
+private:
+  std::array<double, 1024> values_;
+  std::size_t next_ = 0;
+};
+
+template <class F>
+void add(std::string_view workload, std::string_view contender, F evaluate) {
+  contest(workload, contender, random_parameters(),
+          [=](random_parameters& u) { return evaluate(u.next()); });
+}
+
+template <class Expected, class Actual>
+void compare(std::string_view workload, std::string_view contender, Expected expected,
+             Actual actual) {
+  random_parameters u;
+  for (int i = 0; i < 1000; ++i) {
+    const double at = u.next();
+    expect_agreement(workload, contender, expected(at), actual(at));
+  }
+}
+
+const auto spline = make_spline();
+const hand_written_spline by_hand(controls());
+
+std::array<double, 4> duet_value(double u) {
+  const auto q = spline(u);
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+numbers duet_motion(double u) {
+  const auto m = spline.motion(u, duet::frame::body);
+  return {m.value.w(),       m.value.x(),       m.value.y(),      m.value.z(),
+          m.velocity[0],     m.velocity[1],     m.velocity[2],    m.acceleration[0],
+          m.acceleration[1], m.acceleration[2]};
+}
+
+/// The same from Q, Q′, Q″: ω = 2 Q* Q′, ω′ = vec(2 Q* Q″).
+numbers taylor_motion(double u) {
+  const auto q = duet::derivatives<2>([](const auto& x) { return spline(x); }, u);
+  const auto w = conj(q[0]) * q[1], a = conj(q[0]) * q[2];
+  return {q[0].w(),  q[0].x(),  q[0].y(),  q[0].z(),  2 * w.x(),
+          2 * w.y(), 2 * w.z(), 2 * a.x(), 2 * a.y(), 2 * a.z()};
+}
+
+const bool registered = [] {
+  const auto hand_value = [](double u) { return by_hand.value(u); };
+  compare("spline", "duet", hand_value, duet_value);
+  add("spline", "duet", duet_value);
+  add("spline", "hand", hand_value);
+
+  const auto hand_motion = [](double u) { return by_hand.motion(u); };
+  compare("spline_motion", "duet", hand_motion, duet_motion);
+  compare("spline_motion", "taylor", hand_motion, taylor_motion);
+  add("spline_motion", "duet", duet_motion);
+  add("spline_motion", "hand", hand_motion);
+  add("spline_motion", "taylor", taylor_motion);
+
+  std::vector<double> parameters;
+  std::vector<duet::quaternion<double>> orientations;
+  for (int i = 0; i < 104; ++i) {
+    parameters.push_back(i * knot_distance);
+    orientations.push_back(orientation(i * knot_distance));
+  }
+  contest("interpolation", "duet", 0, [=](int) {
+    return duet::interpolate<duet::cumulative_bspline<double>>(parameters, orientations,
+                                                               duet::natural{});
+  });
+  return true;
+}();
+
+} // namespace
+} // namespace duet_bench

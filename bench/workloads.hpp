@@ -1,0 +1,182 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+/// \file
+/// What is differentiated: plain generic code without a word of any library, so that every
+/// contender runs the same.
+
+namespace duet_bench {
+
+/// sin x · exp(−x²) + log(1 + x²)/√(2 + cos x)
+template <class S>
+S f_scalar(const S& x) {
+  using std::cos;
+  using std::exp;
+  using std::log;
+  using std::sin;
+  using std::sqrt;
+  const S square = x * x;
+  const S wave = sin(x) * exp(-square);
+  const S hill = log(1.0 + square) / sqrt(2.0 + cos(x));
+  return wave + hill;
+}
+
+struct value_and_slope {
+  double value;
+  double slope;
+};
+
+/// f_scalar and its derivative as one writes them by hand, every common part evaluated once.
+inline value_and_slope f_scalar_by_hand(double x) {
+  const double square = x * x;
+  const double s = std::sin(x);
+  const double c = std::cos(x);
+  const double bell = std::exp(-square);
+  const double root = std::sqrt(2.0 + c);
+  const double logarithm = std::log(1.0 + square);
+  const double hill = logarithm / root;
+  return {s * bell + hill, (c - 2.0 * x * s) * bell + 2.0 * x / ((1.0 + square) * root) +
+                               0.5 * hill * s / (2.0 + c)};
+}
+
+template <class S, std::size_t N>
+using inputs = std::array<S, N>;
+
+/// A loop of short statements over N inputs, each with its neighbour: a sine, an exponential, a
+/// root or a quotient in turn, between products and sums.
+template <class S, std::size_t N>
+S f_grad(const inputs<S, N>& x) {
+  using std::exp;
+  using std::sin;
+  using std::sqrt;
+  S sum = x[0];
+  S carry = x[N - 1];
+  for (std::size_t i = 0; i < N; ++i) {
+    const S& a = x[i];
+    const S& b = x[i + 1 < N ? i + 1 : 0];
+    const S u = a * b + 0.5 * carry;
+    switch (i % 4) {
+    case 0: carry = sin(u); break;
+    case 1: carry = exp(-u); break;
+    case 2: carry = sqrt(1.0 + u * u); break;
+    default: carry = u / (2.0 + a);
+    }
+    const S step = a - b;
+    sum = sum + carry * step;
+  }
+  return sum * carry;
+}
+
+/// The seven-joint arm of the benches: Denavit–Hartenberg rows in Craig's convention, those of a
+/// Panda. Row i: turn by α about x, move a along x, turn by θᵢ about z, move d along z.
+struct arm_row {
+  double a;
+  double d;
+  double half_cos; ///< cos α/2
+  double half_sin; ///< sin α/2
+};
+
+inline constexpr int joints = 7;
+inline constexpr double half_root = 0.70710678118654752440;
+inline constexpr std::array<arm_row, joints> arm = {{
+    {0.0, 0.333, 1.0, 0.0},
+    {0.0, 0.0, half_root, -half_root},
+    {0.0, 0.316, half_root, half_root},
+    {0.0825, 0.0, half_root, half_root},
+    {-0.0825, 0.384, half_root, -half_root},
+    {0.0, 0.0, half_root, half_root},
+    {0.088, 0.107, half_root, half_root},
+}};
+
+template <class S>
+struct pose {
+  std::array<S, 3> position;
+  std::array<S, 4> rotation; ///< unit quaternion, scalar first
+};
+
+/// Forward kinematics: pose of the flange.
+template <class S>
+pose<S> fk7(const inputs<S, joints>& angles) {
+  using std::cos;
+  using std::sin;
+  S w(1.0), x(0.0), y(0.0), z(0.0);
+  S px(0.0), py(0.0), pz(0.0);
+  for (std::size_t i = 0; i < joints; ++i) {
+    const arm_row& row = arm[i];
+    // the first column of the rotation matrix, before the turn about x leaves it as it is
+    const S x_axis_x = 1.0 - 2.0 * (y * y + z * z);
+    const S x_axis_y = 2.0 * (x * y + w * z);
+    const S x_axis_z = 2.0 * (x * z - w * y);
+    const S w1 = w * row.half_cos - x * row.half_sin;
+    const S x1 = x * row.half_cos + w * row.half_sin;
+    const S y1 = y * row.half_cos + z * row.half_sin;
+    const S z1 = z * row.half_cos - y * row.half_sin;
+    const S half = 0.5 * angles[i];
+    const S c = cos(half);
+    const S s = sin(half);
+    w = w1 * c - z1 * s;
+    x = x1 * c + y1 * s;
+    y = y1 * c - x1 * s;
+    z = z1 * c + w1 * s;
+    const S z_axis_x = 2.0 * (x * z + w * y);
+    const S z_axis_y = 2.0 * (y * z - w * x);
+    const S z_axis_z = 1.0 - 2.0 * (x * x + y * y);
+    px = px + x_axis_x * row.a + z_axis_x * row.d;
+    py = py + x_axis_y * row.a + z_axis_y * row.d;
+    pz = pz + x_axis_z * row.a + z_axis_z * row.d;
+  }
+  return {{px, py, pz}, {w, x, y, z}};
+}
+
+/// Rows: three of the position, four of the quaternion.
+using pose_jacobian = std::array<std::array<double, joints>, 7>;
+
+/// The pose and its derivatives in closed form: joint i turns the flange about its axis zᵢ through
+/// its origin oᵢ, so ∂p/∂θᵢ = zᵢ × (p − oᵢ) and ∂q/∂θᵢ = ½ zᵢ q.
+inline pose<double> fk7_by_hand(const inputs<double, joints>& angles, pose_jacobian& jacobian) {
+  std::array<std::array<double, 3>, joints> axes;
+  std::array<std::array<double, 3>, joints> origins;
+  double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
+  double px = 0.0, py = 0.0, pz = 0.0;
+  for (std::size_t i = 0; i < joints; ++i) {
+    const arm_row& row = arm[i];
+    px += row.a * (1.0 - 2.0 * (y * y + z * z));
+    py += row.a * 2.0 * (x * y + w * z);
+    pz += row.a * 2.0 * (x * z - w * y);
+    const double w1 = w * row.half_cos - x * row.half_sin;
+    const double x1 = x * row.half_cos + w * row.half_sin;
+    const double y1 = y * row.half_cos + z * row.half_sin;
+    const double z1 = z * row.half_cos - y * row.half_sin;
+    const double c = std::cos(0.5 * angles[i]);
+    const double s = std::sin(0.5 * angles[i]);
+    w = w1 * c - z1 * s;
+    x = x1 * c + y1 * s;
+    y = y1 * c - x1 * s;
+    z = z1 * c + w1 * s;
+    axes[i] = {2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)};
+    px += row.d * axes[i][0];
+    py += row.d * axes[i][1];
+    pz += row.d * axes[i][2];
+    origins[i] = {px, py, pz};
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    const auto& [ax, ay, az] = axes[i];
+    const double rx = px - origins[i][0];
+    const double ry = py - origins[i][1];
+    const double rz = pz - origins[i][2];
+    jacobian[0][i] = ay * rz - az * ry;
+    jacobian[1][i] = az * rx - ax * rz;
+    jacobian[2][i] = ax * ry - ay * rx;
+    jacobian[3][i] = -0.5 * (ax * x + ay * y + az * z);
+    jacobian[4][i] = 0.5 * (ax * w + ay * z - az * y);
+    jacobian[5][i] = 0.5 * (ay * w + az * x - ax * z);
+    jacobian[6][i] = 0.5 * (az * w + ax * y - ay * x);
+  }
+  return {{px, py, pz}, {w, x, y, z}};
+}
+
+} // namespace duet_bench

@@ -1,0 +1,23 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+# Nothing of duet depends on the architecture, so its package files belong in share/.
+set(destination ${CMAKE_INSTALL_DATADIR}/cmake/duet)
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/duet DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(TARGETS duet EXPORT duetTargets)
+install(EXPORT duetTargets NAMESPACE duet:: DESTINATION ${destination})
+
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/duetConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/duetConfig.cmake INSTALL_DESTINATION ${destination})
+# SameMinorVersion: until 1.0 every minor version may break the one before.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/duetConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+install(FILES
+  ${PROJECT_BINARY_DIR}/duetConfig.cmake
+  ${PROJECT_BINARY_DIR}/duetConfigVersion.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/DuetDependencies.cmake
+  DESTINATION ${destination})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/duet)

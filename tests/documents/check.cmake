@@ -1,0 +1,64 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Compiles and runs every ```cpp block of a document that has a main(). Where a ```text block
+# follows, with nothing but blank lines between, it must be what the program prints. Other blocks
+# are excerpts for the eye and are not compiled.
+#
+# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dfolder=<for programs> -P check.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+set(fence "\n```")
+file(READ ${document} rest)
+file(MAKE_DIRECTORY ${folder})
+set(count 0)
+
+# Moves what stands before `mark` from `rest` to `taken`; `found` says whether there is a mark.
+macro(take_until mark)
+  string(FIND "${rest}" "${mark}" position)
+  if(position EQUAL -1)
+    set(found FALSE)
+  else()
+    set(found TRUE)
+    string(SUBSTRING "${rest}" 0 ${position} taken)
+    string(LENGTH "${mark}" length)
+    math(EXPR position "${position} + ${length}")
+    string(SUBSTRING "${rest}" ${position} -1 rest)
+  endif()
+endmacro()
+
+while(TRUE)
+  take_until("${fence}cpp\n")
+  if(NOT found)
+    break()
+  endif()
+  take_until("${fence}")
+  set(code "${taken}\n")
+  if(NOT code MATCHES "int main\\(")
+    continue()
+  endif()
+  math(EXPR count "${count} + 1")
+  set(program ${folder}/snippet_${count})
+  file(WRITE ${program}.cpp "${code}")
+  execute_process(COMMAND ${compile} -Wall -Wextra -Werror ${program}.cpp -o ${program}
+    RESULT_VARIABLE result ERROR_VARIABLE log)
+  if(NOT result EQUAL 0)
+    message("${code}\n${log}")
+    message(FATAL_ERROR "program ${count} of ${document} does not compile")
+  endif()
+  execute_process(COMMAND ${program}
+    WORKING_DIRECTORY ${folder} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE log)
+  if(NOT result EQUAL 0)
+    message("${output}\n${log}")
+    message(FATAL_ERROR "program ${count} of ${document} ends with ${result}")
+  endif()
+  if(rest MATCHES "^\n+```text\n")
+    take_until("${fence}text\n")
+    take_until("${fence}")
+    if(NOT output STREQUAL "${taken}\n")
+      message("It prints\n${output}\nbut the document says\n${taken}\n")
+      message(FATAL_ERROR "program ${count} of ${document} does not print what follows it")
+    endif()
+  endif()
+endwhile()
+message("${count} programs of ${document} compiled and run")

@@ -1,0 +1,88 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/core/select.hpp>
+#include <duet/dual/math.hpp>
+
+#include <doctest/doctest.h>
+
+#include <functional>
+#include <type_traits>
+#include <vector>
+
+// Nothing is lazy: what lazy libraries make dangle or refuse to compile just works.
+
+using duet::dual;
+using duet::taylor;
+
+namespace {
+
+auto square(dual<double> x) { return x * x; }
+
+template <class T>
+auto polynomial(const T& x) {
+  auto y = x + 1;
+  auto z = y * y;
+  auto w = z - x;
+  return w * 2;
+}
+
+} // namespace
+
+TEST_CASE("auto returns values, not references to what is gone") {
+  auto y = square(dual<double>::variable(3));
+  static_assert(std::is_same_v<decltype(y), dual<double>>);
+  CHECK(y.value() == 9);
+  CHECK(y.epsilon() == 6);
+  const auto p = polynomial(dual<double>::variable(2));
+  CHECK(p.value() == 14);
+  CHECK(p.epsilon() == 10);
+  CHECK(polynomial(taylor<double, 2>::variable(2)).coefficient(2) == 2);
+  std::vector<std::function<dual<double>()>> later;
+  for (int i = 0; i < 3; ++i) {
+    auto kept = dual<double>::variable(i) * 2 + 1;
+    later.emplace_back([kept] { return kept * kept; });
+  }
+  CHECK(later[2]().epsilon() == 20);
+}
+
+TEST_CASE("the conditional operator mixes duals and literals") {
+  const auto relu_square = [](auto x) { return x > 0 ? x * x : 0.0; };
+  CHECK(relu_square(dual<double>::variable(3)).epsilon() == 6);
+  CHECK(relu_square(dual<double>::variable(-3)).epsilon() == 0);
+  const auto chosen = [](auto x) { return x > 0 ? x : 1; };
+  CHECK(chosen(dual<double, 3>::variable(2, 1)).partial(1) == 1);
+}
+
+TEST_CASE("a lambda may return from several places") {
+  const auto huber = [](auto x) {
+    if (x > 1) {
+      return 2 * x - 1;
+    }
+    if (x < -1) {
+      return -2 * x - 1;
+    }
+    return x * x;
+  };
+  CHECK(huber(dual<double>::variable(0.5)).epsilon() == 1);
+  CHECK(huber(dual<double>::variable(4)).epsilon() == 2);
+  CHECK(huber(taylor<double, 3>::variable(-4)).coefficient(1) == -2);
+}
+
+TEST_CASE("operands may be the result") {
+  auto x = dual<double, 3>::variable(2, 1);
+  const auto& same_x = x;
+  x *= same_x;
+  CHECK(x.value() == 4);
+  CHECK(x.partial(1) == 4);
+  x /= same_x;
+  CHECK(x.value() == 1);
+  CHECK(x.partial(1) == 0);
+  x -= same_x;
+  CHECK(x.partial(1) == 0);
+  auto t = taylor<double, 3>::variable(2);
+  const auto& same_t = t;
+  t = same_t * t + t;
+  CHECK(t.coefficient(1) == 5);
+  t /= same_t;
+  CHECK(t.coefficient(1) == 0);
+}

@@ -1,0 +1,37 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual/eigen_problems.hpp"
+
+#include <Eigen/QR>
+
+using duet::dual;
+using duet_test::check_solution;
+using duet_test::linear_problem;
+using duet_test::problems;
+using duet_test::seeded;
+using Eigen::Dynamic;
+
+namespace {
+
+template <class Decomposition, int N>
+void check_decomposition(const linear_problem& p) {
+  CAPTURE(p.name);
+  const Decomposition decomposition(seeded<dual<double>, N, N>(p.a, p.a_slope));
+  check_solution(decomposition.solve(seeded<dual<double>, N, 1>(p.b, p.b_slope)).eval(), p);
+}
+
+template <int N>
+using matrix = Eigen::Matrix<dual<double>, N, N>;
+
+} // namespace
+
+TEST_CASE_TEMPLATE("QR of dynamic size", Decomposition, Eigen::HouseholderQR<matrix<Dynamic>>,
+                   Eigen::ColPivHouseholderQR<matrix<Dynamic>>,
+                   Eigen::FullPivHouseholderQR<matrix<Dynamic>>,
+                   Eigen::CompleteOrthogonalDecomposition<matrix<Dynamic>>) {
+  for (const int n : {1, 2, 3, 12}) {
+    for (const auto& p : problems(n)) {
+      check_decomposition<Decomposition, Dynamic>(p);
+    }
+  }
+}

@@ -1,0 +1,32 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual/function_cases.hpp"
+#include "support/multiprecision.hpp"
+#include "support/ulp.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+using duet::dual;
+using duet_test::central_difference;
+using duet_test::domain;
+using duet_test::for_each_function;
+using duet_test::real_100;
+using duet_test::scale;
+using duet_test::ulps;
+using duet_test::worst_error;
+
+TEST_CASE("first derivatives against 100 digits") {
+  for_each_function([](const std::string& name, auto f, auto df, const domain& d, auto length) {
+    worst_error worst(name);
+    for (const double x : d.inputs) {
+      const real_100 wide(x);
+      const real_100 exact = df(wide);
+      const real_100 second = central_difference(df, wide, 1, length(wide));
+      const double computed = f(dual<double>::variable(x)).epsilon();
+      worst.add(ulps(computed, exact, scale(exact, second, wide)), x);
+    }
+    CHECK_MESSAGE(worst <= 4, worst);
+  });
+}

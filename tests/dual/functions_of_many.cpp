@@ -1,0 +1,222 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+#include "support/ulp.hpp"
+
+#include <duet/dual/math.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+using duet::dual;
+using duet_test::real_100;
+using duet_test::ulps;
+using duet_test::worst_error;
+using std::atan2, std::fma, std::fmod, std::hypot, std::lerp, std::pow, std::remainder;
+
+namespace {
+
+bool identical(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (a != a && b != b);
+}
+
+/// f of M arguments: values against <cmath>, partials against `slopes` in 100 digits. One ulp is
+/// that of |f_i| + Σ_j |f_ij x_j|. Every argument in turn is also given as a constant.
+template <std::size_t M, class F, class Slopes>
+void check(const std::string& name, F f, Slopes slopes,
+           const std::vector<std::array<double, M>>& inputs, double limit = 16) {
+  worst_error worst(name);
+  for (const auto& x : inputs) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      using D = dual<double, int(M)>;
+      const D y = f(D::variable(x[I], int(I))...);
+      CHECK_MESSAGE(identical(y.value(), f(x[I]...)), name << " " << x[0] << " " << x[1]);
+      std::array<real_100, M> wide{real_100(x[I])...};
+      const auto exact = slopes(wide);
+      std::array<real_100, M> scales = exact;
+      for (auto& s : scales) {
+        s = abs(s);
+      }
+      for (std::size_t j = 0; j < M; ++j) {
+        auto low = wide;
+        auto high = wide;
+        const real_100 h = abs(wide[j]) * 1e-30;
+        low[j] -= h;
+        high[j] += h;
+        if (h == 0) {
+          continue;
+        }
+        const auto a = slopes(low);
+        const auto b = slopes(high);
+        for (std::size_t i = 0; i < M; ++i) {
+          scales[i] += abs(real_100((b[i] - a[i]) / (2 * h) * wide[j]));
+        }
+      }
+      for (std::size_t i = 0; i < M; ++i) {
+        worst.add(ulps(y.partial(int(i)), exact[i], scales[i]), i, x[I]...);
+        // The same with the other arguments constant, which may take another path.
+        const auto alone =
+            f(((void)I, I == i ? dual<double>::variable(x[I]) : dual<double>(x[I]))...);
+        CHECK(alone.value() == y.value());
+        CHECK(alone.epsilon() == doctest::Approx(y.partial(int(i))).epsilon(1e-14));
+      }
+    }
+    (std::make_index_sequence<M>{});
+  }
+  CHECK_MESSAGE(worst <= limit, worst);
+}
+
+template <std::size_t M, class Draw>
+std::vector<std::array<double, M>> random_inputs(Draw draw) {
+  std::vector<std::array<double, M>> result;
+  for (int i = 0; i < 200; ++i) {
+    std::array<double, M> x;
+    for (std::size_t j = 0; j < M; ++j) {
+      x[j] = draw(j);
+    }
+    result.push_back(x);
+  }
+  return result;
+}
+
+using R = real_100;
+template <std::size_t M>
+using wide = std::array<R, M>;
+
+} // namespace
+
+TEST_CASE("pow") {
+  duet_test::random_source random(11);
+  auto inputs = random_inputs<2>(
+      [&](std::size_t j) { return j == 0 ? random.magnitude(1e-3, 1e3) : random.uniform(-9, 9); });
+  inputs.insert(inputs.end(), {{1e-160, 1.5},
+                               {1e-300, 0.5},
+                               {1e300, 0.5},
+                               {1e-8, -2},
+                               {1e160, -1},
+                               {1 + 1e-15, 1e12},
+                               {0.5, 1000},
+                               {2, 1e-300},
+                               {3, 1},
+                               {3, 2}});
+  check<2>(
+      "pow", [](const auto& x, const auto& p) { return pow(x, p); },
+      [](const wide<2>& a) -> wide<2> {
+        const R y = exp(R(a[1] * log(a[0])));
+        return {R(a[1] * y / a[0]), R(y * log(a[0]))};
+      },
+      inputs);
+}
+
+TEST_CASE("atan2") {
+  duet_test::random_source random(12);
+  auto inputs = random_inputs<2>([&](std::size_t) { return random.signed_magnitude(1e-4, 1e4); });
+  inputs.insert(inputs.end(), {{1e-160, 1e-160},
+                               {1e-300, -1e-300},
+                               {1e160, 3e160},
+                               {1e300, 1e-300},
+                               {-1e-300, -1},
+                               {0.0, -1},
+                               {-0.0, -1},
+                               {1, 0},
+                               {1e-8, 1},
+                               {1, -1e-8}});
+  check<2>(
+      "atan2", [](const auto& y, const auto& x) { return atan2(y, x); },
+      [](const wide<2>& a) -> wide<2> {
+        const R square = a[0] * a[0] + a[1] * a[1];
+        return {R(a[1] / square), R(-a[0] / square)};
+      },
+      inputs);
+}
+
+TEST_CASE("hypot") {
+  duet_test::random_source random(13);
+  const auto draw = [&](std::size_t) { return random.signed_magnitude(1e-4, 1e4); };
+  auto two = random_inputs<2>(draw);
+  two.insert(two.end(), {{1e-160, 1e-160}, {1e-300, -1e-300}, {1e300, 1e300}, {-3, 0}, {0, 5}});
+  check<2>(
+      "hypot", [](const auto& x, const auto& y) { return hypot(x, y); },
+      [](const wide<2>& a) -> wide<2> {
+        const R r = sqrt(R(a[0] * a[0] + a[1] * a[1]));
+        return {R(a[0] / r), R(a[1] / r)};
+      },
+      two);
+  auto three = random_inputs<3>(draw);
+  three.insert(
+      three.end(),
+      {{1e-160, 1e-160, 2e-160}, {1e-300, -1e-300, 0}, {1e300, 1e300, -1e300}, {0, 0, -7}});
+  check<3>(
+      "hypot of three", [](const auto& x, const auto& y, const auto& z) { return hypot(x, y, z); },
+      [](const wide<3>& a) -> wide<3> {
+        const R r = sqrt(R(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]));
+        return {R(a[0] / r), R(a[1] / r), R(a[2] / r)};
+      },
+      three);
+}
+
+TEST_CASE("fma and lerp") {
+  duet_test::random_source random(14);
+  auto inputs = random_inputs<3>([&](std::size_t) { return random.signed_magnitude(1e-3, 1e3); });
+  inputs.insert(inputs.end(), {{1 + 0x1p-52, 1 - 0x1p-52, -1},
+                               {3, 5, 0},
+                               {3, 5, 1},
+                               {0.1, 0.3, 1},
+                               {-4, 4, 0.5},
+                               {1e-300, 1e300, 0.25},
+                               {2, 2, 0.7}});
+  check<3>(
+      "fma", [](const auto& x, const auto& y, const auto& z) { return fma(x, y, z); },
+      [](const wide<3>& a) -> wide<3> {
+        return {a[1], a[0], R(1)};
+      },
+      inputs, 0);
+  check<3>(
+      "lerp", [](const auto& a, const auto& b, const auto& t) { return lerp(a, b, t); },
+      [](const wide<3>& a) -> wide<3> {
+        return {R(1 - a[2]), a[2], R(a[1] - a[0])};
+      },
+      inputs, 4);
+}
+
+TEST_CASE("remainders") {
+  duet_test::random_source random(15);
+  auto inputs = random_inputs<2>([&](std::size_t j) {
+    return random.signed_magnitude(j == 0 ? 1e-3 : 1e-2, j == 0 ? 1e6 : 1e1);
+  });
+  inputs.insert(inputs.end(), {{7, 2}, {-7, 2}, {7, -2}, {0.3, 0.1}, {1e15, 3}, {5, 1e300}});
+  check<2>(
+      "fmod", [](const auto& x, const auto& y) { return fmod(x, y); },
+      [](const wide<2>& a) -> wide<2> {
+        return {R(1), R(-trunc(R(a[0] / a[1])))};
+      },
+      inputs, 1);
+  inputs.insert(inputs.end(), {{5, 2}, {3, 2}}); // ties to even
+  const auto nearest_even = [](const R& q) -> R {
+    const R whole = round(q);
+    const bool tie = abs(R(q - trunc(q))) == 0.5;
+    return tie ? R(2 * round(R(q / 2))) : whole;
+  };
+  const auto slopes = [&](const wide<2>& a) -> wide<2> {
+    return {R(1), R(-nearest_even(R(a[0] / a[1])))};
+  };
+  check<2>(
+      "remainder", [](const auto& x, const auto& y) { return remainder(x, y); }, slopes, inputs, 1);
+  for (const auto& [x, y] : inputs) {
+    int expected = 0;
+    int quotient = 0;
+    const double value = std::remquo(x, y, &expected);
+    const auto r = remquo(dual<double>::variable(x), y, &quotient);
+    CHECK(quotient == expected);
+    CHECK(identical(r.value(), value));
+    CHECK(r.epsilon() == 1);
+  }
+}

@@ -1,0 +1,200 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/dual/math.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+// Singular points: values are never damaged, constants never poison gradients, and a genuine
+// singularity gives the IEEE answer.
+
+using duet::dual;
+using duet::taylor;
+
+namespace {
+
+struct outer_tag;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using D = dual<double>;
+using pair = dual<double, 2>;
+
+D variable(double x) { return D::variable(x); }
+pair first(double x) { return pair::variable(x, 0); }
+pair second(double x) { return pair::variable(x, 1); }
+
+/// value, ∂/∂x, ∂/∂p
+void check_pair(const pair& y, double value, double dx, double dp) {
+  CHECK(y.value() == value);
+  if (std::isnan(dx)) {
+    CHECK(std::isnan(y.partial(0)));
+  } else {
+    CHECK(y.partial(0) == dx);
+  }
+  if (std::isnan(dp)) {
+    CHECK(std::isnan(y.partial(1)));
+  } else {
+    CHECK(y.partial(1) == dp);
+  }
+}
+
+} // namespace
+
+TEST_CASE("square root at 0") {
+  CHECK(sqrt(variable(0)).value() == 0);
+  CHECK(sqrt(variable(0)).epsilon() == infinity);
+  CHECK(sqrt(first(0)).partial(0) == infinity);
+  CHECK(sqrt(first(0)).partial(1) == 0);
+  CHECK(sqrt(D(0)).epsilon() == 0);
+  CHECK((sqrt(pair(0)) * first(3)).partial(0) == 0);
+  const auto norm = [](const pair& x, const pair& y) { return sqrt(x * x + y * y); };
+  CHECK(norm(first(0), second(0)).value() == 0);
+  CHECK(cbrt(variable(0)).epsilon() == infinity);
+  CHECK(cbrt(D(0)).epsilon() == 0);
+}
+
+// f ^ g with both variable: the nine cases.
+TEST_CASE("power of two variables") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double log2 = std::log(2.0);
+  check_pair(pow(first(2), second(3)), 8, 12, 8 * log2);  // 1: f > 0
+  check_pair(pow(first(0), second(2)), 0, 0, 0);          // 2: f = 0, g > 1
+  check_pair(pow(first(0), second(1)), 0, 1, 0);          // 3: f = 0, g = 1
+  check_pair(pow(first(0), second(0.5)), 0, infinity, 0); // 4: f = 0, 0 < g < 1
+  check_pair(pow(first(0), second(0)), 1, 0, -infinity);  // 5: f = 0, g = 0: jumps in g
+  CHECK(pow(first(0), second(-1)).value() == infinity);   // 6: f = 0, g < 0
+  CHECK_FALSE(std::isfinite(pow(first(0), second(-1)).partial(0)));
+  check_pair(pow(first(-2), pair(2)), 4, -4, 0);          // 7: f < 0, g a whole constant
+  check_pair(pow(first(-2), second(3)), -8, 12, nan);     // 8: f < 0, g whole but variable
+  CHECK(std::isnan(pow(first(-2), second(0.5)).value())); // 9: f < 0, g not whole
+}
+
+TEST_CASE("power with constants") {
+  CHECK(pow(variable(0), 0).value() == 1);
+  CHECK(pow(variable(0), 0).epsilon() == 0);
+  CHECK(pow(variable(0), 0.).epsilon() == 0);
+  CHECK(pow(variable(0), -0.).epsilon() == 0);
+  CHECK(pow(variable(infinity), 0.).epsilon() == 0);
+  CHECK(pow(variable(0), .5).value() == 0);
+  CHECK(pow(variable(0), .5).epsilon() == infinity);
+  CHECK(pow(D(0), .5).epsilon() == 0);
+  CHECK(pow(first(0), .5).partial(1) == 0);
+  CHECK(pow(variable(0), 1).epsilon() == 1);
+  CHECK(pow(variable(0), 2).epsilon() == 0);
+  CHECK(pow(variable(-2), 2).value() == 4);
+  CHECK(pow(variable(-2), 2).epsilon() == -4);
+  CHECK(pow(variable(-2), 2.).epsilon() == -4);
+  CHECK(pow(variable(-2), D(2)).epsilon() == -4);
+  CHECK(pow(variable(-2), -1).epsilon() == -0.25);
+  CHECK(std::isnan(pow(variable(-2), .5).value()));
+  CHECK(pow(2, variable(3)).value() == 8);
+  CHECK(pow(2, variable(3)).epsilon() == 8 * std::log(2.0));
+  CHECK(pow(0, variable(3)).value() == 0);
+  CHECK(pow(0, variable(3)).epsilon() == 0);
+  CHECK(pow(1, variable(infinity)).epsilon() == 0);
+  CHECK(pow(-2, variable(2)).value() == 4);
+  CHECK(std::isnan(pow(-2, variable(2)).epsilon()));
+  CHECK(pow(-2, D(2)).epsilon() == 0);
+}
+
+TEST_CASE("higher derivatives of powers at 0") {
+  const auto x = taylor<double, 4>::variable(0);
+  const auto cube = pow(x, 3);
+  CHECK(cube.coefficient(2) == 0);
+  CHECK(cube.coefficient(3) == 1);
+  CHECK(cube.coefficient(4) == 0);
+  CHECK(pow(x, 0).coefficient(4) == 0);
+  CHECK(pow(x, 1).coefficient(1) == 1);
+  CHECK(pow(x, 1).coefficient(2) == 0);
+  using nested = dual<D, 1, outer_tag>;
+  const auto square = pow(nested(D(0, 1), 1), 2);
+  CHECK(square.epsilon().epsilon() == 2);
+  // ∂²/∂x∂p x^p = 1/x at p = 0, though ∂/∂x vanishes there.
+  const auto mixed = pow(nested(D(4, 1)), nested(D(0), 1));
+  CHECK(mixed.value().epsilon() == 0);
+  CHECK(mixed.epsilon().value() == std::log(4.0));
+  CHECK(mixed.epsilon().epsilon() == 0.25);
+  // 0^p log 0 is flat for p > 1 in the first derivative by the base, singular at p = 1.
+  CHECK(pow(nested(D(0, 1)), nested(D(2), 1)).epsilon().epsilon() == 0);
+  CHECK(pow(nested(D(0, 1)), nested(D(1), 1)).epsilon().value() == 0);
+  CHECK_FALSE(std::isfinite(pow(nested(D(0, 1)), nested(D(1), 1)).epsilon().epsilon()));
+}
+
+TEST_CASE("hypot and atan2 at the origin") {
+  CHECK(hypot(variable(0), 0).value() == 0);
+  CHECK(hypot(D(0), 0).epsilon() == 0);
+  CHECK(hypot(D(0), D(0), D(0)).epsilon() == 0);
+  CHECK(std::isnan(hypot(variable(0), 0).epsilon()));
+  CHECK(hypot(variable(0), 2).epsilon() == 0);
+  CHECK(hypot(variable(0), D(0), 2).epsilon() == 0);
+  CHECK(atan2(variable(0), 0).value() == 0);
+  CHECK(atan2(D(0), 0).epsilon() == 0);
+  CHECK(atan2(D(0), D(0)).epsilon() == 0);
+  CHECK(std::isnan(atan2(variable(0), 0).epsilon()));
+  CHECK(atan2(pair(0), pair(0)).partial(1) == 0);
+  CHECK(atan2(variable(0), 2).epsilon() == 0.5);
+  CHECK(atan2(variable(0), -2).epsilon() == -0.5);
+}
+
+TEST_CASE("inverse functions at the ends of their domains") {
+  CHECK(acos(variable(1)).value() == 0);
+  CHECK(acos(variable(1)).epsilon() == -infinity);
+  CHECK(acos(D(1)).epsilon() == 0);
+  CHECK(asin(variable(-1)).epsilon() == infinity);
+  CHECK(asin(D(-1)).epsilon() == 0);
+  CHECK(acosh(variable(1)).epsilon() == infinity);
+  CHECK(acosh(D(1)).epsilon() == 0);
+  CHECK(atanh(variable(1)).epsilon() == infinity);
+  CHECK(atanh(D(-1)).epsilon() == 0);
+  CHECK(log(variable(0)).value() == -infinity);
+  CHECK(log(variable(0)).epsilon() == infinity);
+  CHECK(log(D(0)).epsilon() == 0);
+  CHECK(log1p(D(-1)).epsilon() == 0);
+}
+
+TEST_CASE("saturated functions are flat to every order") {
+  const auto x = taylor<double, 4>::variable(800);
+  for (int k = 1; k <= 4; ++k) {
+    CHECK(tanh(x).coefficient(k) == 0);
+    CHECK(tanh(-x).coefficient(k) == 0);
+    CHECK(erf(x).coefficient(k) == 0);
+    CHECK(exp(-x).coefficient(k) == 0);
+    CHECK(atan(taylor<double, 4>::variable(1e300)).coefficient(k) == 0);
+  }
+  CHECK(tanh(variable(800)).value() == 1);
+  const auto constant = taylor<double, 4>(800);
+  for (int k = 1; k <= 4; ++k) {
+    CHECK(sinh(constant).coefficient(k) == 0);
+    CHECK(cosh(constant).coefficient(k) == 0);
+    CHECK(exp(constant).coefficient(k) == 0);
+    CHECK(sin(taylor<double, 4>(infinity)).coefficient(k) == 0);
+  }
+}
+
+TEST_CASE("division by zero") {
+  CHECK((1 / variable(0)).value() == infinity);
+  CHECK((1 / variable(0)).epsilon() == -infinity);
+  CHECK((1 / D(0)).epsilon() == 0);
+  CHECK((D(1) / 0).epsilon() == 0);
+  CHECK((variable(1) / 0).epsilon() == infinity);
+  CHECK((first(1) / pair(0)).partial(1) == 0);
+  CHECK((first(1) / pair(0)).partial(0) == infinity);
+  CHECK((taylor<double, 3>(1) / taylor<double, 3>(0)).coefficient(3) == 0);
+  CHECK((1 / taylor<double, 3>(0)).coefficient(2) == 0);
+}
+
+TEST_CASE("what does not depend on the inner variable is not poisoned by it") {
+  using nested = dual<D, 2, outer_tag>;
+  // x = 0 varies in the outer level, y = 3 in the inner one: ∂²/∂x∂y (√x + y) = 0.
+  const nested x = nested::variable(D(0), 0);
+  const nested y(D(3, 1));
+  const nested z = sqrt(x) + y;
+  CHECK(z.value().epsilon() == 1);
+  CHECK(z.partial(0).value() == infinity);
+  CHECK(z.partial(0).epsilon() == 0);
+  CHECK(z.partial(1) == 0);
+  CHECK(z.partial(1).epsilon() == 0);
+}

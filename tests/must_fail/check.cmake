@@ -1,0 +1,45 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Checks code that must not compile. A snippet holds the mistake under `#ifdef DUET_MUST_FAIL` and
+# the right way under `#else`, and says near its top
+#   // expect: <regex that a line of the compiler's errors or notes must match>
+#   // flags: <flags for both compilations, optional>
+# The right way, the control, must compile: else the mistake may fail for the wrong reason.
+#
+# cmake -Dcompile=<compiler and flags> -Dsnippet=<file> -P check.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+# The compiler's words are matched, so they must be English.
+set(ENV{LC_ALL} C)
+
+function(read_comment key result_variable)
+  file(STRINGS ${snippet} line LIMIT_COUNT 1 REGEX "^// ${key}: ")
+  string(REGEX REPLACE "^// ${key}: " "" value "${line}")
+  set(${result_variable} "${value}" PARENT_SCOPE)
+endfunction()
+
+read_comment(expect expected)
+if(expected STREQUAL "")
+  message(FATAL_ERROR "${snippet} has no line \"// expect: <regex>\"")
+endif()
+read_comment(flags flags)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+list(APPEND compile ${flags} -fsyntax-only)
+
+execute_process(COMMAND ${compile} ${snippet} RESULT_VARIABLE result ERROR_VARIABLE log)
+if(NOT result EQUAL 0)
+  message("${log}")
+  message(FATAL_ERROR "the control does not compile")
+endif()
+
+execute_process(COMMAND ${compile} -DDUET_MUST_FAIL ${snippet}
+  RESULT_VARIABLE result ERROR_VARIABLE log)
+if(result EQUAL 0)
+  message(FATAL_ERROR "it compiles, but should have failed with: ${expected}")
+endif()
+string(REGEX MATCHALL "(error|note): [^\n]*" complaints "${log}")
+if(NOT complaints MATCHES "${expected}")
+  message("${log}")
+  message(FATAL_ERROR "it fails for another reason than: ${expected}")
+endif()

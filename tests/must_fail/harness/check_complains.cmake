@@ -1,0 +1,18 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Runs ../check.cmake on a snippet that it must not pass.
+#
+# cmake -Dcompile=<…> -Dsnippet=<file> -Dcomplaint=<regex> -P check_complains.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+execute_process(
+  COMMAND ${CMAKE_COMMAND} "-Dcompile=${compile}" -Dsnippet=${snippet}
+    -P ${CMAKE_CURRENT_LIST_DIR}/../check.cmake
+  RESULT_VARIABLE result ERROR_VARIABLE log)
+if(result EQUAL 0)
+  message(FATAL_ERROR "the check passes ${snippet}")
+elseif(NOT log MATCHES "${complaint}")
+  message("${log}")
+  message(FATAL_ERROR "the check does not say: ${complaint}")
+endif()

@@ -1,0 +1,92 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "quaternion/closed_forms.hpp"
+#include "quaternion/truth.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/jacobian.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+// N4: exp(w + v) = e^w (cos |v| + v sin |v|/|v|), against 100 digits.
+
+using duet::quaternion;
+using duet_test::random_source;
+using duet_test::worst_error;
+namespace truth = duet_test::truth;
+
+namespace {
+
+/// Vector parts of every size, and on either side of where the algorithm changes: s = |v|² = 1 and
+/// 9.8696, for s and, in derivatives, for 4s.
+std::vector<double> lengths() {
+  std::vector<double> result{0, 1e-300, 1e-160, 1e-30, 1e-8, 1e-4, 0.01, 0.3};
+  constexpr double pi = 3.141592653589793;
+  const double switches[] = {1, std::sqrt(9.8696), 0.5, std::sqrt(9.8696) / 2};
+  for (const double middle : {switches[0], switches[1], switches[2], switches[3], pi / 2, pi,
+                              2 * pi}) {
+    for (const double distance : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4}) {
+      result.push_back(middle * (1 + distance));
+    }
+  }
+  return result;
+}
+
+std::vector<quaternion<double>> inputs() {
+  random_source random(1);
+  std::vector<quaternion<double>> result;
+  for (const double length : lengths()) {
+    const auto d = random.direction<3>();
+    result.push_back({0, length * d[0], length * d[1], length * d[2]});
+    result.push_back({0, 0, length, 0});
+  }
+  for (int i = 0; i < 60; ++i) {
+    const auto d = random.direction<3>();
+    const double length = random.uniform(0, 7);
+    result.push_back({i % 2 == 0 ? 0 : random.uniform(-300, 300), length * d[0], length * d[1],
+                      length * d[2]});
+  }
+  return result;
+}
+
+} // namespace
+
+TEST_CASE("N4: exp, value and first derivative") {
+  random_source random(2);
+  worst_error value("exp");
+  worst_error slope("exp, derivative by AD");
+  worst_error closed("exp, derivative in closed form");
+  for (const auto& q : inputs()) {
+    const truth::four x = truth::wide(q);
+    const truth::four exact = truth::exp(x);
+    value.add(truth::ulps(exp(q), exact,
+                          truth::length(exact) + truth::change_of_value(truth::exp, x, 1)),
+              q);
+
+    const auto d = random.direction<4>();
+    const quaternion<double> q_dot(d[0], d[1], d[2], d[3]);
+    const truth::four dx = truth::wide(q_dot);
+    const truth::four exact_slope = truth::difference(
+        [&](const truth::real& t) { return truth::exp(truth::sum(x, dx, t)); }, 1);
+    const truth::real scale =
+        truth::length(exact_slope) + truth::change_of_derivative(truth::exp, x, dx, 1);
+    const auto automatic = duet::derivative([&](const auto& t) { return exp(q + t * q_dot); }, 0.0);
+    slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
+    closed.add(truth::ulps(duet_test::closed_form::exp_derivative(q, q_dot), exact_slope, scale), q,
+               q_dot);
+  }
+  CHECK_MESSAGE(value <= 16, value);
+  CHECK_MESSAGE(slope <= 16, slope);
+  CHECK_MESSAGE(closed <= 16, closed);
+}
+
+TEST_CASE("N4: exp of a vector is exp of the quaternion without scalar part") {
+  const duet::vector3<double> v(0.3, -1.2, 0.5);
+  CHECK(duet::exp(v) == exp(quaternion<double>(0, v)));
+  CHECK(norm(duet::exp(v)) == doctest::Approx(1).epsilon(1e-15));
+}

@@ -1,0 +1,163 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "quaternion/truth.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+// Derivatives of exp, log and pow along a line, first to fourth, at and near the identity, half and
+// full turns: Taylor numbers and nested duals against 100 digits.
+
+using duet::dual;
+using duet::quaternion;
+using duet_test::random_source;
+using duet_test::worst_error;
+namespace truth = duet_test::truth;
+
+namespace {
+
+struct first;
+struct second;
+struct third;
+struct fourth;
+using nested =
+    dual<dual<dual<dual<double, 1, first>, 1, second>, 1, third>, 1, fourth>;
+
+/// x + ε₁ + ε₂ + ε₃ + ε₄
+nested nested_variable(double x) {
+  using d1 = nested::value_type::value_type::value_type;
+  using d2 = nested::value_type::value_type;
+  using d3 = nested::value_type;
+  return {d3(d2(d1(x, 1), d1(1)), d2(d1(1))), d3(d2(d1(1)))};
+}
+
+/// The coefficient of ε₁ … ε_k.
+template <class T>
+double nested_derivative(const T& x, int k) {
+  if constexpr (std::is_same_v<T, double>) {
+    return x;
+  } else {
+    constexpr int level = duet::scalar_traits<T>::order;
+    return nested_derivative(level <= k ? x.epsilon() : x.value(), k);
+  }
+}
+
+struct errors {
+  std::vector<worst_error> by_taylor;
+  std::vector<worst_error> by_nesting;
+
+  explicit errors(const std::string& name) {
+    for (int k = 0; k <= 4; ++k) {
+      by_taylor.emplace_back(name + ", derivative " + std::to_string(k) + " by taylor");
+      by_nesting.emplace_back(name + ", derivative " + std::to_string(k) + " by nested duals");
+    }
+  }
+  void check(const double (&limits)[5]) const {
+    for (std::size_t k = 0; k <= 4; ++k) {
+      CHECK_MESSAGE(by_taylor[k] <= limits[k], by_taylor[k]);
+      CHECK_MESSAGE(by_nesting[k] <= limits[k], by_nesting[k]);
+    }
+  }
+};
+
+/// t ↦ f(q + t d) at t = 0. `reach` is how far it is smooth, `moved` how much the rounding of q
+/// moves it, in units: |q|, or the distance to a singularity where that is less.
+template <class F, class G>
+void measure(errors& e, const F& f, const G& exact_f, const quaternion<double>& q,
+             const quaternion<double>& d, const truth::real& reach, const truth::real& moved) {
+  const auto by_taylor = duet::derivatives<4>([&](const auto& t) { return f(q + t * d); }, 0.0);
+  const auto by_nesting = f(q + nested_variable(0) * d);
+  const truth::four x = truth::wide(q);
+  const truth::four dx = truth::wide(d);
+  std::array<truth::four, 6> exact;
+  for (int k = 0; k <= 5; ++k) {
+    exact[std::size_t(k)] = truth::difference(
+        [&](const truth::real& t) { return exact_f(truth::sum(x, dx, t)); }, k, reach);
+  }
+  for (std::size_t k = 0; k <= 4; ++k) {
+    const truth::real scale = truth::length(exact[k]) + moved * truth::length(exact[k + 1]);
+    e.by_taylor[k].add(truth::ulps(by_taylor[k], exact[k], scale), q, d);
+    const int order = int(k);
+    const quaternion<double> nested_result(
+        nested_derivative(by_nesting.w(), order), nested_derivative(by_nesting.x(), order),
+        nested_derivative(by_nesting.y(), order), nested_derivative(by_nesting.z(), order));
+    e.by_nesting[k].add(truth::ulps(nested_result, exact[k], scale), q, d);
+  }
+}
+
+/// Half angles at and near 0, a half turn, a full turn, and where the algorithm changes.
+std::vector<double> half_angles() {
+  constexpr double pi = 3.141592653589793;
+  std::vector<double> result{0, 1e-300, 1e-160, 1e-8, 1e-4, 0.1};
+  for (const double middle : {pi / 2, 1.0, 0.5}) {
+    for (const double distance : {0.0, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4}) {
+      result.push_back(middle + distance);
+    }
+  }
+  for (const double distance : {1e-1, 1e-2, 1e-4, 1e-8}) {
+    result.push_back(pi - distance);
+  }
+  return result;
+}
+
+} // namespace
+
+TEST_CASE("derivatives of exp to fourth order") {
+  random_source random(31);
+  errors e("exp");
+  auto angles = half_angles();
+  angles.insert(angles.end(), {std::sqrt(9.8696), std::sqrt(9.8697), 3.141592653589793, 4.0, 6.0});
+  for (const double angle : angles) {
+    for (int i = 0; i < 3; ++i) {
+      const auto a = random.direction<3>();
+      const auto d = random.direction<3>();
+      const auto scalar = i == 0 ? 0.0 : random.uniform(-1, 1);
+      measure(e, [](const auto& q) { return exp(q); }, truth::exp,
+              {0, angle * a[0], angle * a[1], angle * a[2]}, {scalar, d[0], d[1], d[2]}, 1, angle);
+    }
+  }
+  e.check({16, 16, 16, 16, 16});
+}
+
+TEST_CASE("derivatives of log to fourth order") {
+  random_source random(32);
+  errors e("log");
+  for (const double angle : half_angles()) {
+    for (int i = 0; i < 3; ++i) {
+      const auto a = random.direction<3>();
+      const auto d = random.direction<4>();
+      const double s = std::sin(angle);
+      const truth::real reach = angle > 1.6 ? truth::real(s) : truth::real(1);
+      measure(e, [](const auto& q) { return log(q); }, truth::log,
+              {std::cos(angle), s * a[0], s * a[1], s * a[2]}, {d[0], d[1], d[2], d[3]}, reach, reach);
+    }
+  }
+  e.check({16, 16, 16, 16, 16});
+}
+
+TEST_CASE("derivatives of pow to fourth order") {
+  random_source random(33);
+  errors e("pow");
+  for (const double angle : half_angles()) {
+    const auto a = random.direction<3>();
+    const auto d = random.direction<4>();
+    const double s = std::sin(angle);
+    const truth::real reach = angle > 1.6 ? truth::real(s) : truth::real(1);
+    for (const double rho : {0.5, -1.3}) {
+      measure(e, [=](const auto& q) { return pow(q, rho); },
+              [=](const truth::four& q) { return truth::pow(q, rho); },
+              {std::cos(angle), s * a[0], s * a[1], s * a[2]}, {d[0], d[1], d[2], d[3]}, reach, reach);
+    }
+  }
+  e.check({16, 16, 16, 16, 16});
+}

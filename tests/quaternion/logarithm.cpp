@@ -1,0 +1,140 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "quaternion/closed_forms.hpp"
+#include "quaternion/hard_inputs.hpp"
+#include "quaternion/truth.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/jacobian.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+// N4: log q = log |q| + û atan2(|q⃗|, q₀), against 100 digits.
+
+using duet::quaternion;
+using duet_test::random_source;
+using duet_test::worst_error;
+namespace truth = duet_test::truth;
+
+TEST_CASE("N4: log, value and first derivative") {
+  random_source random(3);
+  worst_error value("log");
+  worst_error slope("log, derivative by AD");
+  worst_error closed("log, derivative in closed form");
+  for (const auto& q : duet_test::hard_quaternions()) {
+    const truth::four x = truth::wide(q);
+    const truth::real smooth = duet_test::smooth_length(x);
+    const truth::four exact = truth::log(x);
+    value.add(truth::ulps(log(q), exact,
+                          truth::length(exact) + truth::change_of_value(truth::log, x, smooth)),
+              q);
+
+    const auto d = random.direction<4>();
+    const quaternion<double> q_dot(d[0], d[1], d[2], d[3]);
+    const truth::four dx = truth::wide(q_dot);
+    const truth::four exact_slope = truth::difference(
+        [&](const truth::real& t) { return truth::log(truth::sum(x, dx, t)); }, 1, smooth);
+    const truth::real scale =
+        truth::length(exact_slope) + truth::change_of_derivative(truth::log, x, dx, smooth);
+    const auto automatic = duet::derivative([&](const auto& t) { return log(q + t * q_dot); }, 0.0);
+    slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
+    // The closed form has φ in it and loses digits near a full turn, where AD does not.
+    if (q.w() > 0 || smooth > truth::length(x) / 10) {
+      closed.add(truth::ulps(duet_test::closed_form::log_derivative(q, q_dot), exact_slope, scale),
+                 q, q_dot);
+    }
+  }
+  CHECK_MESSAGE(value <= 16, value);
+  CHECK_MESSAGE(slope <= 16, slope);
+  CHECK_MESSAGE(closed <= 16, closed);
+}
+
+// The numbers of a small rotation are not lost beside the 1 of its scalar part.
+TEST_CASE("the vector part of log keeps its relative accuracy near the identity and a full turn") {
+  for (const double length : {1e-300, 1e-160, 1e-150, 1e-30, 1e-8, 1e-4}) {
+    const auto l = log(quaternion<double>(1, 0, length, 0));
+    CHECK(std::abs(l.y() / std::atan(length) - 1) <= 3e-16);
+    const auto round = log(quaternion<double>(-1, 0, length, 0));
+    CHECK(round.y() == doctest::Approx(3.141592653589793 - std::atan(length)).epsilon(3e-16));
+  }
+}
+
+TEST_CASE("exp and log are inverse") {
+  worst_error there("exp(log q)");
+  worst_error back("log(exp q)");
+  for (const auto& q : duet_test::hard_quaternions()) {
+    const double size = norm(q);
+    if (size > 1e-100 && size < 1e100) {
+      there.add(norm(exp(log(q)) - q) / size / 0x1p-53 / (1 + std::abs(std::log(size))), q);
+    }
+  }
+  random_source random(4);
+  for (int i = 0; i < 1000; ++i) {
+    const auto d = random.direction<3>();
+    const double length = i % 2 == 0 ? random.uniform(0, 3.1) : random.magnitude(1e-300, 3.1);
+    const quaternion<double> l(random.uniform(-3, 3), length * d[0], length * d[1], length * d[2]);
+    back.add(norm(log(exp(l)) - l) / 0x1p-53 / (1 + norm(l)) * (3.15 - length), l);
+  }
+  CHECK_MESSAGE(there <= 8, there);
+  CHECK_MESSAGE(back <= 16, back);
+}
+
+TEST_CASE("log never flips the sign: log(-q) is the long way round") {
+  random_source random(5);
+  for (int i = 0; i < 100; ++i) {
+    const auto d = random.direction<4>();
+    const quaternion<double> q(d[0], d[1], d[2], d[3]);
+    const auto v = log(q).vec();
+    const auto w = log(-q).vec();
+    CHECK(v.norm() + w.norm() == doctest::Approx(3.141592653589793).epsilon(1e-15));
+    CHECK(v.dot(w) == doctest::Approx(-v.norm() * w.norm()).epsilon(1e-14));
+    CHECK(norm(exp(log(-q)) + q) <= 1e-15);
+  }
+}
+
+TEST_CASE("a half turn is regular") {
+  const auto l = log(quaternion<double>(0, 0, 1, 0));
+  CHECK(l == quaternion<double>(0, 0, 1.5707963267948966, 0));
+  CHECK(norm(exp(l) - quaternion<double>(0, 0, 1, 0)) <= 1e-16);
+}
+
+TEST_CASE("log of -|q|: the axis is undetermined, x is chosen and derivatives are NaN") {
+  using duet::dual;
+  CHECK(log(quaternion<double>(-1, 0, 0, 0)) ==
+        quaternion<double>(0, 3.141592653589793, 0, 0));
+  const auto l = log(quaternion<double>(-1e200, 0, -0.0, 0));
+  CHECK(l.w() == doctest::Approx(std::log(1e200)).epsilon(1e-15));
+  CHECK(l.vec() == duet::vector3<double>(3.141592653589793, 0, 0));
+  CHECK(norm(exp(log(quaternion<double>(-1, 0, 0, 0))) + quaternion<double>(1)) <= 2e-16);
+
+  // By the vector part there is no derivative; the scalar part alone changes |q| only.
+  using D = dual<double, 2>;
+  const auto by_both =
+      log(quaternion<D>(D::variable(-2, 0), D(0), D::variable(0, 1), D(0)));
+  CHECK(by_both.w().partial(0) == -0.5);
+  CHECK(by_both.w().partial(1) == 0);
+  for (const D& component : {by_both.x(), by_both.y(), by_both.z()}) {
+    CHECK(component.partial(0) == 0);
+    CHECK(std::isnan(component.partial(1)));
+  }
+}
+
+TEST_CASE("the zero quaternion has no logarithm, no power, no direction and no inverse") {
+  const quaternion<double> zero;
+  CHECK_THROWS_WITH_AS(static_cast<void>(log(zero)), "duet: log of the zero quaternion", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(pow(zero, 2)), "duet: pow of the zero quaternion", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(normalized(zero)), "duet: normalized of the zero quaternion",
+                       duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(inverse(zero)), "duet: inverse of the zero quaternion", duet::invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(slerp(zero, quaternion<double>(1), 0.5)), duet::invalid_input);
+  CHECK(norm(zero) == 0);
+  // NaN is not zero.
+  const quaternion<double> nan(0, std::nan(""), 0, 0);
+  CHECK(std::isnan(log(nan).x()));
+  CHECK(std::isnan(normalized(nan).x()));
+  CHECK(std::isnan(inverse(nan).x()));
+}

@@ -1,0 +1,134 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "quaternion/closed_forms.hpp"
+#include "quaternion/hard_inputs.hpp"
+#include "quaternion/truth.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+// N5: q^ρ = |q|^ρ (cos ρφ + û sin ρφ), against 100 digits.
+
+using duet::quaternion;
+using duet_test::random_source;
+using duet_test::worst_error;
+namespace truth = duet_test::truth;
+
+TEST_CASE("N5: pow, value and first derivative by base and exponent") {
+  random_source random(11);
+  worst_error value("pow");
+  worst_error slope("pow, derivative by AD");
+  worst_error closed("pow, derivative in closed form");
+  const double exponents[] = {0, 1e-8, 0.25, 0.5, 1, -1, 2, -0.7, 1.9};
+  int i = 0;
+  for (const auto& q : duet_test::hard_quaternions()) {
+    const double rho = exponents[++i % 9];
+    const truth::four x = truth::wide(q);
+    // A whole power is smooth near a full turn, as long as the exponent does not move.
+    const bool is_smooth = rho == std::round(rho) && duet_test::smooth_length(x) < 1e-9 * norm(q);
+    const truth::real smooth = is_smooth ? truth::length(x) : duet_test::smooth_length(x);
+    const auto power = [&](const truth::four& y) { return truth::pow(y, rho); };
+    const truth::four exact = power(x);
+    const truth::four by_rho = truth::difference(
+        [&](const truth::real& t) { return truth::pow(x, truth::real(rho + t)); }, 1);
+    value.add(truth::ulps(pow(q, rho), exact,
+                          truth::length(exact) + truth::change_of_value(power, x, smooth)),
+              q, rho);
+
+    // Both change: q by q_dot, of the size of q, and rho by rho_dot.
+    const double size = norm(q);
+    const auto d = random.direction<4>();
+    const quaternion<double> q_dot(size * d[0], size * d[1], size * d[2], size * d[3]);
+    const double rho_dot = is_smooth ? 0 : random.uniform(-1, 1);
+    const truth::four dx = truth::wide(q_dot);
+    const truth::real reach = smooth / truth::length(x);
+    const truth::four exact_slope = truth::difference(
+        [&](const truth::real& t) {
+          return truth::pow(truth::sum(x, dx, t), truth::real(rho + rho_dot * t));
+        },
+        1, reach);
+    if (truth::length(exact_slope) > 1e300) {
+      continue; // near a full turn, and large
+    }
+    const truth::real scale =
+        truth::length(exact_slope) + truth::length(by_rho) +
+        truth::change_of_derivative(power, x, dx, smooth) +
+        std::abs(rho_dot) * truth::length(exact) *
+            truth::change_of_value(truth::log, x, duet_test::smooth_length(x));
+    const auto automatic = duet::derivative(
+        [&](const auto& t) { return pow(q + t * q_dot, rho + t * rho_dot); }, 0.0);
+    slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, rho, q_dot, rho_dot);
+    if (duet_test::smooth_length(x) > truth::length(x) / 10) {
+      closed.add(truth::ulps(duet_test::closed_form::pow_derivative(q, q_dot, rho, rho_dot),
+                             exact_slope, scale),
+                 q, rho, q_dot, rho_dot);
+    }
+  }
+  CHECK_MESSAGE(value <= 16, value);
+  CHECK_MESSAGE(slope <= 16, slope);
+  CHECK_MESSAGE(closed <= 16, closed);
+}
+
+TEST_CASE("pow(q, 2) is q q, pow(q, -1) the inverse, pow(q, 0) is 1") {
+  for (const auto& q : duet_test::hard_quaternions()) {
+    const double size = norm(q);
+    CHECK(norm(pow(q, -1) * size - inverse(q) * size) <= 1e-15);
+    CHECK(norm(pow(q, 0) - quaternion<double>(1)) <= 1e-15);
+    CHECK(norm(pow(q, 1) - q) <= 1e-15 * size);
+    if (size > 1e-100 && size < 1e100) {
+      CHECK(norm(pow(q, 2) - q * q) <= 2e-15 * size * size);
+    }
+  }
+}
+
+// Through acos, a rotation of 1e-6 comes out wrong in its fourth digit.
+TEST_CASE("small rotations keep their relative accuracy") {
+  for (const double half_angle : {5e-7, 5e-9, 1e-12, 1e-100, 1e-300}) {
+    const quaternion<double> q(std::cos(half_angle), 0, std::sin(half_angle), 0);
+    for (const double rho : {0.25, 0.5, 0.9, 3.0}) {
+      CHECK(std::abs(std::asin(pow(q, rho).y()) / (rho * half_angle) - 1) <= 1e-15);
+      CHECK(std::abs(std::asin(slerp(quaternion<double>(1), q, rho).y()) / (rho * half_angle) - 1) <=
+            1e-15);
+    }
+  }
+}
+
+// q² is a polynomial: smooth at −1, though log is not.
+TEST_CASE("whole powers are smooth at a full turn") {
+  for (const double length : {0.0, 1e-300, 1e-31, 1e-8, 1e-4, 0.01, 0.12, 0.13}) {
+    const quaternion<double> q(-1, 0, length, 0);
+    const quaternion<double> q_dot(0.3, -0.4, 0.5, 0.6);
+    for (const int rho : {2, 3, -1, 0}) {
+      const auto repeated = [&](const auto& base) {
+        using quaternion_t = std::decay_t<decltype(base)>;
+        switch (rho) {
+        case 2:
+          return base * base;
+        case 3:
+          return base * base * base;
+        case -1:
+          return inverse(base);
+        default:
+          return quaternion_t(base.w() * 0 + 1);
+        }
+      };
+      const auto [y, dy] =
+          duet::derivative([&](const auto& t) { return pow(q + t * q_dot, rho); }, 0.0);
+      const auto [z, dz] =
+          duet::derivative([&](const auto& t) { return repeated(q + t * q_dot); }, 0.0);
+      CHECK(norm(y - z) <= 1e-15);
+      CHECK(norm(dy - dz) <= 5e-15);
+    }
+  }
+}
+
+TEST_CASE("the power of -|q| turns about the chosen axis x") {
+  const auto root = pow(quaternion<double>(-4, 0, 0, 0), 0.5);
+  CHECK(norm(root - quaternion<double>(0, 2, 0, 0)) <= 1e-15);
+}

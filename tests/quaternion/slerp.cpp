@@ -1,0 +1,150 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "quaternion/closed_forms.hpp"
+#include "quaternion/truth.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+// N9: A(τ) = A₁ (A₁* A₂)^τ, against 100 digits.
+
+using duet::quaternion;
+using duet_test::random_source;
+using duet_test::worst_error;
+namespace truth = duet_test::truth;
+
+namespace {
+
+quaternion<double> random_rotation(random_source& random) {
+  const auto d = random.direction<4>();
+  return normalized(quaternion<double>(d[0], d[1], d[2], d[3]));
+}
+
+/// Pairs at every angle up to a half turn (half angles up to π/2), with both signs of b.
+std::vector<std::pair<quaternion<double>, quaternion<double>>> pairs() {
+  random_source random(21);
+  std::vector<std::pair<quaternion<double>, quaternion<double>>> result;
+  constexpr double pi = 3.141592653589793;
+  for (const double half_angle : {0.0, 1e-300, 1e-160, 1e-15, 1e-8, 5e-7, 1e-4, 0.3, 1.0, pi / 4,
+                                  1.5, pi / 2 - 1e-4, pi / 2 - 1e-8}) {
+    for (int i = 0; i < 8; ++i) {
+      const auto a = i == 0 ? quaternion<double>(1) : random_rotation(random);
+      const auto d = random.direction<3>();
+      const auto b = a * duet::exp(duet::vector3<double>(half_angle * d[0], half_angle * d[1],
+                                                         half_angle * d[2]));
+      result.emplace_back(a, i % 2 == 0 ? b : -b);
+    }
+  }
+  return result;
+}
+
+} // namespace
+
+TEST_CASE("N9: slerp, value and derivative by the parameter") {
+  random_source random(22);
+  worst_error value("slerp");
+  worst_error slope("slerp, derivative by AD");
+  worst_error closed("slerp, derivative in closed form");
+  for (const auto& [a, b] : pairs()) {
+    const double tau = random.uniform(0, 1);
+    const truth::four wide_a = truth::wide(a);
+    const truth::four near_b = truth::wide(dot(a, b) < 0 ? -b : b);
+    value.add(truth::ulps(slerp(a, b, tau), truth::slerp(wide_a, near_b, tau), 1), a, b, tau);
+
+    const truth::four exact_slope = truth::difference(
+        [&](const truth::real& t) { return truth::slerp(wide_a, near_b, truth::real(tau + t)); },
+        1);
+    const auto automatic =
+        duet::derivative([&, p = a, q = b](const auto& t) { return slerp(p, q, t); }, tau);
+    // A small rotation has a small rate, with all its digits.
+    const truth::real scale = truth::length(exact_slope);
+    slope.add(truth::ulps(automatic.derivative, exact_slope, scale), a, b, tau);
+
+    // A′ = A v, v = log(a* b): ω in body axes is 2 v, whatever τ.
+    const auto relative = conj(a) * (dot(a, b) < 0 ? -b : b);
+    const quaternion<double> rate(0, log(relative).vec());
+    closed.add(truth::ulps(slerp(a, b, tau) * rate, exact_slope, 1), a, b, tau);
+  }
+  CHECK_MESSAGE(value <= 16, value);
+  CHECK_MESSAGE(slope <= 16, slope);
+  CHECK_MESSAGE(closed <= 16, closed);
+}
+
+TEST_CASE("N9: slerp, derivative by its ends") {
+  random_source random(23);
+  worst_error slope("slerp, derivative by the ends");
+  for (const auto& [a, b] : pairs()) {
+    const double tau = random.uniform(0, 1);
+    const auto da = random.direction<3>();
+    const auto db = random.direction<3>();
+    const quaternion<double> a_dot = a * quaternion<double>(0, da[0], da[1], da[2]);
+    const quaternion<double> b_dot = b * quaternion<double>(0, db[0], db[1], db[2]);
+    const truth::real sign = dot(a, b) < 0 ? -1 : 1;
+    const truth::four exact = truth::difference(
+        [&](const truth::real& t) {
+          const auto moved_a = truth::sum(truth::wide(a), truth::wide(a_dot), t);
+          const auto moved_b = truth::sum(truth::wide(b), truth::wide(b_dot), t);
+          return truth::slerp(moved_a, truth::times(moved_b, sign), tau);
+        },
+        1);
+    const auto automatic = duet::derivative(
+        [&, p = a, q = b](const auto& t) { return slerp(p + t * a_dot, q + t * b_dot, tau); }, 0.0);
+    slope.add(truth::ulps(automatic.derivative, exact, 1 + truth::length(exact)), a, b, tau);
+  }
+  CHECK_MESSAGE(slope <= 16, slope);
+}
+
+// Shoemake's formula (sin((1−τ)Ω) a + sin(τΩ) b)/sin Ω.
+TEST_CASE("slerp is Shoemake's") {
+  random_source random(24);
+  for (int i = 0; i < 100; ++i) {
+    const auto a = random_rotation(random);
+    auto b = random_rotation(random);
+    b = dot(a, b) < 0 ? -b : b;
+    const double tau = random.uniform(0, 1);
+    const double angle = std::acos(dot(a, b));
+    const auto expected =
+        (a * std::sin((1 - tau) * angle) + b * std::sin(tau * angle)) / std::sin(angle);
+    CHECK(norm(slerp(a, b, tau) - expected) <= 1e-14);
+  }
+}
+
+TEST_CASE("slerp meets its ends and takes the shorter arc") {
+  for (const auto& [a, b] : pairs()) {
+    const auto near_b = dot(a, b) < 0 ? -b : b;
+    CHECK(norm(slerp(a, b, 0) - a) <= 2e-16);
+    CHECK(norm(slerp(a, b, 1) - near_b) <= 1e-15);
+    CHECK(norm(slerp(a, b, 0.3) - slerp(a, -b, 0.3)) <= 1e-15);
+    CHECK(norm(slerp(a, b, 0.5)) == doctest::Approx(1).epsilon(1e-15));
+  }
+  // Half a turn apart both arcs are equal; b is taken as it is.
+  const quaternion<double> i(0, 1, 0, 0);
+  const double root = std::sqrt(0.5);
+  CHECK(norm(slerp(quaternion<double>(1), i, 0.5) - quaternion<double>(root, root, 0, 0)) <= 2e-16);
+  CHECK(norm(slerp(quaternion<double>(1), -i, 0.5) - quaternion<double>(root, -root, 0, 0)) <=
+        2e-16);
+}
+
+TEST_CASE("the angular velocity of slerp is constant") {
+  random_source random(25);
+  const auto a = random_rotation(random);
+  const auto b = random_rotation(random);
+  const auto omega = [&, p = a, q = b](double tau) {
+    const auto [value, rate] =
+        duet::derivative([&](const auto& t) { return slerp(p, q, t); }, tau);
+    return angular_velocity(value, rate, duet::frame::body);
+  };
+  for (const double tau : {0.0, 0.2, 0.9, 1.0}) {
+    CHECK((omega(tau) - omega(0.5)).norm() <= 3e-15);
+  }
+}

@@ -1,0 +1,95 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/multiprecision.hpp"
+#include "support/ulp.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual/stumpff.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+// Stumpff functions and their derivatives against 100 digits: errors at most 6e-16 on the scale
+// 1/(m+1), the bound of the m-th derivative of sin(x)/x.
+
+using duet::stumpff;
+using duet_test::real_100;
+using duet_test::worst_error;
+
+namespace {
+
+/// 0 to 40, and either side of where the algorithm changes.
+std::vector<double> inputs() {
+  std::vector<double> result{0, 1e-300, 1e-30, 1e-16, 1e-8, 1e-4};
+  for (double s = 0.0625; s <= 40; s += 0.1875) {
+    result.push_back(s);
+  }
+  for (const double middle : {1.0, 4.0, 9.8696, 9.869604401089358, 39.47841760435743}) {
+    for (const double distance : {0.0, 1e-15, -1e-15, 1e-9, -1e-9, 1e-3, -1e-3}) {
+      result.push_back(middle * (1 + distance));
+    }
+  }
+  return result;
+}
+
+/// The m-th derivative of c_n: its series differentiated term by term.
+real_100 exact(int n, int m, const real_100& s) {
+  real_100 sum = 0;
+  for (int k = 70; k >= m; --k) { // 40^70/140! < 1e-128
+    real_100 term = 1;
+    for (int i = 2; i <= 2 * k + n; ++i) {
+      term /= i;
+    }
+    for (int i = k; i > k - m; --i) {
+      term *= i;
+    }
+    sum += (k % 2 == 0 ? term : real_100(-term)) * pow(s, k - m);
+  }
+  return sum;
+}
+
+template <int N>
+void check_derivatives() {
+  worst_error worst[5] = {worst_error("c"), worst_error("c'"), worst_error("c''"),
+                          worst_error("c'''"), worst_error("c''''")};
+  worst_error of_root[5] = {worst_error("c" + std::to_string(N) + " of x²"), worst_error("(c of x²)'"),
+                            worst_error("(c of x²)''"), worst_error("(c of x²)'''"),
+                            worst_error("(c of x²)''''")};
+  for (const double s : inputs()) {
+    const auto y = duet::derivatives<4>([](const auto& t) { return stumpff<N>(t); }, s);
+    const double x = static_cast<float>(std::sqrt(s)); // its square is exact
+    const auto z = duet::derivatives<4>([](const auto& t) { return stumpff<N>(t * t); }, x);
+    const real_100 wide_s(s);
+    const real_100 wide_x(x);
+    real_100 e[5];
+    real_100 f[5];
+    for (int m = 0; m <= 4; ++m) {
+      e[m] = exact(N, m, wide_s);
+      f[m] = exact(N, m, real_100(wide_x * wide_x));
+    }
+    // By x = √s: Faà di Bruno for x².
+    const real_100 g[5] = {f[0], 2 * wide_x * f[1], 4 * wide_x * wide_x * f[2] + 2 * f[1],
+                           8 * pow(wide_x, 3) * f[3] + 12 * wide_x * f[2],
+                           16 * pow(wide_x, 4) * f[4] + 48 * wide_x * wide_x * f[3] + 12 * f[2]};
+    for (std::size_t m = 0; m <= 4; ++m) {
+      const double scale = 1 / (double(m) + 1);
+      worst[m].add(double(abs(real_100(y[m] - e[m]))) / scale, s);
+      of_root[m].add(double(abs(real_100(z[m] - g[m]))) / scale, x);
+    }
+  }
+  for (int m = 0; m <= 4; ++m) {
+    CAPTURE(N);
+    CHECK_MESSAGE(worst[m] <= 6e-16, worst[m]);
+    CHECK_MESSAGE(of_root[m] <= (m < 3 ? 2e-15 : 2e-14), of_root[m]);
+  }
+}
+
+} // namespace
+
+TEST_CASE("derivatives of c0 to fourth order") { check_derivatives<0>(); }
+TEST_CASE("derivatives of c1 to fourth order") { check_derivatives<1>(); }
+TEST_CASE("derivatives of c2 to fourth order") { check_derivatives<2>(); }
+TEST_CASE("derivatives of c3 to fourth order") { check_derivatives<3>(); }

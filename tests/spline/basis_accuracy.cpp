@@ -1,0 +1,116 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+#include "support/multiprecision.hpp"
+#include "support/ulp.hpp"
+
+#include <duet/spline/basis.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+using duet_test::cast;
+using duet_test::real_50;
+using duet_test::ulps_of_range;
+using duet_test::worst_error;
+
+namespace {
+
+struct exact_value {
+  real_50 value;
+  real_50 of_absolute_terms;
+};
+
+/// B̃_i, B̃′_i (P3), B̃″_i (P4 and the corrections to it).
+std::array<exact_value, 3> closed_forms(const std::vector<real_50>& knots, std::size_t i,
+                                        int order, const real_50& u) {
+  const auto k = std::size_t(order);
+  const real_50 end = knots[knots.size() - k];
+  const auto b_over = [&](std::size_t j, int lower_order, const real_50& width) {
+    return width > 0 ? real_50(duet_test::b_definition(knots, j, lower_order, u, u, end) / width)
+                     : real_50(0);
+  };
+  const real_50 width = knots[i + k - 1] - knots[i];
+  const real_50 value = duet_test::cumulative_definition(knots, i, order, u, u);
+  const real_50 first = (order - 1) * b_over(i, order - 1, width);
+  std::array<exact_value, 3> result = {{{value, value}, {first, first}, {0, 0}}};
+  if (order >= 3) {
+    const real_50 factor = (order - 1) * (order - 2) / width;
+    const real_50 a = factor * b_over(i, order - 2, knots[i + k - 2] - knots[i]);
+    const real_50 b = factor * b_over(i + 1, order - 2, knots[i + k - 1] - knots[i + 1]);
+    result[2] = {a - b, a + b};
+  }
+  return result;
+}
+
+/// Squared norms of B̃, B̃′, B̃″, B̃‴ as vectors of all B̃_i that matter on a span, B̃_first ≡ 1 among
+/// them.
+using squared_norms = std::array<real_50, 4>;
+
+template <int Order>
+void check_order() {
+  constexpr auto k = std::size_t(Order);
+  const std::string of_order = ", order " + std::to_string(Order);
+  std::array<worst_error, 3> worst = {worst_error("P1" + of_order), worst_error("P3" + of_order),
+                                      worst_error("P4" + of_order)};
+  for (const auto& [name, knots] : duet_test::knot_vectors(Order)) {
+    const duet::bspline_basis<Order> basis(knots);
+    const auto wide = cast<real_50>(knots);
+    std::vector<real_50> largest_second(basis.breaks().size(), 0);
+    const auto measure = [&](double u, auto&& use) {
+      const std::size_t span = basis.span_of(u);
+      const auto computed = basis.template weights<3>(span, u);
+      std::array<std::array<real_50, k - 1>, 3> exact;
+      squared_norms squares = {1, 0, 0, 0};
+      for (std::size_t j = 0; j + 1 < k; ++j) {
+        const auto forms =
+            closed_forms(wide, basis.first_function(span) + 1 + j, Order, real_50(u));
+        for (std::size_t d = 0; d < 3; ++d) {
+          exact[d][j] = forms[d].value;
+          squares[d] += forms[d].of_absolute_terms * forms[d].of_absolute_terms;
+        }
+        squares[3] += real_50(computed[3][j]) * computed[3][j]; // only for the scale
+      }
+      use(span, computed, exact, squares);
+    };
+    const auto parameters = duet_test::parameters_on(knots, Order);
+    for (const double u : parameters) {
+      measure(u, [&](std::size_t span, const auto&, const auto&, const squared_norms& squares) {
+        largest_second[span] =
+            std::max(largest_second[span], real_50(sqrt(squares[2])));
+      });
+    }
+    for (const double u : parameters) {
+      measure(u, [&](std::size_t span, const auto& computed, const auto& exact,
+                     const squared_norms& squares) {
+        for (std::size_t d = 0; d < 3; ++d) {
+          // A polynomial of high degree may touch zero where it was large nearby: its own size
+          // there is nothing that one representation on the whole span could know.
+          const bool of_span = d == 2 && Order >= 5;
+          const real_50 size = of_span ? largest_second[span] : real_50(sqrt(squares[d]));
+          const real_50 scale = size + sqrt(squares[d + 1]) * abs(u);
+          worst[d].add(ulps_of_range<double>(computed[d], exact[d], scale), name, u);
+        }
+      });
+    }
+  }
+  for (const worst_error& w : worst) {
+    CHECK_MESSAGE(w <= 4, w);
+  }
+}
+
+} // namespace
+
+TEST_CASE("P1, P3, P4: the cumulative basis and its derivatives against 50 digits") {
+  check_order<2>();
+  check_order<3>();
+  check_order<4>();
+  check_order<5>();
+  check_order<6>();
+  check_order<7>();
+}

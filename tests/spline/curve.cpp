@@ -1,0 +1,179 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+using duet::cumulative_bspline;
+using duet_test::distance;
+using duet_test::knot_vectors;
+using duet_test::parameters_on;
+using duet_test::random_orientations;
+
+using quaternion = duet::quaternion<double>;
+using vector = duet::vector3<double>;
+
+namespace {
+
+template <class F>
+void for_each_order(F&& f) {
+  f(std::integral_constant<int, 2>{});
+  f(std::integral_constant<int, 3>{});
+  f(std::integral_constant<int, 4>{});
+  f(std::integral_constant<int, 5>{});
+  f(std::integral_constant<int, 6>{});
+}
+
+template <int Order>
+cumulative_bspline<double, Order> random_curve(const std::vector<double>& knots, double step) {
+  return {knots, random_orientations(knots.size() - std::size_t(Order), step)};
+}
+
+template <class Exception, class F>
+std::string message_of(F&& f) {
+  try {
+    f();
+  } catch (const Exception& e) {
+    return e.what();
+  }
+  return "nothing was thrown";
+}
+
+} // namespace
+
+TEST_CASE("P2: the curve is the product over all control quaternions") {
+  for_each_order([](auto order) {
+    constexpr int k = order;
+    for (const auto& [name, knots] : knot_vectors(k)) {
+      CAPTURE(k);
+      CAPTURE(name);
+      const auto s = random_curve<k>(knots, 1.5);
+      double worst = 0;
+      for (const double u : parameters_on(knots, k, 3)) {
+        const auto product = duet_test::curve_definition(knots, k, s.controls(), u, u);
+        worst = std::max(worst, distance(s(u), product));
+        worst = std::max(worst, std::abs(norm2(s(u)) - 1));
+      }
+      CHECK(worst <= 1e-14);
+    }
+  });
+}
+
+TEST_CASE("P2 as printed: the first exponent B̃_0 is right but for the first span, where it is B̃_{−1}") {
+  const auto knots = knot_vectors(4)[1].knots;
+  const auto s = random_curve<4>(knots, 1);
+  const quaternion first = s.controls().front();
+  int in_first_span = 0, beyond = 0;
+  for (const double u : parameters_on(knots, 4)) {
+    const double exponent = duet_test::cumulative_definition(knots, 1, 4, u, u);
+    const quaternion printed = pow(first, exponent) * (conj(first) * s(u));
+    if (s.basis().span_of(u) == 0 && exponent < 0.999) {
+      CHECK(distance(printed, s(u)) > 1e-6);
+      ++in_first_span;
+    } else if (s.basis().span_of(u) > 0) {
+      CHECK(exponent == doctest::Approx(1).epsilon(1e-15));
+      CHECK(distance(printed, s(u)) < 1e-14);
+      ++beyond;
+    }
+  }
+  CHECK(in_first_span > 3);
+  CHECK(beyond > 10);
+}
+
+TEST_CASE("order 2 is spherical interpolation between neighbours") {
+  const std::vector<double> knots = {0, 0, 1, 3, 3.5, 3.5};
+  const auto s = random_curve<2>(knots, 2);
+  for (const double t : {0.0, 0.2, 0.7, 0.99}) {
+    CHECK(distance(s(t), slerp(s.controls()[0], s.controls()[1], t)) < 1e-15);
+    CHECK(distance(s(1 + 2 * t), slerp(s.controls()[1], s.controls()[2], t)) < 1e-15);
+    CHECK(distance(s(3 + t / 2), slerp(s.controls()[2], s.controls()[3], t)) < 1e-15);
+  }
+}
+
+TEST_CASE("about one axis the angle is the plain B-spline of the control angles") {
+  const std::vector<double> angles = {0.3, 0.9, -0.5, 0.1, 2, 2.5, 1};
+  const vector axis(0.36, -0.48, 0.8);
+  std::vector<quaternion> controls;
+  for (const double a : angles) { controls.push_back(duet::from_axis_angle(axis, a)); }
+  const auto knots = duet::clamped_knots(std::vector<double>{0, 1, 1.5, 2, 5}, 4);
+  const cumulative_bspline<double> s(knots, controls);
+  for (const double u : parameters_on(knots, 4)) {
+    double angle = 0;
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      angle += angles[i] * duet::bspline_value(knots, i, 4, u);
+    }
+    CHECK(distance(s(u), duet::from_axis_angle(axis, angle)) < 1e-15);
+  }
+}
+
+TEST_CASE("the curve meets its first and last control quaternion and one at every triple knot") {
+  const auto knots = duet::clamped_knots(std::vector<double>{0, 1, 1, 1, 2, 3}, 4);
+  const auto s = random_curve<4>(knots, 2);
+  CHECK(distance(s(0.0), s.controls()[0]) < 1e-15);
+  CHECK(distance(s(1.0), s.controls()[3]) < 1e-15);
+  CHECK(distance(s(3.0), s.controls().back()) < 1e-15);
+}
+
+TEST_CASE("moving all control quaternions moves the curve") {
+  const auto knots = knot_vectors(4)[0].knots;
+  const auto s = random_curve<4>(knots, 1.2);
+  const quaternion p = random_orientations(1, 1, 5).front();
+  std::vector<quaternion> moved = s.controls();
+  for (quaternion& q : moved) { q = p * q; }
+  const cumulative_bspline<double> t(knots, moved);
+  for (const double u : parameters_on(knots, 4)) { CHECK(distance(t(u), p * s(u)) < 1e-14); }
+}
+
+TEST_CASE("signs of control quaternions do not matter, but for the first one's") {
+  const auto knots = knot_vectors(4)[1].knots;
+  const auto s = random_curve<4>(knots, 2.5);
+  std::vector<quaternion> flipped = s.controls();
+  for (std::size_t i = 1; i < flipped.size(); i += 2) { flipped[i] = -flipped[i]; }
+  const cumulative_bspline<double> t(knots, flipped);
+  flipped[0] = -flipped[0];
+  const cumulative_bspline<double> opposite(knots, flipped);
+  for (std::size_t i = 0; i < flipped.size(); ++i) {
+    CHECK(t.controls()[i] == s.controls()[i]);
+    CHECK(t.increments()[i] == s.increments()[i]);
+    CHECK(s.increments()[i].norm() <= 1.5707963268); // half angles of at most half a turn
+  }
+  for (const double u : parameters_on(knots, 4)) {
+    CHECK(t(u) == s(u));
+    CHECK(distance(opposite(u), -s(u)) < 1e-15);
+  }
+}
+
+TEST_CASE("control quaternions that are not there, not one, or a half turn apart") {
+  const std::vector<double> knots = {0, 0, 0, 1, 2, 2, 2};
+  using spline = cumulative_bspline<double, 3>;
+  const auto make = [&](std::vector<quaternion> controls) {
+    return [&knots, controls] { static_cast<void>(spline(knots, controls)); };
+  };
+  const quaternion one(1);
+  const double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  CHECK(message_of<duet::invalid_input>(make({one, one, one})) ==
+        "duet: cumulative_bspline: 7 knots of order 3 take 4 control quaternions, got 3");
+  CHECK(message_of<duet::invalid_input>(make({})) ==
+        "duet: cumulative_bspline: 7 knots of order 3 take 4 control quaternions, got 0");
+  CHECK(message_of<duet::invalid_row>(make({one, one * 1.1, one, one})) ==
+        "duet: row 1: quaternion (1.1, 0, 0, 0) has norm 1.1, not 1");
+  CHECK(message_of<duet::invalid_row>(make({one, one, quaternion(), one})) ==
+        "duet: row 2: quaternion (0, 0, 0, 0) has norm 0, not 1");
+  CHECK(message_of<duet::invalid_row>(make({one, one, one, {0, not_a_number, 0, 1}})) ==
+        "duet: row 3: quaternion (0, nan, 0, 1) is not finite");
+  CHECK(message_of<duet::invalid_row>(make({one, {0, 0.6, 0.8, 0}, one, one})) ==
+        "duet: row 1: half a turn from the row before: either way round is as short");
+  // A norm that is off by the digits of a printed table is put right.
+  const spline s(knots, {one * 1.0004, one, one, one});
+  CHECK(s.controls()[0] == one);
+}

@@ -1,0 +1,167 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "support/random.hpp"
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/knots.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// \file
+/// Knots, parameters and control quaternions to try splines on, and the definitions P1, P2 written
+/// down once more, independently of the library and over any scalar.
+
+namespace duet_test {
+
+struct named_knots {
+  std::string name;
+  std::vector<double> knots;
+};
+
+/// Simple, repeated at the ends, repeated inside: every kind of knots that this order allows.
+[[nodiscard]] inline std::vector<named_knots> knot_vectors(int order) {
+  random_source random(std::uint64_t(order) + 40);
+  std::vector<double> uniform, simple, uneven;
+  double u = -1, v = -1;
+  for (int i = 0; i < 2 * order + 5; ++i) {
+    uniform.push_back((i - order) * 0.25);
+    u += random.uniform(0.2, 1);
+    simple.push_back(u);
+    v += random.magnitude(1e-2, 2);
+    uneven.push_back(v);
+  }
+  std::vector<named_knots> result = {
+      {"uniform", uniform}, {"not uniform", simple}, {"very uneven", uneven}};
+  const std::vector<double> parameters = {-0.3, 0.1, 0.4, 1, 1.2, 2.1, 2.5};
+  result.push_back({"repeated at the ends", duet::clamped_knots(parameters, order)});
+  result.push_back({"one span", duet::clamped_knots(std::vector<double>{0.5, 2}, order)});
+  for (int times = 2; times <= std::min(order, 3); ++times) {
+    std::vector<double> repeated = parameters;
+    repeated.insert(repeated.begin() + 3, std::size_t(times) - 1, repeated[3]);
+    result.push_back({std::to_string(times) + "-fold inside", duet::clamped_knots(repeated, order)});
+    result.push_back({std::to_string(times) + "-fold anywhere", uneven});
+    std::vector<double>& anywhere = result.back().knots;
+    for (std::size_t i = 2; i + 2 < anywhere.size(); i += 5) {
+      std::fill_n(anywhere.begin() + long(i), times, anywhere[i]);
+    }
+  }
+  return result;
+}
+
+/// Both ends and some inner points of every span of the domain.
+[[nodiscard]] inline std::vector<double> parameters_on(const std::vector<double>& knots, int order,
+                                                       int inside = 5) {
+  random_source random(7);
+  std::vector<double> result;
+  for (std::size_t i = std::size_t(order) - 1; i + std::size_t(order) < knots.size(); ++i) {
+    const double left = knots[i], right = knots[i + 1];
+    if (left < right) {
+      result.push_back(left);
+      result.push_back(std::nextafter(right, left));
+      for (int j = 0; j < inside; ++j) {
+        result.push_back(std::min(random.uniform(left, right), std::nextafter(right, left)));
+      }
+    }
+  }
+  result.push_back(knots[knots.size() - std::size_t(order)]);
+  return result;
+}
+
+/// Unit quaternions, each turned from the one before by up to `step` radians about any axis.
+[[nodiscard]] inline std::vector<duet::quaternion<double>>
+random_orientations(std::size_t count, double step, std::uint64_t seed = 1) {
+  random_source random(seed);
+  std::vector<duet::quaternion<double>> result;
+  duet::quaternion<double> q(1.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto n = random.direction<3>();
+    const double half = random.uniform(0.3, 0.5) * (i == 0 ? 6 : step);
+    const duet::vector3<double> v(n[0] * half, n[1] * half, n[2] * half);
+    q = q * duet::exp(v);
+    const double norm = std::sqrt(duet::norm2(q));
+    q = q / norm;
+    result.push_back(q);
+  }
+  return result;
+}
+
+/// The largest difference of components.
+template <class A, class B>
+[[nodiscard]] double distance(const duet::quaternion<A>& p, const duet::quaternion<B>& q) {
+  using std::abs;
+  return double(std::max(std::max(abs(p.w() - q.w()), abs(p.x() - q.x())),
+                         std::max(abs(p.y() - q.y()), abs(p.z() - q.z()))));
+}
+
+template <class R>
+[[nodiscard]] std::vector<R> cast(const std::vector<double>& x) {
+  return {x.begin(), x.end()};
+}
+template <class T>
+[[nodiscard]] std::vector<duet::quaternion<T>>
+cast(const std::vector<duet::quaternion<double>>& q) {
+  std::vector<duet::quaternion<T>> result;
+  for (const auto& each : q) {
+    result.push_back({T(each.w()), T(each.x()), T(each.y()), T(each.z())});
+  }
+  return result;
+}
+
+/// B_i^k(u), P1. Which interval counts follows from `at` alone: that makes B a polynomial, to be
+/// differentiated in u. At the end of the domain it is the last one.
+template <class R, class S>
+[[nodiscard]] S b_definition(const std::vector<R>& knots, std::size_t i, int k, const S& u,
+                             const R& at, const R& end) {
+  if (k == 1) {
+    const bool counts =
+        at == end ? knots[i] < at && knots[i + 1] == at : knots[i] <= at && at < knots[i + 1];
+    return S(R(counts ? 1 : 0));
+  }
+  const auto uk = std::size_t(k);
+  S sum(R(0));
+  if (knots[i] < knots[i + uk - 1]) {
+    sum = sum + (u - knots[i]) * b_definition(knots, i, k - 1, u, at, end) /
+                    R(knots[i + uk - 1] - knots[i]);
+  }
+  if (knots[i + 1] < knots[i + uk]) {
+    sum = sum + (knots[i + uk] - u) * b_definition(knots, i + 1, k - 1, u, at, end) /
+                    R(knots[i + uk] - knots[i + 1]);
+  }
+  return sum;
+}
+
+/// B̃_i(u) = Σ_{j≥i} B_j(u), P2, without a thought for cost.
+template <class R, class S>
+[[nodiscard]] S cumulative_definition(const std::vector<R>& knots, std::size_t i, int order,
+                                      const S& u, const R& at) {
+  const std::size_t size = knots.size() - std::size_t(order);
+  S sum(R(0));
+  for (std::size_t j = i; j < size; ++j) {
+    sum = sum + b_definition(knots, j, order, u, at, knots[size]);
+  }
+  return sum;
+}
+
+/// Q(u), P2: the product over all control quaternions, of aligned signs. `at`: as above.
+template <class R, class S>
+[[nodiscard]] duet::quaternion<S> curve_definition(const std::vector<R>& knots, int order,
+                                                   const std::vector<duet::quaternion<R>>& controls,
+                                                   const S& u, const R& at) {
+  duet::quaternion<S> q(normalized(controls.front()));
+  for (std::size_t i = 1; i < controls.size(); ++i) {
+    const auto omega = log(inverse(controls[i - 1]) * controls[i]).vec();
+    const S b = cumulative_definition(knots, i, order, u, at);
+    q = q * duet::exp(duet::vector3<S>(omega[0] * b, omega[1] * b, omega[2] * b));
+  }
+  return q;
+}
+
+} // namespace duet_test
