@@ -4,6 +4,7 @@
 /// \file
 /// All of duet but `interop/`.
 
+#include <duet/core/number_text.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
