@@ -29,19 +29,24 @@ using numbers = std::array<double, 10>;
 
 /// A smooth tumble, up to 0.25 rad a segment.
 duet::quaternion<double> orientation(double t) {
-  return duet::from_euler<duet::zyx>(1.9 * std::sin(t), 0.8 * std::sin(1.3 * t + 1), 2 * std::cos(0.7 * t));
+  return duet::from_euler<duet::zyx>(1.9 * std::sin(t), 0.8 * std::sin(1.3 * t + 1),
+                                     2 * std::cos(0.7 * t));
 }
 
 /// Control quaternions one knot apart; the domain is [0, segments · knot_distance].
 std::vector<duet::quaternion<double>> controls() {
   std::vector<duet::quaternion<double>> result;
-  for (int i = 0; i < segments + 3; ++i) { result.push_back(orientation((i - 1) * knot_distance)); }
+  for (int i = 0; i < segments + 3; ++i) {
+    result.push_back(orientation((i - 1) * knot_distance));
+  }
   return result;
 }
 
 duet::cumulative_bspline<double> make_spline() {
   std::vector<double> knots;
-  for (int i = -3; i <= segments + 3; ++i) { knots.push_back(i * knot_distance); }
+  for (int i = -3; i <= segments + 3; ++i) {
+    knots.push_back(i * knot_distance);
+  }
   return {knots, controls()};
 }
 
@@ -52,7 +57,9 @@ public:
   explicit hand_written_spline(const std::vector<duet::quaternion<double>>& controls) {
     duet::quaternion<double> previous = controls.front();
     for (duet::quaternion<double> q : controls) {
-      if (dot(previous, q) < 0) { q = -q; }
+      if (dot(previous, q) < 0) {
+        q = -q;
+      }
       const duet::vector3<double> omega = log(conj(previous) * q).vec();
       const double angle = omega.norm();
       const duet::vector3<double> axis = angle > 0 ? duet::vector3<double>(omega / angle) : omega;
@@ -66,7 +73,9 @@ public:
     const node* n = &nodes_[at.segment];
     std::array<double, 4> q = n->q;
     const auto b = weights(at.x);
-    for (int i = 0; i < 3; ++i) { q = product(q, exponential(*++n, b[i])); }
+    for (int i = 0; i < 3; ++i) {
+      q = product(q, exponential(*++n, b[i]));
+    }
     return q;
   }
 
@@ -98,8 +107,7 @@ public:
            a[2] + n->axis[2] * w2 + 2 * (w[0] * d[1] - w[1] * d[0])};
       w = {w[0] + d[0], w[1] + d[1], w[2] + d[2]};
     }
-    return {q[0],     q[1],     q[2],     q[3],     2 * w[0],
-            2 * w[1], 2 * w[2], 2 * a[0], 2 * a[1], 2 * a[2]};
+    return {q[0], q[1], q[2], q[3], 2 * w[0], 2 * w[1], 2 * w[2], 2 * a[0], 2 * a[1], 2 * a[2]};
   }
 
 private:
@@ -189,9 +197,8 @@ std::array<double, 4> duet_value(double u) {
 
 numbers duet_motion(double u) {
   const auto m = spline.motion(u, duet::frame::body);
-  return {m.value.w(),       m.value.x(),       m.value.y(),      m.value.z(),
-          m.velocity[0],     m.velocity[1],     m.velocity[2],    m.acceleration[0],
-          m.acceleration[1], m.acceleration[2]};
+  return {m.value.w(),   m.value.x(),   m.value.y(),       m.value.z(),       m.velocity[0],
+          m.velocity[1], m.velocity[2], m.acceleration[0], m.acceleration[1], m.acceleration[2]};
 }
 
 /// The same from Q, Q′, Q″: ω = 2 Q* Q′, ω′ = vec(2 Q* Q″).

@@ -107,6 +107,9 @@ pose<S> fk7(const inputs<S, joints>& angles) {
   S px(0.0), py(0.0), pz(0.0);
   for (std::size_t i = 0; i < joints; ++i) {
     const arm_row& row = arm[i];
+    const S half = 0.5 * angles[i];
+    const S c = cos(half);
+    const S s = sin(half);
     // the first column of the rotation matrix, before the turn about x leaves it as it is
     const S x_axis_x = 1.0 - 2.0 * (y * y + z * z);
     const S x_axis_y = 2.0 * (x * y + w * z);
@@ -115,9 +118,6 @@ pose<S> fk7(const inputs<S, joints>& angles) {
     const S x1 = x * row.half_cos + w * row.half_sin;
     const S y1 = y * row.half_cos + z * row.half_sin;
     const S z1 = z * row.half_cos - y * row.half_sin;
-    const S half = 0.5 * angles[i];
-    const S c = cos(half);
-    const S s = sin(half);
     w = w1 * c - z1 * s;
     x = x1 * c + y1 * s;
     y = y1 * c - x1 * s;

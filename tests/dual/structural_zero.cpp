@@ -117,6 +117,7 @@ TEST_CASE("higher derivatives of powers at 0") {
   CHECK(mixed.value().epsilon() == 0);
   CHECK(mixed.epsilon().value() == std::log(4.0));
   CHECK(mixed.epsilon().epsilon() == 0.25);
+  CHECK(pow(nested(D(4), 1), nested(D(0, 1))).epsilon().epsilon() == 0.25);
   // 0^p log 0 is flat for p > 1 in the first derivative by the base, singular at p = 1.
   CHECK(pow(nested(D(0, 1)), nested(D(2), 1)).epsilon().epsilon() == 0);
   CHECK(pow(nested(D(0, 1)), nested(D(1), 1)).epsilon().value() == 0);

@@ -56,8 +56,8 @@ template <class T>
   const quaternion<T> l_dot = log_derivative(q, q_dot);
   const vector3<T> v = rho * l.vec();
   const vector3<T> v_dot = rho_dot * l.vec() + rho * l_dot.vec();
-  return pow(q, rho) * quaternion<T>(T(rho_dot * l.w() + rho * l_dot.w()),
-                                     right_jacobian(v, v_dot));
+  return pow(q, rho) *
+         quaternion<T>(T(rho_dot * l.w() + rho * l_dot.w()), right_jacobian(v, v_dot));
 }
 
 } // namespace duet_test::closed_form

@@ -28,8 +28,8 @@ std::vector<double> lengths() {
   std::vector<double> result{0, 1e-300, 1e-160, 1e-30, 1e-8, 1e-4, 0.01, 0.3};
   constexpr double pi = 3.141592653589793;
   const double switches[] = {1, std::sqrt(9.8696), 0.5, std::sqrt(9.8696) / 2};
-  for (const double middle : {switches[0], switches[1], switches[2], switches[3], pi / 2, pi,
-                              2 * pi}) {
+  for (const double middle :
+       {switches[0], switches[1], switches[2], switches[3], pi / 2, pi, 2 * pi}) {
     for (const double distance : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4}) {
       result.push_back(middle * (1 + distance));
     }
@@ -48,8 +48,8 @@ std::vector<quaternion<double>> inputs() {
   for (int i = 0; i < 60; ++i) {
     const auto d = random.direction<3>();
     const double length = random.uniform(0, 7);
-    result.push_back({i % 2 == 0 ? 0 : random.uniform(-300, 300), length * d[0], length * d[1],
-                      length * d[2]});
+    result.push_back(
+        {i % 2 == 0 ? 0 : random.uniform(-300, 300), length * d[0], length * d[1], length * d[2]});
   }
   return result;
 }
@@ -64,9 +64,9 @@ TEST_CASE("N4: exp, value and first derivative") {
   for (const auto& q : inputs()) {
     const truth::four x = truth::wide(q);
     const truth::four exact = truth::exp(x);
-    value.add(truth::ulps(exp(q), exact,
-                          truth::length(exact) + truth::change_of_value(truth::exp, x, 1)),
-              q);
+    value.add(
+        truth::ulps(exp(q), exact, truth::length(exact) + truth::change_of_value(truth::exp, x, 1)),
+        q);
 
     const auto d = random.direction<4>();
     const quaternion<double> q_dot(d[0], d[1], d[2], d[3]);

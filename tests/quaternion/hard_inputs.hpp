@@ -22,28 +22,26 @@ namespace duet_test {
   std::vector<quaternion<double>> result;
   const auto add = [&](double w, double length, double norm) {
     const auto d = random.direction<3>();
-    result.push_back(
-        {norm * w, norm * length * d[0], norm * length * d[1], norm * length * d[2]});
+    result.push_back({norm * w, norm * length * d[0], norm * length * d[1], norm * length * d[2]});
     result.push_back({norm * w, 0, -norm * length, 0});
   };
   // Below a vector part of 2^-50 |q| (2^-10 in single precision) a full turn counts as near.
-  const double sizes[] = {0,          1e-300,     1e-160,      1e-30,  0x0.ffffp-50, 0x1.0001p-50,
-                          0x1p-50,    1e-8,       1e-4,        0x1p-10, 0.1};
+  const double sizes[] = {0,       1e-300, 1e-160, 1e-30,   0x0.ffffp-50, 0x1.0001p-50,
+                          0x1p-50, 1e-8,   1e-4,   0x1p-10, 0.1};
   for (const double length : sizes) {
     for (const double norm : {1.0, 1e-30, 1e100}) {
-      add(1, length, norm);                   // near the identity
-      add(length, 1, norm);                   // near a half turn
+      add(1, length, norm); // near the identity
+      add(length, 1, norm); // near a half turn
       add(-length, 1, norm);
       if (length * norm > 1e-307) {
-        add(-1, length, norm);                // near a full turn
+        add(-1, length, norm); // near a full turn
       }
     }
   }
   // |q|² is computed directly between 2^-100 and 2^100.
-  const double norms[] = {1e-140,       1e-100,       1e-60,       1e-31,        1e-20,
-                          0x0.ffffp-50, 0x1.0001p-50, 0x0.ffffp50, 0x1.0001p50,  1e-8,
-                          1e8,          1e20,         1e31,        1e60,         1e100,
-                          1e140};
+  const double norms[] = {1e-140,       1e-100,      1e-60,       1e-31, 1e-20, 0x0.ffffp-50,
+                          0x1.0001p-50, 0x0.ffffp50, 0x1.0001p50, 1e-8,  1e8,   1e20,
+                          1e31,         1e60,        1e100,       1e140};
   for (const double norm : norms) {
     const double angle = random.uniform(0, 3.1);
     add(std::cos(angle), std::sin(angle), norm);

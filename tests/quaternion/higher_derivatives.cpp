@@ -30,8 +30,7 @@ struct first;
 struct second;
 struct third;
 struct fourth;
-using nested =
-    dual<dual<dual<dual<double, 1, first>, 1, second>, 1, third>, 1, fourth>;
+using nested = dual<dual<dual<dual<double, 1, first>, 1, second>, 1, third>, 1, fourth>;
 
 /// x + ε₁ + ε₂ + ε₃ + ε₄
 nested nested_variable(double x) {
@@ -122,8 +121,9 @@ TEST_CASE("derivatives of exp to fourth order") {
       const auto a = random.direction<3>();
       const auto d = random.direction<3>();
       const auto scalar = i == 0 ? 0.0 : random.uniform(-1, 1);
-      measure(e, [](const auto& q) { return exp(q); }, truth::exp,
-              {0, angle * a[0], angle * a[1], angle * a[2]}, {scalar, d[0], d[1], d[2]}, 1, angle);
+      measure(
+          e, [](const auto& q) { return exp(q); }, truth::exp,
+          {0, angle * a[0], angle * a[1], angle * a[2]}, {scalar, d[0], d[1], d[2]}, 1, angle);
     }
   }
   e.check({16, 16, 16, 16, 16});
@@ -138,8 +138,9 @@ TEST_CASE("derivatives of log to fourth order") {
       const auto d = random.direction<4>();
       const double s = std::sin(angle);
       const truth::real reach = angle > 1.6 ? truth::real(s) : truth::real(1);
-      measure(e, [](const auto& q) { return log(q); }, truth::log,
-              {std::cos(angle), s * a[0], s * a[1], s * a[2]}, {d[0], d[1], d[2], d[3]}, reach, reach);
+      measure(
+          e, [](const auto& q) { return log(q); }, truth::log,
+          {std::cos(angle), s * a[0], s * a[1], s * a[2]}, {d[0], d[1], d[2], d[3]}, reach, reach);
     }
   }
   e.check({16, 16, 16, 16, 16});
@@ -154,9 +155,10 @@ TEST_CASE("derivatives of pow to fourth order") {
     const double s = std::sin(angle);
     const truth::real reach = angle > 1.6 ? truth::real(s) : truth::real(1);
     for (const double rho : {0.5, -1.3}) {
-      measure(e, [=](const auto& q) { return pow(q, rho); },
-              [=](const truth::four& q) { return truth::pow(q, rho); },
-              {std::cos(angle), s * a[0], s * a[1], s * a[2]}, {d[0], d[1], d[2], d[3]}, reach, reach);
+      measure(
+          e, [=](const auto& q) { return pow(q, rho); },
+          [=](const truth::four& q) { return truth::pow(q, rho); },
+          {std::cos(angle), s * a[0], s * a[1], s * a[2]}, {d[0], d[1], d[2], d[3]}, reach, reach);
     }
   }
   e.check({16, 16, 16, 16, 16});

@@ -104,8 +104,7 @@ TEST_CASE("a half turn is regular") {
 
 TEST_CASE("log of -|q|: the axis is undetermined, x is chosen and derivatives are NaN") {
   using duet::dual;
-  CHECK(log(quaternion<double>(-1, 0, 0, 0)) ==
-        quaternion<double>(0, 3.141592653589793, 0, 0));
+  CHECK(log(quaternion<double>(-1, 0, 0, 0)) == quaternion<double>(0, 3.141592653589793, 0, 0));
   const auto l = log(quaternion<double>(-1e200, 0, -0.0, 0));
   CHECK(l.w() == doctest::Approx(std::log(1e200)).epsilon(1e-15));
   CHECK(l.vec() == duet::vector3<double>(3.141592653589793, 0, 0));
@@ -113,8 +112,7 @@ TEST_CASE("log of -|q|: the axis is undetermined, x is chosen and derivatives ar
 
   // By the vector part there is no derivative; the scalar part alone changes |q| only.
   using D = dual<double, 2>;
-  const auto by_both =
-      log(quaternion<D>(D::variable(-2, 0), D(0), D::variable(0, 1), D(0)));
+  const auto by_both = log(quaternion<D>(D::variable(-2, 0), D(0), D::variable(0, 1), D(0)));
   CHECK(by_both.w().partial(0) == -0.5);
   CHECK(by_both.w().partial(1) == 0);
   for (const D& component : {by_both.x(), by_both.y(), by_both.z()}) {
@@ -125,11 +123,14 @@ TEST_CASE("log of -|q|: the axis is undetermined, x is chosen and derivatives ar
 
 TEST_CASE("the zero quaternion has no logarithm, no power, no direction and no inverse") {
   const quaternion<double> zero;
-  CHECK_THROWS_WITH_AS(static_cast<void>(log(zero)), "duet: log of the zero quaternion", duet::invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(pow(zero, 2)), "duet: pow of the zero quaternion", duet::invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(normalized(zero)), "duet: normalized of the zero quaternion",
+  CHECK_THROWS_WITH_AS(static_cast<void>(log(zero)), "duet: log of the zero quaternion",
                        duet::invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(inverse(zero)), "duet: inverse of the zero quaternion", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(pow(zero, 2)), "duet: pow of the zero quaternion",
+                       duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(normalized(zero)),
+                       "duet: normalized of the zero quaternion", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(inverse(zero)), "duet: inverse of the zero quaternion",
+                       duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(slerp(zero, quaternion<double>(1), 0.5)), duet::invalid_input);
   CHECK(norm(zero) == 0);
   // NaN is not zero.

@@ -61,8 +61,8 @@ TEST_CASE("N5: pow, value and first derivative by base and exponent") {
         truth::change_of_derivative(power, x, dx, smooth) +
         std::abs(rho_dot) * truth::length(exact) *
             truth::change_of_value(truth::log, x, duet_test::smooth_length(x));
-    const auto automatic = duet::derivative(
-        [&](const auto& t) { return pow(q + t * q_dot, rho + t * rho_dot); }, 0.0);
+    const auto automatic =
+        duet::derivative([&](const auto& t) { return pow(q + t * q_dot, rho + t * rho_dot); }, 0.0);
     slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, rho, q_dot, rho_dot);
     if (duet_test::smooth_length(x) > truth::length(x) / 10) {
       closed.add(truth::ulps(duet_test::closed_form::pow_derivative(q, q_dot, rho, rho_dot),
@@ -93,8 +93,8 @@ TEST_CASE("small rotations keep their relative accuracy") {
     const quaternion<double> q(std::cos(half_angle), 0, std::sin(half_angle), 0);
     for (const double rho : {0.25, 0.5, 0.9, 3.0}) {
       CHECK(std::abs(std::asin(pow(q, rho).y()) / (rho * half_angle) - 1) <= 1e-15);
-      CHECK(std::abs(std::asin(slerp(quaternion<double>(1), q, rho).y()) / (rho * half_angle) - 1) <=
-            1e-15);
+      CHECK(std::abs(std::asin(slerp(quaternion<double>(1), q, rho).y()) / (rho * half_angle) -
+                     1) <= 1e-15);
     }
   }
 }

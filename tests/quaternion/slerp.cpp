@@ -140,8 +140,7 @@ TEST_CASE("the angular velocity of slerp is constant") {
   const auto a = random_rotation(random);
   const auto b = random_rotation(random);
   const auto omega = [&, p = a, q = b](double tau) {
-    const auto [value, rate] =
-        duet::derivative([&](const auto& t) { return slerp(p, q, t); }, tau);
+    const auto [value, rate] = duet::derivative([&](const auto& t) { return slerp(p, q, t); }, tau);
     return angular_velocity(value, rate, duet::frame::body);
   };
   for (const double tau : {0.0, 0.2, 0.9, 1.0}) {

@@ -111,8 +111,8 @@ template <class F>
   for (std::size_t i = 0; i < 4; ++i) {
     four e{0, 0, 0, 0};
     e[i] = h;
-    const four second = sum(sum(f(sum(sum(x, d, h), e)), f(sum(x, e)), -1), sum(there, here, -1),
-                            -1);
+    const four second =
+        sum(sum(f(sum(sum(x, d, h), e)), f(sum(x, e)), -1), sum(there, here, -1), -1);
     squares += boost::multiprecision::pow(length(second) * x[i], 2);
   }
   return sqrt(squares) / (h * h);

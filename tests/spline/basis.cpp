@@ -27,7 +27,9 @@ template <int Order>
 double cumulative(const duet::bspline_basis<Order>& basis, std::size_t i, double u) {
   const std::size_t span = basis.span_of(u);
   const std::size_t first = basis.first_function(span);
-  if (i <= first) { return 1; }
+  if (i <= first) {
+    return 1;
+  }
   return i >= first + std::size_t(Order) ? 0 : basis.template weights<0>(span, u)[0][i - first - 1];
 }
 
@@ -40,7 +42,9 @@ template <class F>
 void for_each_case(F&& f) {
   for_orders(
       [&](auto order) {
-        for (const auto& [name, knots] : knot_vectors(order)) {
+        for (const duet_test::named_knots& each : knot_vectors(order)) {
+          const std::string& name = each.name;
+          const std::vector<double>& knots = each.knots;
           CAPTURE(int(order));
           CAPTURE(name);
           f(order, knots);
@@ -61,8 +65,7 @@ TEST_CASE("P1: the recurrence and the stored polynomials are the same functions"
       for (std::size_t i = 0; i < basis.size(); ++i) {
         const double stored = cumulative(basis, i, u) - cumulative(basis, i + 1, u);
         worst = std::max(worst, std::abs(stored - duet::bspline_value(knots, i, k, u)));
-        const double definition =
-            duet_test::b_definition(knots, i, k, u, u, knots[basis.size()]);
+        const double definition = duet_test::b_definition(knots, i, k, u, u, knots[basis.size()]);
         worst = std::max(worst, std::abs(stored - definition));
       }
     }
@@ -127,12 +130,13 @@ TEST_CASE("P3, P4: derivatives of the weights, closed form against Taylor and du
       const std::size_t first = basis.first_function(span);
       std::array<double, 4> size{};
       for (std::size_t d = 0; d <= 3; ++d) {
-        for (const double x : closed[d]) { size[d] = std::max(size[d], std::abs(x)); }
+        for (const double x : closed[d]) {
+          size[d] = std::max(size[d], std::abs(x));
+        }
       }
       for (std::size_t j = 0; j < count; ++j) {
         const auto definition = duet::derivatives<3>(
-            [&](const auto& x) { return cumulative_definition(knots, first + 1 + j, k, x, u); },
-            u);
+            [&](const auto& x) { return cumulative_definition(knots, first + 1 + j, k, x, u); }, u);
         for (std::size_t d = 0; d <= 3; ++d) {
           const double scale = size[d] + 1e-3;
           worst = std::max(worst, std::abs(closed[d][j] - taylor[d][j]) / scale);
@@ -156,8 +160,10 @@ TEST_CASE("a basis over other real numbers") {
   for (const double u : {0.5, 0.9, 1.7, 2.0}) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double expected = basis.weights<0>(0, u)[0][i];
-      CHECK(double(in_float.weights<0>(0, float(u))[0][i]) == doctest::Approx(expected).epsilon(1e-6));
-      CHECK(double(in_long_double.weights<0>(0, u)[0][i]) == doctest::Approx(expected).epsilon(1e-15));
+      CHECK(double(in_float.weights<0>(0, float(u))[0][i]) ==
+            doctest::Approx(expected).epsilon(1e-6));
+      CHECK(double(in_long_double.weights<0>(0, u)[0][i]) ==
+            doctest::Approx(expected).epsilon(1e-15));
     }
   }
 }

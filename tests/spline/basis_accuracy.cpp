@@ -27,8 +27,8 @@ struct exact_value {
 };
 
 /// B̃_i, B̃′_i (P3), B̃″_i (P4 and the corrections to it).
-std::array<exact_value, 3> closed_forms(const std::vector<real_50>& knots, std::size_t i,
-                                        int order, const real_50& u) {
+std::array<exact_value, 3> closed_forms(const std::vector<real_50>& knots, std::size_t i, int order,
+                                        const real_50& u) {
   const auto k = std::size_t(order);
   const real_50 end = knots[knots.size() - k];
   const auto b_over = [&](std::size_t j, int lower_order, const real_50& width) {
@@ -58,7 +58,9 @@ void check_order() {
   const std::string of_order = ", order " + std::to_string(Order);
   std::array<worst_error, 3> worst = {worst_error("P1" + of_order), worst_error("P3" + of_order),
                                       worst_error("P4" + of_order)};
-  for (const auto& [name, knots] : duet_test::knot_vectors(Order)) {
+  for (const duet_test::named_knots& each : duet_test::knot_vectors(Order)) {
+    const std::string& name = each.name;
+    const std::vector<double>& knots = each.knots;
     const duet::bspline_basis<Order> basis(knots);
     const auto wide = cast<real_50>(knots);
     std::vector<real_50> largest_second(basis.breaks().size(), 0);
@@ -81,8 +83,7 @@ void check_order() {
     const auto parameters = duet_test::parameters_on(knots, Order);
     for (const double u : parameters) {
       measure(u, [&](std::size_t span, const auto&, const auto&, const squared_norms& squares) {
-        largest_second[span] =
-            std::max(largest_second[span], real_50(sqrt(squares[2])));
+        largest_second[span] = std::max(largest_second[span], real_50(sqrt(squares[2])));
       });
     }
     for (const double u : parameters) {

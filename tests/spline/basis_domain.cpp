@@ -25,7 +25,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// P1 as printed: closed at both ends, u_i ≤ u ≤ u_{i+1}.
 double closed_at_both_ends(const numbers& t, std::size_t i, int order, double u) {
-  if (order == 1) { return t[i] <= u && u <= t[i + 1] ? 1 : 0; }
+  if (order == 1) {
+    return t[i] <= u && u <= t[i + 1] ? 1 : 0;
+  }
   const auto k = std::size_t(order);
   double sum = 0;
   if (t[i] < t[i + k - 1]) {
@@ -40,7 +42,9 @@ double closed_at_both_ends(const numbers& t, std::size_t i, int order, double u)
 template <class F>
 double sum_of_all(const numbers& t, int order, F&& value) {
   double sum = 0;
-  for (std::size_t i = 0; i + std::size_t(order) < t.size(); ++i) { sum += value(i); }
+  for (std::size_t i = 0; i + std::size_t(order) < t.size(); ++i) {
+    sum += value(i);
+  }
   return sum;
 }
 
@@ -67,10 +71,12 @@ TEST_CASE("P1 as printed, closed at both ends, breaks the partition of unity at 
   for (int order = 2; order <= 4; ++order) {
     CAPTURE(order);
     const auto printed = [&](double u) {
-      return sum_of_all(t, order, [&](std::size_t i) { return closed_at_both_ends(t, i, order, u); });
+      return sum_of_all(t, order,
+                        [&](std::size_t i) { return closed_at_both_ends(t, i, order, u); });
     };
     const auto half_open = [&](double u) {
-      return sum_of_all(t, order, [&](std::size_t i) { return duet::bspline_value(t, i, order, u); });
+      return sum_of_all(t, order,
+                        [&](std::size_t i) { return duet::bspline_value(t, i, order, u); });
     };
     CHECK(printed(3.5) == doctest::Approx(1)); // between knots there is no difference
     CHECK(printed(4.0) == doctest::Approx(2)); // at a knot everything counts twice
@@ -106,7 +112,9 @@ TEST_CASE("the span is found wherever the knots are") {
       t.push_back(u);
       u += random.integer(0, 4) == 0 ? 0 : random.magnitude(1e-6, 10);
     }
-    if (t[3] == t[36]) { continue; }
+    if (t[3] == t[36]) {
+      continue;
+    }
     bspline_basis<4> basis({0, 0, 0, 0, 1, 1, 1, 1});
     try {
       basis = bspline_basis<4>(t);
@@ -129,7 +137,8 @@ TEST_CASE("where the knots go on beyond a full knot, the domain is still closed"
   CHECK(basis.back() == 1);
   CHECK(duet::bspline_value(t, 2, 3, 1.0) == 1);
   CHECK(duet::bspline_value(t, 3, 3, 1.0) == 0);
-  const double sum = sum_of_all(t, 3, [&](std::size_t i) { return duet::bspline_value(t, i, 3, 1.0); });
+  const double sum =
+      sum_of_all(t, 3, [&](std::size_t i) { return duet::bspline_value(t, i, 3, 1.0); });
   CHECK(sum == 1);
 }
 
@@ -140,7 +149,8 @@ TEST_CASE("bad knots") {
   CHECK(complaint<2>({0, 1, 0.5, 2}) == "duet: knots: knot 2 = 0.5 is less than knot 1 = 1");
   CHECK(complaint<2>({0, 1, not_a_number, 2}) == "duet: knots: knot 2 is nan");
   CHECK(complaint<2>({0, 1, 2, infinity}) == "duet: knots: knot 3 is inf");
-  CHECK(complaint<2>({0, 1, 1, 1, 2, 3}) == "duet: knots: knot 3 = 1 is repeated more than 2 times");
+  CHECK(complaint<2>({0, 1, 1, 1, 2, 3}) ==
+        "duet: knots: knot 3 = 1 is repeated more than 2 times");
   CHECK(complaint<3>({0, 0, 1, 1, 2, 2}) == "duet: knots: the domain is empty");
   CHECK(complaint<2>({0, 0, 5e-324, 5e-324}) ==
         "duet: knots: knot 1 = 0 and knot 2 = 4.94066e-324 are too close: a derivative overflows");

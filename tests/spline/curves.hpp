@@ -5,6 +5,7 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/knots.hpp>
 
@@ -46,7 +47,8 @@ struct named_knots {
   for (int times = 2; times <= std::min(order, 3); ++times) {
     std::vector<double> repeated = parameters;
     repeated.insert(repeated.begin() + 3, std::size_t(times) - 1, repeated[3]);
-    result.push_back({std::to_string(times) + "-fold inside", duet::clamped_knots(repeated, order)});
+    result.push_back(
+        {std::to_string(times) + "-fold inside", duet::clamped_knots(repeated, order)});
     result.push_back({std::to_string(times) + "-fold anywhere", uneven});
     std::vector<double>& anywhere = result.back().knots;
     for (std::size_t i = 2; i + 2 < anywhere.size(); i += 5) {
@@ -85,10 +87,21 @@ random_orientations(std::size_t count, double step, std::uint64_t seed = 1) {
     const auto n = random.direction<3>();
     const double half = random.uniform(0.3, 0.5) * (i == 0 ? 6 : step);
     const duet::vector3<double> v(n[0] * half, n[1] * half, n[2] * half);
-    q = q * duet::exp(v);
-    const double norm = std::sqrt(duet::norm2(q));
-    q = q / norm;
+    q = normalized(q * duet::exp(v));
     result.push_back(q);
+  }
+  return result;
+}
+
+/// Unit quaternions, each turned from the one before by exactly `angle` about any axis.
+[[nodiscard]] inline std::vector<duet::quaternion<double>>
+turned_by(double angle, std::size_t count, std::uint64_t seed) {
+  random_source random(seed);
+  std::vector<duet::quaternion<double>> result = {duet::quaternion<double>(1)};
+  while (result.size() < count) {
+    const auto n = random.direction<3>();
+    const duet::vector3<double> half(n[0] * angle / 2, n[1] * angle / 2, n[2] * angle / 2);
+    result.push_back(normalized(result.back() * duet::exp(half)));
   }
   return result;
 }
@@ -150,18 +163,29 @@ template <class R, class S>
   return sum;
 }
 
-/// Q(u), P2: the product over all control quaternions, of aligned signs. `at`: as above.
+/// q_0 ∏ exp(ω_i B̃_i(u)), P2: the product over all of them, of given ω_i. `at`: as above.
 template <class R, class S>
-[[nodiscard]] duet::quaternion<S> curve_definition(const std::vector<R>& knots, int order,
-                                                   const std::vector<duet::quaternion<R>>& controls,
-                                                   const S& u, const R& at) {
-  duet::quaternion<S> q(normalized(controls.front()));
-  for (std::size_t i = 1; i < controls.size(); ++i) {
-    const auto omega = log(inverse(controls[i - 1]) * controls[i]).vec();
+[[nodiscard]] duet::quaternion<S>
+product_definition(const std::vector<R>& knots, int order, const duet::quaternion<R>& first,
+                   const std::vector<duet::vector3<R>>& increments, const S& u, const R& at) {
+  duet::quaternion<S> q(first);
+  for (std::size_t i = 1; i < increments.size(); ++i) {
     const S b = cumulative_definition(knots, i, order, u, at);
+    const duet::vector3<R>& omega = increments[i];
     q = q * duet::exp(duet::vector3<S>(omega[0] * b, omega[1] * b, omega[2] * b));
   }
   return q;
+}
+
+/// ω_i = log(q_{i−1}⁻¹ q_i), P2, of aligned control quaternions.
+template <class R>
+[[nodiscard]] std::vector<duet::vector3<R>>
+increments_of(const std::vector<duet::quaternion<R>>& controls) {
+  std::vector<duet::vector3<R>> result(controls.size());
+  for (std::size_t i = 1; i < controls.size(); ++i) {
+    result[i] = log(inverse(controls[i - 1]) * controls[i]).vec();
+  }
+  return result;
 }
 
 } // namespace duet_test

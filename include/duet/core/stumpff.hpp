@@ -63,7 +63,7 @@ template <class T>
 [[nodiscard]] constexpr T inverse_factorial(int n) {
   T factorial(1);
   for (int i = 2; i <= n; ++i) {
-    factorial = factorial * i;
+    factorial = factorial * T(i);
   }
   return T(1) / factorial;
 }

@@ -122,7 +122,7 @@ namespace detail {
 
 /// A constant as the scalar that exponents and bases are held in: arithmetic types become reals.
 template <class D, class U>
-[[nodiscard]] DUET_ALWAYS_INLINE auto as_constant(const U& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto as_constant(const U& x) {
   if constexpr (arithmetic<U>) {
     return static_cast<real_type_t<D>>(x);
   } else {

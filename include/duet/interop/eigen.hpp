@@ -16,8 +16,10 @@ template <class T>
   return Eigen::Quaternion<T>(q.w(), q.x(), q.y(), q.z());
 }
 
-template <class T, int Options>
-[[nodiscard]] quaternion<T> from_eigen(const Eigen::Quaternion<T, Options>& q) {
+/// From a quaternion of Eigen, or one mapped to memory in the order x, y, z, w.
+template <class Derived>
+[[nodiscard]] quaternion<typename Derived::Scalar>
+from_eigen(const Eigen::QuaternionBase<Derived>& q) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 

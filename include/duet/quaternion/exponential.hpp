@@ -38,8 +38,9 @@ namespace detail {
 /// Below this ratio of squares of vector part and whole, a full turn is near: |v|⁻³ and higher
 /// powers in the derivatives by s would overflow before those by v do.
 template <real R>
-inline constexpr auto near_full_turn = R(std::numeric_limits<R>::max_exponent >= 1024 ? 0x1p-100
-                                                                                      : 0x1p-20);
+[[nodiscard]] R near_full_turn() {
+  return R(std::numeric_limits<R>::max_exponent >= 1024 ? 0x1p-100 : 0x1p-20);
+}
 
 /// The unit vector û along the vector part of q; undetermined where that is zero.
 template <class T>
@@ -62,7 +63,7 @@ template <class T>
       scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
   const quaternion<T> v(T(0), near_one.x(), near_one.y(), near_one.z());
   const T s = norm2(v);
-  if (innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>) {
+  if (innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>()) {
     return vector3<T>(v.vec() * arc_ratio(s, near_one.w()));
   }
   // atan2(|v|, w) = π − atan2(|v|, −w)
@@ -76,8 +77,8 @@ template <class T>
                                                        const T& square, const char* function) {
   using real = real_type_t<T>;
   const real& value = innermost(square);
-  if (!is_moderate(value) || (innermost(q.w()) < 0 && innermost(s) < value * near_full_turn<real>))
-      [[unlikely]] {
+  if (!is_moderate(value) ||
+      (innermost(q.w()) < 0 && innermost(s) < value * near_full_turn<real>())) [[unlikely]] {
     return log_vector_of_extreme(q, function);
   }
   const T ratio = arc_ratio(s, q.w());
@@ -98,7 +99,8 @@ template <class T>
     return log(square) / 2;
   }
   const int e = binary_exponent(largest_component(innermost_of(q)));
-  return log(norm2(scaled_down(q, e))) / 2 + e * constant::ln2<real_type_t<T>>();
+  using real = real_type_t<T>;
+  return log(norm2(scaled_down(q, e))) / 2 + real(e) * constant::ln2<real>();
 }
 
 } // namespace detail
@@ -158,12 +160,13 @@ template <class T, class S>
 /// \throws invalid_input for the zero quaternion
 template <class T, scalar_for<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow(const quaternion<T>& q, const S& exponent) {
+  const auto rho = detail::as_constant<promote_t<T, S>>(exponent);
   const auto s = innermost(q.x()) * innermost(q.x()) + innermost(q.y()) * innermost(q.y()) +
                  innermost(q.z()) * innermost(q.z());
   if (innermost(q.w()) < 0 && 64 * s < innermost(q.w()) * innermost(q.w())) [[unlikely]] {
-    return detail::pow_near_full_turn(q, exponent);
+    return detail::pow_near_full_turn(q, rho);
   }
-  return detail::pow_of_regular(q, detail::log_vector(q, "pow"), exponent);
+  return detail::pow_of_regular(q, detail::log_vector(q, "pow"), rho);
 }
 
 /// SLERP from a to b, both of unit norm: a (a* b)^τ (N9), along the shorter arc: b's sign is
@@ -181,7 +184,8 @@ template <class A, class B, class S>
                                difference.z());
   const vector3<T> v = detail::log_vector(relative, "slerp");
   using R = promote_t<T, S>;
-  return a * duet::exp(vector3<R>(v[0] * tau, v[1] * tau, v[2] * tau));
+  const auto t = detail::as_constant<R>(tau);
+  return a * duet::exp(vector3<R>(v[0] * t, v[1] * t, v[2] * t));
 }
 
 } // namespace duet

@@ -122,7 +122,8 @@ operator*(const quaternion<A>& p, const quaternion<B>& q) {
 template <class T, scalar_for<T> S>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
 operator*(const quaternion<T>& q, const S& a) {
-  return {q.w() * a, q.x() * a, q.y() * a, q.z() * a};
+  const auto factor = detail::as_constant<promote_t<T, S>>(a);
+  return {q.w() * factor, q.x() * factor, q.y() * factor, q.z() * factor};
 }
 template <class T, scalar_for<T> S>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
@@ -132,7 +133,8 @@ operator*(const S& a, const quaternion<T>& q) {
 template <class T, scalar_for<T> S>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
 operator/(const quaternion<T>& q, const S& a) {
-  return {q.w() / a, q.x() / a, q.y() / a, q.z() / a};
+  const auto divisor = detail::as_constant<promote_t<T, S>>(a);
+  return {q.w() / divisor, q.x() / divisor, q.y() / divisor, q.z() / divisor};
 }
 
 /// Componentwise, by value. q and −q are the same rotation but not the same quaternion.

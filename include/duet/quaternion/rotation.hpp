@@ -77,8 +77,14 @@ template <class T>
   // difference of equal ones are exact, so nothing cancels.
   const vector3<T> sum = u + v;
   const T w = sum.squaredNorm() / 2;
-  const quaternion<T> q(w, vector3<T>(innermost(w) < 1 ? u.cross(sum) : u.cross(v - u)));
-  if (!detail::is_zero(q)) {
+  const bool same_side = !(innermost(w) < 1);
+  const quaternion<T> q(w, vector3<T>(same_side ? u.cross(v - u) : u.cross(sum)));
+  const auto largest = [](const vector3<T>& x) {
+    return detail::largest_component(detail::innermost_of(quaternion<T>(T(0), x)));
+  };
+  // The sum is perpendicular to u, up to how far u and v are from unit length. Where that is all
+  // there is, they are opposite.
+  if (same_side || 4 * largest(q.vec()) > largest(sum)) {
     return normalized(q);
   }
   const auto chosen =

@@ -21,6 +21,9 @@
 
 namespace duet {
 
+/// For control quaternions: q and −q, the same rotation, are not to be exchanged.
+struct signs_as_given {};
+
 /// Q(u) = q_0 ∏_{i≥1} exp(ω_i B̃_i(u)), ω_i = log(q_{i−1}⁻¹ q_i): order k (degree k − 1), C^{k−2} at
 /// simple knots.
 ///
@@ -38,10 +41,18 @@ public:
   static constexpr int order = Order;
 
   /// As many control quaternions as the knots have basis functions. They are normalised, and their
-  /// signs aligned from the first to the last.
+  /// signs aligned from the first to the last, so that the curve takes the short way round.
   /// \throws invalid_input for a count that does not match, and as `aligned_orientations`
   cumulative_bspline(std::vector<real_type> knots, std::vector<quaternion<T>> controls)
-      : basis_(std::move(knots)), controls_(aligned_orientations(std::move(controls))) {
+      : cumulative_bspline(std::move(knots), aligned_orientations(std::move(controls)),
+                           signs_as_given{}) {}
+
+  /// The same with the signs as they are: from q_{i−1} to −q_i is the other way round than to q_i.
+  /// This is how to make a copy from another curve's `controls()`.
+  /// \throws invalid_input for a count that does not match, and as `unit_quaternions`
+  cumulative_bspline(std::vector<real_type> knots, std::vector<quaternion<T>> controls,
+                     signs_as_given)
+      : basis_(std::move(knots)), controls_(unit_quaternions(std::move(controls))) {
     if (controls_.size() != basis_.size()) {
       std::ostringstream message;
       message << "duet: cumulative_bspline: " << basis_.knots().size() << " knots of order "
@@ -75,13 +86,14 @@ public:
     auto m = evaluate<3>(u);
     using D = typename decltype(m.value)::scalar_type;
     if constexpr (detail::is_spatial(frame_of_result)) {
-      m.jerk = detail::sum(m.jerk, 2, detail::cross(m.velocity, m.acceleration));
+      m.jerk = detail::sum<2>(m.jerk, detail::cross(m.velocity, m.acceleration));
       m.velocity = rotate(m.value, m.velocity);
       m.acceleration = rotate(m.value, m.acceleration);
       m.jerk = rotate(m.value, m.jerk);
     }
-    using detail::product;
-    return duet::motion<D>{m.value, product(2, m.velocity), product(2, m.acceleration), product(2, m.jerk)};
+    const real_type_t<D> two(2);
+    return duet::motion<D>{m.value, detail::product(two, m.velocity),
+                           detail::product(two, m.acceleration), detail::product(two, m.jerk)};
   }
 
   /// Q, Q′ = Q w and Q″ = Q (a − |w|²) (P3, P4 in their true form).
@@ -101,7 +113,7 @@ private:
     using P = std::conditional_t<arithmetic<S>, real_type, S>;
     using D = promote_t<T, P>;
     const P u(parameter);
-    const std::size_t span = basis_.span_of(innermost(u));
+    const std::size_t span = basis_.span_of(static_cast<real_type>(innermost(u)));
     const std::size_t first = basis_.first_function(span);
     const auto weights = basis_.template weights<Rates>(span, u);
     if constexpr (std::same_as<D, T>) {

@@ -34,23 +34,23 @@ template <class T>
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// a + f b
-template <class T, class F>
-[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> sum(const vector3<T>& a, const F& f,
-                                                const vector3<T>& b) {
-  return {a[0] + f * b[0], a[1] + f * b[1], a[2] + f * b[2]};
-}
-
+/// f a, f of T or below.
 template <class T, class F>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> product(const F& f, const vector3<T>& a) {
   return {f * a[0], f * a[1], f * a[2]};
 }
 
-/// One step of the recursion below, with the i-th factor.
+/// a + b + b + …, n times b.
+template <int N = 1, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> sum(const vector3<T>& a, const vector3<T>& b) {
+  const real_type_t<T> n(N);
+  return {a[0] + n * b[0], a[1] + n * b[1], a[2] + n * b[2]};
+}
+
+/// One step of the recursion below, with the i-th factor e.
 template <int Rates, class T, class Weights>
-DUET_ALWAYS_INLINE void take_in_factor(motion<T>& m, std::size_t i, const vector3<T>& omega,
-                                       const Weights& b) {
-  const quaternion<T> e = duet::exp(product(b[0][i], omega));
+DUET_ALWAYS_INLINE void take_in_factor(motion<T>& m, std::size_t i, const quaternion<T>& e,
+                                       const vector3<T>& omega, const Weights& b) {
   m.value = m.value * e;
   if constexpr (Rates >= 1) {
     const vector3<T> first = product(b[1][i], omega);
@@ -66,15 +66,16 @@ DUET_ALWAYS_INLINE void take_in_factor(motion<T>& m, std::size_t i, const vector
     }
     const quaternion<T> back = conj(e);
     const vector3<T> w_hat = rotate(back, m.velocity);
-    m.velocity = sum(w_hat, 1, first);
+    m.velocity = sum(w_hat, first);
     if constexpr (Rates >= 2) {
       const vector3<T> a_hat = rotate(back, m.acceleration);
+      const vector3<T> second = product(b[2][i], omega);
       const vector3<T> turn = cross(w_hat, first);
-      m.acceleration = sum(sum(a_hat, b[2][i], omega), 2, turn);
+      m.acceleration = sum<2>(sum(a_hat, second), turn);
       if constexpr (Rates >= 3) {
-        const vector3<T> second = product(b[2][i], omega);
-        m.jerk = sum(sum(rotate(back, m.jerk), b[3][i], omega), 2, cross(w_hat, second));
-        m.jerk = sum(m.jerk, 4, sum(cross(a_hat, first), 1, cross(turn, first)));
+        m.jerk = sum(rotate(back, m.jerk), product(b[3][i], omega));
+        m.jerk = sum<2>(m.jerk, cross(w_hat, second));
+        m.jerk = sum<4>(m.jerk, sum(cross(a_hat, first), cross(turn, first)));
       }
     }
   }
@@ -95,14 +96,19 @@ template <int Rates, class T, class W, std::size_t Factors>
 product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments,
                         const std::array<std::array<W, Factors>, std::size_t(Rates) + 1>& weights) {
   motion<T> m{start, {}, {}, {}};
+  const auto factor = [&](std::size_t i) DUET_INLINE_LAMBDA {
+    return duet::exp(product(weights[0][i], increments[i]));
+  };
   if constexpr (real<T>) {
+    // All exponentials first: between them nothing else is alive that calls could force to memory.
     [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
-      (take_in_factor<Rates>(m, I, increments[I], weights), ...);
+      const std::array<quaternion<T>, Factors> e{factor(I)...};
+      (take_in_factor<Rates>(m, I, e[I], increments[I], weights), ...);
     }
     (std::make_index_sequence<Factors>{});
   } else { // unrolled, dual numbers would take the compiler too long
     for (std::size_t i = 0; i < Factors; ++i) {
-      take_in_factor<Rates>(m, i, increments[i], weights);
+      take_in_factor<Rates>(m, i, factor(i), increments[i], weights);
     }
   }
   return m;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -35,33 +36,41 @@ private:
 /// How far from 1 the norm of a given unit quaternion may be: tables are printed with few digits.
 inline constexpr double unit_norm_tolerance = 1e-3;
 
+/// The same quaternions, normalised.
+///
+/// \throws invalid_row for a quaternion that is not finite or whose norm is not 1
+template <class T>
+[[nodiscard]] std::vector<quaternion<T>> unit_quaternions(std::vector<quaternion<T>> q) {
+  using std::abs;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const auto length = norm(detail::innermost_of(q[i]));
+    if (!(abs(length - 1) <= unit_norm_tolerance)) {
+      std::ostringstream reason;
+      reason << "quaternion " << q[i];
+      if (length - length == 0) {
+        reason << " has norm " << length << ", not 1";
+      } else {
+        reason << " is not finite";
+      }
+      throw invalid_row(i, reason.str());
+    }
+    q[i] = normalized(q[i]);
+  }
+  return q;
+}
+
 /// The same rotations, normalised, each with the sign nearer to its predecessor's.
 ///
-/// \throws invalid_row for a quaternion that is not finite or whose norm is not 1, and where two
-/// neighbours are half a turn apart, so that either way round is as short
+/// \throws invalid_row as `unit_quaternions`, and where two neighbours are half a turn apart, so
+/// that either way round is as short
 template <class T>
 [[nodiscard]] std::vector<quaternion<T>> aligned_orientations(std::vector<quaternion<T>> q) {
   using std::abs;
-  const auto fail = [&](std::size_t row, const auto&... what) {
-    std::ostringstream reason;
-    (reason << ... << what);
-    throw invalid_row(row, reason.str());
-  };
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    const auto length = norm(detail::innermost_of(q[i]));
-    if (!(length - length == 0)) {
-      fail(i, "quaternion ", q[i], " is not finite");
-    }
-    if (abs(length - 1) > unit_norm_tolerance) {
-      fail(i, "quaternion ", q[i], " has norm ", length, ", not 1");
-    }
-    q[i] = normalized(q[i]);
-    if (i == 0) {
-      continue;
-    }
+  q = unit_quaternions(std::move(q));
+  for (std::size_t i = 1; i < q.size(); ++i) {
     const auto cosine = innermost(dot(q[i - 1], q[i]));
     if (abs(cosine) < 1e-9) {
-      fail(i, "half a turn from the row before: either way round is as short");
+      throw invalid_row(i, "half a turn from the row before: either way round is as short");
     }
     if (cosine < 0) {
       q[i] = -q[i];

@@ -16,8 +16,8 @@ namespace duet {
 /// First and second derivative of Q, twice: the letter of the print, and its spirit.
 template <class T>
 struct printed_derivatives {
-  /// P3 and P4 to the letter: a lone scalar B̃′_0 (B̃″_0) where ω_0 B̃′_0 belongs, the ω_i summed as
-  /// if they commuted, B̃″_i one term short.
+  /// P3 and P4 to the letter: a lone scalar B̃′_0 where ω_0 B̃′_0 belongs (B̃″_0 in both brackets of
+  /// P4), the ω_i summed as if they commuted, B̃″_i one term short.
   quaternion<T> literal_first, literal_second;
   /// The same commuting sums over all i, with the true B̃′_i and B̃″_i.
   quaternion<T> commuting_first, commuting_second;
@@ -49,11 +49,12 @@ template <class T, int Order>
     commuting_sum_of_second += omega * weights[2][j];
     const T width = knots[i + k - 1] - knots[i];
     const T shorter_width = knots[i + k - 2] - knots[i];
-    const T printed_first = (k - 1) / width * detail::bspline_value(knots, i, Order - 1, u, s.basis().back());
+    const T printed_first =
+        (k - 1) / width * detail::bspline_value(knots, i, Order - 1, u, s.basis().back());
     const T printed_second =
-        shorter_width > 0
-            ? T((k - 1) * (k - 2) / (width * shorter_width) * detail::bspline_value(knots, i, Order - 2, u, s.basis().back()))
-            : T(0);
+        shorter_width > 0 ? T((k - 1) * (k - 2) / (width * shorter_width) *
+                              detail::bspline_value(knots, i, Order - 2, u, s.basis().back()))
+                          : T(0);
     if (i == 1) { // the paper's B̃_0
       lone_first = printed_first;
       lone_second = printed_second;

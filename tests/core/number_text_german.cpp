@@ -1,0 +1,29 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/skip.hpp"
+
+#include <duet/core/number_text.hpp>
+
+#include <doctest/doctest.h>
+
+#include <clocale>
+#include <cstdlib>
+#include <string>
+
+TEST_CASE("the German C locale changes nothing") {
+  bool found = false;
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
+    found = found || std::setlocale(LC_ALL, name) != nullptr;
+  }
+  if (!found) {
+    duet_test::skip("the locale de_DE.UTF-8 is not installed");
+    return;
+  }
+  REQUIRE(std::strtod("1,5", nullptr) == 1.5); // the locale is in force
+  CHECK(duet::to_text(1234.5) == "1234.5");
+  CHECK(duet::to_text(0.25F) == "0.25");
+  CHECK(duet::to_text(0.25L) == "0.25");
+  CHECK(duet::parse_number("1234.5") == 1234.5);
+  CHECK_FALSE(duet::parse_number("1234,5").has_value());
+  std::setlocale(LC_ALL, "C");
+}

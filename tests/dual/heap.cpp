@@ -1,0 +1,87 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// Eigen asserts where it allocates; operator new is counted here.
+#define EIGEN_RUNTIME_NO_MALLOC
+
+#include <duet/dual/eigen_traits.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <new>
+
+using duet::dual;
+using duet::taylor;
+
+namespace {
+
+long allocations = 0;
+
+void* allocate(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) {
+    return p;
+  }
+  throw std::bad_alloc();
+}
+
+struct outer_tag;
+
+template <class D>
+D functions(const D& x) {
+  using vector = Eigen::Matrix<D, 3, 1>;
+  const Eigen::Matrix<D, 3, 3> r = Eigen::AngleAxis<D>(x, vector(0, 0, 1)).toRotationMatrix();
+  const vector b = r * vector(x, 1, sin(x)) + Eigen::Vector3d(4, 5, 6);
+  const D sum = b.normalized().cross(b).norm() + r.inverse().trace() + b.dot(b);
+  return pow(sum, 1.5) + atan2(sum, x) + hypot(sum, x, 2) + tgamma(x);
+}
+
+template <class D>
+D solutions(const D& x) {
+  Eigen::Matrix<D, 3, 3> a = Eigen::Matrix3d::Identity() * x;
+  a(0, 1) = a(1, 0) = x / 4;
+  const Eigen::Matrix<D, 3, 1> b(x, 1, sin(x));
+  return a.llt().solve(b).squaredNorm() + a.partialPivLu().solve(b).norm() +
+         a.householderQr().solve(b).dot(b) + a.determinant();
+}
+
+/// Allocations of f(x), which must be finite.
+template <class F, class D>
+long allocations_of(F f, const D& x) {
+  const long before = allocations;
+  Eigen::internal::set_is_malloc_allowed(false);
+  const D y = f(x);
+  Eigen::internal::set_is_malloc_allowed(true);
+  const long after = allocations;
+  CHECK(isfinite(y));
+  return after - before;
+}
+
+} // namespace
+
+void* operator new(std::size_t size) { return allocate(size); }
+void* operator new[](std::size_t size) { return allocate(size); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+
+TEST_CASE_TEMPLATE("functions of fixed size do not allocate", D, dual<double>, dual<double, 7>,
+                   taylor<double, 3>, dual<dual<double>, 1, outer_tag>) {
+  CHECK(allocations_of([](const D& x) { return functions(x); }, D::variable(0.5)) == 0);
+}
+
+TEST_CASE("solvers of fixed size do not allocate") {
+  using D = dual<double, 7>;
+  CHECK(allocations_of([](const D& x) { return solutions(x); }, D::variable(0.5)) == 0);
+}
+
+TEST_CASE("the counter counts") {
+  const long before = allocations;
+  delete new double(1);
+  CHECK(allocations == before + 1);
+}

@@ -1,0 +1,72 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/random.hpp"
+
+#include <duet/interop/eigen.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+
+// Eigen's rotations and duet's are the same: Hamilton product, active.
+
+using duet::dual;
+using duet::quaternion;
+using duet_test::random_source;
+
+namespace {
+
+quaternion<double> random_rotation(random_source& random) {
+  const auto d = random.direction<4>();
+  return normalized(quaternion<double>(d[0], d[1], d[2], d[3]));
+}
+
+} // namespace
+
+TEST_CASE("there and back without a change") {
+  const quaternion<double> q(1, 2, 3, 4);
+  const Eigen::Quaterniond e = duet::to_eigen(q);
+  CHECK(e.w() == 1);
+  CHECK(e.vec() == Eigen::Vector3d(2, 3, 4));
+  CHECK(duet::from_eigen(e) == q);
+  using D = dual<double>;
+  const quaternion<D> moving(D(1, 5), D(2, 6), D(3, 7), D(4, 8));
+  CHECK(duet::from_eigen(duet::to_eigen(moving)).z().epsilon() == 8);
+  double memory[] = {2, 3, 4, 1}; // x, y, z, w
+  CHECK(duet::from_eigen(Eigen::Map<Eigen::Quaterniond>(memory)) == q);
+}
+
+TEST_CASE("products, conjugates, matrices and rotated vectors agree") {
+  random_source random(1);
+  for (int i = 0; i < 100; ++i) {
+    const auto p = random_rotation(random);
+    const auto q = random_rotation(random);
+    const auto ep = duet::to_eigen(p);
+    const auto eq = duet::to_eigen(q);
+    const Eigen::Vector3d v(random.normal(), random.normal(), random.normal());
+    CHECK(norm(duet::from_eigen(ep * eq) - p * q) <= 1e-15);
+    CHECK(duet::from_eigen(ep.conjugate()) == conj(p));
+    CHECK((ep.toRotationMatrix() - rotation_matrix(p)).norm() <= 1e-15);
+    CHECK((ep * v - rotate(p, v)).norm() <= 1e-15 * (1 + v.norm()));
+    const auto back = duet::from_eigen(Eigen::Quaterniond(rotation_matrix(p)));
+    CHECK(norm(dot(back, p) < 0 ? -back - p : back - p) <= 2e-15);
+    const double tau = random.unit();
+    CHECK(norm(duet::from_eigen(ep.slerp(tau, eq)) - slerp(p, q, tau)) <= 1e-14);
+  }
+}
+
+TEST_CASE("axis and angle agree") {
+  random_source random(2);
+  for (int i = 0; i < 100; ++i) {
+    const auto d = random.direction<3>();
+    const Eigen::Vector3d n = Eigen::Vector3d(d[0], d[1], d[2]);
+    const double angle = random.uniform(-6, 6);
+    const Eigen::AngleAxisd turn(angle, n);
+    CHECK(norm(duet::from_eigen(turn) - duet::from_axis_angle(n, angle)) <= 1e-15);
+    CHECK(norm(duet::from_eigen(turn) - duet::from_rotation_vector(Eigen::Vector3d(angle * n))) <=
+          1e-15);
+  }
+}

@@ -1,0 +1,188 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/random.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/LU>
+
+#include <array>
+#include <cmath>
+
+// All twelve sequences of Euler angles.
+
+using duet::euler_sequence;
+using duet::quaternion;
+using duet_test::random_source;
+
+namespace {
+
+constexpr double pi = 3.141592653589793;
+
+template <class F>
+void for_each_sequence(const F& f) {
+  using namespace duet;
+  f.template operator()<xyz>();
+  f.template operator()<yzx>();
+  f.template operator()<zxy>();
+  f.template operator()<xzy>();
+  f.template operator()<yxz>();
+  f.template operator()<zyx>();
+  f.template operator()<xyx>();
+  f.template operator()<yzy>();
+  f.template operator()<zxz>();
+  f.template operator()<xzx>();
+  f.template operator()<yxy>();
+  f.template operator()<zyz>();
+}
+
+/// The matrix of a turn about a coordinate axis, entry by entry.
+Eigen::Matrix3d elementary(int axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  Eigen::Matrix3d m;
+  if (axis == 0) {
+    m << 1, 0, 0, 0, c, -s, 0, s, c;
+  } else if (axis == 1) {
+    m << c, 0, s, 0, 1, 0, -s, 0, c;
+  } else {
+    m << c, -s, 0, s, c, 0, 0, 0, 1;
+  }
+  return m;
+}
+
+template <euler_sequence S>
+Eigen::Matrix3d product_of_elementary(double a, double b, double c) {
+  return elementary(S.first, a) * elementary(S.second, b) * elementary(S.third, c);
+}
+
+/// A second angle inside its range, `margin` away from gimbal lock.
+template <euler_sequence S>
+double second_angle(random_source& random, double margin) {
+  return S.is_proper() ? random.uniform(margin, pi - margin)
+                       : random.uniform(-pi / 2 + margin, pi / 2 - margin);
+}
+
+/// The angles give q back, and lie in their ranges.
+template <euler_sequence S>
+double defect(const quaternion<double>& q) {
+  const auto [a, b, c] = duet::euler<S>(q);
+  const bool in_range = std::abs(a) <= pi && std::abs(c) <= pi &&
+                        (S.is_proper() ? b >= 0 && b <= pi : std::abs(b) <= pi / 2);
+  CHECK(in_range);
+  return (product_of_elementary<S>(a, b, c) - rotation_matrix(normalized(q))).norm();
+}
+
+} // namespace
+
+TEST_CASE("from_euler is the product of elementary rotations in the letters' order") {
+  for_each_sequence([]<euler_sequence S>() {
+    random_source random(81);
+    for (int i = 0; i < 30; ++i) {
+      const double a = random.uniform(-7, 7), b = random.uniform(-7, 7), c = random.uniform(-7, 7);
+      CHECK((rotation_matrix(duet::from_euler<S>(a, b, c)) - product_of_elementary<S>(a, b, c))
+                .norm() <= 3e-15);
+    }
+  });
+  // Yaw, pitch, roll of a vehicle, x forward, z up: pitching by 90 degrees turns x to −z.
+  const auto pitched = duet::from_euler<duet::zyx>(0.0, pi / 2, 0.0);
+  CHECK(
+      (rotate(pitched, duet::vector3<double>(1, 0, 0)) - duet::vector3<double>(0, 0, -1)).norm() <=
+      1e-15);
+}
+
+TEST_CASE("angles survive the way there and back") {
+  for_each_sequence([]<euler_sequence S>() {
+    random_source random(82);
+    for (int i = 0; i < 100; ++i) {
+      const double a = random.uniform(-pi, pi), c = random.uniform(-pi, pi);
+      const double b = second_angle<S>(random, 0.01);
+      const auto q = duet::from_euler<S>(a, b, c);
+      const double size = random.magnitude(1e-100, 1e100);
+      for (const auto& same_rotation : {q, -q, q * size}) {
+        const auto [a2, b2, c2] = duet::euler<S>(same_rotation);
+        CHECK(std::abs(std::remainder(a2 - a, 2 * pi)) <= 2e-13);
+        CHECK(std::abs(b2 - b) <= 2e-13);
+        CHECK(std::abs(std::remainder(c2 - c, 2 * pi)) <= 2e-13);
+      }
+    }
+  });
+}
+
+TEST_CASE("any rotation has angles in their ranges, in and near gimbal lock too") {
+  for_each_sequence([]<euler_sequence S>() {
+    random_source random(83);
+    for (int i = 0; i < 50; ++i) {
+      const auto d = random.direction<4>();
+      CHECK(defect<S>({d[0], d[1], d[2], d[3]}) <= 4e-15);
+    }
+    for (const double distance : {0.0, 1e-300, 1e-16, 1e-12, 1e-8, 1e-4}) {
+      for (const double end : {0.0, pi}) {
+        const double b = end - (S.is_proper() ? 0 : pi / 2) + (end == 0.0 ? distance : -distance);
+        const auto q = duet::from_euler<S>(random.uniform(-pi, pi), b, random.uniform(-pi, pi));
+        CHECK(defect<S>(q) <= 4e-15);
+        CHECK(defect<S>(-q) <= 4e-15);
+      }
+    }
+    for (int i = 0; i < 4; ++i) { // the identity and half turns about the axes
+      const quaternion<double> q(i == 0, i == 1, i == 2, i == 3);
+      CHECK(defect<S>(q) <= 1e-15);
+      CHECK(defect<S>(-q) <= 1e-15);
+    }
+  });
+}
+
+namespace {
+
+template <class T, euler_sequence S>
+std::array<T, 3> angles_along(const T& t, double b) {
+  using std::sin;
+  return {T(0.4 + 0.9 * t), T(b + 0.3 * sin(t)), T(-1.1 + t * t - 0.5 * t)};
+}
+
+} // namespace
+
+TEST_CASE("rates of the angles: AD of euler(q(t)), and the inverse of euler_rate_matrix") {
+  for_each_sequence([]<euler_sequence S>() {
+    for (const double b : {0.2, 0.8, 1.3}) {
+      const auto curve = [=](const auto& t) {
+        const auto [x, y, z] = angles_along<std::decay_t<decltype(t)>, S>(t, b);
+        return duet::from_euler<S>(x, y, z);
+      };
+      const double t = 0.1;
+      const auto there = duet::derivative(
+          [=](const auto& u) { return angles_along<std::decay_t<decltype(u)>, S>(u, b); }, t);
+      const auto back =
+          duet::derivative([&](const auto& u) { return duet::euler<S>(curve(u)); }, t);
+      const auto [q, q_dot] = duet::derivative(curve, t);
+      const duet::vector3<double> omega = angular_velocity(q, q_dot, duet::frame::spatial);
+      const duet::matrix3<double> A = duet::euler_rate_matrix<S>(there.value[0], there.value[1]);
+      const duet::vector3<double> by_matrix = A.inverse() * omega;
+      for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(std::abs(back.value[i] - there.value[i]) <= 1e-14);
+        CHECK(std::abs(back.derivative[i] - there.derivative[i]) <= 1e-13);
+        CHECK(std::abs(by_matrix[int(i)] - there.derivative[i]) <= 1e-13);
+      }
+    }
+  });
+}
+
+// The value at gimbal lock is right; derivatives there do not exist.
+TEST_CASE("in gimbal lock the angles give the rotation, without derivatives") {
+  const auto q = duet::from_euler<duet::zyx>(0.3, pi / 2, 0.1);
+  CHECK(defect<duet::zyx>(q) <= 1e-15);
+  const auto [value, slope] = duet::derivative(
+      [](const auto& t) {
+        using T = std::decay_t<decltype(t)>;
+        return duet::euler<duet::zxz>(quaternion<T>(T(1), t, T(0), T(0)));
+      },
+      0.0);
+  CHECK(value[1] == 0);
+  CHECK(std::isnan(slope[0]));
+}

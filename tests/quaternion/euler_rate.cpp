@@ -1,0 +1,124 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+#include "support/ulp.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/printed_euler_rate.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+// P5: angular velocity from the rates of yaw ψ, pitch θ and roll φ, R = Rz(ψ) Ry(θ) Rx(φ).
+
+using duet_test::random_source;
+using duet_test::real_50;
+using duet_test::worst_error;
+
+namespace {
+
+/// The matrix by hand, columns φ′, θ′, ψ′ as in the paper.
+template <class T>
+duet::matrix3<T> by_hand(const T& psi, const T& theta) {
+  using std::cos;
+  using std::sin;
+  duet::matrix3<T> a;
+  a << cos(psi) * cos(theta), -sin(psi), T(0), //
+      sin(psi) * cos(theta), cos(psi), T(0),   //
+      -sin(theta), T(0), T(1);
+  return a;
+}
+
+/// The library's columns are in the order of the letters z, y, x.
+template <class M>
+M in_paper_order(const M& letters) {
+  M m;
+  m << letters.col(2), letters.col(1), letters.col(0);
+  return m;
+}
+
+/// ω of given angles and rates by AD of the quaternion alone.
+duet::vector3<double> automatic(double psi, double theta, double phi, double psi_rate,
+                                double theta_rate, double phi_rate) {
+  const auto [q, q_dot] = duet::derivative(
+      [=](const auto& t) {
+        return duet::from_euler<duet::zyx>(psi + psi_rate * t, theta + theta_rate * t,
+                                           phi + phi_rate * t);
+      },
+      0.0);
+  return angular_velocity(q, q_dot, duet::frame::spatial);
+}
+
+} // namespace
+
+TEST_CASE("P5: the true matrix, by hand, by the library, by AD and in 50 digits") {
+  random_source random(91);
+  worst_error library("euler_rate_matrix<zyx>");
+  for (int i = 0; i < 100; ++i) {
+    const double psi = random.uniform(-3, 3), theta = random.uniform(-1.5, 1.5),
+                 phi = random.uniform(-3, 3);
+    const duet::vector3<double> rates(random.normal(), random.normal(), random.normal());
+    const duet::matrix3<double> a = in_paper_order(duet::euler_rate_matrix<duet::zyx>(psi, theta));
+    CHECK((a - by_hand(psi, theta)).norm() <= 1e-15);
+    CHECK((a * rates - automatic(psi, theta, phi, rates[2], rates[1], rates[0])).norm() <= 1e-14);
+    const auto exact = by_hand(real_50(psi), real_50(theta));
+    for (int k = 0; k < 9; ++k) {
+      library.add(duet_test::ulps(a(k), exact(k), real_50(1 + std::abs(psi) + std::abs(theta))),
+                  psi, theta);
+    }
+  }
+  CHECK_MESSAGE(library <= 4, library);
+}
+
+TEST_CASE("P5: as printed, element (3, 1) is -sin psi, and the angular velocity is wrong") {
+  random_source random(92);
+  for (int i = 0; i < 100; ++i) {
+    const double psi = random.uniform(-3, 3), theta = random.uniform(-1.5, 1.5);
+    const duet::matrix3<double> printed = duet::printed_euler_rate_matrix(psi, theta);
+    const duet::matrix3<double> difference = printed - by_hand(psi, theta);
+    CHECK(difference(2, 0) == std::sin(theta) - std::sin(psi));
+    CHECK(difference.cwiseAbs().sum() == std::abs(difference(2, 0)));
+  }
+  // Where yaw and pitch are equal the slip does not show.
+  CHECK(duet::printed_euler_rate_matrix(0.4, 0.4) == by_hand(0.4, 0.4));
+
+  const double psi = 0.1, theta = -0.7, phi = 0.3;
+  const duet::vector3<double> rates(1, 2, 3); // φ′, θ′, ψ′
+  const auto truth = automatic(psi, theta, phi, rates[2], rates[1], rates[0]);
+  const duet::vector3<double> printed = duet::printed_euler_rate_matrix(psi, theta) * rates;
+  CHECK((printed - truth).norm() ==
+        doctest::Approx(std::abs(std::sin(theta) - std::sin(psi)) * rates[0]));
+}
+
+TEST_CASE("P5: the derivative of delta, A'{...} + A{...}'', is AD's second derivative") {
+  const auto angles = [](const auto& u) {
+    using std::cos;
+    using std::sin;
+    using T = std::decay_t<decltype(u)>;
+    return duet::vector3<T>(T(0.3 + sin(u)), T(0.2 * u * u), T(cos(2 * u))); // φ, θ, ψ
+  };
+  const double u = 0.7;
+  const auto y = duet::derivatives<2>(angles, u);
+  const auto [a, a_dot] = duet::derivative(
+      [&](const auto& t) {
+        const auto v = angles(t);
+        return in_paper_order(duet::euler_rate_matrix<duet::zyx>(v[2], v[1]));
+      },
+      u);
+  const duet::vector3<double> by_formula = a_dot * y[1] + a * y[2];
+  const auto q = duet::derivatives<2>(
+      [&](const auto& t) {
+        const auto v = angles(t);
+        return duet::from_euler<duet::zyx>(v[2], v[1], v[0]);
+      },
+      u);
+  const auto by_quaternion = angular_velocity(q[0], q[2], duet::frame::spatial);
+  CHECK((a * y[1] - angular_velocity(q[0], q[1], duet::frame::spatial)).norm() <= 1e-14);
+  CHECK((by_formula - by_quaternion).norm() <= 1e-14);
+}

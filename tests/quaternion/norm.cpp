@@ -1,0 +1,116 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "quaternion/hard_inputs.hpp"
+#include "quaternion/truth.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+// N3: |q|, q/|q| and q⁻¹, for |q| from 1e-140 to 1e140, with first and second derivatives, against
+// 100 digits.
+
+using duet::quaternion;
+using duet_test::random_source;
+using duet_test::worst_error;
+namespace truth = duet_test::truth;
+
+namespace {
+
+truth::four exact_norm(const truth::four& q) { return {truth::length(q), 0, 0, 0}; }
+truth::four exact_direction(const truth::four& q) { return truth::times(q, 1 / truth::length(q)); }
+truth::four exact_inverse(const truth::four& q) {
+  return truth::times(truth::conj(q), 1 / (truth::length(q) * truth::length(q)));
+}
+
+bool overflows(const truth::four& x) { return truth::length(x) > 1e308; }
+
+/// The value and two derivatives along a direction of unit length. The function is homogeneous of
+/// this degree: its k-th derivatives are about k! |q|^(degree − k).
+template <class F, class G>
+void check(const char* name, int degree, const F& f, const G& exact_f) {
+  worst_error worst[3] = {worst_error(name), worst_error(name + std::string("'")),
+                          worst_error(name + std::string("''"))};
+  random_source random(41);
+  constexpr int next_factorial[] = {1, 2, 6};
+  for (const auto& q : duet_test::hard_quaternions()) {
+    const auto d = random.direction<4>();
+    const quaternion<double> q_dot(d[0], d[1], d[2], d[3]);
+    const auto y = duet::derivatives<2>([&](const auto& t) { return f(q + t * q_dot); }, 0.0);
+    const truth::four x = truth::wide(q);
+    const truth::four dx = truth::wide(q_dot);
+    const truth::real size = truth::length(x);
+    std::array<truth::four, 3> exact;
+    for (int k = 0; k <= 2; ++k) {
+      exact[std::size_t(k)] = truth::difference(
+          [&](const truth::real& t) { return exact_f(truth::sum(x, dx, t)); }, k, size);
+    }
+    for (std::size_t k = 0; k <= 2; ++k) {
+      if (!overflows(exact[k])) {
+        worst[k].add(truth::ulps(y[k], exact[k], next_factorial[k] * pow(size, degree - int(k))), q,
+                     q_dot);
+      }
+    }
+  }
+  for (const worst_error& w : worst) {
+    CHECK_MESSAGE(w <= 4, w);
+  }
+}
+
+} // namespace
+
+TEST_CASE("N3: norm") {
+  check(
+      "norm", 1,
+      [](const auto& q) {
+        using T = typename std::decay_t<decltype(q)>::scalar_type;
+        return quaternion<T>(norm(q));
+      },
+      exact_norm);
+}
+TEST_CASE("N3: normalized") {
+  check(
+      "normalized", 0, [](const auto& q) { return normalized(q); }, exact_direction);
+}
+TEST_CASE("N3: inverse") {
+  check(
+      "inverse", -1, [](const auto& q) { return inverse(q); }, exact_inverse);
+}
+
+TEST_CASE("norms at the ends of the range") {
+  constexpr double least = 5e-324;
+  constexpr double largest = 1.7976931348623157e308;
+  CHECK(norm(quaternion<double>(0, least, 0, 0)) == least);
+  CHECK(norm(quaternion<double>(0, 0, -largest, 0)) == largest);
+  CHECK(std::isinf(norm(quaternion<double>(0, largest, largest, 0))));
+  CHECK(norm(normalized(quaternion<double>(0, 1e308, 1e308, 1e308))) ==
+        doctest::Approx(1).epsilon(1e-15));
+  CHECK(normalized(quaternion<double>(0, 0, 0, least)) == quaternion<double>(0, 0, 0, 1));
+  CHECK(std::isinf(norm(quaternion<double>(0, HUGE_VAL, 0, 0))));
+  CHECK(std::isnan(norm(quaternion<double>(0, std::nan(""), 0, 1e200))));
+  CHECK(norm(quaternion<float>(0, 1e-30F, 0, 1e-30F)) ==
+        doctest::Approx(1.41421356e-30).epsilon(1e-6));
+  CHECK(norm(quaternion<float>(0, 1e30F, 0, 1e30F)) ==
+        doctest::Approx(1.41421356e30).epsilon(1e-6));
+}
+
+TEST_CASE("N3: q times its inverse is 1; the inverse of a unit is its conjugate") {
+  random_source random(42);
+  for (int i = 0; i < 100; ++i) {
+    const auto d = random.direction<4>();
+    const double size = random.magnitude(1e-140, 1e140);
+    const quaternion<double> q(size * d[0], size * d[1], size * d[2], size * d[3]);
+    CHECK(norm(q * inverse(q) - quaternion<double>(1)) <= 1e-15);
+    CHECK(norm(inverse(q) * q - quaternion<double>(1)) <= 1e-15);
+    const auto unit = normalized(q);
+    CHECK(norm(inverse(unit) - conj(unit)) <= 1e-15);
+  }
+}

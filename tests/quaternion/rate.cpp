@@ -1,0 +1,168 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "quaternion/truth.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+// N7 and N8: rates of unit quaternions and angular velocities, in both frames.
+
+using duet::quaternion;
+using duet::vector3;
+using duet_test::random_source;
+using duet_test::worst_error;
+namespace frame = duet::frame;
+namespace truth = duet_test::truth;
+
+namespace {
+
+quaternion<double> random_rotation(random_source& random) {
+  const auto d = random.direction<4>();
+  return {d[0], d[1], d[2], d[3]};
+}
+vector3<double> random_vector(random_source& random) {
+  return {random.normal(), random.normal(), random.normal()};
+}
+
+/// A motion that turns about three axes at once, over any scalar.
+template <class T>
+quaternion<T> motion(const T& t) {
+  using std::sin;
+  const auto turn = [](const vector3<double>& axis, const T& angle) {
+    return duet::exp(vector3<T>(axis[0] * angle, axis[1] * angle, axis[2] * angle));
+  };
+  return turn({0.3, -0.2, 0.9}, t) * turn({-0.5, 1, 0.1}, T(t * t)) *
+         turn({1, 0.4, -0.7}, T(sin(2 * t)));
+}
+
+/// The coefficient of ε in every entry.
+template <class M>
+Eigen::Matrix3d slope(const M& m) {
+  return m.unaryExpr([](const auto& x) { return x.epsilon(); }).template cast<double>();
+}
+
+} // namespace
+
+TEST_CASE("N7: the angular velocity from the rate is that of the rotation matrix") {
+  // ω̂^s = Ṙ Rᵀ and ω̂^b = Rᵀ Ṙ, by AD of the matrix alone.
+  for (double t = -2; t <= 2; t += 0.125) {
+    const auto [q, q_dot] = duet::derivative([](const auto& u) { return motion(u); }, t);
+    const auto matrix = rotation_matrix(motion(duet::dual<double>::variable(t)));
+    const Eigen::Matrix3d r = rotation_matrix(q);
+    const Eigen::Matrix3d r_dot = slope(matrix);
+    const Eigen::Matrix3d spatial = r_dot * r.transpose();
+    const Eigen::Matrix3d body = r.transpose() * r_dot;
+    const vector3<double> omega_s = angular_velocity(q, q_dot, frame::spatial);
+    const vector3<double> omega_b = angular_velocity(q, q_dot, frame::body);
+    CHECK((omega_s - vector3<double>(spatial(2, 1), spatial(0, 2), spatial(1, 0))).norm() <= 1e-14);
+    CHECK((omega_b - vector3<double>(body(2, 1), body(0, 2), body(1, 0))).norm() <= 1e-14);
+    CHECK((omega_s - rotate(q, omega_b)).norm() <= 1e-14);
+    // A unit quaternion leaves no scalar part.
+    CHECK(std::abs((q_dot * conj(q)).w()) <= 1e-15);
+  }
+}
+
+TEST_CASE("N7: against 100 digits") {
+  worst_error spatial("spatial");
+  worst_error body("body");
+  worst_error rate_s("rate from spatial");
+  worst_error rate_b("rate from body");
+  random_source random(71);
+  for (int i = 0; i < 200; ++i) {
+    const auto q = random_rotation(random);
+    const auto q_dot = random_rotation(random) * random.magnitude(1e-8, 1e8);
+    const auto wide_q = truth::wide(q);
+    const auto wide_rate = truth::wide(q_dot);
+    auto exact_s = truth::times(truth::product(wide_rate, truth::conj(wide_q)), 2);
+    auto exact_b = truth::times(truth::product(truth::conj(wide_q), wide_rate), 2);
+    exact_s[0] = 0;
+    exact_b[0] = 0;
+    const truth::real scale = 2 * truth::length(wide_rate);
+    spatial.add(truth::ulps(quaternion<double>(0, angular_velocity(q, q_dot, frame::spatial)),
+                            exact_s, scale),
+                q, q_dot);
+    body.add(
+        truth::ulps(quaternion<double>(0, angular_velocity(q, q_dot, frame::body)), exact_b, scale),
+        q, q_dot);
+
+    const vector3<double> omega = random_vector(random);
+    const truth::four wide_omega = truth::wide(quaternion<double>(0, omega));
+    const auto back_s = truth::times(truth::product(wide_omega, wide_q), 0.5);
+    const auto back_b = truth::times(truth::product(wide_q, wide_omega), 0.5);
+    rate_s.add(
+        truth::ulps(quaternion_rate(q, omega, frame::spatial), back_s, truth::length(back_s)), q,
+        omega.transpose());
+    rate_b.add(truth::ulps(quaternion_rate(q, omega, frame::body), back_b, truth::length(back_b)),
+               q, omega.transpose());
+  }
+  for (const auto& w : {spatial, body, rate_s, rate_b}) {
+    CHECK_MESSAGE(w <= 4, w);
+  }
+}
+
+TEST_CASE("N7: rate and angular velocity are inverse") {
+  random_source random(72);
+  for (int i = 0; i < 50; ++i) {
+    const auto q = random_rotation(random);
+    const vector3<double> omega = random_vector(random);
+    CHECK((angular_velocity(q, quaternion_rate(q, omega, frame::spatial), frame::spatial) - omega)
+              .norm() <= 5e-15);
+    CHECK(
+        (angular_velocity(q, quaternion_rate(q, omega, frame::body), frame::body) - omega).norm() <=
+        5e-15);
+  }
+}
+
+TEST_CASE("N8: E and G as printed, ω = 2 E q̇ = 2 R G q̇, E Gᵀ = R") {
+  const quaternion<double> named(10, 1, 2, 3);
+  Eigen::Matrix<double, 3, 4> e;
+  e << -1, 10, -3, 2, -2, 3, 10, -1, -3, -2, 1, 10;
+  Eigen::Matrix<double, 3, 4> g;
+  g << -1, 10, 3, -2, -2, -3, 10, 1, -3, 2, -1, 10;
+  CHECK(rate_matrix(named, frame::spatial) == e);
+  CHECK(rate_matrix(named, frame::body) == g);
+
+  random_source random(73);
+  for (int i = 0; i < 50; ++i) {
+    const auto q = random_rotation(random);
+    const auto q_dot = random_rotation(random);
+    const Eigen::Vector4d column(q_dot.w(), q_dot.x(), q_dot.y(), q_dot.z());
+    const Eigen::Matrix<double, 3, 4> E = rate_matrix(q, frame::spatial);
+    const Eigen::Matrix<double, 3, 4> G = rate_matrix(q, frame::body);
+    CHECK((2 * E * column - angular_velocity(q, q_dot, frame::spatial)).norm() <= 2e-15);
+    CHECK((2 * G * column - angular_velocity(q, q_dot, frame::body)).norm() <= 2e-15);
+    CHECK((E * G.transpose() - rotation_matrix(q)).norm() <= 2e-15);
+    // The rows are perpendicular to q and to each other: q̇ = ½ Eᵀ ω.
+    CHECK((E * E.transpose() - Eigen::Matrix3d::Identity()).norm() <= 2e-15);
+    CHECK((E * Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())).norm() <= 2e-15);
+    const vector3<double> omega = random_vector(random);
+    const auto rate = quaternion_rate(q, omega, frame::spatial);
+    CHECK((0.5 * E.transpose() * omega - Eigen::Vector4d(rate.w(), rate.x(), rate.y(), rate.z()))
+              .norm() <= 2e-15);
+  }
+}
+
+// Angular acceleration: the derivative of 2 q̇ q* is 2 q̈ q*, its scalar part left out.
+TEST_CASE("N7: angular velocity of a Taylor number carries the angular acceleration") {
+  const double t = 0.4;
+  const auto ys = duet::derivatives<2>([](const auto& u) { return motion(u); }, t);
+  const auto by_ad = duet::derivative(
+      [](const auto& u) {
+        struct inner;
+        const auto [q, q_dot] = duet::derivative<inner>([](const auto& w) { return motion(w); }, u);
+        return angular_velocity(q, q_dot, frame::spatial);
+      },
+      t);
+  const vector3<double> alpha = angular_velocity(ys[0], ys[2], frame::spatial);
+  CHECK((by_ad.value - angular_velocity(ys[0], ys[1], frame::spatial)).norm() <= 1e-14);
+  CHECK((by_ad.derivative - alpha).norm() <= 5e-14);
+}

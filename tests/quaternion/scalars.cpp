@@ -1,0 +1,104 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "quaternion/truth.hpp"
+#include "support/random.hpp"
+
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+// N3, N4, N5, N9 over every kind of scalar, each at its own precision.
+
+using duet::dual;
+using duet::quaternion;
+using duet_test::random_source;
+using duet_test::real_50;
+namespace truth = duet_test::truth;
+
+namespace {
+
+struct outer;
+using nested = dual<dual<double>, 2, outer>;
+using duet_test::real_100;
+
+template <class T>
+quaternion<real_100> widened(const quaternion<T>& q) {
+  const auto value = duet::detail::innermost_of(q);
+  return {real_100(value.w()), real_100(value.x()), real_100(value.y()), real_100(value.z())};
+}
+
+/// Distance of the values from the truth, in units of the type's own epsilon.
+template <class T>
+double distance(const quaternion<T>& q, const truth::four& exact) {
+  const real_100 epsilon(std::numeric_limits<duet::real_type_t<T>>::epsilon());
+  return double(real_100(truth::length(truth::sum(truth::wide(widened(q)), exact, -1)) / epsilon));
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("values do not depend on the scalar", T, float, double, long double,
+                   dual<double>, dual<float, 3>, nested, duet::taylor<double, 2>, real_50) {
+  using real = duet::real_type_t<T>;
+  random_source random(61);
+  const double sizes[] = {1e-30, 1e-8, 1e-4, 0.1, 0.7, 0.99, 1.01, 1.4, 2.1, 2.9, 3.1415};
+  for (const double size : sizes) {
+    const auto d = random.direction<3>();
+    const quaternion<T> v(T(0), T(real(size * d[0])), T(real(size * d[1])), T(real(size * d[2])));
+    const auto x = truth::wide(widened(v));
+    const auto e = duet::exp(v);
+    CHECK(distance(e, truth::exp(x)) <= 2);
+    const auto y = truth::wide(widened(e));
+    if (size < 3) {
+      CHECK(distance(log(e), truth::log(y)) <= 8);
+    }
+    CHECK(distance(pow(e, real(0.3F)), truth::pow(y, real_100(0.3F))) <= 8);
+    CHECK(distance(pow(e, T(2)), truth::product(y, y)) <= 8);
+    const quaternion<T> a = normalized(quaternion<T>(T(1), T(real(d[1])), T(real(d[2])), T(2)));
+    const auto b = size < 1.5 ? a * e : a * -e;
+    CHECK(distance(slerp(a, b, real(0.25F)),
+                   truth::slerp(truth::wide(widened(a)), truth::wide(widened(b)), 0.25)) <=
+          (size < 1.5 || size > 1.7 ? 8 : 1e3));
+    CHECK(distance(inverse(e) * e, {1, 0, 0, 0}) <= 4);
+    CHECK(distance(quaternion<T>(norm(e)), {truth::length(y), 0, 0, 0}) <= 2);
+    const auto matrix = rotation_matrix(e);
+    CHECK(distance(duet::from_rotation_matrix(matrix),
+                   duet::innermost(dot(e, duet::from_rotation_matrix(matrix))) < 0
+                       ? truth::times(y, -1)
+                       : y) <= 8);
+  }
+}
+
+TEST_CASE("a full turn in single precision") {
+  for (const float length : {1e-30F, 1e-20F, 1e-10F, 1e-5F, 1e-3F}) {
+    using D = dual<float>;
+    const quaternion<D> q(D(-1), D(0), D(length, 1.0F), D(0));
+    const auto l = log(q);
+    CHECK(float(l.y()) == doctest::Approx(3.14159265F - length).epsilon(1e-6));
+    CHECK(l.y().epsilon() == doctest::Approx(-1).epsilon(1e-3));
+    const auto across = log(quaternion<D>(D(-1), D(0, 1.0F), D(length), D(0)));
+    CHECK(across.x().epsilon() == doctest::Approx(3.14159265F / length - 1).epsilon(1e-5));
+  }
+}
+
+// Constants with and without derivatives meet in one expression.
+TEST_CASE("mixed scalars") {
+  using D = dual<double>;
+  const quaternion<double> a(0.6, 0, 0.8, 0);
+  const quaternion<double> b(0.6, 0.8, 0, 0);
+  const D tau = D::variable(0.3);
+  const auto [value, rate] = [&] {
+    const auto q = slerp(a, b, tau);
+    static_assert(std::is_same_v<decltype(q), const quaternion<D>>);
+    return std::pair(widened(q), quaternion<double>(q.w().epsilon(), q.x().epsilon(),
+                                                    q.y().epsilon(), q.z().epsilon()));
+  }();
+  CHECK(distance(slerp(a, b, 0.3), truth::wide(value)) == 0);
+  CHECK(norm(rate - slerp(a, b, 0.3) * quaternion<double>(0, log(conj(a) * b).vec())) <= 1e-15);
+  CHECK(pow(a, tau) == pow(a, 0.3));
+  CHECK(slerp(a, quaternion<D>(b), 0.3) == slerp(a, b, 0.3));
+  CHECK(pow(quaternion<float>(0.6F, 0.8F, 0, 0), 2).w() == doctest::Approx(-0.28).epsilon(1e-6));
+}

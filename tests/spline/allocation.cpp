@@ -1,0 +1,55 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/tangent.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/printed.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace {
+std::size_t allocations = 0;
+} // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* block = std::malloc(size)) {
+    return block;
+  }
+  throw std::bad_alloc();
+}
+void operator delete(void* block) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+
+TEST_CASE("evaluation allocates nothing") {
+  const auto knots = duet_test::knot_vectors(4)[1].knots;
+  const duet::cumulative_bspline<double> s(knots,
+                                           duet_test::random_orientations(knots.size() - 4, 1));
+  const auto parameters = duet_test::parameters_on(knots, 4);
+  double sum = 0;
+  const std::size_t before = allocations;
+  for (const double u : parameters) {
+    sum += s(u).w();
+    sum += s.motion(u, duet::frame::body).jerk[0];
+    sum += s.motion(u, duet::frame::spatial).acceleration[1];
+    sum += s.derivatives(u)[2].z();
+    sum += duet::printed_derivative(s, u).literal_second.x();
+    sum += s(duet::dual<double>::variable(u)).w().epsilon();
+    sum += duet::derivatives<2>([&](const auto& x) { return s(x); }, u)[2].y();
+  }
+  const std::size_t during = allocations - before;
+  CHECK(during == 0);
+  CHECK(sum == sum);
+
+  const std::size_t start = allocations; // the counter itself works
+  const std::vector<double> copy = parameters;
+  CHECK(allocations > start);
+  CHECK(copy.size() == parameters.size());
+}

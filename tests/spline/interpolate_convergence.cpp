@@ -1,0 +1,140 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/tangent.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/printed.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+using duet_test::distance;
+
+using spline = duet::cumulative_bspline<double>;
+using quaternion = duet::quaternion<double>;
+using vector = duet::vector3<double>;
+
+namespace {
+
+/// A smooth motion whose rotations do not commute, u in [0, 2], and its derivatives.
+template <class S>
+duet::quaternion<S> motion(const S& u) {
+  using std::cos;
+  using std::exp;
+  using std::sin;
+  return duet::from_euler<duet::zyx>(S(1.3 * sin(1.1 * u + 0.2)), S(0.9 * cos(1.7 * u)),
+                                     S(0.8 * u * exp(-0.3 * u)));
+}
+
+struct truth {
+  explicit truth(double u) {
+    const auto q = duet::derivatives<2>([](const auto& x) { return motion(x); }, u);
+    value = q[0];
+    second = q[2];
+    velocity = duet::angular_velocity(q[0], q[1], duet::frame::spatial);
+    acceleration = 2 * (q[2] * conj(q[0]) + q[1] * conj(q[1])).vec();
+  }
+  quaternion value, second;
+  vector velocity, acceleration;
+};
+
+/// Largest errors: value, ω, α, Q″ of the curve, Q″ by the commuting sum (P4 as printed).
+using errors = std::array<double, 5>;
+
+/// Errors between the parameters a and b of a table with so many steps.
+template <class Place, class Ends>
+errors measure(int steps, Place place, const Ends& ends, double a, double b) {
+  std::vector<double> u;
+  std::vector<quaternion> q;
+  for (int i = 0; i <= steps; ++i) {
+    u.push_back(place(2.0 * i / steps));
+    q.push_back(motion(u.back()));
+  }
+  const spline s = duet::interpolate<spline>(u, q, ends);
+  errors worst{};
+  constexpr int samples = 4001;
+  for (int i = 0; i < samples; ++i) {
+    const double at = a + (b - a) * i / (samples - 1);
+    const truth exact(at);
+    const auto m = s.motion(at, duet::frame::spatial);
+    const double sign = dot(exact.value, m.value) < 0 ? -1 : 1;
+    const errors here = {
+        distance(exact.value, sign * m.value), (exact.velocity - m.velocity).norm(),
+        (exact.acceleration - m.acceleration).norm(),
+        distance(exact.second, sign * s.derivatives(at)[2]),
+        distance(exact.second, sign * duet::printed_derivative(s, at).commuting_second)};
+    for (std::size_t k = 0; k < worst.size(); ++k) {
+      worst[k] = std::max(worst[k], here[k]);
+    }
+  }
+  return worst;
+}
+
+/// Observed orders from 80 steps to 160.
+template <class Place, class Ends>
+errors orders(Place place, const Ends& ends, double a, double b) {
+  const errors coarse = measure(80, place, ends, a, b);
+  const errors fine = measure(160, place, ends, a, b);
+  errors result;
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    result[k] = std::log2(coarse[k] / fine[k]);
+  }
+  return result;
+}
+
+double uniform(double u) { return u; }
+/// From 0 to 2 with steps that change smoothly, by a factor of 3.
+double graded(double u) { return u + 0.25 * (1 - std::cos(std::acos(-1.0) * u)) * u * (2 - u); }
+
+duet::clamped<double> exact_rates() { return {truth(0).velocity, truth(2).velocity}; }
+
+} // namespace
+
+TEST_CASE("exact end rates: value h³, ω h², angular acceleration h") {
+  for (const auto place : {uniform, graded}) {
+    const errors order = orders(place, exact_rates(), 0, 2);
+    CHECK(order[0] == doctest::Approx(3).epsilon(0.1));
+    CHECK(order[1] == doctest::Approx(2).epsilon(0.1));
+    CHECK(order[2] == doctest::Approx(1).epsilon(0.1));
+  }
+}
+
+TEST_CASE("natural ends: as good inside, but the wrong acceleration at the ends") {
+  const errors inside = orders(uniform, duet::natural{}, 0.7, 1.3);
+  CHECK(inside[0] == doctest::Approx(3).epsilon(0.1));
+  CHECK(inside[1] == doctest::Approx(2).epsilon(0.1));
+  CHECK(inside[2] == doctest::Approx(1).epsilon(0.1));
+
+  const errors at_ends = orders(uniform, duet::natural{}, 0, 2);
+  CHECK(at_ends[0] == doctest::Approx(2).epsilon(0.1));
+  CHECK(at_ends[1] == doctest::Approx(1).epsilon(0.1));
+  CHECK(std::abs(at_ends[2]) < 0.1);
+  const double wrong = std::max(truth(0).acceleration.norm(), truth(2).acceleration.norm());
+  CHECK(measure(160, uniform, duet::natural{}, 0, 2)[2] == doctest::Approx(wrong).epsilon(0.01));
+}
+
+TEST_CASE(
+    "P4: the commuting sum is not the curve's derivative, but can be nearer to the motion's") {
+  // The cumulative cubic's own Q″ is first-order accurate because of commutators of neighbouring
+  // ω_i. Leaving them out, as the print does, leaves their error out too.
+  for (const auto place : {uniform, graded}) {
+    const errors order = orders(place, exact_rates(), 0.7, 1.3);
+    CHECK(order[3] == doctest::Approx(1).epsilon(0.1));
+    CHECK(order[4] == doctest::Approx(2).epsilon(0.1));
+    const errors fine = measure(160, place, exact_rates(), 0.7, 1.3);
+    CHECK(fine[4] < fine[3] / 5);
+  }
+  // Where the end knots repeat, that luck is over.
+  const errors order = orders(uniform, exact_rates(), 0, 2);
+  CHECK(order[3] == doctest::Approx(1).epsilon(0.1));
+  CHECK(order[4] == doctest::Approx(1).epsilon(0.1));
+}
