@@ -22,10 +22,16 @@ pose_and_jacobian by_hand(const joint_angles& angles) {
   pose_jacobian jacobian;
   const auto [position, rotation] = fk7_by_hand(angles, jacobian);
   pose_and_jacobian result;
-  for (std::size_t i = 0; i < 3; ++i) { result[i] = position[i]; }
-  for (std::size_t i = 0; i < 4; ++i) { result[3 + i] = rotation[i]; }
+  for (std::size_t i = 0; i < 3; ++i) {
+    result[i] = position[i];
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    result[3 + i] = rotation[i];
+  }
   for (std::size_t i = 0; i < 7; ++i) {
-    for (std::size_t j = 0; j < joints; ++j) { result[7 + joints * i + j] = jacobian[i][j]; }
+    for (std::size_t j = 0; j < joints; ++j) {
+      result[7 + joints * i + j] = jacobian[i][j];
+    }
   }
   return result;
 }
@@ -39,8 +45,12 @@ pose_and_jacobian by_differentiation(const joint_angles& angles) {
     result[i] = Library::value(part);
     Library::template write_partials<joints>(part, &result[7 + joints * i]);
   };
-  for (std::size_t i = 0; i < 3; ++i) { write(i, y.position[i]); }
-  for (std::size_t i = 0; i < 4; ++i) { write(3 + i, y.rotation[i]); }
+  for (std::size_t i = 0; i < 3; ++i) {
+    write(i, y.position[i]);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    write(3 + i, y.rotation[i]);
+  }
   return result;
 }
 

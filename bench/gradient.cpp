@@ -28,7 +28,9 @@ std::array<double, N + 1> gradient_by(const inputs<double, N>& at) {
 template <std::size_t N>
 void add() {
   inputs<double, N> at;
-  for (std::size_t i = 0; i < N; ++i) { at[i] = 0.3 + 0.9 * std::sin(1.0 + double(i)); }
+  for (std::size_t i = 0; i < N; ++i) {
+    at[i] = 0.3 + 0.9 * std::sin(1.0 + double(i));
+  }
   const std::string workload = "gradient_" + std::to_string(N);
   const auto expected = gradient_by<duet_contender>(at);
   contest(workload, "value", at, [](const auto& x) { return f_grad(x); });

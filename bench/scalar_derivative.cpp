@@ -35,7 +35,9 @@ template <int K>
 std::array<double, K + 1> by_taylor(double x) {
   const auto y = f_scalar(duet::taylor<double, K>::variable(x));
   std::array<double, K + 1> result;
-  for (int k = 0; k <= K; ++k) { result[std::size_t(k)] = y.derivative(k); }
+  for (int k = 0; k <= K; ++k) {
+    result[std::size_t(k)] = y.derivative(k);
+  }
   return result;
 }
 
@@ -53,8 +55,7 @@ std::array<double, 4> by_nested_dual_3(double x) {
   using inner_number = duet::dual<double>;
   using middle_number = duet::dual<inner_number, 1, duet::derivative_tag<middle>>;
   using number = duet::dual<middle_number, 1, duet::derivative_tag<outer>>;
-  const number y =
-      f_scalar(number::variable(middle_number::variable(inner_number::variable(x))));
+  const number y = f_scalar(number::variable(middle_number::variable(inner_number::variable(x))));
   return {y.value().value().value(), y.value().value().epsilon(), y.value().epsilon().epsilon(),
           y.epsilon().epsilon().epsilon()};
 }
@@ -64,7 +65,9 @@ template <int K>
 std::array<double, K + 1> by_boost(double x) {
   const auto y = f_scalar(boost::math::differentiation::make_fvar<double, K>(x));
   std::array<double, K + 1> result;
-  for (int k = 0; k <= K; ++k) { result[std::size_t(k)] = y.derivative(std::size_t(k)); }
+  for (int k = 0; k <= K; ++k) {
+    result[std::size_t(k)] = y.derivative(std::size_t(k));
+  }
   return result;
 }
 #endif
@@ -76,8 +79,7 @@ const bool registered = [] {
   for_each_contender([&](auto contender) {
     using library = decltype(contender);
     add(first, library::name, one, [](double x) {
-      const typename library::template number<1> y =
-          f_scalar(library::template variable<1>(x, 0));
+      const typename library::template number<1> y = f_scalar(library::template variable<1>(x, 0));
       std::array<double, 2> result;
       result[0] = library::value(y);
       library::template write_partials<1>(y, &result[1]);

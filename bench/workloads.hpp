@@ -60,10 +60,17 @@ S f_grad(const inputs<S, N>& x) {
     const S& b = x[i + 1 < N ? i + 1 : 0];
     const S u = a * b + 0.5 * carry;
     switch (i % 4) {
-    case 0: carry = sin(u); break;
-    case 1: carry = exp(-u); break;
-    case 2: carry = sqrt(1.0 + u * u); break;
-    default: carry = u / (2.0 + a);
+    case 0:
+      carry = sin(u);
+      break;
+    case 1:
+      carry = exp(-u);
+      break;
+    case 2:
+      carry = sqrt(1.0 + u * u);
+      break;
+    default:
+      carry = u / (2.0 + a);
     }
     const S step = a - b;
     sum = sum + carry * step;

@@ -18,7 +18,9 @@ std::size_t allocation_count = 0;
 
 void* operator new(std::size_t size) {
   ++allocation_count;
-  if (void* block = std::malloc(size)) { return block; }
+  if (void* block = std::malloc(size)) {
+    return block;
+  }
   throw std::bad_alloc();
 }
 void operator delete(void* block) noexcept { std::free(block); }
@@ -38,7 +40,9 @@ int main(int argc, char** argv) {
   arguments.insert(arguments.end(), argv + 1, argv + argc);
   int count = int(arguments.size());
   benchmark::Initialize(&count, arguments.data());
-  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) { return 1; }
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
+    return 1;
+  }
   duet_bench::ratio_table table;
   benchmark::RunSpecifiedBenchmarks(&table);
   table.print();

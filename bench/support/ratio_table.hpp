@@ -24,7 +24,9 @@ public:
 
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
-      if (run.run_type != Run::RT_Iteration || run.error_occurred) { continue; }
+      if (run.run_type != Run::RT_Iteration || run.error_occurred) {
+        continue;
+      }
       const std::string name = run.run_name.function_name;
       const std::size_t slash = name.find('/');
       contender& c = find(find(workloads_, name.substr(0, slash)), name.substr(slash + 1));
@@ -35,9 +37,12 @@ public:
 
   void print() const {
     std::cout << std::left << std::setw(14) << "workload" << std::right << std::setw(10)
-              << "duet/best" << std::setw(10) << "duet/hand" << "  nanoseconds, fastest of the repetitions\n"
+              << "duet/best" << std::setw(10) << "duet/hand"
+              << "  nanoseconds, fastest of the repetitions\n"
               << std::fixed;
-    for (const auto& [name, contenders] : workloads_) { print_row(name, contenders); }
+    for (const auto& [name, contenders] : workloads_) {
+      print_row(name, contenders);
+    }
   }
 
 private:
@@ -81,7 +86,9 @@ private:
     std::cout << ' ' << std::setprecision(1);
     for (const auto& [name, c] : contenders) {
       std::cout << "  " << name << ' ' << c.fastest();
-      if (c.allocations > 0) { std::cout << " (on the heap)"; }
+      if (c.allocations > 0) {
+        std::cout << " (on the heap)";
+      }
     }
     std::cout << '\n';
   }

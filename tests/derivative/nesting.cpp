@@ -79,7 +79,8 @@ TEST_CASE("three levels") {
   const auto f = [](auto x) {
     return x * derivative(
                    [x](auto y) {
-                     return y * x * derivative([x, y](auto z) { return x * y * z; }, 1.0).derivative;
+                     return y * x *
+                            derivative([x, y](auto z) { return x * y * z; }, 1.0).derivative;
                    },
                    1.0)
                    .derivative;

@@ -32,7 +32,8 @@ TEST_CASE("a scalar") {
   static_assert(std::is_same_v<decltype(y), const double> &&
                 std::is_same_v<decltype(dy), const double>);
   CHECK(y == std::sin(0.3) * std::exp(-0.09));
-  CHECK(dy == doctest::Approx((std::cos(0.3) - 0.6 * std::sin(0.3)) * std::exp(-0.09)).epsilon(1e-15));
+  CHECK(dy ==
+        doctest::Approx((std::cos(0.3) - 0.6 * std::sin(0.3)) * std::exp(-0.09)).epsilon(1e-15));
 }
 
 TEST_CASE("an Eigen vector, matrix and expression") {

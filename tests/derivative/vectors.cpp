@@ -116,12 +116,10 @@ TEST_CASE("sizes known at run time, 1 to 40") {
 
 TEST_CASE("a vector without components is refused") {
   const Eigen::VectorXd none;
-  CHECK_THROWS_WITH_AS(static_cast<void>(gradient(
-                           [](const auto& x) {
-                             return typename std::decay_t<decltype(x)>::Scalar(1);
-                           },
-                           none)),
-                       "duet: gradient of a function of no variables", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(gradient(
+          [](const auto& x) { return typename std::decay_t<decltype(x)>::Scalar(1); }, none)),
+      "duet: gradient of a function of no variables", duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(jacobian([](const auto& x) { return x; }, none)),
                        "duet: jacobian of a function of no variables", duet::invalid_input);
 }
@@ -136,16 +134,19 @@ TEST_CASE("rows, expressions, maps, arrays and integers") {
   CHECK(gradient([](const auto& x) { return x[0] * x[1]; }, 2 * v).gradient ==
         Eigen::Vector2d(4, 2));
   const double memory[] = {3, 4};
-  CHECK(gradient([](const auto& x) { return x[0] * x[1]; },
-                 Eigen::Map<const Eigen::Vector2d>(memory))
-            .gradient == Eigen::Vector2d(4, 3));
+  CHECK(
+      gradient([](const auto& x) { return x[0] * x[1]; }, Eigen::Map<const Eigen::Vector2d>(memory))
+          .gradient == Eigen::Vector2d(4, 3));
   CHECK(gradient([](const auto& x) { return x[0] * x[1]; }, Eigen::Vector2i(5, 6)).gradient ==
         Eigen::Vector2d(6, 5));
   CHECK(gradient([](const auto& x) { return x[0] * x[1]; }, std::array{5, 6}).gradient ==
         Eigen::Vector2d(6, 5));
 
   const auto [z, J] = jacobian(
-      [](const auto& x) { return std::array{x[0] * x[1], x[0] / 2, 0 * x[1]}; }, std::array{5, 6});
+      [](const auto& x) {
+        return std::array{x[0] * x[1], x[0] / 2, 0 * x[1]};
+      },
+      std::array{5, 6});
   static_assert(std::is_same_v<decltype(z), const std::array<double, 3>>);
   CHECK(z == std::array{30.0, 2.5, 0.0});
   Eigen::Matrix<double, 3, 2> expected;
@@ -179,14 +180,13 @@ TEST_CASE("Hessians") {
   CHECK(H == H.transpose());
   CHECK(hessian(quadratic{}, std::array{1, 2, 3, 4}).hessian.diagonal() ==
         Eigen::Vector4d(0, 2, 4, 6));
-  const auto [z, gz, Hz] = hessian([](const auto& v) { return v[0] * v[0]; },
-                                   Eigen::Matrix<double, 1, 1>(3));
+  const auto [z, gz, Hz] =
+      hessian([](const auto& v) { return v[0] * v[0]; }, Eigen::Matrix<double, 1, 1>(3));
   CHECK(Hz(0, 0) == 2);
 }
 
 TEST_CASE("gradients in single precision") {
-  const auto [y, g] =
-      gradient([](const auto& x) { return x[0] * x[1]; }, Eigen::Vector2f(2, 3));
+  const auto [y, g] = gradient([](const auto& x) { return x[0] * x[1]; }, Eigen::Vector2f(2, 3));
   static_assert(std::is_same_v<decltype(g), const Eigen::Vector2f>);
   CHECK(g == Eigen::Vector2f(3, 2));
 }

@@ -26,12 +26,18 @@ template <std::floating_point T>
 [[nodiscard]] inline std::optional<double> parse_number(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
   const auto first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) { return std::nullopt; }
+  if (first == std::string_view::npos) {
+    return std::nullopt;
+  }
   text = text.substr(first, text.find_last_not_of(blanks) - first + 1);
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') { text.remove_prefix(1); }
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
+    text.remove_prefix(1);
+  }
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) { return std::nullopt; }
+  if (error != std::errc() || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
   return value;
 }
 

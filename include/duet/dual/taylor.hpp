@@ -112,7 +112,8 @@ public:
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor divided_by(const T& c) const {
     const T inverse = T(1) / c;
-    taylor result = each([&](int k) DUET_INLINE_LAMBDA { return detail::guarded_product(inverse, coefficient(k)); });
+    taylor result = each(
+        [&](int k) DUET_INLINE_LAMBDA { return detail::guarded_product(inverse, coefficient(k)); });
     result.coefficients_[0] = coefficients_[0] / c;
     return result;
   }

@@ -69,8 +69,7 @@ template <class D, class S, class T>
 }
 
 template <class Rule, class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const Rule& rule,
-                                                        const taylor<T, K, Tag>& x) {
+[[nodiscard]] inline taylor<T, K, Tag> lift(const Rule& rule, const taylor<T, K, Tag>& x) {
   const auto shorter_x = truncated<K - 1>(x);
   if constexpr (K == 1) {
     const T y = rule.value(shorter_x);
@@ -83,9 +82,8 @@ template <class Rule, class T, int K, class Tag>
 }
 
 template <class Rule, class T, int K, class Tag, class... Rest>
-[[nodiscard]] inline taylor<T, K, Tag>
-lift(const Rule& rule, const taylor<T, K, Tag>& x, const taylor<T, K, Tag>& y,
-     const Rest&... rest) {
+[[nodiscard]] inline taylor<T, K, Tag> lift(const Rule& rule, const taylor<T, K, Tag>& x,
+                                            const taylor<T, K, Tag>& y, const Rest&... rest) {
   const auto z = [&] {
     if constexpr (K == 1) {
       return rule.value(x.value(), y.value(), rest.value()...);
@@ -107,7 +105,7 @@ lift(const Rule& rule, const taylor<T, K, Tag>& x, const taylor<T, K, Tag>& y,
 /// applying their rules one by one would evaluate the pair at every order.
 template <int Sign, class T, int K, class Tag>
 inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
-                                        taylor<T, K, Tag>& c) {
+                            taylor<T, K, Tag>& c) {
   // Where the values overflow or do not exist, constants must keep their zero derivatives.
   const bool regular = is_all_finite(s.value()) && is_all_finite(c.value());
   const auto product = [&](const T& slope, const T& part) DUET_INLINE_LAMBDA {
@@ -131,8 +129,7 @@ inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sin&,
-                                                        const taylor<T, K, Tag>& x) {
+[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sin&, const taylor<T, K, Tag>& x) {
   taylor<T, K, Tag> s(rule::sin{}.value(x.value()));
   taylor<T, K, Tag> c(rule::cos{}.value(x.value()));
   sine_and_cosine<-1>(x, s, c);
@@ -140,8 +137,7 @@ template <class T, int K, class Tag>
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cos&,
-                                                        const taylor<T, K, Tag>& x) {
+[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cos&, const taylor<T, K, Tag>& x) {
   taylor<T, K, Tag> s(rule::sin{}.value(x.value()));
   taylor<T, K, Tag> c(rule::cos{}.value(x.value()));
   sine_and_cosine<-1>(x, s, c);
@@ -149,8 +145,7 @@ template <class T, int K, class Tag>
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sinh&,
-                                                        const taylor<T, K, Tag>& x) {
+[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sinh&, const taylor<T, K, Tag>& x) {
   taylor<T, K, Tag> s(rule::sinh{}.value(x.value()));
   taylor<T, K, Tag> c(rule::cosh{}.value(x.value()));
   sine_and_cosine<1>(x, s, c);
@@ -158,8 +153,7 @@ template <class T, int K, class Tag>
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cosh&,
-                                                        const taylor<T, K, Tag>& x) {
+[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cosh&, const taylor<T, K, Tag>& x) {
   taylor<T, K, Tag> s(rule::sinh{}.value(x.value()));
   taylor<T, K, Tag> c(rule::cosh{}.value(x.value()));
   sine_and_cosine<1>(x, s, c);
