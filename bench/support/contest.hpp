@@ -9,6 +9,7 @@
 #include <iostream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// \file
 /// Registering one workload of one contender, named "workload/contender". The table of ratios
@@ -19,11 +20,15 @@ namespace duet_bench {
 /// Calls of operator new so far, in the whole program.
 [[nodiscard]] std::size_t allocations();
 
+/// Names of the registered contests, in that order.
+[[nodiscard]] std::vector<std::string>& contests();
+
 /// Times `evaluate(input)`. The input is hidden from the optimiser in every turn, and the result
 /// counts as used.
 template <class Input, class F>
 void contest(std::string_view workload, std::string_view contender, Input input, F evaluate) {
   const std::string name = std::string(workload) + '/' + std::string(contender);
+  contests().push_back(name);
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) mutable {
     benchmark::DoNotOptimize(evaluate(input));
     const std::size_t before = allocations();

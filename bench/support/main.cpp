@@ -3,6 +3,7 @@
 /// \file
 /// Runs all contests, repeated and shuffled, and prints the table of ratios.
 
+#include "contest.hpp"
 #include "ratio_table.hpp"
 
 #include <benchmark/benchmark.h>
@@ -10,6 +11,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <new>
+#include <string>
 #include <vector>
 
 namespace {
@@ -23,11 +25,26 @@ void* operator new(std::size_t size) {
   }
   throw std::bad_alloc();
 }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocation_count;
+  const std::size_t unit = std::size_t(alignment);
+  if (void* block = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) {
+    return block;
+  }
+  throw std::bad_alloc();
+}
 void operator delete(void* block) noexcept { std::free(block); }
 void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
 
 namespace duet_bench {
 std::size_t allocations() { return allocation_count; }
+
+std::vector<std::string>& contests() {
+  static std::vector<std::string> names;
+  return names;
+}
 } // namespace duet_bench
 
 int main(int argc, char** argv) {
@@ -43,7 +60,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
     return 1;
   }
-  duet_bench::ratio_table table;
+  duet_bench::ratio_table table(duet_bench::contests());
   benchmark::RunSpecifiedBenchmarks(&table);
   table.print();
 }

@@ -20,6 +20,13 @@ namespace duet_bench {
 /// fastest, since a disturbance of the machine only ever adds time.
 class ratio_table : public benchmark::BenchmarkReporter {
 public:
+  /// Rows and columns keep the order of these names; runs come shuffled.
+  explicit ratio_table(const std::vector<std::string>& contests) {
+    for (const std::string& name : contests) {
+      (void)find(name);
+    }
+  }
+
   bool ReportContext(const Context&) override { return true; }
 
   void ReportRuns(const std::vector<Run>& runs) override {
@@ -27,9 +34,7 @@ public:
       if (run.run_type != Run::RT_Iteration || run.error_occurred) {
         continue;
       }
-      const std::string name = run.run_name.function_name;
-      const std::size_t slash = name.find('/');
-      contender& c = find(find(workloads_, name.substr(0, slash)), name.substr(slash + 1));
+      contender& c = find(run.run_name.function_name);
       c.nanoseconds.push_back(run.GetAdjustedCPUTime());
       c.allocations += run.counters.at("allocations").value;
     }
@@ -41,7 +46,10 @@ public:
               << "  nanoseconds, fastest of the repetitions\n"
               << std::fixed;
     for (const auto& [name, contenders] : workloads_) {
-      print_row(name, contenders);
+      const auto was_run = [](const auto& entry) { return !entry.second.nanoseconds.empty(); };
+      if (std::any_of(contenders.begin(), contenders.end(), was_run)) {
+        print_row(name, contenders);
+      }
     }
   }
 
@@ -58,7 +66,7 @@ private:
   template <class Value>
   using named = std::vector<std::pair<std::string, Value>>;
 
-  /// The entry of that name, appended if there is none: rows keep the order of registration.
+  /// The entry of that name, appended if there is none.
   template <class Value>
   static Value& find(named<Value>& entries, const std::string& name) {
     const auto at = std::find_if(entries.begin(), entries.end(),
@@ -66,11 +74,19 @@ private:
     return at != entries.end() ? at->second : entries.emplace_back(name, Value{}).second;
   }
 
+  contender& find(const std::string& contest) {
+    const std::size_t slash = contest.find('/');
+    return find(find(workloads_, contest.substr(0, slash)), contest.substr(slash + 1));
+  }
+
   static void print_row(const std::string& workload, const named<contender>& contenders) {
     double duet = 0;
     double hand = 0;
     double best = 0;
     for (const auto& [name, c] : contenders) {
+      if (c.nanoseconds.empty()) {
+        continue;
+      }
       const double t = c.fastest();
       if (name == "duet") {
         duet = t;
@@ -85,6 +101,9 @@ private:
     print_ratio(duet, hand);
     std::cout << ' ' << std::setprecision(1);
     for (const auto& [name, c] : contenders) {
+      if (c.nanoseconds.empty()) {
+        continue;
+      }
       std::cout << "  " << name << ' ' << c.fastest();
       if (c.allocations > 0) {
         std::cout << " (on the heap)";
