@@ -79,7 +79,8 @@ private:
 inline table equal_arc_table(const carrier& mechanism, const arc_length& arcs, int rows) {
   table result;
   for (int i = 0; i < rows; ++i) {
-    const double u = arcs.inverse(arcs.total() * i / (rows - 1));
+    const double fraction = double(i) / (rows - 1); // exactly 1 in the last row
+    const double u = arcs.inverse(arcs.total() * fraction);
     result.u.push_back(u);
     result.q.push_back(mechanism.at(u).q);
   }
