@@ -29,7 +29,7 @@ value_and_derivative(Y, DY) -> value_and_derivative<Y, DY>;
 ///
 /// Example: `auto [y, dy] = derivative([](auto x) { return sin(x); }, 0.3);`
 template <class Tag = void, class F, class X>
-  requires(scalar<X> || arithmetic<X>)
+  requires(Scalar<X> || Arithmetic<X>)
 [[nodiscard]] auto derivative(F&& f, const X& x) {
   using T = detail::differentiable_t<X>;
   using tag = detail::tag_for<Tag, F>;
@@ -39,7 +39,7 @@ template <class Tag = void, class F, class X>
 
 /// f(x), f′(x), …, f^(K)(x) in one pass over Taylor numbers; element k is the k-th derivative.
 template <int K, class Tag = void, class F, class X>
-  requires(scalar<X> || arithmetic<X>)
+  requires(Scalar<X> || Arithmetic<X>)
 [[nodiscard]] auto derivatives(F&& f, const X& x) {
   using T = detail::differentiable_t<X>;
   using tag = detail::tag_for<Tag, F>;

@@ -29,7 +29,7 @@ struct value_gradient_and_hessian {
 
 /// f(x) and ∇f(x): x an Eigen vector or a `std::array` of n components, f scalar; the gradient is a
 /// column of n. Up to 32 components known at compile time take one evaluation of f.
-template <class Tag = void, class F, vector_like X>
+template <class Tag = void, class F, VectorLike X>
 [[nodiscard]] auto gradient(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using T = typename argument::scalar;
@@ -37,7 +37,7 @@ template <class Tag = void, class F, vector_like X>
   constexpr int n = detail::partials_per_pass<X>;
   using output =
       std::decay_t<decltype(detail::evaluated(f(detail::seeded<dual<T, n, tag>, n>(x, 0))))>;
-  static_assert(scalar<output>, "duet: gradient needs a function that returns a scalar");
+  static_assert(Scalar<output>, "duet: gradient needs a function that returns a scalar");
   using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
   using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
   value_and_gradient<S, vector> result{S(0), vector::Zero(argument::size(x))};
@@ -54,7 +54,7 @@ template <class Tag = void, class F, vector_like X>
 }
 
 /// f(x), ∇f(x) and the symmetric Hessian, for up to 32 components known at compile time.
-template <class Tag = void, class F, vector_like X>
+template <class Tag = void, class F, VectorLike X>
 [[nodiscard]] auto hessian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using T = typename argument::scalar;

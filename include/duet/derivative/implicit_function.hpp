@@ -3,11 +3,10 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
+#include <duet/derivative/equilibrated_lu.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/derivative/structure.hpp>
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -35,13 +34,13 @@ template <int N, class R>
 [[nodiscard]] auto residuals(R&& returned) {
   auto r = evaluated(std::forward<R>(returned));
   using type = decltype(r);
-  if constexpr (scalar<type>) {
+  if constexpr (Scalar<type>) {
     static_assert(N == 1, "duet: implicit_function: F returns one residual, but the unknown has "
                           "several coordinates");
     return std::array<type, 1>{r};
   } else {
-    static_assert(vector_like<type>, "duet: implicit_function: F must return a scalar, an Eigen "
-                                     "vector or a std::array");
+    static_assert(VectorLike<type>, "duet: implicit_function: F must return a scalar, an Eigen "
+                                    "vector or a std::array");
     constexpr int size = vector_argument<type>::size_at_compile_time;
     static_assert(size == N || size == Eigen::Dynamic,
                   "duet: implicit_function: F must return as many residuals as the unknown has "
@@ -80,7 +79,7 @@ public:
   }
 
   X x;
-  Eigen::FullPivLU<matrix> lu;
+  equilibrated_lu<n> lu;
 
 private:
   vector residual;
@@ -89,17 +88,17 @@ private:
   /// as it gets.
   [[nodiscard]] bool advance(const F& f, const P& p, int iteration) {
     const vector step = lu.solve(-residual);
-    if (!lu.isInvertible() || !step.allFinite()) {
+    if (!lu.is_invertible() || !step.allFinite()) {
       fail("met a singular Jacobian", iteration);
     }
     const X previous = x;
-    const Eigen::FullPivLU<matrix> previous_lu = lu;
+    const equilibrated_lu<n> previous_lu = lu;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     for (double fraction = 1; fraction > 1e-6; fraction /= 2) {
       x = manifold<X>::plus(previous, vector(fraction * step));
       linearise(f, p);
       const vector remaining = previous_lu.solve(-residual);
-      if (remaining.norm() <= epsilon / 4 * magnitude() && lu.isInvertible()) {
+      if (remaining.norm() <= epsilon / 4 * magnitude() && lu.is_invertible()) {
         return true;
       }
       if (remaining.norm() <= (1 - fraction / 4) * step.norm()) {
@@ -109,7 +108,7 @@ private:
       // residual is rounding.
       const vector next = lu.solve(-residual);
       if (fraction == 1 && step.norm() <= std::sqrt(epsilon) * std::max(1.0, magnitude()) &&
-          (next - remaining).norm() <= next.norm() / 2 && lu.isInvertible()) {
+          (next - remaining).norm() <= next.norm() / 2 && lu.is_invertible()) {
         return true;
       }
     }
@@ -201,7 +200,7 @@ template <class F, class X, class P>
 ///
 /// \throws no_convergence as `implicit_solution`.
 template <int K, class Tag = void, class F, class X, class P>
-  requires(scalar<P> || arithmetic<P>)
+  requires(Scalar<P> || Arithmetic<P>)
 [[nodiscard]] auto implicit_function(const F& f, const X& x0, const P& p,
                                      const newton_options& options = {}) {
   return derivatives<K, std::conditional_t<std::is_void_v<Tag>, F, Tag>>(

@@ -23,7 +23,7 @@ struct value_and_jacobian {
 };
 
 /// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors or `std::array`s.
-template <class Tag = void, class F, vector_like X>
+template <class Tag = void, class F, VectorLike X>
 [[nodiscard]] auto jacobian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using T = typename argument::scalar;
@@ -31,7 +31,7 @@ template <class Tag = void, class F, vector_like X>
   constexpr int n = detail::partials_per_pass<X>;
   using output =
       std::decay_t<decltype(detail::evaluated(f(detail::seeded<dual<T, n, tag>, n>(x, 0))))>;
-  static_assert(vector_like<output>, "duet: jacobian needs a function that returns a vector");
+  static_assert(VectorLike<output>, "duet: jacobian needs a function that returns a vector");
   using result_argument = detail::vector_argument<output>;
   using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
   using S = typename detail::vector_argument<value>::scalar;
@@ -58,12 +58,12 @@ template <class Tag = void, class F, vector_like X>
 
 /// f(x) and d/dt f(x + t v) at t = 0: x and v scalars or vectors of one size, f(x) of any shape.
 template <class Tag = void, class F, class X, class V>
-  requires(vector_like<X>&& vector_like<V>)
-|| ((scalar<X> || arithmetic<X>)&&(scalar<V> || arithmetic<V>))
+  requires(VectorLike<X>&& VectorLike<V>)
+|| ((Scalar<X> || Arithmetic<X>)&&(Scalar<V> || Arithmetic<V>))
         [[nodiscard]] auto directional_derivative(F&& f, const X& x, const V& v) {
   using tag = detail::tag_for<Tag, F>;
   const auto y = [&] {
-    if constexpr (vector_like<X>) {
+    if constexpr (VectorLike<X>) {
       using argument = detail::vector_argument<X>;
       using direction = detail::vector_argument<V>;
       using T = promote_t<typename argument::scalar, typename direction::scalar>;

@@ -22,7 +22,7 @@ namespace duet {
 template <class X>
 struct manifold;
 
-template <scalar X>
+template <Scalar X>
 struct manifold<X> {
   static constexpr int dimension = 1;
   template <class Delta>

@@ -91,7 +91,7 @@ void for_each_pass(F&& f, const X& x, Visit&& visit) {
 
 /// A function's argument of several components: an Eigen vector or a `std::array` of scalars.
 template <class X>
-concept vector_like = requires {
+concept VectorLike = requires {
   typename detail::vector_argument<X>::scalar;
 };
 

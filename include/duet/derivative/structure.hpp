@@ -25,7 +25,7 @@ template <class X>
 struct structure;
 
 template <class X>
-  requires(scalar<X> || arithmetic<X>)
+  requires(Scalar<X> || Arithmetic<X>)
 struct structure<X> {
   template <class F>
   [[nodiscard]] static constexpr auto map(F&& f, const X& x) {
