@@ -18,12 +18,12 @@ using duet_test::real_50;
 using duet_test::real_50_et;
 using duet_test::worst_error;
 
-static_assert(duet::real<float> && duet::real<double> && duet::real<long double>);
-static_assert(duet::real<real_50> && duet::real<real_50_et>);
-static_assert(!duet::real<int> && !duet::real<bool> && !duet::real<std::string>);
-static_assert(!duet::real<duet_test::mp::cpp_int>);
-static_assert(duet::scalar<double> && !duet::scalar<int> && !duet::infinitesimal<double>);
-static_assert(duet::arithmetic<int> && duet::arithmetic<bool> && !duet::arithmetic<real_50>);
+static_assert(duet::Real<float> && duet::Real<double> && duet::Real<long double>);
+static_assert(duet::Real<real_50> && duet::Real<real_50_et>);
+static_assert(!duet::Real<int> && !duet::Real<bool> && !duet::Real<std::string>);
+static_assert(!duet::Real<duet_test::mp::cpp_int>);
+static_assert(duet::Scalar<double> && !duet::Scalar<int> && !duet::Infinitesimal<double>);
+static_assert(duet::Arithmetic<int> && duet::Arithmetic<bool> && !duet::Arithmetic<real_50>);
 static_assert(std::is_same_v<duet::real_type_t<double>, double>);
 static_assert(duet::scalar_traits<double>::order == 0);
 static_assert(duet::innermost(1.5) == 1.5);

@@ -48,8 +48,8 @@ struct mask {
   operator bool() const { return true; }
 };
 template <class Condition>
-concept selects = requires(Condition c) {
+concept Selects = requires(Condition c) {
   select(
       c, [] { return 1; }, [] { return 2; });
 };
-static_assert(selects<bool> && !selects<mask> && !selects<int> && !selects<dual<double>>);
+static_assert(Selects<bool> && !Selects<mask> && !Selects<int> && !Selects<dual<double>>);

@@ -12,7 +12,7 @@
 // Which scalars meet in which nesting, and which must not meet at all.
 
 using duet::dual;
-using duet::promotable;
+using duet::Promotable;
 using duet::promote_t;
 using duet::screw_tag;
 using duet::taylor;
@@ -26,19 +26,19 @@ struct tag_bb;
 struct tag_ccc;
 
 template <class A, class B>
-concept can_add = requires(A a, B b) {
+concept CanAdd = requires(A a, B b) {
   a + b;
 };
 template <class A, class B>
-concept can_multiply = requires(A a, B b) {
+concept CanMultiply = requires(A a, B b) {
   a* b;
 };
 template <class A, class B>
-concept can_compare = requires(A a, B b) {
+concept CanCompare = requires(A a, B b) {
   a == b;
 };
 template <class A, class B>
-concept can_take_power = requires(A a, B b) {
+concept CanTakePower = requires(A a, B b) {
   pow(a, b);
 };
 
@@ -52,14 +52,14 @@ constexpr bool meets_in() {
          std::same_as<decltype(std::declval<B>() / std::declval<A>()), Expected> &&
          std::same_as<decltype(std::declval<B>() - std::declval<A>()), Expected> &&
          std::same_as<decltype(atan2(std::declval<A>(), std::declval<B>())), Expected> &&
-         can_compare<A, B> && can_compare<B, A>;
+         CanCompare<A, B> && CanCompare<B, A>;
 }
 
 template <class A, class B>
 constexpr bool never_meet() {
-  return !promotable<A, B> && !promotable<B, A> && !can_add<A, B> && !can_add<B, A> &&
-         !can_multiply<A, B> && !can_multiply<B, A> && !can_compare<A, B> && !can_compare<B, A> &&
-         !can_take_power<A, B> && !std::constructible_from<A, B> && !std::constructible_from<B, A>;
+  return !Promotable<A, B> && !Promotable<B, A> && !CanAdd<A, B> && !CanAdd<B, A> &&
+         !CanMultiply<A, B> && !CanMultiply<B, A> && !CanCompare<A, B> && !CanCompare<B, A> &&
+         !CanTakePower<A, B> && !std::constructible_from<A, B> && !std::constructible_from<B, A>;
 }
 
 template <class From, class To>
@@ -106,16 +106,16 @@ static_assert(meets_in<dual<taylor<double, 2, tag_a>, 3, tag_bb>, taylor<double,
                        dual<taylor<double, 2, tag_a>, 3, tag_bb>>());
 
 // A constant of the inner level stays one: the promotion does not widen it.
-static_assert(duet::constant_of<a, dual<a, 1, tag_bb>>);
-static_assert(!duet::constant_of<dual<a, 1, tag_bb>, a> && !duet::constant_of<a, a>);
-static_assert(!duet::constant_of<d, dual<float>>);
+static_assert(duet::ConstantOf<a, dual<a, 1, tag_bb>>);
+static_assert(!duet::ConstantOf<dual<a, 1, tag_bb>, a> && !duet::ConstantOf<a, a>);
+static_assert(!duet::ConstantOf<d, dual<float>>);
 
 // What can have no meaning does not compile.
 static_assert(never_meet<dual<double, 2>, dual<double, 3>>());
 static_assert(never_meet<taylor<double, 2>, taylor<double, 3>>());
 static_assert(never_meet<dual<double>, taylor<double, 1>>());
 static_assert(never_meet<dual<a, 1, tag_bb>, dual<bb, 1, tag_a>>()); // opposite nestings
-static_assert(!can_add<d, const char*> && !can_add<d, std::nullptr_t> && !can_add<d, void*>);
+static_assert(!CanAdd<d, const char*> && !CanAdd<d, std::nullptr_t> && !CanAdd<d, void*>);
 static_assert(impossible<screw, d> && impossible<d, screw>);
 static_assert(impossible<screw, dual<double, 1, tag_a>>);
 static_assert(impossible<a, bb> && impossible<bb, a>);
@@ -134,10 +134,10 @@ static_assert(only_explicit<taylor<double, 3>, double>);
 static_assert(only_explicit<taylor<double, 3>, taylor<float, 3>>);
 static_assert(!implicit<d, bool> || std::is_constructible_v<bool, d>);
 
-static_assert(duet::scalar<d> && duet::scalar<double> && duet::scalar<real_50_et>);
-static_assert(!duet::scalar<int> && !duet::scalar<bool> && !duet::scalar<const char*>);
-static_assert(duet::infinitesimal<taylor<double, 2>> && !duet::infinitesimal<double>);
-static_assert(duet::real<real_50> && !duet::real<d> && !duet::real<int>);
+static_assert(duet::Scalar<d> && duet::Scalar<double> && duet::Scalar<real_50_et>);
+static_assert(!duet::Scalar<int> && !duet::Scalar<bool> && !duet::Scalar<const char*>);
+static_assert(duet::Infinitesimal<taylor<double, 2>> && !duet::Infinitesimal<double>);
+static_assert(duet::Real<real_50> && !duet::Real<d> && !duet::Real<int>);
 static_assert(std::same_as<duet::real_type_t<dual<taylor<float, 2, tag_a>, 3>>, float>);
 
 } // namespace

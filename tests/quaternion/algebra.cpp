@@ -29,7 +29,7 @@ using nested = dual<dual<double>, 2, outer>;
 /// Small whole numbers, also in the infinitesimal parts: sums and products are exact.
 template <class T>
 T whole(random_source& random) {
-  if constexpr (!duet::infinitesimal<T>) {
+  if constexpr (!duet::Infinitesimal<T>) {
     return T(random.integer(-9, 9));
   } else {
     T x(whole<typename T::value_type>(random));

@@ -12,7 +12,7 @@
 
 namespace duet::constant {
 
-template <real T>
+template <Real T>
 [[nodiscard]] T pi() {
   if constexpr (std::floating_point<T>) {
     return std::numbers::pi_v<T>;
@@ -21,7 +21,7 @@ template <real T>
   }
 }
 
-template <real T>
+template <Real T>
 [[nodiscard]] T ln2() {
   if constexpr (std::floating_point<T>) {
     return std::numbers::ln2_v<T>;
@@ -30,7 +30,7 @@ template <real T>
   }
 }
 
-template <real T>
+template <Real T>
 [[nodiscard]] T ln10() {
   if constexpr (std::floating_point<T>) {
     return std::numbers::ln10_v<T>;
@@ -40,7 +40,7 @@ template <real T>
 }
 
 /// 2/√π
-template <real T>
+template <Real T>
 [[nodiscard]] T two_over_sqrt_pi() {
   if constexpr (std::floating_point<T>) {
     return 2 * std::numbers::inv_sqrtpi_v<T>;

@@ -12,7 +12,7 @@
 namespace duet {
 
 template <class T>
-concept arithmetic = std::is_arithmetic_v<T>;
+concept Arithmetic = std::is_arithmetic_v<T>;
 
 /// Facts on a scalar type. The primary template describes real numbers; `dual` and `taylor`
 /// specialise it.
@@ -27,17 +27,17 @@ struct scalar_traits {
 
 /// A number with an infinitesimal part: `dual` or `taylor`.
 template <class T>
-concept infinitesimal = scalar_traits<T>::is_infinitesimal;
+concept Infinitesimal = scalar_traits<T>::is_infinitesimal;
 
 /// A floating-point number, built in or of Boost.Multiprecision.
 template <class T>
-concept real = std::floating_point<T> ||
-    (!infinitesimal<T> && !arithmetic<T> && std::numeric_limits<T>::is_specialized &&
+concept Real = std::floating_point<T> ||
+    (!Infinitesimal<T> && !Arithmetic<T> && std::numeric_limits<T>::is_specialized &&
      !std::numeric_limits<T>::is_integer);
 
 /// Anything duet computes with: a real number or an infinitesimal extension of one.
 template <class T>
-concept scalar = real<T> || infinitesimal<T>;
+concept Scalar = Real<T> || Infinitesimal<T>;
 
 template <class T>
 using real_type_t = typename scalar_traits<T>::real_type;
@@ -46,7 +46,7 @@ using real_type_t = typename scalar_traits<T>::real_type;
 /// derivatives of every order see one smooth branch.
 template <class T>
 [[nodiscard]] constexpr decltype(auto) innermost(const T& x) {
-  if constexpr (infinitesimal<T>) {
+  if constexpr (Infinitesimal<T>) {
     return innermost(x.value());
   } else {
     return (x);

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
+
 #include <concepts>
 #include <type_traits>
 
@@ -14,7 +16,7 @@ namespace duet {
 /// A scalar evaluates one callable; a batch of lanes evaluates both and blends, so `f` and `g` must
 /// be safe to evaluate whatever the condition says.
 template <std::same_as<bool> Condition, std::invocable F, std::invocable G>
-[[nodiscard]] constexpr auto select(Condition condition, F&& f, G&& g) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto select(Condition condition, F&& f, G&& g) {
   using result = std::common_type_t<std::invoke_result_t<F>, std::invoke_result_t<G>>;
   if (condition) {
     return static_cast<result>(f());

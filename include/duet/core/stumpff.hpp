@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 
 #include <array>
 #include <cmath>
@@ -70,27 +71,32 @@ template <class T>
 
 /// Where the closed forms of c₂, c₃ … and of derivatives take over from the series: below, they
 /// cancel; above, the series does.
-template <real T>
+template <Real T>
 [[nodiscard]] constexpr bool is_beyond_series(const T& s) {
   return s > T(4);
 }
 
-/// c_n(s) of a real number: sine and cosine, or for small s the series.
-template <int N, real T>
-[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_real(const T& s) {
+/// c_n(s) of small s.
+template <int N, Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_small(const T& s) {
+  if constexpr (std::floating_point<T>) {
+    // The last terms are 2e-19 at s = 1 and 2e-21 at s = 4, with more digits 3e-25 and 2e-25.
+    constexpr bool is_double = std::numeric_limits<T>::digits <= 53;
+    return stumpff_polynomial < N, N < 2 ? (is_double ? 10 : 13) : (is_double ? 13 : 15) > (s);
+  } else {
+    return stumpff_series<N>(s);
+  }
+}
+
+template <int N, Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_real(const T& s);
+
+/// c_n(s) of large s, by sine or cosine.
+template <int N, Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_large(const T& s) {
   using std::cos;
   using std::sin;
   using std::sqrt;
-  const bool series_is_better = N < 2 ? s <= T(1) : !is_beyond_series(s);
-  if (series_is_better) {
-    if constexpr (std::floating_point<T>) {
-      // The last terms are 2e-19 at s = 1 and 2e-21 at s = 4, with more digits 3e-25 and 2e-25.
-      constexpr bool is_double = std::numeric_limits<T>::digits <= 53;
-      return stumpff_polynomial < N, N < 2 ? (is_double ? 10 : 13) : (is_double ? 13 : 15) > (s);
-    } else {
-      return stumpff_series<N>(s);
-    }
-  }
   if constexpr (N == 0) {
     return cos(T(sqrt(s)));
   } else if constexpr (N == 1) {
@@ -99,6 +105,15 @@ template <int N, real T>
   } else {
     return (inverse_factorial<T>(N - 2) - stumpff_of_real<N - 2>(s)) / s;
   }
+}
+
+/// c_n(s) of a real number.
+template <int N, Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_real(const T& s) {
+  return select(
+      N < 2 ? s <= T(1) : !is_beyond_series(s),
+      [&]() DUET_INLINE_LAMBDA { return stumpff_of_small<N>(s); },
+      [&]() DUET_INLINE_LAMBDA { return stumpff_of_large<N>(s); });
 }
 
 } // namespace duet::detail

@@ -35,35 +35,35 @@ struct infinitesimal_operators {
   }
 
   // A constant meets a number without being widened to one, which would multiply by zeros.
-  template <constant_of<D> U>
+  template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a, const U& b) {
     return a.plus(static_cast<T>(b));
   }
-  template <constant_of<D> U>
+  template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const U& a, const D& b) {
     return b.plus(static_cast<T>(a));
   }
-  template <constant_of<D> U>
+  template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a, const U& b) {
     return a.plus(T(-static_cast<T>(b)));
   }
-  template <constant_of<D> U>
+  template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const U& a, const D& b) {
     return b.negated().plus(static_cast<T>(a));
   }
-  template <constant_of<D> U>
+  template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const D& a, const U& b) {
     return a.times(static_cast<T>(b));
   }
-  template <constant_of<D> U>
+  template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const U& a, const D& b) {
     return b.times(static_cast<T>(a));
   }
-  template <constant_of<D> U>
+  template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const D& a, const U& b) {
     return a.divided_by(static_cast<T>(b));
   }
-  template <constant_of<D> U>
+  template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const U& a, const D& b) {
     return b.dividing(static_cast<T>(a));
   }
@@ -105,70 +105,70 @@ struct infinitesimal_operators {
 
 /// At least one of the two is infinitesimal, and they can meet.
 template <class A, class B>
-concept mixed_scalars = (infinitesimal<A> || infinitesimal<B>)&&(scalar<A> || arithmetic<A>)&&(
-    scalar<B> || arithmetic<B>)&&promotable<A, B>;
+concept MixedScalars = (Infinitesimal<A> || Infinitesimal<B>)&&(Scalar<A> || Arithmetic<A>)&&(
+    Scalar<B> || Arithmetic<B>)&&Promotable<A, B>;
 
 /// Neither is a constant for the other: both must be brought to their common nesting first.
 template <class A, class B>
-concept different_nestings = (infinitesimal<A> || infinitesimal<B>)&&scalar<A>&& scalar<B> &&
-                             !std::is_same_v<A, B> && promotable<A, B> && !constant_of<A, B> &&
-                             !constant_of<B, A>;
+concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& Scalar<B> &&
+                            !std::is_same_v<A, B> && Promotable<A, B> && !ConstantOf<A, B> &&
+                            !ConstantOf<B, A>;
 
 } // namespace duet::detail
 
 namespace duet {
 // Comparisons look at values only, as an `if` in the differentiated function should.
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator==(const A& a, const B& b) {
   return innermost(a) == innermost(b);
 }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator!=(const A& a, const B& b) {
   return innermost(a) != innermost(b);
 }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<(const A& a, const B& b) {
   return innermost(a) < innermost(b);
 }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<=(const A& a, const B& b) {
   return innermost(a) <= innermost(b);
 }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>(const A& a, const B& b) {
   return innermost(a) > innermost(b);
 }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>=(const A& a, const B& b) {
   return innermost(a) >= innermost(b);
 }
 
 template <class A, class B>
-  requires detail::different_nestings<A, B>
+  requires detail::DifferentNestings<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return static_cast<common>(a) + static_cast<common>(b);
 }
 template <class A, class B>
-  requires detail::different_nestings<A, B>
+  requires detail::DifferentNestings<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return static_cast<common>(a) - static_cast<common>(b);
 }
 template <class A, class B>
-  requires detail::different_nestings<A, B>
+  requires detail::DifferentNestings<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return static_cast<common>(a) * static_cast<common>(b);
 }
 template <class A, class B>
-  requires detail::different_nestings<A, B>
+  requires detail::DifferentNestings<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator/(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return static_cast<common>(a) / static_cast<common>(b);
@@ -179,7 +179,7 @@ template <class A, class B>
 namespace std {
 
 template <class A, class B>
-  requires duet::detail::mixed_scalars<A, B>
+  requires duet::detail::MixedScalars<A, B>
 struct common_type<A, B> {
   using type = duet::promote_t<A, B>;
 };

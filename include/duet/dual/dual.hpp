@@ -31,7 +31,7 @@ DUET_ABI_BEGIN
 /// Example: `auto x = dual<double>::variable(3); (x * x).epsilon() == 6`.
 template <class T, int N = 1, class Tag = derivative_tag<>>
 class dual : detail::infinitesimal_operators<dual<T, N, Tag>, T> {
-  static_assert(scalar<T>, "duet: dual<T> needs a real number or a scalar of duet as T");
+  static_assert(Scalar<T>, "duet: dual<T> needs a real number or a scalar of duet as T");
   static_assert(N >= 1, "duet: dual<T, N> needs at least one partial derivative");
   static_assert(
       !detail::contains_tag<T, Tag>(),
@@ -46,7 +46,7 @@ public:
   /// Zero.
   constexpr dual() : value_(T(0)) {}
   /// A constant: its partials are zero.
-  template <constant_of<dual> U>
+  template <ConstantOf<dual> U>
   DUET_ALWAYS_INLINE constexpr dual(const U& constant) : value_(static_cast<T>(constant)) {}
   /// value + ε epsilon
   DUET_ALWAYS_INLINE constexpr dual(const T& value, const T& epsilon) requires(N == 1)
@@ -94,7 +94,7 @@ public:
   }
 
   /// Drops the derivatives; explicit for that reason.
-  template <arithmetic U>
+  template <Arithmetic U>
   [[nodiscard]] constexpr explicit operator U() const {
     return static_cast<U>(value_);
   }

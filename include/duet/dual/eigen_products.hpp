@@ -13,7 +13,7 @@
 namespace duet::detail {
 
 template <class Lhs, class Rhs>
-concept mixed_factors = (infinitesimal<Lhs> || infinitesimal<Rhs>)&&!std::same_as<Lhs, Rhs>;
+concept MixedFactors = (Infinitesimal<Lhs> || Infinitesimal<Rhs>)&&!std::same_as<Lhs, Rhs>;
 
 /// An architecture no processor has, to reach Eigen's generic kernel from its specialisation.
 inline constexpr int no_architecture = -1;
@@ -25,7 +25,7 @@ namespace Eigen::internal {
 /// Eigen's kernel puts each product a·b into a variable of b's type before it is added, which does
 /// not compile where b is the narrower of the two.
 template <class Lhs, class Rhs, bool ConjLhs, bool ConjRhs, int Arch, int PacketSize>
-  requires(duet::detail::mixed_factors<Lhs, Rhs>&& Arch != duet::detail::no_architecture)
+  requires(duet::detail::MixedFactors<Lhs, Rhs>&& Arch != duet::detail::no_architecture)
 class gebp_traits<Lhs, Rhs, ConjLhs, ConjRhs, Arch, PacketSize>
     : public gebp_traits<Lhs, Rhs, ConjLhs, ConjRhs, duet::detail::no_architecture, PacketSize> {
   using base = gebp_traits<Lhs, Rhs, ConjLhs, ConjRhs, duet::detail::no_architecture, PacketSize>;

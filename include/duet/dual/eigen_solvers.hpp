@@ -55,13 +55,13 @@ struct triangular_substitution {
 };
 
 template <class A, class B>
-concept either_infinitesimal = infinitesimal<A> || infinitesimal<B>;
+concept EitherInfinitesimal = Infinitesimal<A> || Infinitesimal<B>;
 
 /// The imaginary part of a real number: zero, but it remembers whether the number is.
 ///
 /// `makeHouseholder` leaves a reflector out where the tail of a column and the imaginary part of
 /// its head are below a limit, and takes this part for nothing else.
-template <infinitesimal D>
+template <Infinitesimal D>
 struct imaginary_zero {
   bool head_vanishes;
 
@@ -71,7 +71,7 @@ struct imaginary_zero {
 };
 
 /// |imaginary part|², below the limit only where no reflector can be made.
-template <infinitesimal D>
+template <Infinitesimal D>
 struct imaginary_zero_square {
   bool head_vanishes;
 
@@ -84,30 +84,30 @@ struct imaginary_zero_square {
 namespace Eigen::internal {
 
 template <class Lhs, class Rhs, class Index, int Mode, bool Conjugate>
-  requires duet::detail::either_infinitesimal<Lhs, Rhs>
+  requires duet::detail::EitherInfinitesimal<Lhs, Rhs>
 struct triangular_solve_vector<Lhs, Rhs, Index, OnTheLeft, Mode, Conjugate, ColMajor>
     : duet::detail::triangular_substitution<Lhs, Rhs, Index, Mode, Conjugate, false> {
 };
 
 template <class Lhs, class Rhs, class Index, int Mode, bool Conjugate>
-  requires duet::detail::either_infinitesimal<Lhs, Rhs>
+  requires duet::detail::EitherInfinitesimal<Lhs, Rhs>
 struct triangular_solve_vector<Lhs, Rhs, Index, OnTheLeft, Mode, Conjugate, RowMajor>
     : duet::detail::triangular_substitution<Lhs, Rhs, Index, Mode, Conjugate, true> {
 };
 
-template <duet::infinitesimal D>
+template <duet::Infinitesimal D>
 struct imag_retval<D> {
   using type = duet::detail::imaginary_zero<D>;
 };
-template <duet::infinitesimal D>
+template <duet::Infinitesimal D>
 struct imag_impl<D> {
   static duet::detail::imaginary_zero<D> run(const D& x) { return {x == 0}; }
 };
-template <duet::infinitesimal D>
+template <duet::Infinitesimal D>
 struct abs2_retval<duet::detail::imaginary_zero<D>> {
   using type = duet::detail::imaginary_zero_square<D>;
 };
-template <duet::infinitesimal D>
+template <duet::Infinitesimal D>
 struct abs2_impl<duet::detail::imaginary_zero<D>> {
   static duet::detail::imaginary_zero_square<D> run(const duet::detail::imaginary_zero<D>& x) {
     return {x.head_vanishes};
@@ -119,7 +119,7 @@ struct householder_qr_inplace_blocked; // of Eigen/QR
 
 /// Reflectors column by column, left out where the rest of the column is zero with all its
 /// derivatives.
-template <class Matrix, class Coefficients, duet::infinitesimal Scalar, bool InnerStrideIsOne>
+template <class Matrix, class Coefficients, duet::Infinitesimal Scalar, bool InnerStrideIsOne>
 struct householder_qr_inplace_blocked<Matrix, Coefficients, Scalar, InnerStrideIsOne> {
   static void run(Matrix& matrix, Coefficients& coefficients, Index, Scalar* workspace) {
     const Index rows = matrix.rows();

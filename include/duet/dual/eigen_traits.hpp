@@ -17,7 +17,7 @@
 
 namespace Eigen {
 
-template <duet::infinitesimal D>
+template <duet::Infinitesimal D>
 struct NumTraits<D> : NumTraits<duet::real_type_t<D>> {
   using Real = D;
   using NonInteger = D;
@@ -44,7 +44,7 @@ struct NumTraits<D> : NumTraits<duet::real_type_t<D>> {
 
 /// A matrix of duals meets a matrix of doubles, or of duals below or beside it.
 template <class A, class B, class Operation>
-  requires(!std::same_as<A, B> && duet::detail::mixed_scalars<A, B>)
+  requires(!std::same_as<A, B> && duet::detail::MixedScalars<A, B>)
 struct ScalarBinaryOpTraits<A, B, Operation> {
   using ReturnType = duet::promote_t<A, B>;
 };

@@ -17,103 +17,103 @@
 
 namespace duet {
 
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D sqrt(const D& x) {
   return detail::lift(rule::sqrt{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D cbrt(const D& x) {
   return detail::lift(rule::cbrt{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D exp(const D& x) {
   return detail::lift(rule::exp{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D exp2(const D& x) {
   return detail::lift(rule::exp2{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D expm1(const D& x) {
   return detail::lift(rule::expm1{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log(const D& x) {
   return detail::lift(rule::log{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log2(const D& x) {
   return detail::lift(rule::log2{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log10(const D& x) {
   return detail::lift(rule::log10{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log1p(const D& x) {
   return detail::lift(rule::log1p{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D sin(const D& x) {
   return detail::lift(rule::sin{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D cos(const D& x) {
   return detail::lift(rule::cos{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D tan(const D& x) {
   return detail::lift(rule::tan{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D asin(const D& x) {
   return detail::lift(rule::asin{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D acos(const D& x) {
   return detail::lift(rule::acos{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D atan(const D& x) {
   return detail::lift(rule::atan{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D sinh(const D& x) {
   return detail::lift(rule::sinh{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D cosh(const D& x) {
   return detail::lift(rule::cosh{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D tanh(const D& x) {
   return detail::lift(rule::tanh{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D asinh(const D& x) {
   return detail::lift(rule::asinh{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D acosh(const D& x) {
   return detail::lift(rule::acosh{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D atanh(const D& x) {
   return detail::lift(rule::atanh{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D erf(const D& x) {
   return detail::lift(rule::erf{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D erfc(const D& x) {
   return detail::lift(rule::erfc{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] D tgamma(const D& x) {
   return detail::lift(rule::tgamma{}, x);
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] D lgamma(const D& x) {
   return detail::lift(rule::lgamma{}, x);
 }
@@ -123,7 +123,7 @@ namespace detail {
 /// A constant as the scalar that exponents and bases are held in: arithmetic types become reals.
 template <class D, class U>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto as_constant(const U& x) {
-  if constexpr (arithmetic<U>) {
+  if constexpr (Arithmetic<U>) {
     return static_cast<real_type_t<D>>(x);
   } else {
     return x;
@@ -142,12 +142,12 @@ template <class Rule, class... A>
 /// x^p. A constant exponent or base has no slope of its own, so `pow(x, 0)`, `pow(0, p)` and
 /// `pow(−2, 2)` are regular.
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto pow(const A& x, const B& p) {
-  if constexpr (constant_of<B, A>) {
+  if constexpr (ConstantOf<B, A>) {
     const auto exponent = detail::as_constant<A>(p);
     return detail::lift(rule::power<std::remove_const_t<decltype(exponent)>>{exponent}, x);
-  } else if constexpr (constant_of<A, B>) {
+  } else if constexpr (ConstantOf<A, B>) {
     const auto base = detail::as_constant<B>(x);
     return detail::lift(rule::exponential<std::remove_const_t<decltype(base)>>{base}, p);
   } else {
@@ -157,45 +157,45 @@ template <class A, class B>
 
 /// The angle of the point (x, y), in (−π, π].
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto atan2(const A& y, const B& x) {
   return detail::lift_promoted(rule::atan2{}, y, x);
 }
 
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto hypot(const A& x, const B& y) {
   return detail::lift_promoted(rule::hypot{}, x, y);
 }
 
 template <class A, class B, class C>
-  requires detail::mixed_scalars<A, promote_t<B, C>>
+  requires detail::MixedScalars<A, promote_t<B, C>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto hypot(const A& x, const B& y, const C& z) {
   return detail::lift_promoted(rule::hypot{}, x, y, z);
 }
 
 /// x y + z, the value rounded once.
 template <class A, class B, class C>
-  requires detail::mixed_scalars<A, promote_t<B, C>>
+  requires detail::MixedScalars<A, promote_t<B, C>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fma(const A& x, const B& y, const C& z) {
   return detail::lift_promoted(rule::fma{}, x, y, z);
 }
 
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fmod(const A& x, const B& y) {
   return detail::lift_promoted(rule::fmod{}, x, y);
 }
 
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto remainder(const A& x, const B& y) {
   return detail::lift_promoted(rule::remainder{}, x, y);
 }
 
 /// remainder(x, y), and the low bits of the quotient.
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] auto remquo(const A& x, const B& y, int* quotient) {
   using std::remquo;
   using real = real_type_t<promote_t<A, B>>;
@@ -205,7 +205,7 @@ template <class A, class B>
 
 /// a + t (b − a), exact at t = 0 and t = 1.
 template <class A, class B, class C>
-  requires detail::mixed_scalars<A, promote_t<B, C>>
+  requires detail::MixedScalars<A, promote_t<B, C>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto lerp(const A& a, const B& b, const C& t) {
   return detail::lift_promoted(rule::lerp{}, a, b, t);
 }

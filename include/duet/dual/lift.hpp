@@ -2,6 +2,8 @@
 #pragma once
 
 #include <duet/dual/dual.hpp>
+#include <duet/dual/rules.hpp>
+#include <duet/dual/sine_cosine.hpp>
 #include <duet/dual/structural_zero.hpp>
 
 #include <array>
@@ -32,6 +34,18 @@ lift(const Rule& rule, const dual<T, N, Tag>& x, const dual<T, N, Tag>& y, const
                             result, chain(slopes[2], rest.partials()...));
   }
   return {value, result};
+}
+
+template <class T, int N, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const rule::sin&, const dual<T, N, Tag>& x) {
+  const auto [sine, cosine] = sine_and_cosine_of(x.value());
+  return {sine, chain<partials<T, N>>(cosine, x.partials())};
+}
+
+template <class T, int N, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const rule::cos&, const dual<T, N, Tag>& x) {
+  const auto [sine, cosine] = sine_and_cosine_of(x.value());
+  return {cosine, chain<partials<T, N>>(T(-sine), x.partials())};
 }
 
 } // namespace duet::detail

@@ -83,6 +83,8 @@ class packed_partials {
   typedef T packet __attribute__((vector_size(width * sizeof(T))));
 
 public:
+  static constexpr int packet_count = count;
+
   constexpr packed_partials() {
     if (std::is_constant_evaluated()) {
       fill_elements([](int) DUET_INLINE_LAMBDA { return T(0); });

@@ -11,7 +11,7 @@ namespace duet::detail {
 /// f of every real number in x: its value and all its infinitesimal parts.
 template <class T, class F>
 [[nodiscard]] T map_reals(const T& x, F&& f) {
-  if constexpr (!infinitesimal<T>) {
+  if constexpr (!Infinitesimal<T>) {
     return f(x);
   } else if constexpr (requires { x.partials(); }) {
     const auto part = [&](const auto& p) { return map_reals(p, f); };
@@ -29,7 +29,7 @@ template <class T, class F>
 /// x with another real number as its innermost value; all infinitesimal parts stay.
 template <class T>
 [[nodiscard]] T with_innermost(const T& x, const real_type_t<T>& value) {
-  if constexpr (!infinitesimal<T>) {
+  if constexpr (!Infinitesimal<T>) {
     return value;
   } else if constexpr (requires { x.partials(); }) {
     return T(with_innermost(x.value(), value), x.partials());

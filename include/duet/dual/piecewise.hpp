@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/dual/algebra.hpp>
 #include <duet/dual/promotion.hpp>
 
@@ -14,32 +15,32 @@
 
 namespace duet {
 
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] bool signbit(const D& x) {
   using std::signbit;
   return signbit(innermost(x));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] bool isfinite(const D& x) {
   using std::isfinite;
   return isfinite(innermost(x));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] bool isinf(const D& x) {
   using std::isinf;
   return isinf(innermost(x));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] bool isnan(const D& x) {
   using std::isnan;
   return isnan(innermost(x));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] bool isnormal(const D& x) {
   using std::isnormal;
   return isnormal(innermost(x));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] int fpclassify(const D& x) {
   using std::fpclassify;
   return fpclassify(innermost(x));
@@ -48,119 +49,125 @@ template <infinitesimal D>
 // The quiet comparisons of <cmath>: false, and no exception, where either is NaN.
 
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] bool isunordered(const A& a, const B& b) {
   using std::isnan;
   return isnan(innermost(a)) || isnan(innermost(b));
 }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] bool isless(const A& a, const B& b) { return !isunordered(a, b) && a < b; }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] bool islessequal(const A& a, const B& b) { return !isunordered(a, b) && a <= b; }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] bool isgreater(const A& a, const B& b) { return !isunordered(a, b) && a > b; }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] bool isgreaterequal(const A& a, const B& b) { return !isunordered(a, b) && a >= b; }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] bool islessgreater(const A& a, const B& b) { return !isunordered(a, b) && a != b; }
 
 /// |x|; at 0 the derivative from the side of the sign bit.
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D abs(const D& x) {
-  return signbit(x) ? -x : x;
+  return select(
+      signbit(x), [&] { return D(-x); }, [&] { return x; });
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D fabs(const D& x) {
   return abs(x);
 }
 
 /// |magnitude| with the sign of `sign`, which only its sign bit enters.
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto copysign(const A& magnitude, const B& sign) {
   using std::signbit;
   using common = promote_t<A, B>;
   const common x(magnitude);
-  return signbit(innermost(magnitude)) == signbit(innermost(sign)) ? x : common(-x);
+  return select(
+      signbit(innermost(magnitude)) == signbit(innermost(sign)), [&] { return x; },
+      [&] { return common(-x); });
 }
 
 /// The larger; where one is NaN the other, as in `<cmath>`.
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fmax(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
-  return a < b || isnan(innermost(a)) ? common(b) : common(a);
+  return select(
+      a < b || isnan(innermost(a)), [&] { return common(b); }, [&] { return common(a); });
 }
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fmin(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
-  return b < a || isnan(innermost(a)) ? common(b) : common(a);
+  return select(
+      b < a || isnan(innermost(a)), [&] { return common(b); }, [&] { return common(a); });
 }
 
 /// max(a − b, 0); NaN where either is.
 template <class A, class B>
-  requires detail::mixed_scalars<A, B>
+  requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fdim(const A& a, const B& b) {
   using common = promote_t<A, B>;
-  return a <= b ? common(0) : common(a - b);
+  return select(
+      a <= b, [&] { return common(0); }, [&] { return common(a - b); });
 }
 
 // Rounding: flat wherever it is differentiable.
 
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] D floor(const D& x) {
   using std::floor;
   return D(real_type_t<D>(floor(innermost(x))));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] D ceil(const D& x) {
   using std::ceil;
   return D(real_type_t<D>(ceil(innermost(x))));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] D trunc(const D& x) {
   using std::trunc;
   return D(real_type_t<D>(trunc(innermost(x))));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] D round(const D& x) {
   using std::round;
   return D(real_type_t<D>(round(innermost(x))));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] D rint(const D& x) {
   using std::rint;
   return D(real_type_t<D>(rint(innermost(x))));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] D nearbyint(const D& x) {
   using std::nearbyint;
   return D(real_type_t<D>(nearbyint(innermost(x))));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] long lround(const D& x) {
   using std::lround;
   return lround(innermost(x));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] long long llround(const D& x) {
   using std::llround;
   return llround(innermost(x));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] long lrint(const D& x) {
   using std::lrint;
   return lrint(innermost(x));
 }
-template <infinitesimal D>
+template <Infinitesimal D>
 [[nodiscard]] long long llrint(const D& x) {
   using std::llrint;
   return llrint(innermost(x));

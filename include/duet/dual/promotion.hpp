@@ -28,7 +28,7 @@ namespace detail {
 /// Does any level of T carry this tag?
 template <class T, class Tag>
 [[nodiscard]] constexpr bool contains_tag() {
-  if constexpr (infinitesimal<T>) {
+  if constexpr (Infinitesimal<T>) {
     return std::is_same_v<level_tag<T>, Tag> ||
            contains_tag<typename scalar_traits<T>::value_type, Tag>();
   } else {
@@ -91,21 +91,21 @@ template <class A, class B>
 [[nodiscard]] constexpr auto promotion() {
   if constexpr (std::is_same_v<A, B>) {
     return std::type_identity<A>{};
-  } else if constexpr (infinitesimal<A> && arithmetic<B>) {
+  } else if constexpr (Infinitesimal<A> && Arithmetic<B>) {
     return std::type_identity<A>{}; // a literal takes the precision of what it meets
-  } else if constexpr (arithmetic<A> && infinitesimal<B>) {
+  } else if constexpr (Arithmetic<A> && Infinitesimal<B>) {
     return std::type_identity<B>{};
-  } else if constexpr (infinitesimal<A> && infinitesimal<B>) {
+  } else if constexpr (Infinitesimal<A> && Infinitesimal<B>) {
     return promotion_of_levels<A, B>();
-  } else if constexpr (infinitesimal<A> && real<B>) {
+  } else if constexpr (Infinitesimal<A> && Real<B>) {
     return promotion_below<A, typename scalar_traits<A>::value_type, B>();
-  } else if constexpr (real<A> && infinitesimal<B>) {
+  } else if constexpr (Real<A> && Infinitesimal<B>) {
     return promotion_below<B, typename scalar_traits<B>::value_type, A>();
-  } else if constexpr (arithmetic<A> && arithmetic<B>) {
+  } else if constexpr (Arithmetic<A> && Arithmetic<B>) {
     return std::common_type<A, B>{};
-  } else if constexpr (real<A> && arithmetic<B>) {
+  } else if constexpr (Real<A> && Arithmetic<B>) {
     return std::type_identity<A>{};
-  } else if constexpr (arithmetic<A> && real<B>) {
+  } else if constexpr (Arithmetic<A> && Real<B>) {
     return std::type_identity<B>{};
   } else {
     return std::type_identity<no_promotion>{};
@@ -121,13 +121,13 @@ using promote_t = detail::promotion_t<A, B>;
 
 /// A and B can meet in one expression.
 template <class A, class B>
-concept promotable = !std::same_as<promote_t<A, B>, detail::no_promotion>;
+concept Promotable = !std::same_as<promote_t<A, B>, detail::no_promotion>;
 
 /// U is a constant for the level of D: an arithmetic type or a scalar of what is below.
 template <class U, class D>
-concept constant_of = infinitesimal<D> &&(arithmetic<U> || scalar<U>)&&!std::same_as<U, D> &&
-                      (arithmetic<U> ||
-                       std::same_as<promote_t<typename scalar_traits<D>::value_type, U>,
-                                    typename scalar_traits<D>::value_type>);
+concept ConstantOf = Infinitesimal<D> &&(Arithmetic<U> || Scalar<U>)&&!std::same_as<U, D> &&
+                     (Arithmetic<U> ||
+                      std::same_as<promote_t<typename scalar_traits<D>::value_type, U>,
+                                   typename scalar_traits<D>::value_type>);
 
 } // namespace duet

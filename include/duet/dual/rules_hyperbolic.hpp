@@ -51,7 +51,8 @@ struct tanh {
         innermost(y) * innermost(y) < 0.5, [&] { return T(1 - y * y); },
         [&] {
           using std::exp;
-          const T e = exp(innermost(x) < 0 ? T(2 * x) : T(-2 * x));
+          const T e = exp(select(
+              innermost(x) < 0, [&] { return T(2 * x); }, [&] { return T(-2 * x); }));
           return T(4 * e / ((1 + e) * (1 + e)));
         });
   }

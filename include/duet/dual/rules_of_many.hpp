@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/dual/structural_zero.hpp>
 
@@ -28,10 +29,9 @@ struct power {
   template <class T>
   T slope(const T& x, const T&) const {
     using std::pow;
-    if (detail::is_structural_zero(exponent) || (innermost(exponent) == 0 && innermost(x) == 0)) {
-      return T(0);
-    }
-    return exponent * pow(x, Exponent(exponent - 1));
+    return select(
+        detail::is_structural_zero(exponent) || (innermost(exponent) == 0 && innermost(x) == 0),
+        [] { return T(0); }, [&] { return T(exponent * pow(x, Exponent(exponent - 1))); });
   }
 };
 
@@ -48,12 +48,17 @@ struct exponential {
   template <class T>
   T slope(const T& x, const T& y) const {
     using std::log;
-    if (innermost(base) == 0 && innermost(x) > 0) {
-      // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
-      const bool flat = is_constant(base) || innermost(x) > scalar_traits<T>::order;
-      return flat ? T(0) : detail::with_innermost(T(y * log(base)), real_type_t<T>(0));
-    }
-    return y * log(base);
+    const T regular = y * log(base);
+    // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
+    const bool vanishes = innermost(base) == 0 && innermost(x) > 0;
+    const bool is_flat = is_constant(base) || innermost(x) > scalar_traits<T>::order;
+    return select(
+        vanishes && is_flat, [] { return T(0); },
+        [&] {
+          return select(
+              vanishes, [&] { return T(detail::with_innermost(regular, real_type_t<T>(0))); },
+              [&] { return regular; });
+        });
   }
 
 private:
@@ -152,11 +157,12 @@ struct remainder {
 struct lerp {
   template <class T>
   T value(const T& a, const T& b, const T& t) const {
-    if constexpr (std::floating_point<T> || infinitesimal<T>) {
+    if constexpr (std::floating_point<T> || Infinitesimal<T>) {
       using std::lerp;
       return lerp(a, b, t);
     } else { // <cmath> knows built-in types only
-      return t < T(0.5) ? T(a + t * (b - a)) : T(b - (1 - t) * (b - a));
+      return select(
+          t < T(0.5), [&] { return T(a + t * (b - a)); }, [&] { return T(b - (1 - t) * (b - a)); });
     }
   }
   template <class T>

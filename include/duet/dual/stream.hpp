@@ -54,7 +54,7 @@ std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const taylor
   });
 }
 
-template <class Char, infinitesimal D>
+template <class Char, Infinitesimal D>
 std::basic_istream<Char>& operator>>(std::basic_istream<Char>& in, D& x) {
   typename scalar_traits<D>::value_type value{};
   if (in >> value) {

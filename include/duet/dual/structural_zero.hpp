@@ -4,6 +4,10 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 
+#include <concepts>
+#include <limits>
+#include <type_traits>
+
 /// \file
 /// The chain rule, with zeros that survive infinite slopes.
 ///
@@ -16,7 +20,7 @@ namespace duet::detail {
 /// Is `x`, with every infinitesimal part, an exact zero?
 template <class T>
 [[nodiscard]] constexpr bool is_structural_zero(const T& x) {
-  if constexpr (infinitesimal<T>) {
+  if constexpr (Infinitesimal<T>) {
     return x.all_of([](const auto& part) { return is_structural_zero(part); });
   } else {
     return x == T(0);
@@ -26,7 +30,7 @@ template <class T>
 /// Are `x` and all its infinitesimal parts finite? (x − x is NaN for infinities and NaN.)
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_all_finite(const T& x) {
-  if constexpr (infinitesimal<T>) {
+  if constexpr (Infinitesimal<T>) {
     return x.all_of([](const auto& part) { return is_all_finite(part); });
   } else {
     return x - x == T(0);
@@ -40,7 +44,7 @@ template <class T>
   if (is_structural_zero(partial)) {
     return T(0);
   }
-  if constexpr (!infinitesimal<T>) {
+  if constexpr (!Infinitesimal<T>) {
     return slope * partial;
   } else if constexpr (requires { slope.partials(); }) {
     using part = typename T::value_type;
@@ -65,30 +69,85 @@ template <class T>
   }
 }
 
+/// The same for a built-in number or a packet of them. Without a branch: what stays in one block is
+/// merged and scheduled better.
+template <class P, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr P masked_product(const T& slope, const P& partial) {
+  if constexpr (std::same_as<P, T>) {
+    return partial == T(0) ? T(0) : T(slope * partial);
+  } else {
+    return partial != T(0) ? partial * slope : P{};
+  }
+}
+
+/// Longer rows are masked only where the slope turns out not to be finite. clang does better
+/// without that branch.
+#ifdef __clang__
+inline constexpr int mask_limit = std::numeric_limits<int>::max();
+#else
+inline constexpr int mask_limit = 4;
+#endif
+
+template <class Partials, class T>
+[[nodiscard]] consteval bool is_always_masked() {
+  if constexpr (requires { Partials::packet_count; }) {
+    return Partials::packet_count <= mask_limit;
+  } else {
+    return std::floating_point<T>;
+  }
+}
+
+/// slope · row, element by element. Out of line and by value: were the row passed by reference, it
+/// would live in memory also where the slope is finite.
+template <class Partials, class T>
+[[nodiscard, gnu::noinline, gnu::cold]] constexpr Partials guarded_chain(T slope, Partials row) {
+  return Partials::map_elements([&](const T& p) { return guarded_product(slope, p); }, row);
+}
+
+/// slope_a · a + slope_b · b, in the same way.
+template <class Partials, class T>
+[[nodiscard, gnu::noinline, gnu::cold]] constexpr Partials guarded_chain(T slope_a, Partials a,
+                                                                         T slope_b, Partials b) {
+  return Partials::map_elements(
+      [&](const T& p, const T& q) {
+        return T(guarded_product(slope_a, p) + guarded_product(slope_b, q));
+      },
+      a, b);
+}
+
 /// slope · row
 template <class Partials, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Partials chain(const T& slope, const Partials& row) {
-  if (is_all_finite(slope)) [[likely]] {
-    return Partials::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * slope; }, row);
+  if constexpr (is_always_masked<Partials, T>()) {
+    return Partials::map([&](const auto& p) DUET_INLINE_LAMBDA { return masked_product(slope, p); },
+                         row);
+  } else {
+    if (is_all_finite(slope)) [[likely]] {
+      return Partials::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * slope; }, row);
+    }
+    return guarded_chain(slope, row);
   }
-  return Partials::map_elements(
-      [&](const T& p) DUET_INLINE_LAMBDA { return guarded_product(slope, p); }, row);
 }
 
 /// slope_a · a + slope_b · b
 template <class Partials, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Partials chain(const T& slope_a, const Partials& a,
                                                           const T& slope_b, const Partials& b) {
-  if (is_all_finite(slope_a) && is_all_finite(slope_b)) [[likely]] {
-    return Partials::map([&](const auto& p, const auto& q)
-                             DUET_INLINE_LAMBDA { return p * slope_a + q * slope_b; },
-                         a, b);
+  if constexpr (is_always_masked<Partials, T>()) {
+    return Partials::map(
+        [&](const auto& p, const auto& q) DUET_INLINE_LAMBDA {
+          return std::remove_cvref_t<decltype(p)>(masked_product(slope_a, p) +
+                                                  masked_product(slope_b, q));
+        },
+        a, b);
+  } else {
+    if (is_all_finite(slope_a) && is_all_finite(slope_b)) [[likely]] {
+      return Partials::map([&](const auto& p, const auto& q)
+                               DUET_INLINE_LAMBDA { return p * slope_a + q * slope_b; },
+                           a, b);
+    }
+    return guarded_chain(slope_a, a, slope_b, b);
   }
-  return Partials::map_elements(
-      [&](const T& p, const T& q) DUET_INLINE_LAMBDA {
-        return T(guarded_product(slope_a, p) + guarded_product(slope_b, q));
-      },
-      a, b);
 }
 
 } // namespace duet::detail

@@ -24,9 +24,9 @@ struct stumpff;
 
 /// Stumpff function c_n(s) = Σ_k (−s)^k/(2k+n)!, s ≥ 0: c₀ = cos √s, c₁ = sin √s/√s, c₂ = (1 −
 /// c₀)/s … Its derivative is c_n′ = (n c_{n+2} − c_{n+1})/2 = (c_{n−1} − n c_n)/(2s).
-template <int N, scalar T>
+template <int N, Scalar T>
 [[nodiscard]] inline T stumpff(const T& s) {
-  if constexpr (infinitesimal<T>) {
+  if constexpr (Infinitesimal<T>) {
     return detail::lift(rule::stumpff<N>{}, s);
   } else {
     return detail::stumpff_of_real<N>(s);
@@ -74,18 +74,19 @@ struct arc_ratio {
 
 /// L(s, w) = atan2(√s, w)/√s, s ≥ 0: what turns the vector part v of a quaternion, s = v·v, into
 /// that of its logarithm. At s = 0 it is 1/w for w > 0; for w < 0 it is infinite there.
-template <scalar T>
+template <Scalar T>
 [[nodiscard]] inline T arc_ratio(const T& s, const T& w) {
-  if constexpr (infinitesimal<T>) {
+  if constexpr (Infinitesimal<T>) {
     return detail::lift(rule::arc_ratio{}, s, w);
   } else {
     using std::atan2;
     using std::sqrt;
-    if (s == T(0) && w > T(0)) {
-      return T(1) / w;
-    }
-    const T root = sqrt(s);
-    return atan2(root, w) / root;
+    return select(
+        s == T(0) && w > T(0), [&] { return T(T(1) / w); },
+        [&] {
+          const T root = sqrt(s);
+          return T(atan2(root, w) / root);
+        });
   }
 }
 

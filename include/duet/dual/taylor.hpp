@@ -28,7 +28,7 @@ DUET_ABI_BEGIN
 /// Coefficients are the Taylor coefficients x_k = x^(k)/k!; `derivative(k)` multiplies by k!.
 template <class T, int K, class Tag = derivative_tag<>>
 class taylor : detail::infinitesimal_operators<taylor<T, K, Tag>, T> {
-  static_assert(scalar<T>, "duet: taylor<T, K> needs a real number or a scalar of duet as T");
+  static_assert(Scalar<T>, "duet: taylor<T, K> needs a real number or a scalar of duet as T");
   static_assert(K >= 1, "duet: taylor<T, K> needs at least the first power");
   static_assert(
       !detail::contains_tag<T, Tag>(),
@@ -43,7 +43,7 @@ public:
   /// Zero.
   constexpr taylor() : coefficients_{} {}
   /// A constant.
-  template <constant_of<taylor> U>
+  template <ConstantOf<taylor> U>
   DUET_ALWAYS_INLINE constexpr taylor(const U& constant)
       : coefficients_{static_cast<T>(constant)} {}
   DUET_ALWAYS_INLINE constexpr explicit taylor(const coefficients_type& coefficients)
@@ -91,7 +91,7 @@ public:
   }
 
   /// Drops the derivatives; explicit for that reason.
-  template <arithmetic U>
+  template <Arithmetic U>
   [[nodiscard]] constexpr explicit operator U() const {
     return static_cast<U>(value());
   }

@@ -3,6 +3,7 @@
 
 #include <duet/dual/rules.hpp>
 #include <duet/dual/rules_hyperbolic.hpp>
+#include <duet/dual/sine_cosine.hpp>
 #include <duet/dual/structural_zero.hpp>
 #include <duet/dual/taylor.hpp>
 
@@ -130,16 +131,18 @@ inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
 
 template <class T, int K, class Tag>
 [[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sin&, const taylor<T, K, Tag>& x) {
-  taylor<T, K, Tag> s(rule::sin{}.value(x.value()));
-  taylor<T, K, Tag> c(rule::cos{}.value(x.value()));
+  const auto [sine, cosine] = sine_and_cosine_of(x.value());
+  taylor<T, K, Tag> s(sine);
+  taylor<T, K, Tag> c(cosine);
   sine_and_cosine<-1>(x, s, c);
   return s;
 }
 
 template <class T, int K, class Tag>
 [[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cos&, const taylor<T, K, Tag>& x) {
-  taylor<T, K, Tag> s(rule::sin{}.value(x.value()));
-  taylor<T, K, Tag> c(rule::cos{}.value(x.value()));
+  const auto [sine, cosine] = sine_and_cosine_of(x.value());
+  taylor<T, K, Tag> s(sine);
+  taylor<T, K, Tag> c(cosine);
   sine_and_cosine<-1>(x, s, c);
   return c;
 }

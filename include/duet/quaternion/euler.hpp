@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/constants.hpp>
+#include <duet/core/select.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 
@@ -48,13 +49,10 @@ template <class T>
 template <class T>
 [[nodiscard]] T wrapped(const T& angle) {
   const auto pi = constant::pi<real_type_t<T>>();
-  if (innermost(angle) > pi) {
-    return angle - 2 * pi;
-  }
-  if (innermost(angle) < -pi) {
-    return angle + 2 * pi;
-  }
-  return angle;
+  const auto lowered = select(
+      innermost(angle) > pi, [&] { return T(angle - 2 * pi); }, [&] { return angle; });
+  return select(
+      innermost(angle) < -pi, [&] { return T(angle + 2 * pi); }, [&] { return lowered; });
 }
 
 } // namespace detail
@@ -62,7 +60,7 @@ template <class T>
 /// The rotation R_i(a) R_j(b) R_k(c) of the sequence ijk; angles in the letters' order, radians.
 /// Example: `from_euler<zyx>(yaw, pitch, roll)`.
 template <euler_sequence Sequence, class A, class B, class C>
-  requires promotable<A, promote_t<B, C>>
+  requires Promotable<A, promote_t<B, C>>
 [[nodiscard]] auto from_euler(const A& a, const B& b, const C& c) {
   using T = promote_t<A, promote_t<B, C>>;
   return detail::axis_rotation(Sequence.first, T(a)) *

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/constants.hpp>
+#include <duet/core/select.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -37,7 +38,7 @@ namespace detail {
 
 /// Below this ratio of squares of vector part and whole, a full turn is near: |v|⁻³ and higher
 /// powers in the derivatives by s would overflow before those by v do.
-template <real R>
+template <Real R>
 [[nodiscard]] R near_full_turn() {
   return R(std::numeric_limits<R>::max_exponent >= 1024 ? 0x1p-100 : 0x1p-20);
 }
@@ -47,28 +48,29 @@ template <class T>
 [[nodiscard]] quaternion<T> axis_of(const quaternion<T>& q) {
   using real = real_type_t<T>;
   const quaternion<T> v(T(0), q.x(), q.y(), q.z());
-  if (!is_zero(v)) {
-    return normalized(v);
-  }
   const auto component = [&](int value) { return undetermined(real(value), q.x(), q.y(), q.z()); };
-  return {T(0), component(1), component(0), component(0)};
+  return normalized(select(
+      is_zero(v), [&] { return quaternion<T>(T(0), component(1), component(0), component(0)); },
+      [&] { return v; }));
 }
 
 /// û φ where |q| is out of range or a full turn is near.
 template <class T>
-[[nodiscard]] vector3<T> log_vector_of_extreme(const quaternion<T>& q, const char* function) {
+[[nodiscard, gnu::cold]] vector3<T> log_vector_of_extreme(const quaternion<T>& q,
+                                                          const char* function) {
   using real = real_type_t<T>;
   require_not_zero(q, function);
   const quaternion<T> near_one =
       scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
   const quaternion<T> v(T(0), near_one.x(), near_one.y(), near_one.z());
   const T s = norm2(v);
-  if (innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>()) {
-    return vector3<T>(v.vec() * arc_ratio(s, near_one.w()));
-  }
-  // atan2(|v|, w) = π − atan2(|v|, −w)
-  const T short_way = arc_ratio(s, T(-near_one.w()));
-  return (axis_of(near_one) * constant::pi<real>() - v * short_way).vec();
+  return select(
+      innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>(),
+      [&] { return vector3<T>(v.vec() * arc_ratio(s, near_one.w())); },
+      [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
+        const T short_way = arc_ratio(s, T(-near_one.w()));
+        return vector3<T>((axis_of(near_one) * constant::pi<real>() - v * short_way).vec());
+      });
 }
 
 /// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|².
@@ -77,12 +79,14 @@ template <class T>
                                                        const T& square, const char* function) {
   using real = real_type_t<T>;
   const real& value = innermost(square);
-  if (!is_moderate(value) ||
-      (innermost(q.w()) < 0 && innermost(s) < value * near_full_turn<real>())) [[unlikely]] {
-    return log_vector_of_extreme(q, function);
-  }
-  const T ratio = arc_ratio(s, q.w());
-  return {q.x() * ratio, q.y() * ratio, q.z() * ratio};
+  return select(
+      is_moderate(value) &&
+          !(innermost(q.w()) < 0 && innermost(s) < value * near_full_turn<real>()),
+      [&]() DUET_INLINE_LAMBDA {
+        const T ratio = arc_ratio(s, q.w());
+        return vector3<T>(q.x() * ratio, q.y() * ratio, q.z() * ratio);
+      },
+      [&] { return log_vector_of_extreme(q, function); });
 }
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> log_vector(const quaternion<T>& q,
@@ -95,12 +99,13 @@ template <class T>
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE T log_norm(const quaternion<T>& q, const T& square) {
   using std::log;
-  if (is_moderate(innermost(square))) [[likely]] {
-    return log(square) / 2;
-  }
-  const int e = binary_exponent(largest_component(innermost_of(q)));
-  using real = real_type_t<T>;
-  return log(norm2(scaled_down(q, e))) / 2 + real(e) * constant::ln2<real>();
+  return select(
+      is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return T(log(square) / 2); },
+      [&] {
+        using real = real_type_t<T>;
+        const int e = binary_exponent(largest_component(innermost_of(q)));
+        return T(log(norm2(scaled_down(q, e))) / 2 + real(e) * constant::ln2<real>());
+      });
 }
 
 } // namespace detail
@@ -145,12 +150,14 @@ template <class T, class S>
   const real whole = round(real(innermost(exponent)));
   const auto rest = exponent - whole;
   const auto power = pow_of_regular(-q, log_vector(-q, "pow"), exponent);
-  const auto half_turns = fmod(whole, real(2)) == 0 ? power : -power;
-  if (is_structural_zero(rest)) {
-    return half_turns;
-  }
-  const R angle = constant::pi<real>() * rest;
-  return (quaternion<R>(cos(angle)) + axis_of(q) * R(sin(angle))) * half_turns;
+  const auto half_turns = select(
+      fmod(whole, real(2)) == 0, [&] { return power; }, [&] { return -power; });
+  return select(
+      is_structural_zero(rest), [&] { return half_turns; },
+      [&] {
+        const R angle = constant::pi<real>() * rest;
+        return (quaternion<R>(cos(angle)) + axis_of(q) * R(sin(angle))) * half_turns;
+      });
 }
 
 } // namespace detail
@@ -158,30 +165,34 @@ template <class T, class S>
 /// q^ρ = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar. At q = −|q| the axis û is undetermined: x is
 /// chosen, and derivatives are NaN unless ρ is whole.
 /// \throws invalid_input for the zero quaternion
-template <class T, scalar_for<T> S>
+template <class T, ScalarFor<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow(const quaternion<T>& q, const S& exponent) {
   const auto rho = detail::as_constant<promote_t<T, S>>(exponent);
   const auto s = innermost(q.x()) * innermost(q.x()) + innermost(q.y()) * innermost(q.y()) +
                  innermost(q.z()) * innermost(q.z());
-  if (innermost(q.w()) < 0 && 64 * s < innermost(q.w()) * innermost(q.w())) [[unlikely]] {
-    return detail::pow_near_full_turn(q, rho);
-  }
-  return detail::pow_of_regular(q, detail::log_vector(q, "pow"), rho);
+  return select(
+      innermost(q.w()) < 0 && 64 * s < innermost(q.w()) * innermost(q.w()),
+      [&] { return detail::pow_near_full_turn(q, rho); },
+      [&]() DUET_INLINE_LAMBDA {
+        return detail::pow_of_regular(q, detail::log_vector(q, "pow"), rho);
+      });
 }
 
 /// SLERP from a to b, both of unit norm: a (a* b)^τ (N9), along the shorter arc: b's sign is
 /// aligned with a's first. Where a and b are a half turn apart the arcs are equal and b is taken as
 /// it is. \throws invalid_input where a or b is zero
 template <class A, class B, class S>
-  requires promotable<A, B> && scalar_for<S, promote_t<A, B>>
+  requires Promotable<A, B> && ScalarFor<S, promote_t<A, B>>
 [[nodiscard]] auto slerp(const quaternion<A>& a, const quaternion<B>& b, const S& tau) {
   using T = promote_t<A, B>;
   const T cosine = dot(a, b);
   const bool other_side = innermost(cosine) < 0;
   // a* a has no vector part. Subtracting it first keeps all digits of a small rotation.
-  const quaternion<T> difference = conj(a) * ((other_side ? -b : b) - a);
-  const quaternion<T> relative(other_side ? -cosine : cosine, difference.x(), difference.y(),
-                               difference.z());
+  const quaternion<B> aligned = select(
+      other_side, [&] { return -b; }, [&] { return b; });
+  const quaternion<T> difference = conj(a) * (aligned - a);
+  using std::abs;
+  const quaternion<T> relative(T(abs(cosine)), difference.x(), difference.y(), difference.z());
   const vector3<T> v = detail::log_vector(relative, "slerp");
   using R = promote_t<T, S>;
   const auto t = detail::as_constant<R>(tau);

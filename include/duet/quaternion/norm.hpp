@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/select.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ template <class T>
   return {innermost(q.w()), innermost(q.x()), innermost(q.y()), innermost(q.z())};
 }
 
-template <real R>
+template <Real R>
 [[nodiscard]] R largest_component(const quaternion<R>& q) {
   using std::abs;
   using std::max;
@@ -30,7 +31,7 @@ template <real R>
 
 /// Squares beyond these limits, or their powers in derivatives of the first orders, overflow or
 /// lose digits.
-template <real R>
+template <Real R>
 [[nodiscard]] bool is_moderate(const R& square) {
   if constexpr (std::numeric_limits<R>::max_exponent >= 1024) {
     return square > R(0x1p-100) && square < R(0x1p100);
@@ -47,7 +48,7 @@ template <class T>
 }
 
 /// e such that 2^−e brings a number near 1.
-template <real R>
+template <Real R>
 [[nodiscard]] int binary_exponent(const R& x) {
   using std::frexp;
   int exponent = 0;
@@ -69,23 +70,46 @@ void require_not_zero(const quaternion<T>& q, const char* function) {
   }
 }
 
+template <class T>
+[[nodiscard, gnu::cold]] T norm_of_extreme(const quaternion<T>& q, const T& square) {
+  using std::ldexp;
+  using std::sqrt;
+  const auto largest = largest_component(innermost_of(q));
+  return select(
+      largest > 0 && largest <= std::numeric_limits<real_type_t<T>>::max(),
+      [&] {
+        const int e = binary_exponent(largest);
+        return T(ldexp(T(sqrt(norm2(scaled_down(q, e)))), e));
+      },
+      [&] { return T(sqrt(square)); }); // zero, infinite or not a number
+}
+
+template <class T>
+[[nodiscard, gnu::cold]] quaternion<T> normalized_of_extreme(const quaternion<T>& q) {
+  using std::sqrt;
+  require_not_zero(q, "normalized");
+  const auto near_one = scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
+  return near_one / T(sqrt(norm2(near_one)));
+}
+
+template <class T>
+[[nodiscard, gnu::cold]] quaternion<T> inverse_of_extreme(const quaternion<T>& q) {
+  require_not_zero(q, "inverse");
+  const int e = binary_exponent(largest_component(innermost_of(q)));
+  const auto near_one = scaled_down(q, e);
+  return scaled_down(conj(near_one) / norm2(near_one), e);
+}
+
 } // namespace detail
 
 /// N3: |q|. Zero for the zero quaternion, where it has no derivative.
 template <class T>
 [[nodiscard]] T norm(const quaternion<T>& q) {
-  using std::ldexp;
   using std::sqrt;
   const T square = norm2(q);
-  if (detail::is_moderate(innermost(square))) [[likely]] {
-    return sqrt(square);
-  }
-  const auto largest = detail::largest_component(detail::innermost_of(q));
-  if (!(largest > 0) || !(largest <= std::numeric_limits<real_type_t<T>>::max())) {
-    return sqrt(square); // zero, infinite or not a number
-  }
-  const int e = detail::binary_exponent(largest);
-  return ldexp(T(sqrt(norm2(detail::scaled_down(q, e)))), e);
+  return select(
+      detail::is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return T(sqrt(square)); },
+      [&] { return detail::norm_of_extreme(q, square); });
 }
 
 /// q/|q|.
@@ -94,13 +118,10 @@ template <class T>
 [[nodiscard]] quaternion<T> normalized(const quaternion<T>& q) {
   using std::sqrt;
   const T square = norm2(q);
-  if (detail::is_moderate(innermost(square))) [[likely]] {
-    return q / T(sqrt(square));
-  }
-  detail::require_not_zero(q, "normalized");
-  const auto largest = detail::largest_component(detail::innermost_of(q));
-  const auto near_one = detail::scaled_down(q, detail::binary_exponent(largest));
-  return near_one / norm(near_one);
+  return select(
+      detail::is_moderate(innermost(square)),
+      [&]() DUET_INLINE_LAMBDA { return q / T(sqrt(square)); },
+      [&] { return detail::normalized_of_extreme(q); });
 }
 
 /// N3: q⁻¹ = q*/|q|²; for a unit quaternion use `conj`.
@@ -108,14 +129,9 @@ template <class T>
 template <class T>
 [[nodiscard]] quaternion<T> inverse(const quaternion<T>& q) {
   const T square = norm2(q);
-  if (detail::is_moderate(innermost(square))) [[likely]] {
-    return conj(q) / square;
-  }
-  detail::require_not_zero(q, "inverse");
-  const auto largest = detail::largest_component(detail::innermost_of(q));
-  const int e = detail::binary_exponent(largest);
-  const auto near_one = detail::scaled_down(q, e);
-  return detail::scaled_down(conj(near_one) / norm2(near_one), e);
+  return select(
+      detail::is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return conj(q) / square; },
+      [&] { return detail::inverse_of_extreme(q); });
 }
 
 } // namespace duet

@@ -28,7 +28,7 @@ using matrix3 = Eigen::Matrix<T, 3, 3>;
 /// \tparam T  any scalar. Over a real number a unit quaternion is a rotation, acting as v ↦ q v q*.
 ///            Over derivative duals it carries its derivatives, over `dual<T, 1, screw_tag>` it is
 ///            a dual quaternion, a rigid motion. There is no other implementation.
-template <scalar T>
+template <Scalar T>
 class quaternion {
 public:
   using scalar_type = T;
@@ -93,16 +93,16 @@ inline constexpr bool is_quaternion<quaternion<T>> = true;
 
 /// A scalar that may multiply a quaternion over T.
 template <class S, class T>
-concept scalar_for = (scalar<S> || arithmetic<S>)&&promotable<S, T>;
+concept ScalarFor = (Scalar<S> || Arithmetic<S>)&&Promotable<S, T>;
 
 template <class A, class B>
-  requires promotable<A, B>
+  requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
 operator+(const quaternion<A>& p, const quaternion<B>& q) {
   return {p.w() + q.w(), p.x() + q.x(), p.y() + q.y(), p.z() + q.z()};
 }
 template <class A, class B>
-  requires promotable<A, B>
+  requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
 operator-(const quaternion<A>& p, const quaternion<B>& q) {
   return {p.w() - q.w(), p.x() - q.x(), p.y() - q.y(), p.z() - q.z()};
@@ -110,7 +110,7 @@ operator-(const quaternion<A>& p, const quaternion<B>& q) {
 
 /// N1: pq = (p₀q₀ − p⃗·q⃗, p₀q⃗ + q₀p⃗ + p⃗×q⃗)
 template <class A, class B>
-  requires promotable<A, B>
+  requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
 operator*(const quaternion<A>& p, const quaternion<B>& q) {
   return {p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
@@ -119,18 +119,18 @@ operator*(const quaternion<A>& p, const quaternion<B>& q) {
           p.w() * q.z() + p.x() * q.y() - p.y() * q.x() + p.z() * q.w()};
 }
 
-template <class T, scalar_for<T> S>
+template <class T, ScalarFor<T> S>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
 operator*(const quaternion<T>& q, const S& a) {
   const auto factor = detail::as_constant<promote_t<T, S>>(a);
   return {q.w() * factor, q.x() * factor, q.y() * factor, q.z() * factor};
 }
-template <class T, scalar_for<T> S>
+template <class T, ScalarFor<T> S>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
 operator*(const S& a, const quaternion<T>& q) {
   return q * a;
 }
-template <class T, scalar_for<T> S>
+template <class T, ScalarFor<T> S>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<T, S>>
 operator/(const quaternion<T>& q, const S& a) {
   const auto divisor = detail::as_constant<promote_t<T, S>>(a);
@@ -139,7 +139,7 @@ operator/(const quaternion<T>& q, const S& a) {
 
 /// Componentwise, by value. q and −q are the same rotation but not the same quaternion.
 template <class A, class B>
-  requires promotable<A, B>
+  requires Promotable<A, B>
 [[nodiscard]] constexpr bool operator==(const quaternion<A>& p, const quaternion<B>& q) {
   return p.w() == q.w() && p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
 }
@@ -152,7 +152,7 @@ template <class T>
 
 /// The scalar product of p and q as vectors of R⁴.
 template <class A, class B>
-  requires promotable<A, B>
+  requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr promote_t<A, B> dot(const quaternion<A>& p,
                                                                const quaternion<B>& q) {
   return p.w() * q.w() + p.x() * q.x() + p.y() * q.y() + p.z() * q.z();

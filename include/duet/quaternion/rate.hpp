@@ -13,7 +13,7 @@ namespace duet {
 
 /// N7: ω^s = vec(2 q̇ q*) in spatial axes, ω^b = vec(2 q* q̇) in body axes; q of unit norm.
 template <class A, class B, class Frame>
-  requires promotable<A, B>
+  requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>>
 angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame_of_result) {
   const auto half = [&] {
@@ -28,7 +28,7 @@ angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame
 
 /// N7: q̇ = ½ ω^s q = ½ q ω^b
 template <class A, class B, class Frame>
-  requires promotable<A, B>
+  requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<A, B>>
 quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_omega) {
   const quaternion<B> half(B(0), vector3<B>(omega[0] / 2, omega[1] / 2, omega[2] / 2));

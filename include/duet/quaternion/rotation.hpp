@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -19,7 +20,7 @@ namespace duet {
 
 /// q v q* for a unit quaternion: v turned by the rotation.
 template <class T, class U>
-  requires promotable<T, U>
+  requires Promotable<T, U>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<T, U>> rotate(const quaternion<T>& q,
                                                                  const vector3<U>& v) {
   // v + 2 q₀ (q⃗ × v) + 2 q⃗ × (q⃗ × v)
@@ -35,7 +36,7 @@ template <class T, class U>
 /// Rotation by the angle a about the direction n of any length.
 /// \throws invalid_input where n is zero
 template <class T, class S>
-  requires promotable<T, S>
+  requires Promotable<T, S>
 [[nodiscard]] quaternion<promote_t<T, S>> from_axis_angle(const vector3<T>& n, const S& a) {
   using std::cos;
   using std::sin;
@@ -61,7 +62,9 @@ template <class T>
 /// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] vector3<T> rotation_vector(const quaternion<T>& q) {
-  const vector3<T> half = detail::log_vector(innermost(q.w()) < 0 ? -q : q, "rotation_vector");
+  const quaternion<T> short_way = select(
+      innermost(q.w()) < 0, [&] { return -q; }, [&] { return q; });
+  const vector3<T> half = detail::log_vector(short_way, "rotation_vector");
   return {2 * half[0], 2 * half[1], 2 * half[2]};
 }
 
@@ -78,21 +81,26 @@ template <class T>
   const vector3<T> sum = u + v;
   const T w = sum.squaredNorm() / 2;
   const bool same_side = !(innermost(w) < 1);
-  const quaternion<T> q(w, vector3<T>(same_side ? u.cross(v - u) : u.cross(sum)));
+  const vector3<T> nearer = select(
+      same_side, [&] { return vector3<T>(v - u); }, [&] { return sum; });
+  const quaternion<T> q(w, vector3<T>(u.cross(nearer)));
   const auto largest = [](const vector3<T>& x) {
     return detail::largest_component(detail::innermost_of(quaternion<T>(T(0), x)));
   };
   // The sum is perpendicular to u, up to how far u and v are from unit length. Where that is all
   // there is, they are opposite.
-  if (same_side || 4 * largest(q.vec()) > largest(sum)) {
-    return normalized(q);
-  }
+  const bool is_determined = same_side || 4 * largest(q.vec()) > largest(sum);
   const auto chosen =
       vector3<real>(innermost(u[0]), innermost(u[1]), innermost(u[2])).unitOrthogonal().eval();
   const auto component = [&](real value) {
     return detail::undetermined(value, T(u[0] + v[0]), T(u[1] + v[1]), T(u[2] + v[2]));
   };
-  return {component(real(0)), component(chosen[0]), component(chosen[1]), component(chosen[2])};
+  return normalized(select(
+      is_determined, [&] { return q; },
+      [&] {
+        return quaternion<T>(component(real(0)), component(chosen[0]), component(chosen[1]),
+                             component(chosen[2]));
+      }));
 }
 
 /// The matrix R with R v = q v q*, for a unit quaternion.
@@ -131,24 +139,22 @@ template <class T>
   // 4q₀², 4q₁² … from the diagonal; dividing by the largest never loses digits.
   const T s[4] = {1 + r(0, 0) + r(1, 1) + r(2, 2), 1 + r(0, 0) - r(1, 1) - r(2, 2),
                   1 - r(0, 0) + r(1, 1) - r(2, 2), 1 - r(0, 0) - r(1, 1) + r(2, 2)};
-  int k = 0;
-  for (int i = 1; i < 4; ++i) {
-    k = s[i] > s[k] ? i : k;
-  }
-  const T root = sqrt(s[k]);
-  const T f = 1 / (2 * root);
+  const auto larger = [](bool second, const auto& a, const auto& b) {
+    return select(
+        second, [&] { return b; }, [&] { return a; });
+  };
+  const bool x_over_w = s[1] > s[0];
+  const bool z_over_y = s[3] > s[2];
+  const T first = larger(x_over_w, s[0], s[1]);
+  const T last = larger(z_over_y, s[2], s[3]);
+  const bool is_last = last > first;
+  const T half = sqrt(larger(is_last, first, last)) / 2;
+  const T f = 1 / (4 * half);
   const T a = (r(2, 1) - r(1, 2)) * f, b = (r(0, 2) - r(2, 0)) * f, c = (r(1, 0) - r(0, 1)) * f;
   const T d = (r(1, 0) + r(0, 1)) * f, e = (r(2, 1) + r(1, 2)) * f, g = (r(0, 2) + r(2, 0)) * f;
-  switch (k) {
-  case 0:
-    return {root / 2, a, b, c};
-  case 1:
-    return {a, root / 2, d, g};
-  case 2:
-    return {b, d, root / 2, e};
-  default:
-    return {c, g, e, root / 2};
-  }
+  using Q = quaternion<T>;
+  return larger(is_last, larger(x_over_w, Q(half, a, b, c), Q(a, half, d, g)),
+                larger(z_over_y, Q(b, d, half, e), Q(c, g, e, half)));
 }
 
 } // namespace duet

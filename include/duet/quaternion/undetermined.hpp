@@ -34,7 +34,7 @@ struct undetermined_rule {
 /// by what x, y and z do not depend on.
 template <class T>
 [[nodiscard]] T undetermined(const real_type_t<T>& chosen, const T& x, const T& y, const T& z) {
-  if constexpr (infinitesimal<T>) {
+  if constexpr (Infinitesimal<T>) {
     return lift(undetermined_rule<real_type_t<T>>{chosen}, x, y, z);
   } else {
     return chosen;

@@ -32,7 +32,7 @@ using cumulative_weights =
 ///
 /// B̃_i = Σ_{j≥i} B_j (P2). On every span the k − 1 of them that vary are stored as polynomials, so
 /// that non-uniform knots cost no more than uniform ones.
-template <int Order, real R = double>
+template <int Order, Real R = double>
 class bspline_basis {
   static_assert(Order >= 2, "duet: a B-spline basis needs order 2 or more");
 
@@ -84,7 +84,7 @@ public:
   /// built-in number counts as an R. Like any polynomial they may be evaluated outside the span.
   template <int Derivatives, class S>
   [[nodiscard]] DUET_ALWAYS_INLINE auto weights(std::size_t span, const S& u) const {
-    using P = std::conditional_t<arithmetic<S>, R, S>;
+    using P = std::conditional_t<Arithmetic<S>, R, S>;
     using number = real_type_t<P>;
     const span_data& data = spans_[span];
     const P t = P(u) - data.middle;

@@ -110,7 +110,7 @@ public:
 private:
   template <int Rates, class S>
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const S& parameter) const {
-    using P = std::conditional_t<arithmetic<S>, real_type, S>;
+    using P = std::conditional_t<Arithmetic<S>, real_type, S>;
     using D = promote_t<T, P>;
     const P u(parameter);
     const std::size_t span = basis_.span_of(static_cast<real_type>(innermost(u)));

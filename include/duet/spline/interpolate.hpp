@@ -26,7 +26,7 @@ namespace duet {
 namespace detail {
 
 /// \throws invalid_row unless the parameters are finite and increase
-template <real R>
+template <Real R>
 void check_parameters(const std::vector<R>& u) {
   for (std::size_t i = 0; i < u.size(); ++i) {
     std::ostringstream reason;
@@ -186,7 +186,7 @@ template <class Spline, class R, class T, class Ends = natural>
 [[nodiscard]] Spline interpolate(const std::vector<R>& parameters,
                                  const std::vector<quaternion<T>>& orientations,
                                  const Ends& ends = {}) {
-  static_assert(std::is_same_v<Spline, cumulative_bspline<T, 4>> && real<T>,
+  static_assert(std::is_same_v<Spline, cumulative_bspline<T, 4>> && Real<T>,
                 "duet: interpolate makes cumulative_bspline<T, 4> over real numbers");
   if (parameters.size() != orientations.size() || parameters.size() < 2) {
     std::ostringstream message;

@@ -16,7 +16,7 @@ namespace detail {
 
 /// \throws invalid_input unless the knots are finite, do not decrease, leave a domain for splines
 /// of this order and repeat none more often than `order` times
-template <real R>
+template <Real R>
 void check_knots(const std::vector<R>& knots, int order) {
   const auto fail = [](const auto&... what) {
     std::ostringstream message;
@@ -51,7 +51,7 @@ void check_knots(const std::vector<R>& knots, int order) {
 
 /// The knots of a spline of this order through data at the given parameters: each once, the first
 /// and the last `order` times, so that the curve ends in its first and last control elements.
-template <real R>
+template <Real R>
 [[nodiscard]] std::vector<R> clamped_knots(const std::vector<R>& parameters, int order) {
   std::vector<R> knots;
   knots.reserve(parameters.size() + 2 * std::size_t(order) - 2);
@@ -65,7 +65,7 @@ namespace detail {
 
 /// `bspline_value` where the domain is known to end at `end`: functions of lower order, as in
 /// derivatives, have the domain of the spline that they belong to.
-template <real R>
+template <Real R>
 [[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u,
                               const R& end) {
   if (order == 1) {
@@ -94,7 +94,7 @@ template <real R>
 /// u_m] is closed. (Closed at both ends, as the paper prints them, two would count at every knot
 /// and the functions would not sum to 1.) A term whose denominator is zero is zero. This is the
 /// definition; `bspline_basis` is the fast way.
-template <real R>
+template <Real R>
 [[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u) {
   return detail::bspline_value(knots, i, order, u, knots[knots.size() - std::size_t(order)]);
 }

@@ -99,7 +99,7 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
   const auto factor = [&](std::size_t i) DUET_INLINE_LAMBDA {
     return duet::exp(product(weights[0][i], increments[i]));
   };
-  if constexpr (real<T>) {
+  if constexpr (Real<T>) {
     // All exponentials first: between them nothing else is alive that calls could force to memory.
     [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
       const std::array<quaternion<T>, Factors> e{factor(I)...};
