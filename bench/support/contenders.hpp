@@ -36,9 +36,7 @@ struct duet_contender {
   }
   template <int N>
   static void write_partials(const number<N>& x, double* out) {
-    for (int i = 0; i < N; ++i) {
-      out[i] = x.partial(i);
-    }
+    x.partials().copy_to(out);
   }
 };
 

@@ -23,6 +23,12 @@ namespace duet_bench {
 /// Names of the registered contests, in that order.
 [[nodiscard]] std::vector<std::string>& contests();
 
+/// A function call, so that all contenders hand their results over in the same way.
+template <class F, class Input>
+[[gnu::noinline]] auto called(F& evaluate, Input& input) {
+  return evaluate(input);
+}
+
 /// Times `evaluate(input)`. The input is hidden from the optimiser in every turn, and the result
 /// counts as used.
 template <class Input, class F>
@@ -30,11 +36,11 @@ void contest(std::string_view workload, std::string_view contender, Input input,
   const std::string name = std::string(workload) + '/' + std::string(contender);
   contests().push_back(name);
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) mutable {
-    benchmark::DoNotOptimize(evaluate(input));
+    benchmark::DoNotOptimize(called(evaluate, input));
     const std::size_t before = allocations();
     for (auto _ : state) {
       benchmark::DoNotOptimize(input);
-      auto result = evaluate(input);
+      auto result = called(evaluate, input);
       benchmark::DoNotOptimize(result);
     }
     state.counters["allocations"] = double(allocations() - before);

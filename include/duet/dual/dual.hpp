@@ -113,12 +113,12 @@ public:
             partials_type::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * c; }, partials_)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual divided_by(const T& c) const {
-    return {T(value_ / c), detail::chain<partials_type>(T(T(1) / c), partials_)};
+    return {T(value_ / c), detail::chain(T(T(1) / c), partials_)};
   }
   /// c / *this
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual dividing(const T& c) const {
-    const T quotient = c / value_;
-    return {quotient, detail::chain<partials_type>(T(-(quotient / value_)), partials_)};
+    const T inverse = T(1) / value_;
+    return {T(c / value_), detail::chain(T(-(c * inverse) * inverse), partials_)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual sum(const dual& a, const dual& b) {
     return {T(a.value_ + b.value_), partials_type::map([](const auto& p, const auto& q)
@@ -139,10 +139,10 @@ public:
   }
   /// N11: (a₁ + εb₁)/(a₂ + εb₂) = a₁/a₂ + ε(b₁ − (a₁/a₂)b₂)/a₂
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual quotient(const dual& a, const dual& b) {
-    const T quotient = a.value_ / b.value_;
+    // The derivative goes through the inverse, so that it need not wait for the exact quotient.
     const T inverse = T(1) / b.value_;
-    return {quotient, detail::chain<partials_type>(inverse, a.partials_, T(-(quotient * inverse)),
-                                                   b.partials_)};
+    const detail::chain_of_quotient<T> kernel{T(a.value_ * inverse), inverse};
+    return {T(a.value_ / b.value_), detail::combined(kernel, a.partials_, b.partials_)};
   }
 
 private:

@@ -18,7 +18,7 @@ namespace duet::detail {
 template <class Rule, class T, int N, class Tag>
 [[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const Rule& rule, const dual<T, N, Tag>& x) {
   const T y = rule.value(x.value());
-  return {y, chain<partials<T, N>>(rule.slope(x.value(), y), x.partials())};
+  return {y, chain(rule.slope(x.value(), y), x.partials())};
 }
 
 template <class Rule, class T, int N, class Tag, class... Rest>
@@ -39,13 +39,13 @@ lift(const Rule& rule, const dual<T, N, Tag>& x, const dual<T, N, Tag>& y, const
 template <class T, int N, class Tag>
 [[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const rule::sin&, const dual<T, N, Tag>& x) {
   const auto [sine, cosine] = sine_and_cosine_of(x.value());
-  return {sine, chain<partials<T, N>>(cosine, x.partials())};
+  return {sine, chain(cosine, x.partials())};
 }
 
 template <class T, int N, class Tag>
 [[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const rule::cos&, const dual<T, N, Tag>& x) {
   const auto [sine, cosine] = sine_and_cosine_of(x.value());
-  return {cosine, chain<partials<T, N>>(T(-sine), x.partials())};
+  return {cosine, chain(T(-sine), x.partials())};
 }
 
 } // namespace duet::detail

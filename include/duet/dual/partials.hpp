@@ -4,9 +4,11 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 #include <utility>
 
@@ -50,6 +52,8 @@ public:
 
   [[nodiscard]] constexpr const T& get(int i) const { return elements_[std::size_t(i)]; }
   constexpr void set(int i, const T& x) { elements_[std::size_t(i)] = x; }
+  /// Writes N elements.
+  constexpr void copy_to(T* out) const { std::copy(elements_.begin(), elements_.end(), out); }
 
   /// result[i] = f(rows[i]...)
   template <class F, class... Rows>
@@ -109,6 +113,14 @@ public:
       elements_[i] = x;
     } else {
       packets_[i / width][i % width] = x;
+    }
+  }
+  /// Writes N elements, packet by packet where that is possible.
+  constexpr void copy_to(T* out) const {
+    if (std::is_constant_evaluated()) {
+      std::copy_n(elements_.begin(), N, out);
+    } else {
+      std::memcpy(out, packets_, N * sizeof(T));
     }
   }
 

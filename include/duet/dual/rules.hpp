@@ -37,7 +37,7 @@ struct sqrt {
   }
   template <class T>
   T slope(const T&, const T& y) const {
-    return 1 / (2 * y);
+    return real_type_t<T>(0.5) / y;
   }
 };
 

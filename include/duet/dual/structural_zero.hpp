@@ -69,9 +69,9 @@ template <class T>
   }
 }
 
-/// The same for a built-in number or a packet of them. Without a branch: what stays in one block is
-/// merged and scheduled better.
-template <class P, class T>
+/// The same for a built-in number or a packet of them. No branch for packets: what stays in one
+/// block is merged and scheduled better.
+template <class T, class P>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr P masked_product(const T& slope, const P& partial) {
   if constexpr (std::same_as<P, T>) {
     return partial == T(0) ? T(0) : T(slope * partial);
@@ -80,16 +80,61 @@ template <class P, class T>
   }
 }
 
-/// Longer rows are masked only where the slope turns out not to be finite. clang does better
-/// without that branch.
+// How partials are combined: `kernel(product, p…)` for each of them, where product(slope, p) is
+// slope · p with surviving zeros.
+
+/// slope · p
+template <class T>
+struct chain_of_one {
+  T slope;
+
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const { return is_all_finite(slope); }
+  template <class Product, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr P operator()(Product product, const P& p) const {
+    return product(slope, p);
+  }
+};
+
+/// slope_a · p + slope_b · q
+template <class T>
+struct chain_of_two {
+  T slope_a, slope_b;
+
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const {
+    return is_all_finite(slope_a) && is_all_finite(slope_b);
+  }
+  template <class Product, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr P operator()(Product product, const P& p,
+                                                          const P& q) const {
+    return P(product(slope_a, p) + product(slope_b, q));
+  }
+};
+
+/// (p − ratio · q) · inverse
+template <class T>
+struct chain_of_quotient {
+  T ratio, inverse;
+
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const {
+    return is_all_finite(ratio) && is_all_finite(inverse);
+  }
+  template <class Product, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr P operator()(Product product, const P& p,
+                                                          const P& q) const {
+    return product(inverse, P(p - product(ratio, q)));
+  }
+};
+
+/// Longer rows are masked only where a slope turns out not to be finite. clang does better without
+/// that branch.
 #ifdef __clang__
 inline constexpr int mask_limit = std::numeric_limits<int>::max();
 #else
-inline constexpr int mask_limit = 4;
+inline constexpr int mask_limit = 2;
 #endif
 
 template <class Partials, class T>
-[[nodiscard]] consteval bool is_always_masked() {
+[[nodiscard]] constexpr bool is_always_masked() {
   if constexpr (requires { Partials::packet_count; }) {
     return Partials::packet_count <= mask_limit;
   } else {
@@ -97,57 +142,47 @@ template <class Partials, class T>
   }
 }
 
-/// slope · row, element by element. Out of line and by value: were the row passed by reference, it
-/// would live in memory also where the slope is finite.
-template <class Partials, class T>
-[[nodiscard, gnu::noinline, gnu::cold]] constexpr Partials guarded_chain(T slope, Partials row) {
-  return Partials::map_elements([&](const T& p) { return guarded_product(slope, p); }, row);
+/// Element by element. Out of line and by value: were the rows passed by reference, they would live
+/// in memory also where all slopes are finite.
+template <class Kernel, class Row, class... Rows>
+[[nodiscard, gnu::noinline, gnu::cold]] constexpr Row guarded_chain(Kernel kernel, Row row,
+                                                                    Rows... rows) {
+  const auto product = [](const auto& slope, const auto& p) { return guarded_product(slope, p); };
+  return Row::map_elements([&](const auto&... p) { return kernel(product, p...); }, row, rows...);
 }
 
-/// slope_a · a + slope_b · b, in the same way.
-template <class Partials, class T>
-[[nodiscard, gnu::noinline, gnu::cold]] constexpr Partials guarded_chain(T slope_a, Partials a,
-                                                                         T slope_b, Partials b) {
-  return Partials::map_elements(
-      [&](const T& p, const T& q) {
-        return T(guarded_product(slope_a, p) + guarded_product(slope_b, q));
-      },
-      a, b);
+/// The kernel applied to rows of partials.
+template <template <class> class Kernel, class T, class Row, class... Rows>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr Row combined(const Kernel<T>& kernel, const Row& row,
+                                                        const Rows&... rows) {
+  if constexpr (is_always_masked<Row, T>()) {
+    const auto product = [](const T& slope, const auto& p)
+                             DUET_INLINE_LAMBDA { return masked_product(slope, p); };
+    return Row::map([&](const auto&... p) DUET_INLINE_LAMBDA { return kernel(product, p...); }, row,
+                    rows...);
+  } else {
+    if (kernel.is_finite()) [[likely]] {
+      const auto product = [](const T& slope, const auto& p) DUET_INLINE_LAMBDA {
+        return std::remove_cvref_t<decltype(p)>(p * slope);
+      };
+      return Row::map([&](const auto&... p) DUET_INLINE_LAMBDA { return kernel(product, p...); },
+                      row, rows...);
+    }
+    return guarded_chain(kernel, row, rows...);
+  }
 }
 
 /// slope · row
-template <class Partials, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr Partials chain(const T& slope, const Partials& row) {
-  if constexpr (is_always_masked<Partials, T>()) {
-    return Partials::map([&](const auto& p) DUET_INLINE_LAMBDA { return masked_product(slope, p); },
-                         row);
-  } else {
-    if (is_all_finite(slope)) [[likely]] {
-      return Partials::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * slope; }, row);
-    }
-    return guarded_chain(slope, row);
-  }
+template <class T, class Row>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr Row chain(const T& slope, const Row& row) {
+  return combined(chain_of_one<T>{slope}, row);
 }
 
 /// slope_a · a + slope_b · b
-template <class Partials, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr Partials chain(const T& slope_a, const Partials& a,
-                                                          const T& slope_b, const Partials& b) {
-  if constexpr (is_always_masked<Partials, T>()) {
-    return Partials::map(
-        [&](const auto& p, const auto& q) DUET_INLINE_LAMBDA {
-          return std::remove_cvref_t<decltype(p)>(masked_product(slope_a, p) +
-                                                  masked_product(slope_b, q));
-        },
-        a, b);
-  } else {
-    if (is_all_finite(slope_a) && is_all_finite(slope_b)) [[likely]] {
-      return Partials::map([&](const auto& p, const auto& q)
-                               DUET_INLINE_LAMBDA { return p * slope_a + q * slope_b; },
-                           a, b);
-    }
-    return guarded_chain(slope_a, a, slope_b, b);
-  }
+template <class T, class Row>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr Row chain(const T& slope_a, const Row& a,
+                                                     const T& slope_b, const Row& b) {
+  return combined(chain_of_two<T>{slope_a, slope_b}, a, b);
 }
 
 } // namespace duet::detail
