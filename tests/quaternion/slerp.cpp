@@ -83,7 +83,9 @@ TEST_CASE("N9: slerp, value and derivative by the parameter") {
 TEST_CASE("N9: slerp, derivative by its ends") {
   random_source random(23);
   worst_error slope("slerp, derivative by the ends");
-  for (const auto& [a, b] : pairs()) {
+  for (const auto& ends : pairs()) {
+    const auto& a = ends.first;
+    const auto& b = ends.second;
     const double tau = random.uniform(0, 1);
     const auto da = random.direction<3>();
     const auto db = random.direction<3>();

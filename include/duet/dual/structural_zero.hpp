@@ -80,6 +80,16 @@ template <class T, class P>
   }
 }
 
+/// slope · x of two numbers with surviving zeros.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr T surviving_product(const T& slope, const T& x) {
+  if constexpr (std::floating_point<T>) {
+    return masked_product(slope, x);
+  } else {
+    return is_all_finite(slope) ? T(slope * x) : guarded_product(slope, x);
+  }
+}
+
 // How partials are combined: `kernel(product, p…)` for each of them, where product(slope, p) is
 // slope · p with surviving zeros.
 

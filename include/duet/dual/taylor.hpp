@@ -112,8 +112,9 @@ public:
   }
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor divided_by(const T& c) const {
     const T inverse = T(1) / c;
-    taylor result = each(
-        [&](int k) DUET_INLINE_LAMBDA { return detail::guarded_product(inverse, coefficient(k)); });
+    taylor result = each([&](int k) DUET_INLINE_LAMBDA {
+      return detail::surviving_product(inverse, coefficient(k));
+    });
     result.coefficients_[0] = coefficients_[0] / c;
     return result;
   }
@@ -147,11 +148,11 @@ public:
       T remainder = a.coefficient(k);
       detail::unrolled<K>([&](int j) DUET_INLINE_LAMBDA {
         if (j < k) {
-          remainder = remainder -
-                      detail::guarded_product(result.coefficient(k - j - 1), b.coefficient(j + 1));
+          remainder = remainder - detail::surviving_product(result.coefficient(k - j - 1),
+                                                            b.coefficient(j + 1));
         }
       });
-      result.set_coefficient(k, detail::guarded_product(inverse, remainder));
+      result.set_coefficient(k, detail::surviving_product(inverse, remainder));
     });
     return result;
   }

@@ -51,9 +51,7 @@ template <class T, int K, class Tag, class S>
   T sum(0);
   unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
     const int j = i + 1;
-    const T& s = coefficient_of<T>(slope, K - j);
-    const T term =
-        is_all_finite(s) ? T(s * x.coefficient(j)) : guarded_product(s, x.coefficient(j));
+    const T term = surviving_product(coefficient_of<T>(slope, K - j), x.coefficient(j));
     sum = j == 1 ? T(sum + term) : T(sum + term * j);
   });
   return sum;
@@ -107,11 +105,6 @@ template <class Rule, class T, int K, class Tag, class... Rest>
 template <int Sign, class T, int K, class Tag>
 inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
                             taylor<T, K, Tag>& c) {
-  // Where the values overflow or do not exist, constants must keep their zero derivatives.
-  const bool regular = is_all_finite(s.value()) && is_all_finite(c.value());
-  const auto product = [&](const T& slope, const T& part) DUET_INLINE_LAMBDA {
-    return regular ? T(slope * part) : guarded_product(slope, part);
-  };
   unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
     const int k = i + 1;
     T ds(0);
@@ -120,8 +113,8 @@ inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
       const int j = m + 1;
       if (j <= k) {
         const T jx = x.coefficient(j) * j;
-        ds = ds + product(c.coefficient(k - j), jx);
-        dc = dc + product(s.coefficient(k - j), jx);
+        ds = ds + surviving_product(c.coefficient(k - j), jx);
+        dc = dc + surviving_product(s.coefficient(k - j), jx);
       }
     });
     s.set_coefficient(k, T(ds / k));
@@ -130,7 +123,8 @@ inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sin&, const taylor<T, K, Tag>& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::sin&,
+                                                        const taylor<T, K, Tag>& x) {
   const auto [sine, cosine] = sine_and_cosine_of(x.value());
   taylor<T, K, Tag> s(sine);
   taylor<T, K, Tag> c(cosine);
@@ -139,7 +133,8 @@ template <class T, int K, class Tag>
 }
 
 template <class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cos&, const taylor<T, K, Tag>& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::cos&,
+                                                        const taylor<T, K, Tag>& x) {
   const auto [sine, cosine] = sine_and_cosine_of(x.value());
   taylor<T, K, Tag> s(sine);
   taylor<T, K, Tag> c(cosine);
