@@ -69,14 +69,23 @@ template <class T>
   }
 }
 
-/// The same for a built-in number or a packet of them. No branch for packets: what stays in one
-/// block is merged and scheduled better.
+/// The same for a built-in number or a packet of them, without a branch: what stays in one block is
+/// merged and scheduled better. A single number takes a packet too, for g++ makes a branch of its
+/// conditional expression.
 template <class T, class P>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr P masked_product(const T& slope, const P& partial) {
-  if constexpr (std::same_as<P, T>) {
-    return partial == T(0) ? T(0) : T(slope * partial);
-  } else {
+  if constexpr (!std::same_as<P, T>) {
     return partial != T(0) ? partial * slope : P{};
+  } else {
+    if constexpr (sizeof(T) <= sizeof(double)) {
+      if (!std::is_constant_evaluated()) {
+        typedef T packet __attribute__((vector_size(16)));
+        const T product = slope * partial;
+        const packet mask = {partial, partial}, products = {product, product};
+        return (mask != T(0) ? products : packet{})[0];
+      }
+    }
+    return partial == T(0) ? T(0) : T(slope * partial);
   }
 }
 
@@ -90,12 +99,22 @@ template <class T>
   }
 }
 
+/// A row of more packets than this is masked only where a slope turns out not to be finite. clang
+/// does better without that branch.
+#ifdef __clang__
+inline constexpr int mask_limit = std::numeric_limits<int>::max();
+#else
+inline constexpr int mask_limit = 2;
+#endif
+
 // How partials are combined: `kernel(product, p…)` for each of them, where product(slope, p) is
 // slope · p with surviving zeros.
 
 /// slope · p
 template <class T>
 struct chain_of_one {
+  static constexpr bool masks_numbers = true;
+  static constexpr int masked_packets = mask_limit;
   T slope;
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const { return is_all_finite(slope); }
@@ -108,6 +127,8 @@ struct chain_of_one {
 /// slope_a · p + slope_b · q
 template <class T>
 struct chain_of_two {
+  static constexpr bool masks_numbers = true;
+  static constexpr int masked_packets = mask_limit;
   T slope_a, slope_b;
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const {
@@ -120,14 +141,16 @@ struct chain_of_two {
   }
 };
 
-/// (p − ratio · q) · inverse
+/// (p − ratio · q) · inverse, where ratio = value · inverse and so is not finite if `inverse` is
+/// not.
 template <class T>
 struct chain_of_quotient {
+  // Two masks cost more than a branch.
+  static constexpr bool masks_numbers = false;
+  static constexpr int masked_packets = 2;
   T ratio, inverse;
 
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const {
-    return is_all_finite(ratio) && is_all_finite(inverse);
-  }
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const { return is_all_finite(ratio); }
   template <class Product, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr P operator()(Product product, const P& p,
                                                           const P& q) const {
@@ -135,20 +158,12 @@ struct chain_of_quotient {
   }
 };
 
-/// Longer rows are masked only where a slope turns out not to be finite. clang does better without
-/// that branch.
-#ifdef __clang__
-inline constexpr int mask_limit = std::numeric_limits<int>::max();
-#else
-inline constexpr int mask_limit = 2;
-#endif
-
-template <class Partials, class T>
+template <class Kernel, class Row, class T>
 [[nodiscard]] constexpr bool is_always_masked() {
-  if constexpr (requires { Partials::packet_count; }) {
-    return Partials::packet_count <= mask_limit;
+  if constexpr (requires { Row::packet_count; }) {
+    return Row::packet_count <= Kernel::masked_packets;
   } else {
-    return std::floating_point<T>;
+    return std::floating_point<T> && Kernel::masks_numbers;
   }
 }
 
@@ -165,7 +180,7 @@ template <class Kernel, class Row, class... Rows>
 template <template <class> class Kernel, class T, class Row, class... Rows>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Row combined(const Kernel<T>& kernel, const Row& row,
                                                         const Rows&... rows) {
-  if constexpr (is_always_masked<Row, T>()) {
+  if constexpr (is_always_masked<Kernel<T>, Row, T>()) {
     const auto product = [](const T& slope, const auto& p)
                              DUET_INLINE_LAMBDA { return masked_product(slope, p); };
     return Row::map([&](const auto&... p) DUET_INLINE_LAMBDA { return kernel(product, p...); }, row,
