@@ -4,6 +4,8 @@
 /// \file
 /// All of duet but `interop/`.
 
+#include <duet/comparison/compare.hpp>
+#include <duet/comparison/numeric_derivative.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -12,6 +14,7 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/quaternion/domain.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>

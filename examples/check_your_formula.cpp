@@ -1,0 +1,37 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+/// \file
+/// Is my formula right? The body angular velocity of the rotation exp(φ), as derived on paper:
+///   ω = φ̇ − (1 − cos θ)/θ² φ × φ̇ + (θ − sin θ)/θ³ φ × (φ × φ̇),  θ = |φ|.
+
+#include <duet/duet.hpp>
+#include <duet/interop/multiprecision.hpp>
+
+#include <iostream>
+
+int main() {
+  using namespace duet;
+
+  // What it is: the rotation as a function of time, differentiated.
+  const auto automatic = [](const auto& phi, const auto& rate) {
+    const auto moving = [&](auto t) { return from_rotation_vector((phi + t * rate).eval()); };
+    const auto [q, q_dot] = derivative(moving, 0);
+    return angular_velocity(q, q_dot, frame::body);
+  };
+  // What I have on paper, with the sign of the second term as I remember it.
+  const auto on_paper = [](int sign) {
+    return [sign](const auto& phi, const auto& rate) {
+      using std::cos, std::sin;
+      const auto angle = phi.norm();
+      const auto c = (1 - cos(angle)) / (angle * angle);
+      const auto s = (angle - sin(angle)) / (angle * angle * angle);
+      return (rate + sign * c * phi.cross(rate) + s * phi.cross(phi.cross(rate))).eval();
+    };
+  };
+
+  const auto inputs = sampler(vectors<3>{3.0}, vectors<3>{1.0}).named("phi", "rate");
+  for (const int sign : {+1, -1}) {
+    const std::string label = sign > 0 ? "with a plus" : "with a minus";
+    std::cout << to_text(compare<double, real_50>(label, automatic, on_paper(sign), inputs));
+  }
+}

@@ -1,0 +1,185 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/comparison/comparison.hpp>
+#include <duet/comparison/domain.hpp>
+#include <duet/comparison/measure.hpp>
+#include <duet/comparison/sampler.hpp>
+#include <duet/comparison/simplify.hpp>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iostream>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The judge: is my closed form right?
+
+namespace duet {
+
+struct comparison_options {
+  std::size_t samples = 1000; ///< special points, points of the caller and random ones together
+  std::uint64_t seed = 1;     ///< of the random points; the same seed gives the same result
+  double tolerance = 100;     ///< in units of the last place
+  bool shows_progress = true; ///< a line on standard error where a run takes over two seconds
+};
+
+namespace detail {
+
+/// A line on standard error that counts, from the third second on.
+class progress_line {
+public:
+  progress_line(std::string label, std::size_t total, bool is_shown)
+      : label_(std::move(label)), total_(total), is_shown_(is_shown) {}
+  progress_line(const progress_line&) = delete;
+  progress_line& operator=(const progress_line&) = delete;
+  ~progress_line() {
+    if (printed_) {
+      std::cerr << "\n";
+    }
+  }
+  void advance(std::size_t done) {
+    const auto now = clock::now();
+    if (is_shown_ && now >= next_) {
+      next_ = now + std::chrono::seconds(1);
+      printed_ = true;
+      std::cerr << "\rduet: compare \"" << label_ << "\": " << done << " of " << total_
+                << std::flush;
+    }
+  }
+
+private:
+  using clock = std::chrono::steady_clock;
+  std::string label_;
+  std::size_t total_;
+  bool is_shown_;
+  bool printed_ = false;
+  clock::time_point next_ = clock::now() + std::chrono::seconds(2);
+};
+
+/// What the differences in several precisions, the least precise first, say together.
+///
+/// Rounding errors shrink with ε. A slip is seen in every scalar, and stays what it is.
+[[nodiscard]] inline verdict judged(std::span<const difference> differences, double tolerance) {
+  std::size_t failures = 0;
+  for (const difference& d : differences) {
+    if (!d.is_finite) {
+      return verdict::not_finite;
+    }
+    failures += d.ulps > tolerance ? 1 : 0;
+  }
+  if (failures == 0) {
+    return verdict::agrees;
+  }
+  const bool shrinks =
+      differences.size() > 1 && differences.back().absolute < differences.front().absolute / 2;
+  return failures == differences.size() && !shrinks ? verdict::disagrees : verdict::loses_digits;
+}
+
+/// Two functions and where they are compared: everything that a point's verdict depends on.
+template <class F, class G, class Inputs, class... T>
+struct contest {
+  std::string label;
+  const F& automatic;
+  const G& closed_form;
+  const Inputs& inputs;
+  double tolerance;
+
+  using differences = std::array<difference, sizeof...(T)>;
+
+  [[nodiscard]] differences at(std::span<const double> point) const {
+    return {measure<T>(label, automatic, closed_form, inputs, point, tolerance)...};
+  }
+  [[nodiscard]] verdict verdict_at(std::span<const double> point) const {
+    return judged(at(point), tolerance);
+  }
+};
+
+template <class... T, class F, class G, class Inputs>
+[[nodiscard]] comparison compared(const std::string& label, const F& automatic,
+                                  const G& closed_form, const Inputs& inputs,
+                                  const comparison_options& options) {
+  const contest<F, G, Inputs, T...> contest{label, automatic, closed_form, inputs,
+                                            options.tolerance};
+  const std::vector<coordinates> points = inputs.points(options.samples, options.seed);
+  comparison result;
+  result.label = label;
+  result.samples = points.size();
+  result.tolerance = options.tolerance;
+  result.errors = {worst_errors{.digits = std::numeric_limits<T>::digits10}...};
+  progress_line progress(label, points.size(), options.shows_progress);
+  coordinates worst_point;
+  double worst_ulps = -1;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    progress.advance(i);
+    const auto differences = contest.at(points[i]);
+    const verdict found = judged(differences, options.tolerance);
+    double ulps = 0;
+    for (std::size_t k = 0; k < differences.size(); ++k) {
+      worst_errors& errors = result.errors[k];
+      errors.absolute = std::max(errors.absolute, differences[k].absolute);
+      errors.relative = std::max(errors.relative, differences[k].relative);
+      if (differences[k].ulps > errors.ulps) {
+        errors.ulps = differences[k].ulps;
+        errors.input = inputs.describe(points[i]);
+      }
+      ulps = std::max(ulps, differences[k].ulps);
+    }
+    ++result.counts[std::size_t(found)];
+    if (found == verdict::agrees) {
+      continue;
+    }
+    if (found > result.outcome || (found == result.outcome && ulps > worst_ulps)) {
+      result.outcome = found;
+      worst_ulps = ulps;
+      worst_point = points[i];
+    }
+  }
+  if (result.outcome != verdict::agrees) {
+    const coordinates simplest = simplified(
+        worst_point, [&](const coordinates& point) { return inputs.contains(point); },
+        [&](const coordinates& point) { return contest.verdict_at(point) == result.outcome; });
+    result.simplest =
+        counterexample{inputs.describe(simplest), evaluate_at<double>(automatic, inputs, simplest),
+                       evaluate_at<double>(closed_form, inputs, simplest)};
+  }
+  return result;
+}
+
+} // namespace detail
+
+/// Compares two functions over special and random inputs, in several precisions.
+///
+/// \tparam T  the scalars, the least precise first; `double` and `long double` where none is given.
+///            A scalar of many digits (`real_50` of interop/multiprecision.hpp) separates best what
+///            is wrong from what is merely rounded.
+/// \param label        what the report calls the comparison
+/// \param automatic    what is taken as right: as a rule a function of duet's drivers
+/// \param closed_form  what is judged; both are templates over the scalar of their arguments and
+///                     return the same number of components
+/// \param inputs       a `sampler` of their arguments
+///
+/// A failing input is simplified, coordinate by coordinate, to the simplest one that still gets the
+/// same verdict. Deterministic for a given seed.
+/// \throws invalid_input where the two return different numbers of components
+///
+/// Example: `compare("d sin", [](auto x) { return derivative([](auto t) { return sin(t); }, x)
+/// .derivative; }, [](auto x) { return cos(x); }, sampler(real_numbers{-3, 3}))`
+template <class... T, class F, class G, class Inputs>
+[[nodiscard]] comparison compare(const std::string& label, const F& automatic, const G& closed_form,
+                                 const Inputs& inputs, const comparison_options& options = {}) {
+  if constexpr (sizeof...(T) == 0) {
+    return detail::compared<double, long double>(label, automatic, closed_form, inputs, options);
+  } else {
+    return detail::compared<T...>(label, automatic, closed_form, inputs, options);
+  }
+}
+
+} // namespace duet

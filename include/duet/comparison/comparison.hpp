@@ -1,0 +1,176 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iomanip>
+#include <locale>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// \file
+/// What a comparison of two formulas found, and how it is printed.
+
+namespace duet {
+
+/// From best to worst.
+enum class verdict {
+  agrees,       ///< everywhere, within the tolerance
+  loses_digits, ///< the same formula, but rounding (or a constant of few digits) spoils it
+  not_finite,   ///< somewhere one of them is infinite or NaN and the other is not
+  disagrees     ///< the formulas are not the same
+};
+
+[[nodiscard]] inline std::string_view to_text(verdict v) {
+  switch (v) {
+  case verdict::agrees:
+    return "agrees";
+  case verdict::loses_digits:
+    return "loses digits";
+  case verdict::not_finite:
+    return "not finite";
+  default:
+    return "disagrees";
+  }
+}
+
+/// The largest differences of two results in one precision. The norm is the largest component;
+/// `ulps` counts units of the last place, |difference| / (ε/2 · (‖f‖ + ‖f′‖‖x‖)), where the second
+/// term is looked at only where the first does not suffice.
+struct worst_errors {
+  int digits = 0;      ///< decimal digits of the scalar
+  double absolute = 0; ///< largest |difference|
+  double relative = 0; ///< largest |difference| / ‖f‖
+  double ulps = 0;     ///< largest difference in units of the last place
+  std::string input{}; ///< where `ulps` is largest
+};
+
+/// An input at which two formulas differ, and what they give there in double precision.
+struct counterexample {
+  std::string input;
+  std::vector<double> automatic;
+  std::vector<double> closed_form;
+};
+
+/// What `compare` found.
+struct comparison {
+  std::string label;
+  verdict outcome = verdict::agrees; ///< the worst of all samples
+  std::size_t samples = 0;
+  std::array<std::size_t, 4> counts{};    ///< samples of every verdict
+  double tolerance = 0;                   ///< in units of the last place
+  std::vector<worst_errors> errors;       ///< one for every scalar type
+  std::optional<counterexample> simplest; ///< simplest input with the worst verdict
+
+  /// Do the formulas agree?
+  [[nodiscard]] explicit operator bool() const { return outcome == verdict::agrees; }
+};
+
+namespace detail {
+
+/// A stream of its own, so that neither the locale nor the caller's format matters.
+[[nodiscard]] inline std::ostringstream plain_stream(int digits) {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  stream << std::setprecision(digits);
+  return stream;
+}
+
+/// Ten digits; what is nothing beside the largest component is printed as 0.
+[[nodiscard]] inline std::string components_text(std::span<const double> numbers) {
+  double largest = 0;
+  for (const double x : numbers) {
+    largest = std::max(largest, std::isfinite(x) ? std::abs(x) : 0.0);
+  }
+  auto out = plain_stream(10);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const double x = numbers[i];
+    out << (i > 0 ? ", " : "");
+    if (std::isnan(x)) {
+      out << "nan"; // whatever its sign
+    } else {
+      out << (std::abs(x) < 1e-12 * largest ? 0.0 : x);
+    }
+  }
+  return numbers.size() == 1 ? out.str() : "(" + out.str() + ")";
+}
+
+/// A field of a CSV file, in quotation marks where it needs them.
+[[nodiscard]] inline std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return quoted + "\"";
+}
+
+} // namespace detail
+
+/// A paragraph for people.
+[[nodiscard]] inline std::string to_text(const comparison& c) {
+  auto out = detail::plain_stream(3);
+  out << c.label << ": ";
+  for (const verdict v : {verdict::disagrees, verdict::not_finite, verdict::loses_digits}) {
+    if (const std::size_t count = c.counts[std::size_t(v)]; count > 0) {
+      out << to_text(v) << " at " << count << ", ";
+    }
+  }
+  out << "agrees at " << c.counts[0] << " of " << c.samples << " inputs\n";
+  for (const worst_errors& e : c.errors) {
+    out << "  " << e.digits << " digits: worst error " << e.ulps << " ulp, relative " << e.relative
+        << ", absolute " << e.absolute;
+    if (!e.input.empty()) {
+      out << ", at " << e.input;
+    }
+    out << "\n";
+  }
+  if (c.simplest) {
+    out << "  simplest input: " << c.simplest->input
+        << "\n    automatic:   " << detail::components_text(c.simplest->automatic)
+        << "\n    closed form: " << detail::components_text(c.simplest->closed_form) << "\n";
+  }
+  return out.str();
+}
+
+/// A table for documents, one row a comparison.
+[[nodiscard]] inline std::string to_markdown(std::span<const comparison> comparisons) {
+  std::string text = "| formula | verdict | simplest input | automatic | closed form |\n"
+                     "|---|---|---|---|---|\n";
+  for (const comparison& c : comparisons) {
+    text += "| " + c.label + " | " + std::string(to_text(c.outcome));
+    if (c.simplest) {
+      text += " | " + c.simplest->input + " | " + detail::components_text(c.simplest->automatic) +
+              " | " + detail::components_text(c.simplest->closed_form) + " |\n";
+    } else {
+      text += " | | | |\n";
+    }
+  }
+  return text;
+}
+
+/// A table for programs, one line a comparison and scalar.
+[[nodiscard]] inline std::string to_csv(std::span<const comparison> comparisons) {
+  auto out = detail::plain_stream(17);
+  out << "label,verdict,samples,agreeing,tolerance_ulp,digits,worst_ulp,worst_relative,"
+         "worst_absolute,worst_input,simplest_input\n";
+  for (const comparison& c : comparisons) {
+    for (const worst_errors& e : c.errors) {
+      out << detail::csv_field(c.label) << "," << to_text(c.outcome) << "," << c.samples << ","
+          << c.counts[0] << "," << c.tolerance << "," << e.digits << "," << e.ulps << ","
+          << e.relative << "," << e.absolute << "," << detail::csv_field(e.input) << ","
+          << detail::csv_field(c.simplest ? c.simplest->input : "") << "\n";
+    }
+  }
+  return out.str();
+}
+
+} // namespace duet

@@ -1,0 +1,125 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/comparison/measure.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/structure.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+/// \file
+/// Derivatives without dual numbers, to compare theirs with.
+
+namespace duet {
+namespace detail {
+
+/// Im y / h, component by component.
+template <class T>
+[[nodiscard]] T imaginary_part(const std::complex<T>& y, const T& h) {
+  return y.imag() / h;
+}
+template <class Derived, class T>
+[[nodiscard]] auto imaginary_part(const Eigen::MatrixBase<Derived>& y, const T& h) {
+  return (y.imag() / h).eval();
+}
+template <class T, std::size_t N>
+[[nodiscard]] std::array<T, N> imaginary_part(const std::array<std::complex<T>, N>& y, const T& h) {
+  std::array<T, N> result;
+  for (std::size_t i = 0; i < N; ++i) {
+    result[i] = imaginary_part(y[i], h);
+  }
+  return result;
+}
+
+template <class T>
+[[nodiscard]] bool is_finite(const std::vector<T>& components) {
+  using std::isfinite;
+  for (const T& x : components) {
+    if (!isfinite(x)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+} // namespace detail
+
+/// f′(x) by a complex step: Im f(x + ih)/h, exact to rounding for an analytic f that is a template
+/// over `std::complex` (no branch on values, no `abs`, no conjugates).
+///
+/// f returns a complex number, an Eigen matrix or an array of them.
+template <class F, std::floating_point T>
+[[nodiscard]] auto complex_step_derivative(const F& f, const T& x) {
+  // h² vanishes beside 1 whatever the function, and h itself is far from the smallest number.
+  const T h = std::ldexp(T(1), std::numeric_limits<T>::min_exponent / 2);
+  return detail::imaginary_part(detail::evaluated(f(std::complex<T>(x, h))), h);
+}
+
+template <class Y>
+struct derivative_and_error {
+  Y derivative;
+  double error; ///< estimate of the largest error of a component
+};
+
+/// f′(x) by central differences, extrapolated to step zero (Richardson, Ridders' tableau).
+///
+/// For any f of a real number, its source hidden or full of tables: steps step/1.4ᵏ are combined
+/// until rounding wins, and the entry with the smallest estimated error is returned. As a rule
+/// eleven digits in double precision.
+template <class F, Real T>
+[[nodiscard]] auto central_difference_derivative(const F& f, const T& x, const T& step = T(0.1)) {
+  constexpr std::size_t rows = 12;
+  const T ratio(1.4);
+  const auto shape = detail::evaluated(f(x));
+  std::array<std::vector<T>, rows> previous;
+  std::array<std::vector<T>, rows> current;
+  std::vector<T> best;
+  T best_error(-1);
+  T h = step;
+  for (std::size_t row = 0; row < rows; ++row, h = T(h / ratio)) {
+    const T forward = x + h;
+    const T backward = x - h;
+    const auto right = detail::components_of<T>(detail::evaluated(f(forward)));
+    const auto left = detail::components_of<T>(detail::evaluated(f(backward)));
+    current[0].resize(right.size());
+    for (std::size_t i = 0; i < right.size(); ++i) {
+      current[0][i] = (right[i] - left[i]) / (forward - backward);
+    }
+    T factor(1);
+    for (std::size_t column = 1; column <= row; ++column) {
+      factor *= ratio * ratio; // errors are even powers of the step
+      const auto& a = current[column - 1];
+      const auto& b = previous[column - 1];
+      current[column].resize(a.size());
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        current[column][i] = (factor * a[i] - b[i]) / (factor - 1);
+      }
+      const T towards_a = detail::distance(current[column], a);
+      const T towards_b = detail::distance(current[column], b);
+      const T error = towards_a > towards_b ? towards_a : towards_b;
+      if (detail::is_finite(current[column]) && error >= 0 &&
+          (best_error < 0 || error < best_error)) {
+        best_error = error;
+        best = current[column];
+      }
+    }
+    previous = current;
+  }
+  if (best.empty()) { // no two estimates are finite
+    best = current[0];
+    best_error = std::numeric_limits<T>::infinity();
+  }
+  std::size_t next = 0;
+  auto derivative = map_scalars([&](const auto&) { return best[next++]; }, shape);
+  return derivative_and_error<decltype(derivative)>{derivative, static_cast<double>(best_error)};
+}
+
+} // namespace duet

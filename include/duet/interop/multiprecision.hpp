@@ -1,0 +1,16 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+/// \file
+/// Numbers of many digits, to tell a slip from a rounding error.
+
+namespace duet {
+
+/// A real number of 50 decimal digits, over which every function of duet works.
+/// Example: `compare<double, real_50>(label, automatic, closed_form, inputs)`
+using real_50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>,
+                                              boost::multiprecision::et_off>;
+
+} // namespace duet

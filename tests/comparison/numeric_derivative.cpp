@@ -1,0 +1,84 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/comparison/numeric_derivative.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/interop/multiprecision.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <Eigen/Core>
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+
+// The other ways to a derivative, against dual numbers.
+
+using duet::central_difference_derivative;
+using duet::complex_step_derivative;
+using duet::derivative;
+
+namespace {
+
+const auto wave = [](const auto& x) {
+  using std::exp;
+  using std::log;
+  using std::sin;
+  return sin(x * x) * exp(-x) + log(2.0 + x) / x;
+};
+
+} // namespace
+
+TEST_CASE("a complex step is exact to rounding") {
+  for (const double x : {0.1, 0.7, 2.0, 9.0}) {
+    const double truth = derivative(wave, x).derivative;
+    CHECK(std::abs(complex_step_derivative(wave, x) - truth) <= 8e-16 * (std::abs(truth) + 1));
+  }
+  CHECK(complex_step_derivative([](const auto& x) { return x * x * x; }, 2.0L) == 12.0L);
+  const auto curve = [](const auto& x) {
+    using std::cos;
+    using std::sin;
+    return Eigen::Matrix<std::decay_t<decltype(x)>, 2, 1>(cos(x), sin(x));
+  };
+  CHECK((complex_step_derivative(curve, 0.4) - Eigen::Vector2d(-std::sin(0.4), std::cos(0.4)))
+            .norm() < 3e-16);
+  const auto pair = [](const auto& x) { return std::array{x, x * x}; };
+  CHECK(complex_step_derivative(pair, 3.0) == std::array{1.0, 6.0});
+}
+
+TEST_CASE("extrapolated central differences know their error") {
+  for (const double x : {0.5, 0.7, 2.0}) {
+    const double truth = derivative(wave, x).derivative;
+    const auto [slope, error] = central_difference_derivative(wave, x);
+    CHECK(std::abs(slope - truth) <= 1e-11);
+    CHECK(std::abs(slope - truth) <= 10 * error + 1e-13);
+  }
+  const auto [slope, error] = central_difference_derivative(wave, duet::real_50(0.7));
+  const duet::real_50 truth = derivative(wave, duet::real_50(0.7)).derivative;
+  CHECK(abs(duet::real_50(slope - truth)) < 1e-18);
+  CHECK(error < 1e-17);
+}
+
+TEST_CASE("central differences of results of any shape") {
+  const auto turn = [](const auto& t) {
+    using T = std::decay_t<decltype(t)>;
+    return duet::exp(duet::vector3<T>(t, t * t, T(0.3)));
+  };
+  const auto truth = derivative(turn, 0.4).derivative;
+  const auto numeric = central_difference_derivative(turn, 0.4);
+  CHECK(norm(numeric.derivative - truth) < 1e-11);
+}
+
+TEST_CASE(
+    "steps shrink until a kink is out of reach; a kink or a pole too near shows in the estimate") {
+  const auto kink = [](double x) { return std::abs(x - 0.5) + x; };
+  const auto [slope, error] = central_difference_derivative(kink, 0.5 + 3e-2);
+  CHECK(std::abs(slope - 2) <= 1e-9);
+  CHECK(error < 1e-9);
+  CHECK(central_difference_derivative(kink, 0.5 + 3e-3).error > 1e-3);
+  const auto at_pole =
+      central_difference_derivative([](double x) { return 1 / (x * x - x * x); }, 1.0);
+  CHECK(std::isinf(at_pole.error));
+}

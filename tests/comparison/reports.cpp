@@ -1,0 +1,96 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/comparison/compare.hpp>
+#include <duet/comparison/comparison.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <chrono>
+#include <iostream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <thread>
+
+// How a comparison is printed, for people and for programs.
+
+using duet::comparison;
+using duet::verdict;
+
+namespace {
+
+comparison sample() {
+  comparison c;
+  c.label = "P5, \"printed\"";
+  c.outcome = verdict::disagrees;
+  c.samples = 100;
+  c.counts = {60, 8, 2, 30};
+  c.tolerance = 100;
+  c.errors = {{15, 0.25, 0.5, 4.5e15, "u = 1, w = (0, 2)"}};
+  c.simplest = duet::counterexample{
+      "u = 1, w = (0, 1)", {0.5, 1e-20, 2}, {1.0 / 3, 0, std::numeric_limits<double>::quiet_NaN()}};
+  return c;
+}
+
+} // namespace
+
+TEST_CASE("for people") {
+  CHECK(to_text(sample()) ==
+        "P5, \"printed\": disagrees at 30, not finite at 2, loses digits at 8, agrees at 60 of 100 "
+        "inputs\n"
+        "  15 digits: worst error 4.5e+15 ulp, relative 0.5, absolute 0.25, at u = 1, w = (0, 2)\n"
+        "  simplest input: u = 1, w = (0, 1)\n"
+        "    automatic:   (0.5, 0, 2)\n"
+        "    closed form: (0.3333333333, 0, nan)\n");
+  comparison good;
+  good.label = "good";
+  good.samples = 7;
+  good.counts[0] = 7;
+  good.errors = {{15, 0, 0, 0, ""}};
+  CHECK(to_text(good) == "good: agrees at 7 of 7 inputs\n"
+                         "  15 digits: worst error 0 ulp, relative 0, absolute 0\n");
+}
+
+TEST_CASE("for documents") {
+  comparison good;
+  good.label = "good";
+  CHECK(to_markdown(std::array{sample(), good}) ==
+        "| formula | verdict | simplest input | automatic | closed form |\n"
+        "|---|---|---|---|---|\n"
+        "| P5, \"printed\" | disagrees | u = 1, w = (0, 1) | (0.5, 0, 2) | (0.3333333333, 0, nan) "
+        "|\n"
+        "| good | agrees | | | |\n");
+}
+
+TEST_CASE("for programs") {
+  CHECK(to_csv(std::array{sample()}) ==
+        "label,verdict,samples,agreeing,tolerance_ulp,digits,worst_ulp,worst_relative,"
+        "worst_absolute,worst_input,simplest_input\n"
+        "\"P5, \"\"printed\"\"\",disagrees,100,60,100,15,4500000000000000,0.5,0.25,"
+        "\"u = 1, w = (0, 2)\",\"u = 1, w = (0, 1)\"\n");
+}
+
+TEST_CASE("a long run says how far it is, a short one nothing") {
+  std::ostringstream caught;
+  std::streambuf* const original = std::cerr.rdbuf(caught.rdbuf());
+  const auto run = [](int milliseconds, bool shows_progress) {
+    const auto slow = [=](auto x) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+      return x;
+    };
+    duet::comparison_options options;
+    options.samples = 40;
+    options.shows_progress = shows_progress;
+    return duet::compare<double>(
+        "slow", slow, [](auto x) { return x; }, duet::sampler(duet::real_numbers{}), options);
+  };
+  CHECK(run(0, true));
+  CHECK(caught.str().empty());
+  CHECK(run(60, false));
+  CHECK(caught.str().empty());
+  CHECK(run(60, true));
+  std::cerr.rdbuf(original);
+  CHECK(caught.str().starts_with("\rduet: compare \"slow\": "));
+  CHECK(caught.str().ends_with(" of 40\n"));
+}

@@ -1,0 +1,215 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/comparison/compare.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/gradient.hpp>
+#include <duet/dual/eigen_traits.hpp>
+#include <duet/interop/multiprecision.hpp>
+#include <duet/quaternion/domain.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+// What `compare` says of formulas that are right, wrong, wrong in one place only, or badly rounded.
+
+using duet::compare;
+using duet::comparison;
+using duet::comparison_options;
+using duet::derivative;
+using duet::real_50;
+using duet::real_numbers;
+using duet::rotations;
+using duet::sampler;
+using duet::vectors;
+using duet::verdict;
+
+namespace {
+
+const auto slope_of_wave = [](auto x) {
+  return derivative([](auto t) { return sin(t * t); }, x).derivative;
+};
+
+} // namespace
+
+TEST_CASE("a right formula agrees in every precision") {
+  const auto closed_form = [](auto x) {
+    using std::cos;
+    return 2 * x * cos(x * x);
+  };
+  const comparison c = compare<float, double, long double, real_50>(
+      "wave", slope_of_wave, closed_form, sampler(real_numbers{-3, 3}));
+  CHECK(c);
+  CHECK(c.outcome == verdict::agrees);
+  CHECK(c.samples == 1000);
+  CHECK(c.counts[0] == 1000);
+  CHECK(!c.simplest);
+  CHECK(c.errors.size() == 4);
+  CHECK(c.errors[0].digits == 6);
+  CHECK(c.errors[3].digits == 50);
+  for (const auto& e : c.errors) {
+    CHECK(e.ulps < 4);
+  }
+}
+
+TEST_CASE("a slip is found and its input simplified") {
+  const auto slip = [](auto x) {
+    using std::cos;
+    return x * cos(x * x);
+  };
+  const comparison c = compare("slip", slope_of_wave, slip, sampler(real_numbers{-3, 3}));
+  CHECK(!c);
+  CHECK(c.outcome == verdict::disagrees);
+  CHECK(c.counts[std::size_t(verdict::disagrees)] == 999); // it agrees at zero
+  REQUIRE(c.simplest);
+  CHECK(c.simplest->input == "x = 1");
+  CHECK(c.simplest->automatic[0] == doctest::Approx(2 * std::cos(1.0)).epsilon(1e-15));
+  CHECK(c.simplest->closed_form[0] == doctest::Approx(std::cos(1.0)).epsilon(1e-15));
+}
+
+TEST_CASE("a slip as small as a few hundred ulps is found, a smaller one is within tolerance") {
+  const auto off_by = [](double relative) {
+    return [relative](auto x) {
+      using std::cos;
+      return 2 * x * cos(x * x) * (1 + relative);
+    };
+  };
+  const auto inputs = sampler(real_numbers{1, 3});
+  CHECK(compare("small", slope_of_wave, off_by(0x1p-40), inputs).outcome == verdict::disagrees);
+  comparison_options options;
+  CHECK(compare<double>("tiny", slope_of_wave, off_by(0x1p-49), inputs, options));
+  options.tolerance = 2;
+  CHECK(!compare<double>("tiny", slope_of_wave, off_by(0x1p-49), inputs, options));
+}
+
+TEST_CASE("a slip in one place only is found there") {
+  // The sign of the square root of 1 at a half turn.
+  const auto right = [](const auto& q) { return duet::rotation_matrix(q); };
+  const auto wrong_at_half_turn = [](const auto& q) {
+    const bool is_half_turn = abs(q.w()) < 1e-12;
+    auto matrix = duet::rotation_matrix(q);
+    if (is_half_turn) {
+      matrix(0, 1) = -matrix(0, 1);
+    }
+    return matrix;
+  };
+  const comparison c =
+      compare("matrix", right, wrong_at_half_turn, sampler(rotations{}).named("q"));
+  CHECK(c.outcome == verdict::disagrees);
+  CHECK(c.counts[std::size_t(verdict::disagrees)] == 2); // about the diagonal axis, both ways
+}
+
+TEST_CASE("digits lost by cancellation are told from a slip") {
+  const auto stable = [](auto x) {
+    using std::sin;
+    const auto s = sin(x / 2);
+    return 2 * s * s / x;
+  };
+  const auto cancelling = [](auto x) {
+    using std::cos;
+    return (1 - cos(x)) / x;
+  };
+  const auto inputs = sampler(real_numbers{1e-8, 3});
+  CHECK(compare("1 - cos", stable, cancelling, inputs).outcome == verdict::loses_digits);
+  CHECK(compare<double, real_50>("1 - cos", stable, cancelling, inputs).outcome ==
+        verdict::loses_digits);
+  const auto constant_of_few_digits = [&](auto x) { return stable(x) * 1.0000000000000002; };
+  CHECK(compare<double, real_50>("few digits", stable, constant_of_few_digits, inputs).outcome ==
+        verdict::loses_digits);
+  // Away from zero nothing is lost.
+  CHECK(compare("1 - cos", stable, cancelling, sampler(real_numbers{1, 3})));
+}
+
+TEST_CASE("rounding at a zero of the function is not held against it") {
+  // Near pi, sin has a large relative error for any rounding of its argument.
+  const auto direct = [](auto x) {
+    using std::sin;
+    return sin(x);
+  };
+  const auto shifted = [](auto x) {
+    using std::sin;
+    return sin(x / 3) * (3 - 4 * sin(x / 3) * sin(x / 3));
+  };
+  const auto inputs = sampler(real_numbers{3, 3.3}).including({3.14159265358979});
+  CHECK(compare("triple angle", direct, shifted, inputs));
+}
+
+TEST_CASE("what is not finite where the other is") {
+  const auto sinc = [](auto x) {
+    using std::sin;
+    return x == 0 ? decltype(x)(1) : decltype(x)(sin(x) / x);
+  };
+  const auto naive = [](auto x) {
+    using std::sin;
+    return sin(x) / x;
+  };
+  const comparison c = compare("sinc", sinc, naive, sampler(real_numbers{-1, 1}));
+  CHECK(c.outcome == verdict::not_finite);
+  CHECK(c.counts[std::size_t(verdict::not_finite)] == 1);
+  REQUIRE(c.simplest);
+  CHECK(c.simplest->input == "x = 0");
+  CHECK(c.simplest->automatic[0] == 1);
+  CHECK(std::isnan(c.simplest->closed_form[0]));
+  // Not finite in both: nothing to compare.
+  CHECK(compare("both", naive, naive, sampler(real_numbers{-1, 1})));
+}
+
+TEST_CASE("the same seed gives the same result") {
+  const auto slip = [](auto x) { return x; };
+  const auto run = [&] {
+    return compare("slip", slope_of_wave, slip, sampler(real_numbers{-3, 3}));
+  };
+  CHECK(to_text(run()) == to_text(run()));
+}
+
+TEST_CASE("several arguments, and results of any shape") {
+  const auto automatic = [](const auto& x, auto k) {
+    return duet::gradient([k](const auto& v) { return k * v.dot(v); }, x).gradient;
+  };
+  const auto closed_form = [](const auto& x, auto k) { return (2 * k * x).eval(); };
+  const auto slip = [](const auto& x, auto k) { return (2 * k * k * x).eval(); };
+  const auto inputs = sampler(vectors<3>{}, real_numbers{0, 3}).named("v", "k");
+  CHECK(compare("gradient", automatic, closed_form, inputs));
+  const comparison c = compare("gradient", automatic, slip, inputs);
+  REQUIRE(c.simplest);
+  CHECK(c.simplest->input == "v = (1, 0, 0), k = 2");
+}
+
+TEST_CASE("body and spatial angular velocity mixed up, the most common slip of all") {
+  const auto automatic = [](const auto& phi, const auto& rate) {
+    const auto moving = [&](auto t) { return duet::from_rotation_vector((phi + t * rate).eval()); };
+    const auto [q, q_dot] = derivative(moving, 0);
+    return duet::angular_velocity(q, q_dot, duet::frame::spatial);
+  };
+  const auto body = [](const auto& phi, const auto& rate) {
+    const auto moving = [&](auto t) { return duet::from_rotation_vector((phi + t * rate).eval()); };
+    const auto [q, q_dot] = derivative(moving, 0);
+    return duet::angular_velocity(q, q_dot, duet::frame::body);
+  };
+  const comparison c = compare("frames", automatic, body,
+                               sampler(vectors<3>{2}, vectors<3>{1}).named("phi", "rate"));
+  CHECK(c.outcome == verdict::disagrees);
+  REQUIRE(c.simplest);
+  CHECK(c.simplest->input == "phi = (0, 0, 1), rate = (0, 1, 0)");
+}
+
+TEST_CASE("results of different sizes") {
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(compare(
+          "sizes",
+          [](auto x) {
+            return std::array{x, x};
+          },
+          [](auto x) {
+            return std::array{x, x, x};
+          },
+          sampler(real_numbers{}))),
+      "duet: compare \"sizes\": the automatic result has 2 components, the closed form 3",
+      duet::invalid_input);
+}
