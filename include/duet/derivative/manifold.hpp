@@ -2,62 +2,134 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/derivative/structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
+#include <duet/dual/promotion.hpp>
 
 #include <Eigen/Core>
 
+#include <array>
 #include <concepts>
+#include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
 /// \file
-/// Tangent spaces: how an unknown is moved by a small vector.
+/// Tangent spaces: how an object is moved by a small vector, and which vector its rate is.
 
 namespace duet {
 
-/// `manifold<X>::dimension` coordinates move an X: `plus(x, delta)` is x moved by the tangent
-/// vector delta, whose scalar may be any. Scalars, vectors of fixed size and tuples are here;
-/// rotations add their own, so that Newton's method and Jacobians never see redundant coordinates.
+/// The coordinates in which an X is moved and its rate is told:
+///
+/// - `dimension`: their number, `Eigen::Dynamic` where only known at run time
+/// - `scalar`: what an X is made of
+/// - `plus(x, δ, frame)`: x moved by the tangent vector δ, whose scalar may be any
+/// - `velocity(x, ẋ, frame)`: the tangent vector of the rate ẋ, an Eigen column
+///
+/// Scalars, vectors, arrays and tuples are here, for which `frame` means nothing; rotations add
+/// their own, so that Newton's method and Jacobians never see redundant coordinates.
 template <class X>
 struct manifold;
 
-template <Scalar X>
+template <class X>
+  requires(Scalar<X> || Arithmetic<X>)
 struct manifold<X> {
   static constexpr int dimension = 1;
-  template <class Delta>
-  [[nodiscard]] static auto plus(const X& x, const Delta& delta) {
+  using scalar = detail::differentiable_t<X>;
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const X& x, const Delta& delta, Frame = {}) {
     return x + delta[0];
+  }
+  template <class Frame>
+  [[nodiscard]] static Eigen::Matrix<X, 1, 1> velocity(const X&, const X& rate, Frame) {
+    return Eigen::Matrix<X, 1, 1>(rate);
   }
 };
 
 template <class X>
   requires std::derived_from<X, Eigen::MatrixBase<X>>
 struct manifold<X> {
-  static_assert(X::SizeAtCompileTime > 0, "duet: an unknown vector needs a size known at compile "
-                                          "time");
   static constexpr int dimension = X::SizeAtCompileTime;
-  template <class Delta>
-  [[nodiscard]] static auto plus(const X& x, const Delta& delta) {
-    using S = std::decay_t<decltype(x[0] + delta[0])>;
+  using scalar = detail::differentiable_t<typename X::Scalar>;
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const X& x, const Delta& delta, Frame = {}) {
+    static_assert(dimension > 0, "duet: an unknown vector needs a size known at compile time");
+    using S = std::decay_t<decltype(x.coeff(0) + delta[0])>;
     Eigen::Matrix<S, X::RowsAtCompileTime, X::ColsAtCompileTime> y;
     for (int i = 0; i < dimension; ++i) {
-      y[i] = x[i] + delta[i];
+      y(i) = x(i) + delta[i];
     }
     return y;
   }
+  template <class Frame>
+  [[nodiscard]] static Eigen::Matrix<scalar, dimension, 1> velocity(const X&, const X& rate,
+                                                                    Frame) {
+    Eigen::Matrix<scalar, dimension, 1> result(rate.size());
+    for (Eigen::Index i = 0; i < rate.size(); ++i) {
+      result[i] = rate(i);
+    }
+    return result;
+  }
+};
+
+template <class X, std::size_t N>
+struct manifold<std::array<X, N>> {
+  static constexpr int dimension = int(N) * manifold<X>::dimension;
+  using scalar = typename manifold<X>::scalar;
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const std::array<X, N>& x, const Delta& delta, Frame frame = {}) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      return std::array{
+          manifold<X>::plus(x[I], delta.template segment<part>(int(I) * part), frame)...};
+    }
+    (std::make_index_sequence<N>{});
+  }
+  template <class Frame>
+  [[nodiscard]] static auto velocity(const std::array<X, N>& x, const std::array<X, N>& rate,
+                                     Frame frame) {
+    Eigen::Matrix<scalar, dimension, 1> result;
+    for (std::size_t i = 0; i < N; ++i) {
+      result.template segment<part>(int(i) * part) = manifold<X>::velocity(x[i], rate[i], frame);
+    }
+    return result;
+  }
+
+private:
+  static constexpr int part = manifold<X>::dimension;
 };
 
 template <class... X>
 struct manifold<std::tuple<X...>> {
   static constexpr int dimension = (manifold<X>::dimension + ...);
+  using scalar = std::common_type_t<typename manifold<X>::scalar...>;
 
-  template <class Delta>
-  [[nodiscard]] static auto plus(const std::tuple<X...>& x, const Delta& delta) {
-    return plus_each(x, delta, std::index_sequence_for<X...>{});
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const std::tuple<X...>& x, const Delta& delta, Frame frame = {}) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      return std::make_tuple(manifold<X>::plus(
+          std::get<I>(x), delta.template segment<manifold<X>::dimension>(offset<I>), frame)...);
+    }
+    (indices);
+  }
+  template <class Frame>
+  [[nodiscard]] static auto velocity(const std::tuple<X...>& x, const std::tuple<X...>& rate,
+                                     Frame frame) {
+    Eigen::Matrix<scalar, dimension, 1> result;
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      ((result.template segment<manifold<X>::dimension>(offset<I>) =
+            manifold<X>::velocity(std::get<I>(x), std::get<I>(rate), frame)
+                .template cast<scalar>()),
+       ...);
+    }
+    (indices);
+    return result;
   }
 
 private:
+  static constexpr auto indices = std::index_sequence_for<X...>{};
+
   /// Where the coordinates of the I-th element start.
   template <std::size_t I>
   static constexpr int offset = [] {
@@ -68,13 +140,6 @@ private:
     }
     return sum;
   }();
-
-  template <class Delta, std::size_t... I>
-  [[nodiscard]] static auto plus_each(const std::tuple<X...>& x, const Delta& delta,
-                                      std::index_sequence<I...>) {
-    return std::make_tuple(manifold<X>::plus(
-        std::get<I>(x), delta.template segment<manifold<X>::dimension>(offset<I>))...);
-  }
 };
 
 } // namespace duet

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/quaternion/frame.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <Eigen/Core>

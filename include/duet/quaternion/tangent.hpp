@@ -1,10 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/structure.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rate.hpp>
 
 #include <type_traits>
 
@@ -22,14 +24,26 @@ struct structure<quaternion<T>> {
   }
 };
 
-/// A rotation is moved by a small rotation vector in spatial axes: exp(δ/2) q.
+/// A unit quaternion is moved by a small rotation vector δ: exp(δ/2) q in spatial axes, q exp(δ/2)
+/// in those of the body. Its rate is told as the angular velocity (N7).
 template <class T>
 struct manifold<quaternion<T>> {
   static constexpr int dimension = 3;
-  template <class Delta>
-  [[nodiscard]] static auto plus(const quaternion<T>& q, const Delta& delta) {
+  using scalar = T;
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const quaternion<T>& q, const Delta& delta, Frame frame = {}) {
     using S = std::decay_t<decltype(delta[0])>;
-    return duet::exp(vector3<S>(delta[0] / 2, delta[1] / 2, delta[2] / 2)) * q;
+    const auto turn = duet::exp(vector3<S>(delta[0] / 2, delta[1] / 2, delta[2] / 2));
+    if constexpr (detail::is_spatial(frame)) {
+      return turn * q;
+    } else {
+      return q * turn;
+    }
+  }
+  template <class Frame>
+  [[nodiscard]] static vector3<T> velocity(const quaternion<T>& q, const quaternion<T>& rate,
+                                           Frame frame) {
+    return angular_velocity(q, rate, frame);
   }
 };
 

@@ -3,8 +3,8 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/frame.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/motion.hpp>

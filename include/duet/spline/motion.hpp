@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/quaternion/frame.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <array>

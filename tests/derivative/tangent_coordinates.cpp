@@ -1,0 +1,187 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <tuple>
+
+// Jacobians, gradients and Hessians of functions of rotations, against closed forms.
+
+using duet::gradient;
+using duet::hessian;
+using duet::jacobian;
+using duet::rotation_matrix;
+using duet::frame::body;
+using duet::frame::spatial;
+
+using quaternion = duet::quaternion<double>;
+using vector = Eigen::Vector3d;
+using matrix = Eigen::Matrix3d;
+
+namespace {
+
+const quaternion q = duet::from_rotation_vector(vector(0.3, -1.2, 0.7));
+const quaternion r = duet::from_rotation_vector(vector(-2.1, 0.4, 1.3));
+const vector v(0.7, 1.9, -0.4);
+
+matrix hat(const vector& w) {
+  matrix m;
+  m << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
+  return m;
+}
+
+template <class A, class B>
+double gap(const A& a, const B& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+} // namespace
+
+TEST_CASE("a vector turned by a rotation") {
+  const auto turn = [](const auto& x) { return duet::rotate(x, v); };
+  const matrix R = rotation_matrix(q);
+  const auto [y, J] = jacobian(turn, q, spatial);
+  static_assert(decltype(J)::RowsAtCompileTime == 3 && decltype(J)::ColsAtCompileTime == 3);
+  CHECK(gap(y, R * v) < 1e-15);
+  CHECK(gap(J, -hat(R * v)) < 1e-15);
+  CHECK(gap(jacobian(turn, q, body).jacobian, -R * hat(v)) < 1e-15);
+}
+
+TEST_CASE("rotations to rotations") {
+  const matrix R = rotation_matrix(q);
+  const matrix S = rotation_matrix(r);
+  const auto inverse = [](const auto& x) { return conj(x); };
+  CHECK(gap(jacobian(inverse, q, body).jacobian, -R) < 1e-15);
+  CHECK(gap(jacobian(inverse, q, spatial).jacobian, -R.transpose()) < 1e-15);
+
+  const auto product = [](const auto& both) { return std::get<0>(both) * std::get<1>(both); };
+  const auto at = std::tuple(q, r);
+  Eigen::Matrix<double, 3, 6> expected;
+  expected << matrix::Identity(), R;
+  CHECK(gap(jacobian(product, at, spatial).jacobian, expected) < 1e-15);
+  expected << S.transpose(), matrix::Identity();
+  CHECK(gap(jacobian(product, at, body).jacobian, expected) < 1e-15);
+
+  // Coordinates of the same motion: both frames differ by the rotations themselves.
+  const auto cube = [](const auto& x) { return pow(x, 3); };
+  const matrix cubed = rotation_matrix(pow(q, 3));
+  CHECK(gap(cubed * jacobian(cube, q, body).jacobian, jacobian(cube, q, spatial).jacobian * R) <
+        4e-15);
+}
+
+TEST_CASE("vectors to rotations: Euler rates and the exponential's Jacobian") {
+  const auto angles = [](const auto& a) { return duet::from_euler<duet::zyx>(a[0], a[1], a[2]); };
+  const vector a(0.4, -0.9, 2.2);
+  CHECK(gap(jacobian(angles, a, spatial).jacobian, duet::euler_rate_matrix<duet::zyx>(a[0], a[1])) <
+        1e-15);
+
+  const auto exponential = [](const auto& w) { return duet::from_rotation_vector(w); };
+  const vector w(0.8, -0.3, 1.1);
+  const double t = w.norm();
+  const matrix left = matrix::Identity() + (1 - std::cos(t)) / (t * t) * hat(w) +
+                      (t - std::sin(t)) / (t * t * t) * hat(w) * hat(w);
+  CHECK(gap(jacobian(exponential, w, spatial).jacobian, left) < 1e-15);
+  CHECK(gap(jacobian(exponential, w, body).jacobian, left.transpose()) < 1e-15);
+  CHECK(gap(jacobian(exponential, vector(0, 0, 0), body).jacobian, matrix::Identity()) == 0);
+  // And back: the logarithm's is the inverse.
+  const auto logarithm = [](const auto& x) { return duet::rotation_vector(x); };
+  CHECK(gap(jacobian(logarithm, duet::from_rotation_vector(w), spatial).jacobian, left.inverse()) <
+        1e-14);
+}
+
+TEST_CASE("scalars, arrays and tuples on either side") {
+  const auto slerp = [](const auto& x) {
+    const auto& [t, ends] = x;
+    return std::tuple(duet::slerp(ends[0], ends[1], t), t * t);
+  };
+  const auto at = std::tuple(0.3, std::array{q, r});
+  const auto [y, J] = jacobian(slerp, at, spatial);
+  static_assert(decltype(J)::RowsAtCompileTime == 4 && decltype(J)::ColsAtCompileTime == 7);
+  CHECK(std::get<1>(y) == 0.3 * 0.3);
+  const vector rate = duet::rotate(q, duet::rotation_vector(conj(q) * r));
+  CHECK(gap(J.col(0).head(3), rate) < 1e-14);
+  CHECK(J(3, 0) == 0.6);
+  CHECK(J.row(3).tail(6).isZero(0));
+  // Moving both ends by one rotation moves the curve by it.
+  CHECK(gap(J.block(0, 1, 3, 3) + J.block(0, 4, 3, 3), matrix::Identity()) < 1e-14);
+}
+
+TEST_CASE("a result whose size is known at run time") {
+  const auto all = [](const auto& x) {
+    using T = typename std::decay_t<decltype(x)>::scalar_type;
+    Eigen::Matrix<T, Eigen::Dynamic, 1> y(6);
+    y << duet::rotate(x, v), duet::rotate(conj(x), v);
+    return y;
+  };
+  const auto J = jacobian(all, q, spatial).jacobian;
+  CHECK(J.rows() == 6);
+  CHECK(J.cols() == 3);
+  CHECK(gap(J.topRows(3), -hat(rotation_matrix(q) * v)) < 1e-15);
+}
+
+TEST_CASE("more coordinates than one pass takes") {
+  std::array<quaternion, 12> many;
+  for (int i = 0; i < 12; ++i) {
+    many[std::size_t(i)] = duet::from_rotation_vector(vector(0.1 * i, 0.5, -0.2 * i));
+  }
+  const auto sum = [](const auto& x) {
+    auto y = duet::rotate(x[0], v);
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      y += duet::rotate(x[i], v);
+    }
+    return y;
+  };
+  const auto J = jacobian(sum, many, spatial).jacobian;
+  CHECK(J.cols() == 36);
+  for (int i = 0; i < 12; ++i) {
+    CHECK(gap(J.middleCols<3>(3 * i), -hat(duet::rotate(many[std::size_t(i)], v))) < 1e-15);
+  }
+}
+
+TEST_CASE("gradients and Hessians: the squared distance of rotations") {
+  // ½ θ² with θ the angle of q r*. Its gradient is the rotation vector from r to q; at q = r its
+  // Hessian is the identity.
+  const auto distance = [](const auto& x) {
+    const auto w = duet::rotation_vector(x * conj(r));
+    return w.squaredNorm() / 2;
+  };
+  const vector w = duet::rotation_vector(q * conj(r));
+  const auto [y, g] = gradient(distance, q, spatial);
+  CHECK(y == doctest::Approx(w.squaredNorm() / 2).epsilon(1e-14));
+  CHECK(gap(g, w) < 1e-14);
+  CHECK(gap(gradient(distance, q, body).gradient, rotation_matrix(q).transpose() * w) < 1e-14);
+
+  const auto at_r = hessian(distance, r, spatial);
+  CHECK(at_r.value == 0);
+  CHECK(at_r.gradient.norm() == 0);
+  CHECK(gap(at_r.hessian, matrix::Identity()) < 1e-15);
+
+  // Elsewhere (θ/2) cot(θ/2) (I − ŵŵᵀ) + ŵŵᵀ.
+  const auto [value, slope, H] = hessian(distance, q, spatial);
+  const double t = w.norm();
+  const matrix along = w * w.transpose() / (t * t);
+  const matrix expected = t / 2 / std::tan(t / 2) * (matrix::Identity() - along) + along;
+  CHECK(value == doctest::Approx(y).epsilon(1e-14));
+  CHECK(gap(slope, w) < 1e-14);
+  CHECK(gap(H, expected) < 1e-13);
+  const matrix R = rotation_matrix(q);
+  CHECK(gap(hessian(distance, q, body).hessian, R.transpose() * H * R) < 1e-13);
+}
+
+TEST_CASE("inside another differentiation") {
+  const auto trace = [](auto t) {
+    const auto turn = [t](const auto& x) { return (duet::rotate(x, vector(0, 0, 1)) * t).eval(); };
+    return jacobian(turn, duet::from_rotation_vector(vector(0, 0, 1)), spatial).jacobian(0, 1);
+  };
+  CHECK(duet::derivative(trace, 2.0).value == doctest::Approx(2).epsilon(1e-15));
+  CHECK(duet::derivative(trace, 2.0).derivative == doctest::Approx(1).epsilon(1e-15));
+}
