@@ -8,11 +8,13 @@
 #include <duet/comparison/numeric_derivative.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/version.hpp>
+#include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/dual/dynamic_dual.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/quaternion/domain.hpp>

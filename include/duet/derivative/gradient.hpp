@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/derivative/chunked.hpp>
 #include <duet/derivative/seed.hpp>
 
 #include <Eigen/Core>
@@ -32,24 +33,18 @@ struct value_gradient_and_hessian {
 template <class Tag = void, class F, VectorLike X>
 [[nodiscard]] auto gradient(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
-  using T = typename argument::scalar;
   using tag = detail::tag_for<Tag, F>;
-  constexpr int n = detail::partials_per_pass<X>;
-  using output =
-      std::decay_t<decltype(detail::evaluated(f(detail::seeded<dual<T, n, tag>, n>(x, 0))))>;
+  using D = dual<typename argument::scalar, detail::partials_per_pass<X>, tag>;
+  using output = std::decay_t<decltype(detail::evaluated(f(detail::constants<D>(x))))>;
   static_assert(Scalar<output>, "duet: gradient needs a function that returns a scalar");
   using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
   using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
-  value_and_gradient<S, vector> result{S(0), vector::Zero(argument::size(x))};
+  value_and_gradient<S, vector> result{S(0), vector(argument::size(x))};
   if (argument::size(x) == 0) {
     throw invalid_input("duet: gradient of a function of no variables");
   }
-  detail::for_each_pass<tag>(f, x, [&](const auto& y, Eigen::Index first, Eigen::Index count) {
-    result.value = detail::part<tag>(y, 0);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      result.gradient[first + i] = detail::part<tag>(y, int(i) + 1);
-    }
-  });
+  result.value = gradient_into<0, std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
+      f, x, result.gradient);
   return result;
 }
 

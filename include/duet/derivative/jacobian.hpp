@@ -30,7 +30,7 @@ template <class Tag = void, class F, VectorLike X>
   using tag = detail::tag_for<Tag, F>;
   constexpr int n = detail::partials_per_pass<X>;
   using output =
-      std::decay_t<decltype(detail::evaluated(f(detail::seeded<dual<T, n, tag>, n>(x, 0))))>;
+      std::decay_t<decltype(detail::evaluated(f(detail::constants<dual<T, n, tag>>(x))))>;
   static_assert(VectorLike<output>, "duet: jacobian needs a function that returns a vector");
   using result_argument = detail::vector_argument<output>;
   using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;

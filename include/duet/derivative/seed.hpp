@@ -10,6 +10,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <utility>
 
 /// \file
 /// Arguments of several components, and how they are made the variables of a differentiation.
@@ -52,38 +53,62 @@ struct vector_argument<std::array<T, N>> {
 };
 
 /// Up to this many components are differentiated in one pass; more, and vectors whose size is known
-/// at run time, in passes of `chunk` components.
+/// at run time, in passes of `chunk` components. Measured: longer rows leave the registers.
 inline constexpr int single_pass_limit = 32;
 inline constexpr int chunk = 8;
 
-template <class X>
+/// Partials per pass over the components of an X; `Chosen` by the caller, or 0.
+template <class X, int Chosen = 0>
 inline constexpr int partials_per_pass =
-    vector_argument<X>::size_at_compile_time > 0 &&
+    Chosen > 0 ? Chosen
+    : vector_argument<X>::size_at_compile_time > 0 &&
             vector_argument<X>::size_at_compile_time <= single_pass_limit
         ? vector_argument<X>::size_at_compile_time
         : chunk;
 
-/// x with the components [first, first + N) as variables.
-template <class D, int N, class X>
-[[nodiscard]] auto seeded(const X& x, Eigen::Index first) {
+/// x over D, every component a constant.
+template <class D, class X>
+[[nodiscard]] auto constants(const X& x) {
   using argument = vector_argument<X>;
   auto result = argument::template make<D>(x);
   for (Eigen::Index i = 0; i < argument::size(x); ++i) {
-    const auto value = argument::get(x, i);
-    const bool is_variable = i >= first && i < first + N;
-    result[std::size_t(i)] = is_variable ? D::variable(value, int(i - first)) : D(value);
+    result[std::size_t(i)] = D(argument::get(x, i));
   }
   return result;
 }
 
+/// Makes the components [first, first + N) variables.
+template <class D, int N, class Seeded, class X>
+void seed(Seeded& variables, const X& x, Eigen::Index first) {
+  using argument = vector_argument<X>;
+  for (Eigen::Index i = first; i < std::min<Eigen::Index>(first + N, argument::size(x)); ++i) {
+    variables[std::size_t(i)] = D::variable(argument::get(x, i), int(i - first));
+  }
+}
+
+/// x with the components [first, first + N) as variables.
+template <class D, int N, class X>
+[[nodiscard]] auto seeded(const X& x, Eigen::Index first) {
+  auto result = constants<D>(x);
+  seed<D, N>(result, x, first);
+  return result;
+}
+
 /// Calls visit(f(x seeded from `first`), first, count) for every pass over the components of x.
-template <class Tag, class F, class X, class Visit>
+template <class Tag, int Chosen = 0, class F, class X, class Visit>
 void for_each_pass(F&& f, const X& x, Visit&& visit) {
-  constexpr int n = partials_per_pass<X>;
-  using D = dual<typename vector_argument<X>::scalar, n, Tag>;
-  const Eigen::Index size = vector_argument<X>::size(x);
+  using argument = vector_argument<X>;
+  constexpr int n = partials_per_pass<X, Chosen>;
+  using D = dual<typename argument::scalar, n, Tag>;
+  const Eigen::Index size = argument::size(x);
+  auto variables = constants<D>(x);
   for (Eigen::Index first = 0; first < size; first += n) {
-    visit(evaluated(f(seeded<D, n>(x, first))), first, std::min<Eigen::Index>(n, size - first));
+    seed<D, n>(variables, x, first);
+    const Eigen::Index count = std::min<Eigen::Index>(n, size - first);
+    visit(evaluated(f(std::as_const(variables))), first, count);
+    for (Eigen::Index i = first; i < first + count; ++i) {
+      variables[std::size_t(i)] = D(argument::get(x, i));
+    }
   }
 }
 

@@ -106,7 +106,7 @@ template <class X>
 template <class F, class T, int N, class Tag>
 [[nodiscard]] constexpr auto map_parts(F&& f, const dual<T, N, Tag>& x) {
   dual<std::decay_t<decltype(f(x.value()))>, N, Tag> y(f(x.value()));
-  for (int i = 0; i < N; ++i) {
+  for (int i = 0; i < x.size(); ++i) {
     y.set_partial(i, f(x.partial(i)));
   }
   return y;

@@ -21,7 +21,7 @@ DUET_ABI_BEGIN
 /// A number with N first-order infinitesimal parts.
 ///
 /// \tparam T    the scalar below: a real number, or another dual or taylor number
-/// \tparam N    number of partial derivatives
+/// \tparam N    number of partial derivatives (negative: the capacity of a `dynamic_dual`)
 /// \tparam Tag  what the ε means: `derivative_tag<F>`, or `screw_tag` for rigid motion
 ///
 /// A plain value type: nothing is lazy, so `auto`, `?:` and lambdas behave as with double. The
@@ -32,7 +32,7 @@ DUET_ABI_BEGIN
 template <class T, int N = 1, class Tag = derivative_tag<>>
 class dual : detail::infinitesimal_operators<dual<T, N, Tag>, T> {
   static_assert(Scalar<T>, "duet: dual<T> needs a real number or a scalar of duet as T");
-  static_assert(N >= 1, "duet: dual<T, N> needs at least one partial derivative");
+  static_assert(N != 0, "duet: dual<T, N> needs at least one partial derivative");
   static_assert(
       !detail::contains_tag<T, Tag>(),
       "duet: this differentiation happens inside another one with the same tag, and their "
@@ -61,13 +61,14 @@ public:
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
       dual(const dual<U, N, Tag>& other)
       : value_(static_cast<T>(other.value())) {
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < other.size(); ++i) {
       partials_.set(i, static_cast<T>(other.partial(i)));
     }
   }
 
   /// The i-th variable of a function of N: value + εᵢ.
-  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual variable(const T& value, int i = 0) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual variable(const T& value,
+                                                                  int i = 0) requires(N > 0) {
     if constexpr (requires { partials_type::unit(i); }) {
       return dual(value, partials_type::unit(i));
     } else {
@@ -77,6 +78,20 @@ public:
     }
   }
 
+  /// The i-th variable of a function of n, where N is a capacity.
+  /// \throws invalid_input for n beyond it
+  [[nodiscard]] static dual variable(const T& value, int i, int n) requires(N < 0) {
+    return dual(value, partials_type::unit(i, n));
+  }
+
+  /// Number of partials.
+  [[nodiscard]] constexpr int size() const {
+    if constexpr (N > 0) {
+      return N;
+    } else {
+      return partials_.size();
+    }
+  }
   [[nodiscard]] constexpr const T& value() const { return value_; }
   [[nodiscard]] constexpr T partial(int i) const { return partials_.get(i); }
   [[nodiscard]] constexpr T epsilon() const requires(N == 1) { return partials_.get(0); }
@@ -87,7 +102,7 @@ public:
   template <class Predicate>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool all_of(Predicate&& predicate) const {
     bool result = predicate(value_);
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < size(); ++i) {
       result = result && predicate(partials_.get(i));
     }
     return result;
@@ -98,6 +113,11 @@ public:
   [[nodiscard]] constexpr explicit operator U() const {
     return static_cast<U>(value_);
   }
+
+  /// The ε of a rigid motion is not the ε of a derivative, whichever way: put one inside the other,
+  /// or take the part you mean.
+  template <detail::OtherKindOfEpsilon<dual> U>
+  dual(const U&, detail::epsilon_of_a_rigid_motion_is_not_that_of_a_derivative = {}) = delete;
 
   // The kernels behind the operators of detail::infinitesimal_operators.
 

@@ -29,9 +29,9 @@ lift(const Rule& rule, const dual<T, N, Tag>& x, const dual<T, N, Tag>& y, const
   auto result = chain(slopes[0], x.partials(), slopes[1], y.partials());
   if constexpr (sizeof...(rest) > 0) {
     static_assert(sizeof...(rest) == 1);
-    result =
-        partials<T, N>::map([](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p + q; },
-                            result, chain(slopes[2], rest.partials()...));
+    result = dual<T, N, Tag>::partials_type::map([](const auto& p, const auto& q)
+                                                     DUET_INLINE_LAMBDA { return p + q; },
+                                                 result, chain(slopes[2], rest.partials()...));
   }
   return {value, result};
 }

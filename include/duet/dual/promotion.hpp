@@ -130,4 +130,16 @@ concept ConstantOf = Infinitesimal<D> &&(Arithmetic<U> || Scalar<U>)&&!std::same
                       std::same_as<promote_t<typename scalar_traits<D>::value_type, U>,
                                    typename scalar_traits<D>::value_type>);
 
+namespace detail {
+
+/// Stands in the declaration of a deleted conversion, for compilers to quote.
+struct epsilon_of_a_rigid_motion_is_not_that_of_a_derivative {};
+
+/// U has a screw ε where D has a derivative's, or the other way round, and is no constant for D.
+template <class U, class D>
+concept OtherKindOfEpsilon = Infinitesimal<U> && Infinitesimal<D> && !ConstantOf<U, D> &&
+                             contains_tag<U, screw_tag>() != contains_tag<D, screw_tag>();
+
+} // namespace detail
+
 } // namespace duet

@@ -33,7 +33,7 @@ template <class Char, class T, int N, class Tag>
 std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const dual<T, N, Tag>& x) {
   return detail::write_padded(out, [&](auto& text) {
     text << x.value() << "[";
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < x.size(); ++i) {
       text << (i == 0 ? "" : ", ") << x.partial(i);
     }
     text << "]";

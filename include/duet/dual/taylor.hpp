@@ -96,6 +96,10 @@ public:
     return static_cast<U>(value());
   }
 
+  /// The ε of a rigid motion is not the ε of a derivative.
+  template <detail::OtherKindOfEpsilon<taylor> U>
+  taylor(const U&, detail::epsilon_of_a_rigid_motion_is_not_that_of_a_derivative = {}) = delete;
+
   // The kernels behind the operators of detail::infinitesimal_operators. `each` calls them with
   // indices that are constants after inlining, which is what keeps coefficients in registers.
 

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: no matching (conversion|function)
+// expect: epsilon_of_a_rigid_motion_is_not_that_of_a_derivative|deleted function
 
 #include <duet/dual/math.hpp>
 
