@@ -14,6 +14,31 @@
 /// The derivatives of pow, atan2, hypot, fma, lerp and the remainders. `slopes(y, x…)` returns the
 /// partial derivatives where the value is y.
 
+namespace duet::detail {
+
+/// What decides how fast 0^x vanishes: x, or its real part.
+template <class T>
+[[nodiscard]] constexpr auto real_part(const T& x) {
+  if constexpr (Real<T>) {
+    return x;
+  } else {
+    return x.real();
+  }
+}
+
+/// log b as a number that T's numbers can be multiplied by; that of −2 is complex where they are.
+template <class T, class Base>
+[[nodiscard]] auto log_of_base(const Base& base) {
+  using std::log;
+  if constexpr (Arithmetic<Base> && !Real<real_type_t<T>>) {
+    return log(real_type_t<T>(base));
+  } else {
+    return log(base);
+  }
+}
+
+} // namespace duet::detail
+
 namespace duet::rule {
 
 /// x ↦ x^p. A zero exponent has no slope, even at x = 0.
@@ -30,8 +55,10 @@ struct power {
   T slope(const T& x, const T&) const {
     using std::pow;
     return select(
-        detail::is_structural_zero(exponent) || (innermost(exponent) == 0 && innermost(x) == 0),
-        [] { return T(0); }, [&] { return T(exponent * pow(x, Exponent(exponent - 1))); });
+        detail::is_structural_zero(exponent) || (detail::is_structural_zero(innermost(exponent)) &&
+                                                 detail::is_structural_zero(innermost(x))),
+        [] { return T(0); },
+        [&] { return T(exponent * pow(x, Exponent(exponent - detail::integer<Exponent>(1)))); });
   }
 };
 
@@ -47,11 +74,11 @@ struct exponential {
   }
   template <class T>
   T slope(const T& x, const T& y) const {
-    using std::log;
-    const T regular = y * log(base);
+    const T regular = y * detail::log_of_base<T>(base);
     // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
-    const bool vanishes = innermost(base) == 0 && innermost(x) > 0;
-    const bool is_flat = is_constant(base) || innermost(x) > scalar_traits<T>::order;
+    const auto exponent = detail::real_part(innermost(x));
+    const bool vanishes = detail::is_structural_zero(innermost(base)) && exponent > 0;
+    const bool is_flat = is_constant(base) || exponent > scalar_traits<T>::order;
     return select(
         vanishes && is_flat, [] { return T(0); },
         [&] {
