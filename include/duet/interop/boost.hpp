@@ -1,14 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/interop/boost_rational.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <boost/math/quaternion.hpp>
 
 /// \file
-/// To and from `boost::math::quaternion`: the same algebra, scalar part first. And dual numbers
-/// over `boost::rational`.
+/// To and from `boost::math::quaternion`: the same algebra, scalar part first.
 
 namespace duet {
 
