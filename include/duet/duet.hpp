@@ -14,6 +14,7 @@
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/dual/complex.hpp>
 #include <duet/dual/dynamic_dual.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>

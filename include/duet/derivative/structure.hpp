@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <complex>
 #include <concepts>
 #include <cstddef>
 #include <tuple>
@@ -20,7 +21,8 @@
 namespace duet {
 
 /// Scalars inside an object: `structure<X>::map(f, x)` is the same object with f applied to each.
-/// Scalars, Eigen matrices, arrays and tuples are here; rotations and poses add their own.
+/// Scalars, Eigen matrices, arrays, complex numbers and tuples are here; rotations and poses add
+/// their own.
 template <class X>
 struct structure;
 
@@ -63,6 +65,16 @@ struct structure<std::array<T, N>> {
       return std::array<result, N>{structure<T>::map(f, x[I])...};
     }
     (std::make_index_sequence<N>{});
+  }
+};
+
+/// Complex numbers over duals. (Complex numbers over the reals are scalars themselves.)
+template <Infinitesimal T>
+struct structure<std::complex<T>> {
+  template <class F>
+  [[nodiscard]] static constexpr auto map(F&& f, const std::complex<T>& x) {
+    using result = std::decay_t<decltype(f(x.real()))>;
+    return std::complex<result>(f(x.real()), f(x.imag()));
   }
 };
 

@@ -13,9 +13,15 @@
 
 namespace duet::detail {
 
+/// What the kernels take a constant of type U as: a T. Arithmetic constants stay plain where T is
+/// over another field than the reals, so that x · 2 is what that field makes of it: a complex 2
+/// would cost digits and signs of zeros.
+template <class T, class U>
+using operand_t = std::conditional_t<Arithmetic<U> && !Real<real_type_t<T>>, constant_t<T>, T>;
+
 /// Base of an infinitesimal number D over T, which supplies the kernels: `sum`, `difference`,
-/// `product`, `quotient` of two D, and `negated`, `plus`, `times`, `divided_by`, `dividing` with a
-/// constant of type T.
+/// `product`, `quotient` of two D, `negated`, `plus`, `times`, `divided_by` with an operand_t, and
+/// `dividing` with a T.
 template <class D, class T>
 struct infinitesimal_operators {
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a) { return a; }
@@ -37,31 +43,32 @@ struct infinitesimal_operators {
   // A constant meets a number without being widened to one, which would multiply by zeros.
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a, const U& b) {
-    return a.plus(static_cast<T>(b));
+    return a.plus(static_cast<operand_t<T, U>>(b));
   }
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const U& a, const D& b) {
-    return b.plus(static_cast<T>(a));
+    return b.plus(static_cast<operand_t<T, U>>(a));
   }
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a, const U& b) {
-    return a.plus(T(-static_cast<T>(b)));
+    using operand = operand_t<T, U>;
+    return a.plus(operand(-static_cast<operand>(b)));
   }
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const U& a, const D& b) {
-    return b.negated().plus(static_cast<T>(a));
+    return b.negated().plus(static_cast<operand_t<T, U>>(a));
   }
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const D& a, const U& b) {
-    return a.times(static_cast<T>(b));
+    return a.times(static_cast<operand_t<T, U>>(b));
   }
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const U& a, const D& b) {
-    return b.times(static_cast<T>(a));
+    return b.times(static_cast<operand_t<T, U>>(a));
   }
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const D& a, const U& b) {
-    return a.divided_by(static_cast<T>(b));
+    return a.divided_by(static_cast<operand_t<T, U>>(b));
   }
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const U& a, const D& b) {
@@ -108,11 +115,33 @@ template <class A, class B>
 concept MixedScalars = (Infinitesimal<A> || Infinitesimal<B>)&&(Scalar<A> || Arithmetic<A>)&&(
     Scalar<B> || Arithmetic<B>)&&Promotable<A, B>;
 
+/// They meet in numbers that have an order, which complex numbers do not.
+template <class A, class B>
+concept OrderedScalars = MixedScalars<A, B> && requires(const real_type_t<promote_t<A, B>>& x) {
+  x < x;
+};
+
+/// They meet in numbers over the reals, where functions need not be analytic.
+template <class A, class B>
+concept MixedReals = MixedScalars<A, B> && Real<real_type_t<promote_t<A, B>>>;
+
 /// Neither is a constant for the other: both must be brought to their common nesting first.
 template <class A, class B>
 concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& Scalar<B> &&
                             !std::is_same_v<A, B> && Promotable<A, B> && !ConstantOf<A, B> &&
                             !ConstantOf<B, A>;
+
+/// The value of x for a comparison of A and B. Fields other than the reals need not compare with
+/// every arithmetic type.
+template <class A, class B, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr decltype(auto) comparable(const X& x) {
+  using number = real_type_t<promote_t<A, B>>;
+  if constexpr (Real<number>) {
+    return innermost(x);
+  } else {
+    return number(innermost(x));
+  }
+}
 
 } // namespace duet::detail
 
@@ -121,32 +150,32 @@ namespace duet {
 template <class A, class B>
   requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator==(const A& a, const B& b) {
-  return innermost(a) == innermost(b);
+  return detail::comparable<A, B>(a) == detail::comparable<A, B>(b);
 }
 template <class A, class B>
   requires detail::MixedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator!=(const A& a, const B& b) {
-  return innermost(a) != innermost(b);
+  return detail::comparable<A, B>(a) != detail::comparable<A, B>(b);
 }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::OrderedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<(const A& a, const B& b) {
-  return innermost(a) < innermost(b);
+  return detail::comparable<A, B>(a) < detail::comparable<A, B>(b);
 }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::OrderedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<=(const A& a, const B& b) {
-  return innermost(a) <= innermost(b);
+  return detail::comparable<A, B>(a) <= detail::comparable<A, B>(b);
 }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::OrderedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>(const A& a, const B& b) {
-  return innermost(a) > innermost(b);
+  return detail::comparable<A, B>(a) > detail::comparable<A, B>(b);
 }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::OrderedScalars<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>=(const A& a, const B& b) {
-  return innermost(a) >= innermost(b);
+  return detail::comparable<A, B>(a) >= detail::comparable<A, B>(b);
 }
 
 template <class A, class B>

@@ -20,7 +20,7 @@ DUET_ABI_BEGIN
 
 /// A number with N first-order infinitesimal parts.
 ///
-/// \tparam T    the scalar below: a real number, or another dual or taylor number
+/// \tparam T    the scalar below: a number, or another dual or taylor number
 /// \tparam N    number of partial derivatives (negative: the capacity of a `dynamic_dual`)
 /// \tparam Tag  what the ε means: `derivative_tag<F>`, or `screw_tag` for rigid motion
 ///
@@ -31,7 +31,9 @@ DUET_ABI_BEGIN
 /// Example: `auto x = dual<double>::variable(3); (x * x).epsilon() == 6`.
 template <class T, int N = 1, class Tag = derivative_tag<>>
 class dual : detail::infinitesimal_operators<dual<T, N, Tag>, T> {
-  static_assert(Scalar<T>, "duet: dual<T> needs a real number or a scalar of duet as T");
+  static_assert(Scalar<T>,
+                "duet: dual<T> needs a real number, one of an opted-in field (field_traits), "
+                "or a scalar of duet as T");
   static_assert(N != 0, "duet: dual<T, N> needs at least one partial derivative");
   static_assert(
       !detail::contains_tag<T, Tag>(),
@@ -110,9 +112,8 @@ public:
 
   /// Drops the derivatives; explicit for that reason.
   template <Arithmetic U>
-  [[nodiscard]] constexpr explicit operator U() const {
-    return static_cast<U>(value_);
-  }
+    requires std::constructible_from<U, T>
+  [[nodiscard]] constexpr explicit operator U() const { return static_cast<U>(value_); }
 
   /// The ε of a rigid motion is not the ε of a derivative, whichever way: put one inside the other,
   /// or take the part you mean.
@@ -125,14 +126,17 @@ public:
     return {T(-value_),
             partials_type::map([](const auto& p) DUET_INLINE_LAMBDA { return -p; }, partials_)};
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual plus(const T& c) const {
+  template <class C>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual plus(const C& c) const {
     return {T(value_ + c), partials_};
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual times(const T& c) const {
+  template <class C>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual times(const C& c) const {
     return {T(value_ * c),
             partials_type::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * c; }, partials_)};
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual divided_by(const T& c) const {
+  template <class C>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual divided_by(const C& c) const {
     return {T(value_ / c), detail::chain(T(T(1) / c), partials_)};
   }
   /// c / *this

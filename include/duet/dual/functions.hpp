@@ -13,7 +13,8 @@
 
 /// \file
 /// The smooth functions of `<cmath>` over dual and Taylor numbers. Values are those of `<cmath>`;
-/// derivatives are in rules.hpp and its like.
+/// derivatives are in rules.hpp and its like. Complex numbers have those of `<complex>` that are in
+/// complex.hpp's list.
 
 namespace duet {
 
@@ -21,7 +22,7 @@ template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D sqrt(const D& x) {
   return detail::lift(rule::sqrt{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D cbrt(const D& x) {
   return detail::lift(rule::cbrt{}, x);
 }
@@ -29,11 +30,11 @@ template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D exp(const D& x) {
   return detail::lift(rule::exp{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D exp2(const D& x) {
   return detail::lift(rule::exp2{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D expm1(const D& x) {
   return detail::lift(rule::expm1{}, x);
 }
@@ -41,15 +42,15 @@ template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log(const D& x) {
   return detail::lift(rule::log{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log2(const D& x) {
   return detail::lift(rule::log2{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log10(const D& x) {
   return detail::lift(rule::log10{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log1p(const D& x) {
   return detail::lift(rule::log1p{}, x);
 }
@@ -65,15 +66,15 @@ template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D tan(const D& x) {
   return detail::lift(rule::tan{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D asin(const D& x) {
   return detail::lift(rule::asin{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D acos(const D& x) {
   return detail::lift(rule::acos{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D atan(const D& x) {
   return detail::lift(rule::atan{}, x);
 }
@@ -89,42 +90,43 @@ template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D tanh(const D& x) {
   return detail::lift(rule::tanh{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D asinh(const D& x) {
   return detail::lift(rule::asinh{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D acosh(const D& x) {
   return detail::lift(rule::acosh{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D atanh(const D& x) {
   return detail::lift(rule::atanh{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D erf(const D& x) {
   return detail::lift(rule::erf{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D erfc(const D& x) {
   return detail::lift(rule::erfc{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D tgamma(const D& x) {
   return detail::lift(rule::tgamma{}, x);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D lgamma(const D& x) {
   return detail::lift(rule::lgamma{}, x);
 }
 
 namespace detail {
 
-/// A constant as the scalar that exponents and bases are held in: arithmetic types become reals.
+/// A constant as what exponents and bases are held in: arithmetic types become reals of the
+/// precision of D.
 template <class D, class U>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto as_constant(const U& x) {
   if constexpr (Arithmetic<U>) {
-    return static_cast<real_type_t<D>>(x);
+    return static_cast<constant_t<D>>(x);
   } else {
     return x;
   }
@@ -157,45 +159,45 @@ template <class A, class B>
 
 /// The angle of the point (x, y), in (−π, π].
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto atan2(const A& y, const B& x) {
   return detail::lift_promoted(rule::atan2{}, y, x);
 }
 
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto hypot(const A& x, const B& y) {
   return detail::lift_promoted(rule::hypot{}, x, y);
 }
 
 template <class A, class B, class C>
-  requires detail::MixedScalars<A, promote_t<B, C>>
+  requires detail::MixedReals<A, promote_t<B, C>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto hypot(const A& x, const B& y, const C& z) {
   return detail::lift_promoted(rule::hypot{}, x, y, z);
 }
 
 /// x y + z, the value rounded once.
 template <class A, class B, class C>
-  requires detail::MixedScalars<A, promote_t<B, C>>
+  requires detail::MixedReals<A, promote_t<B, C>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fma(const A& x, const B& y, const C& z) {
   return detail::lift_promoted(rule::fma{}, x, y, z);
 }
 
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fmod(const A& x, const B& y) {
   return detail::lift_promoted(rule::fmod{}, x, y);
 }
 
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto remainder(const A& x, const B& y) {
   return detail::lift_promoted(rule::remainder{}, x, y);
 }
 
 /// remainder(x, y), and the low bits of the quotient.
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] auto remquo(const A& x, const B& y, int* quotient) {
   using std::remquo;
   using real = real_type_t<promote_t<A, B>>;
@@ -205,7 +207,7 @@ template <class A, class B>
 
 /// a + t (b − a), exact at t = 0 and t = 1.
 template <class A, class B, class C>
-  requires detail::MixedScalars<A, promote_t<B, C>>
+  requires detail::MixedReals<A, promote_t<B, C>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto lerp(const A& a, const B& b, const C& t) {
   return detail::lift_promoted(rule::lerp{}, a, b, t);
 }

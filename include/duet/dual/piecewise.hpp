@@ -15,32 +15,32 @@
 
 namespace duet {
 
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] bool signbit(const D& x) {
   using std::signbit;
   return signbit(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] bool isfinite(const D& x) {
   using std::isfinite;
   return isfinite(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] bool isinf(const D& x) {
   using std::isinf;
   return isinf(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] bool isnan(const D& x) {
   using std::isnan;
   return isnan(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] bool isnormal(const D& x) {
   using std::isnormal;
   return isnormal(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] int fpclassify(const D& x) {
   using std::fpclassify;
   return fpclassify(innermost(x));
@@ -49,41 +49,41 @@ template <Infinitesimal D>
 // The quiet comparisons of <cmath>: false, and no exception, where either is NaN.
 
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] bool isunordered(const A& a, const B& b) {
   using std::isnan;
   return isnan(innermost(a)) || isnan(innermost(b));
 }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] bool isless(const A& a, const B& b) { return !isunordered(a, b) && a < b; }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] bool islessequal(const A& a, const B& b) { return !isunordered(a, b) && a <= b; }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] bool isgreater(const A& a, const B& b) { return !isunordered(a, b) && a > b; }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] bool isgreaterequal(const A& a, const B& b) { return !isunordered(a, b) && a >= b; }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] bool islessgreater(const A& a, const B& b) { return !isunordered(a, b) && a != b; }
 
 /// |x|; at 0 the derivative from the side of the sign bit.
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D abs(const D& x) {
   return select(
       signbit(x), [&] { return D(-x); }, [&] { return x; });
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D fabs(const D& x) {
   return abs(x);
 }
 
 /// |magnitude| with the sign of `sign`, which only its sign bit enters.
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto copysign(const A& magnitude, const B& sign) {
   using std::signbit;
   using common = promote_t<A, B>;
@@ -95,7 +95,7 @@ template <class A, class B>
 
 /// The larger; where one is NaN the other, as in `<cmath>`.
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fmax(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
@@ -103,7 +103,7 @@ template <class A, class B>
       a < b || isnan(innermost(a)), [&] { return common(b); }, [&] { return common(a); });
 }
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fmin(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
@@ -113,7 +113,7 @@ template <class A, class B>
 
 /// max(a − b, 0); NaN where either is.
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
+  requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fdim(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return select(
@@ -122,52 +122,52 @@ template <class A, class B>
 
 // Rounding: flat wherever it is differentiable.
 
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D floor(const D& x) {
   using std::floor;
   return D(real_type_t<D>(floor(innermost(x))));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D ceil(const D& x) {
   using std::ceil;
   return D(real_type_t<D>(ceil(innermost(x))));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D trunc(const D& x) {
   using std::trunc;
   return D(real_type_t<D>(trunc(innermost(x))));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D round(const D& x) {
   using std::round;
   return D(real_type_t<D>(round(innermost(x))));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D rint(const D& x) {
   using std::rint;
   return D(real_type_t<D>(rint(innermost(x))));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D nearbyint(const D& x) {
   using std::nearbyint;
   return D(real_type_t<D>(nearbyint(innermost(x))));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] long lround(const D& x) {
   using std::lround;
   return lround(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] long long llround(const D& x) {
   using std::llround;
   return llround(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] long lrint(const D& x) {
   using std::lrint;
   return lrint(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] long long llrint(const D& x) {
   using std::llrint;
   return llrint(innermost(x));

@@ -38,6 +38,11 @@ template <class T, class Tag>
 
 struct no_promotion {};
 
+/// Are arithmetic constants of type U numbers at the bottom of T? 0.5 is none of a field over the
+/// integers.
+template <class U, class T>
+concept ArithmeticOf = Arithmetic<U> &&(std::integral<U> || !std::integral<constant_t<T>>);
+
 template <class A, class B>
 [[nodiscard]] constexpr auto promotion();
 
@@ -87,19 +92,35 @@ template <class A, class B>
   }
 }
 
+/// Two numbers, at least one of a field other than the reals: no digits may be lost.
+template <class A, class B>
+[[nodiscard]] constexpr auto promotion_of_fields() {
+  if constexpr (Arithmetic<A>) {
+    return promotion_of_fields<B, A>();
+  } else if constexpr (Arithmetic<B>) {
+    using constant = constant_t<A>;
+    return std::type_identity<std::conditional_t<
+        std::is_same_v<std::common_type_t<constant, B>, constant>, A, no_promotion>>{};
+  } else if constexpr (Field<A> && Field<B> && requires { typename std::common_type_t<A, B>; }) {
+    return std::common_type<A, B>{};
+  } else {
+    return std::type_identity<no_promotion>{};
+  }
+}
+
 template <class A, class B>
 [[nodiscard]] constexpr auto promotion() {
   if constexpr (std::is_same_v<A, B>) {
     return std::type_identity<A>{};
-  } else if constexpr (Infinitesimal<A> && Arithmetic<B>) {
+  } else if constexpr (Infinitesimal<A> && ArithmeticOf<B, A>) {
     return std::type_identity<A>{}; // a literal takes the precision of what it meets
-  } else if constexpr (Arithmetic<A> && Infinitesimal<B>) {
+  } else if constexpr (ArithmeticOf<A, B> && Infinitesimal<B>) {
     return std::type_identity<B>{};
   } else if constexpr (Infinitesimal<A> && Infinitesimal<B>) {
     return promotion_of_levels<A, B>();
-  } else if constexpr (Infinitesimal<A> && Real<B>) {
+  } else if constexpr (Infinitesimal<A> && Field<B>) {
     return promotion_below<A, typename scalar_traits<A>::value_type, B>();
-  } else if constexpr (Real<A> && Infinitesimal<B>) {
+  } else if constexpr (Field<A> && Infinitesimal<B>) {
     return promotion_below<B, typename scalar_traits<B>::value_type, A>();
   } else if constexpr (Arithmetic<A> && Arithmetic<B>) {
     return std::common_type<A, B>{};
@@ -107,6 +128,8 @@ template <class A, class B>
     return std::type_identity<A>{};
   } else if constexpr (Arithmetic<A> && Real<B>) {
     return std::type_identity<B>{};
+  } else if constexpr (field_traits<A>::is_field || field_traits<B>::is_field) {
+    return promotion_of_fields<A, B>();
   } else {
     return std::type_identity<no_promotion>{};
   }
@@ -125,10 +148,11 @@ concept Promotable = !std::same_as<promote_t<A, B>, detail::no_promotion>;
 
 /// U is a constant for the level of D: an arithmetic type or a scalar of what is below.
 template <class U, class D>
-concept ConstantOf = Infinitesimal<D> &&(Arithmetic<U> || Scalar<U>)&&!std::same_as<U, D> &&
-                     (Arithmetic<U> ||
-                      std::same_as<promote_t<typename scalar_traits<D>::value_type, U>,
-                                   typename scalar_traits<D>::value_type>);
+concept ConstantOf = Infinitesimal<D> &&
+    (detail::ArithmeticOf<U, D> ||
+     (!Arithmetic<U> && Scalar<U> && !std::same_as<U, D> &&
+      std::same_as<promote_t<typename scalar_traits<D>::value_type, U>,
+                   typename scalar_traits<D>::value_type>));
 
 namespace detail {
 

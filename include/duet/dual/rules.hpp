@@ -98,7 +98,7 @@ struct log {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    return 1 / x;
+    return detail::integer<T>(1) / x;
   }
 };
 
@@ -171,8 +171,14 @@ struct tan {
     return tan(x);
   }
   template <class T>
-  T slope(const T&, const T& y) const {
-    return 1 + y * y;
+  T slope([[maybe_unused]] const T& x, [[maybe_unused]] const T& y) const {
+    if constexpr (Real<real_type_t<T>>) {
+      return 1 + y * y;
+    } else { // far from the real axis tan x is nearly ±i, and 1 + y² would cancel
+      using std::cos;
+      const T inverse = detail::integer<T>(1) / cos(x);
+      return inverse * inverse;
+    }
   }
 };
 

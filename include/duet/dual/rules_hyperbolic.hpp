@@ -45,16 +45,22 @@ struct tanh {
     return tanh(x);
   }
   template <class T>
-  T slope(const T& x, const T& y) const {
-    // 1 − y² would cancel where tanh saturates, and 1/cosh² overflow within.
-    return select(
-        innermost(y) * innermost(y) < 0.5, [&] { return T(1 - y * y); },
-        [&] {
-          using std::exp;
-          const T e = exp(select(
-              innermost(x) < 0, [&] { return T(2 * x); }, [&] { return T(-2 * x); }));
-          return T(4 * e / ((1 + e) * (1 + e)));
-        });
+  T slope(const T& x, [[maybe_unused]] const T& y) const {
+    if constexpr (Real<real_type_t<T>>) {
+      // 1 − y² would cancel where tanh saturates, and 1/cosh² overflow within.
+      return select(
+          innermost(y) * innermost(y) < 0.5, [&] { return T(1 - y * y); },
+          [&] {
+            using std::exp;
+            const T e = exp(select(
+                innermost(x) < 0, [&] { return T(2 * x); }, [&] { return T(-2 * x); }));
+            return T(4 * e / ((1 + e) * (1 + e)));
+          });
+    } else {
+      using std::cosh;
+      const T inverse = detail::integer<T>(1) / cosh(x);
+      return inverse * inverse;
+    }
   }
 };
 

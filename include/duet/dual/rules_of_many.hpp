@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/parts.hpp>
@@ -13,6 +14,31 @@
 /// \file
 /// The derivatives of pow, atan2, hypot, fma, lerp and the remainders. `slopes(y, x…)` returns the
 /// partial derivatives where the value is y.
+
+namespace duet::detail {
+
+/// What decides how fast 0^x vanishes: x, or its real part.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr decltype(auto) real_part(const T& x) {
+  if constexpr (Real<T>) {
+    return (x);
+  } else {
+    return x.real();
+  }
+}
+
+/// log b as a number that T's numbers can be multiplied by; that of −2 is complex where they are.
+template <class T, class Base>
+[[nodiscard]] DUET_ALWAYS_INLINE auto log_of_base(const Base& base) {
+  using std::log;
+  if constexpr (Arithmetic<Base> && !Real<real_type_t<T>>) {
+    return log(real_type_t<T>(base));
+  } else {
+    return log(base);
+  }
+}
+
+} // namespace duet::detail
 
 namespace duet::rule {
 
@@ -30,8 +56,11 @@ struct power {
   T slope(const T& x, const T&) const {
     using std::pow;
     return select(
-        detail::is_structural_zero(exponent) || (innermost(exponent) == 0 && innermost(x) == 0),
-        [] { return T(0); }, [&] { return T(exponent * pow(x, Exponent(exponent - 1))); });
+        detail::is_structural_zero(exponent) ||
+            (innermost(exponent) == detail::integer<Exponent>(0) &&
+             innermost(x) == detail::integer<T>(0)),
+        [] { return T(0); },
+        [&] { return T(exponent * pow(x, Exponent(exponent - detail::integer<Exponent>(1)))); });
   }
 };
 
@@ -47,11 +76,12 @@ struct exponential {
   }
   template <class T>
   T slope(const T& x, const T& y) const {
-    using std::log;
-    const T regular = y * log(base);
+    const T regular = y * detail::log_of_base<T>(base);
     // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
-    const bool vanishes = innermost(base) == 0 && innermost(x) > 0;
-    const bool is_flat = is_constant(base) || innermost(x) > scalar_traits<T>::order;
+    const bool vanishes =
+        innermost(base) == detail::integer<Base>(0) && detail::real_part(innermost(x)) > 0;
+    const bool is_flat =
+        is_constant(base) || detail::real_part(innermost(x)) > scalar_traits<T>::order;
     return select(
         vanishes && is_flat, [] { return T(0); },
         [&] {

@@ -14,7 +14,7 @@
 namespace duet {
 
 /// x = integer + fraction; the fraction keeps the derivatives.
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D modf(const D& x, D* integer) {
   using std::modf;
   real_type_t<D> whole;
@@ -23,30 +23,30 @@ template <Infinitesimal D>
   return detail::with_innermost(x, fraction);
 }
 
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] int ilogb(const D& x) {
   using std::ilogb;
   return ilogb(innermost(x));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D logb(const D& x) {
   using std::logb;
   return D(real_type_t<D>(logb(innermost(x))));
 }
 
 /// x · 2^exponent, each part rounded once.
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D ldexp(const D& x, int exponent) {
   return detail::map_reals(x, [&](const real_type_t<D>& part) {
     using std::ldexp;
     return real_type_t<D>(ldexp(part, exponent));
   });
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D scalbn(const D& x, int exponent) {
   return ldexp(x, exponent);
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D scalbln(const D& x, long exponent) {
   return detail::map_reals(x, [&](const real_type_t<D>& part) {
     using std::scalbln;
@@ -54,7 +54,7 @@ template <Infinitesimal D>
   });
 }
 /// x = m · 2^exponent with |m| in [½, 1).
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D frexp(const D& x, int* exponent) {
   using std::frexp;
   const real_type_t<D> significand = frexp(innermost(x), exponent);
@@ -62,12 +62,12 @@ template <Infinitesimal D>
 }
 
 /// The neighbour of x towards `target`, with the derivatives of x.
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D nextafter(const D& x, const D& target) {
   using std::nextafter;
   return detail::with_innermost(x, real_type_t<D>(nextafter(innermost(x), innermost(target))));
 }
-template <Infinitesimal D>
+template <RealInfinitesimal D>
 [[nodiscard]] D nexttoward(const D& x, long double target) {
   using std::nexttoward;
   return detail::with_innermost(x, nexttoward(innermost(x), target));

@@ -28,7 +28,9 @@ DUET_ABI_BEGIN
 /// Coefficients are the Taylor coefficients x_k = x^(k)/k!; `derivative(k)` multiplies by k!.
 template <class T, int K, class Tag = derivative_tag<>>
 class taylor : detail::infinitesimal_operators<taylor<T, K, Tag>, T> {
-  static_assert(Scalar<T>, "duet: taylor<T, K> needs a real number or a scalar of duet as T");
+  static_assert(Scalar<T>,
+                "duet: taylor<T, K> needs a real number, one of an opted-in field (field_traits), "
+                "or a scalar of duet as T");
   static_assert(K >= 1, "duet: taylor<T, K> needs at least the first power");
   static_assert(
       !detail::contains_tag<T, Tag>(),
@@ -75,7 +77,7 @@ public:
   [[nodiscard]] constexpr T derivative(int k) const {
     T result = coefficient(k);
     for (int i = 2; i <= k; ++i) {
-      result = result * i;
+      result = result * detail::integer<T>(i);
     }
     return result;
   }
@@ -92,9 +94,8 @@ public:
 
   /// Drops the derivatives; explicit for that reason.
   template <Arithmetic U>
-  [[nodiscard]] constexpr explicit operator U() const {
-    return static_cast<U>(value());
-  }
+    requires std::constructible_from<U, T>
+  [[nodiscard]] constexpr explicit operator U() const { return static_cast<U>(value()); }
 
   /// The ε of a rigid motion is not the ε of a derivative.
   template <detail::OtherKindOfEpsilon<taylor> U>
@@ -106,15 +107,18 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor negated() const {
     return each([&](int k) DUET_INLINE_LAMBDA { return T(-coefficient(k)); });
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor plus(const T& c) const {
+  template <class C>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor plus(const C& c) const {
     taylor result = *this;
     result.coefficients_[0] = coefficients_[0] + c;
     return result;
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor times(const T& c) const {
+  template <class C>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor times(const C& c) const {
     return each([&](int k) DUET_INLINE_LAMBDA { return T(coefficient(k) * c); });
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor divided_by(const T& c) const {
+  template <class C>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor divided_by(const C& c) const {
     const T inverse = T(1) / c;
     taylor result = each([&](int k) DUET_INLINE_LAMBDA {
       return detail::surviving_product(inverse, coefficient(k));

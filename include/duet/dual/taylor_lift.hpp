@@ -52,7 +52,7 @@ template <class T, int K, class Tag, class S>
   unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
     const int j = i + 1;
     const T term = surviving_product(coefficient_of<T>(slope, K - j), x.coefficient(j));
-    sum = j == 1 ? T(sum + term) : T(sum + term * j);
+    sum = j == 1 ? T(sum + term) : T(sum + term * integer<T>(j));
   });
   return sum;
 }
@@ -75,7 +75,7 @@ template <class Rule, class T, int K, class Tag>
     return extended<taylor<T, K, Tag>>(y, chain_coefficient(x, rule.slope(shorter_x, y)), K);
   } else {
     const auto y = lift(rule, shorter_x);
-    const T last = chain_coefficient(x, rule.slope(shorter_x, y)) / K;
+    const T last = chain_coefficient(x, rule.slope(shorter_x, y)) / integer<T>(K);
     return extended<taylor<T, K, Tag>>(y, last, K);
   }
 }
@@ -97,7 +97,7 @@ template <class Rule, class T, int K, class Tag, class... Rest>
     static_assert(sizeof...(rest) == 1);
     last = last + (chain_coefficient(rest, slopes[2]) + ...);
   }
-  return extended<taylor<T, K, Tag>>(z, T(last / K), K);
+  return extended<taylor<T, K, Tag>>(z, T(last / integer<T>(K)), K);
 }
 
 /// sin and cos share one recurrence, sinh and cosh another: each is the slope of its partner, and
@@ -112,13 +112,13 @@ inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
     unrolled<K>([&](int m) DUET_INLINE_LAMBDA {
       const int j = m + 1;
       if (j <= k) {
-        const T jx = x.coefficient(j) * j;
+        const T jx = x.coefficient(j) * integer<T>(j);
         ds = ds + surviving_product(c.coefficient(k - j), jx);
         dc = dc + surviving_product(s.coefficient(k - j), jx);
       }
     });
-    s.set_coefficient(k, T(ds / k));
-    c.set_coefficient(k, T(dc * Sign / k));
+    s.set_coefficient(k, T(ds / integer<T>(k)));
+    c.set_coefficient(k, T(dc * integer<T>(Sign) / integer<T>(k)));
   });
 }
 
