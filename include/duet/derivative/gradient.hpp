@@ -56,21 +56,17 @@ template <class Tag = void, class F, VectorLike X>
   constexpr int n = argument::size_at_compile_time;
   static_assert(n > 0 && n <= detail::single_pass_limit,
                 "duet: hessian needs a vector of at most 32 components, known at compile time");
-  using outer_tag = detail::tag_for<Tag, F>;
-  using inner_tag = derivative_tag<outer_tag, struct second_order>;
-  using inner_dual = dual<T, n, inner_tag>;
-  using outer_dual = dual<inner_dual, n, outer_tag>;
-  const auto variables = detail::seeded<outer_dual, n>(detail::seeded<inner_dual, n>(x, 0), 0);
-  const auto y = detail::evaluated(f(variables));
-  const auto value = detail::part<outer_tag>(y, 0);
-  using S = decltype(detail::part<inner_tag>(value, 0));
+  using tag = detail::tag_for<Tag, F>;
+  const auto y = detail::evaluated(f(detail::seeded<second_dual<T, n, tag>, n>(x, 0)));
+  static_assert(Scalar<std::remove_const_t<decltype(y)>>,
+                "duet: hessian needs a function that returns a scalar");
+  using S = decltype(detail::part<tag>(y, 0));
   value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
-  result.value = detail::part<inner_tag>(value, 0);
+  result.value = detail::part<tag>(y, 0);
   for (int i = 0; i < n; ++i) {
-    const auto row = detail::part<outer_tag>(y, i + 1);
-    result.gradient[i] = detail::part<inner_tag>(row, 0);
+    result.gradient[i] = detail::part<tag>(y, 1 + i);
     for (int j = 0; j < n; ++j) {
-      result.hessian(i, j) = detail::part<inner_tag>(row, j + 1);
+      result.hessian(i, j) = detail::part<tag>(y, 1 + n + n * i + j);
     }
   }
   return result;

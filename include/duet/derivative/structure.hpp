@@ -132,6 +132,11 @@ template <class F, class T, int K, class Tag>
   return y;
 }
 
+template <class F, class T, int N, class Tag>
+[[nodiscard]] auto map_parts(F&& f, const second_dual<T, N, Tag>& x) {
+  return x.map_parts(f);
+}
+
 template <class T, int N, class Tag>
 [[nodiscard]] constexpr T own_part(const dual<T, N, Tag>& x, int k) {
   return k == 0 ? x.value() : x.partial(k - 1);
@@ -141,9 +146,17 @@ template <class T, int K, class Tag>
   return x.derivative(k);
 }
 
+template <class T, int N, class Tag>
+[[nodiscard]] T own_part(const second_dual<T, N, Tag>& x, int k) {
+  return k == 0   ? x.value()
+         : k <= N ? x.partial(k - 1)
+                  : x.second_partial((k - N - 1) / N, (k - N - 1) % N);
+}
+
 /// Part of a scalar with respect to the level tagged `Tag`, wherever it stands in the nesting: 0
-/// the value, k the k-th partial of a dual or the k-th derivative of a Taylor number. A scalar
-/// without that level does not depend on it.
+/// the value, k the k-th partial of a dual or the k-th derivative of a Taylor number; for second
+/// derivatives by N variables 1 … N the gradient, then the Hessian row by row. A scalar without
+/// that level does not depend on it.
 template <class Tag, class T>
 [[nodiscard]] constexpr auto part(const T& x, int k) {
   if constexpr (!contains_tag<T, Tag>()) {

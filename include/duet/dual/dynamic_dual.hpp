@@ -19,25 +19,12 @@
 namespace duet {
 namespace detail {
 
-/// What a row of partials is stored in: a vector of the target's width, or single elements.
-template <class T>
-struct packet_of {
-  static constexpr int width = 1;
-  using type = T;
-};
-template <class T>
-  requires(std::same_as<T, float> || std::same_as<T, double>)
-struct packet_of<T> {
-  static constexpr int width = DUET_VECTOR_BYTES / int(sizeof(T));
-  typedef T type __attribute__((vector_size(DUET_VECTOR_BYTES)));
-};
-
 /// At most `Capacity` partials in place. A constant has none at all, and rows of none and of n
 /// partials meet as if the first were n zeros; so do rows of any two sizes.
 template <class T, int Capacity>
 class dynamic_partials {
-  using packet = typename packet_of<T>::type;
-  static constexpr int width = packet_of<T>::width;
+  using packet = typename packing<T, Capacity>::packet;
+  static constexpr int width = packing<T, Capacity>::width;
   static constexpr int max_packets = (Capacity + width - 1) / width;
 
 public:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/dual/dual.hpp>
+#include <duet/dual/second_dual.hpp>
 #include <duet/dual/taylor.hpp>
 
 #include <limits>
@@ -34,3 +35,7 @@ class std::numeric_limits<duet::dual<T, N, Tag>>
 template <class T, int K, class Tag>
 class std::numeric_limits<duet::taylor<T, K, Tag>>
     : public duet::detail::infinitesimal_limits<duet::taylor<T, K, Tag>> {};
+
+template <class T, int N, class Tag>
+class std::numeric_limits<duet::second_dual<T, N, Tag>>
+    : public duet::detail::infinitesimal_limits<duet::second_dual<T, N, Tag>> {};

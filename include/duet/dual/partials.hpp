@@ -44,6 +44,20 @@ DUET_ALWAYS_INLINE constexpr void unrolled(F&& f) {
   }
 }
 
+/// How N numbers are packed: in vectors of the width the target has, or one by one.
+template <class T, int N>
+struct packing {
+  static constexpr int width = 1;
+  using packet = T;
+};
+template <class T, int N>
+  requires(N > 1 && (std::same_as<T, float> || std::same_as<T, double>))
+struct packing<T, N> {
+  static constexpr int native = DUET_VECTOR_BYTES / int(sizeof(T));
+  static constexpr int width = ceil_to_power_of_two(N) < native ? ceil_to_power_of_two(N) : native;
+  typedef T packet __attribute__((vector_size(width * sizeof(T))));
+};
+
 /// N partials of any scalar type, in an array.
 template <class T, int N>
 class array_partials {
@@ -52,6 +66,7 @@ public:
 
   [[nodiscard]] constexpr const T& get(int i) const { return elements_[std::size_t(i)]; }
   constexpr void set(int i, const T& x) { elements_[std::size_t(i)] = x; }
+  [[nodiscard]] constexpr const T& packet_at(int p) const { return elements_[std::size_t(p)]; }
   /// Writes N elements.
   constexpr void copy_to(T* out) const { std::copy(elements_.begin(), elements_.end(), out); }
 
@@ -80,11 +95,10 @@ private:
 /// by packet for the same reason: g++ copies a trivially copyable class as a block of memory.
 template <std::floating_point T, int N>
 class packed_partials {
-  static constexpr int native = DUET_VECTOR_BYTES / int(sizeof(T));
-  static constexpr int width = ceil_to_power_of_two(N) < native ? ceil_to_power_of_two(N) : native;
+  static constexpr int width = packing<T, N>::width;
   static constexpr int count = (N + width - 1) / width;
   static constexpr int size = width * count;
-  typedef T packet __attribute__((vector_size(width * sizeof(T))));
+  using packet = typename packing<T, N>::packet;
 
 public:
   static constexpr int packet_count = count;
@@ -115,6 +129,7 @@ public:
       packets_[i / width][i % width] = x;
     }
   }
+  [[nodiscard]] const packet& packet_at(int p) const { return packets_[p]; }
   /// Writes N elements, packet by packet where that is possible.
   constexpr void copy_to(T* out) const {
     if (std::is_constant_evaluated()) {

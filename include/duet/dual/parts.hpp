@@ -16,6 +16,8 @@ template <class T, class F>
   } else if constexpr (requires { x.partials(); }) {
     const auto part = [&](const auto& p) { return map_reals(p, f); };
     return T(part(x.value()), T::partials_type::map_elements(part, x.partials()));
+  } else if constexpr (requires { x.hessian(); }) {
+    return x.map_parts([&](const auto& p) { return map_reals(p, f); });
   } else {
     T result = x;
     constexpr int highest = scalar_traits<T>::order - scalar_traits<typename T::value_type>::order;
@@ -33,6 +35,8 @@ template <class T>
     return value;
   } else if constexpr (requires { x.partials(); }) {
     return T(with_innermost(x.value(), value), x.partials());
+  } else if constexpr (requires { x.hessian(); }) {
+    return T(with_innermost(x.value(), value), x.gradient(), x.hessian());
   } else {
     T result = x;
     result.set_coefficient(0, with_innermost(x.value(), value));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/dual/dual.hpp>
+#include <duet/dual/second_dual.hpp>
 #include <duet/dual/taylor.hpp>
 
 #include <istream>
@@ -35,6 +36,24 @@ std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const dual<T
     text << x.value() << "[";
     for (int i = 0; i < x.size(); ++i) {
       text << (i == 0 ? "" : ", ") << x.partial(i);
+    }
+    text << "]";
+  });
+}
+
+template <class Char, class T, int N, class Tag>
+std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out,
+                                     const second_dual<T, N, Tag>& x) {
+  return detail::write_padded(out, [&](auto& text) {
+    text << x.value() << "[";
+    for (int i = 0; i < N; ++i) {
+      text << (i == 0 ? "" : ", ") << x.partial(i);
+    }
+    text << "; ";
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        text << (i == 0 ? "" : (j == 0 ? "; " : ", ")) << x.second_partial(i, j);
+      }
     }
     text << "]";
   });

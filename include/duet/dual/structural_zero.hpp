@@ -46,6 +46,8 @@ template <class T>
   }
   if constexpr (!Infinitesimal<T>) {
     return slope * partial;
+  } else if constexpr (requires { slope.hessian(); }) {
+    return slope * partial;
   } else if constexpr (requires { slope.partials(); }) {
     using part = typename T::value_type;
     return T(guarded_product(slope.value(), partial.value()),

@@ -1,0 +1,240 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/algebra.hpp>
+#include <duet/dual/lower_triangle.hpp>
+#include <duet/dual/partials.hpp>
+#include <duet/dual/promotion.hpp>
+#include <duet/dual/structural_zero.hpp>
+#include <duet/dual/tag.hpp>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+
+/// \file
+/// Numbers that carry a gradient and a symmetric matrix of second derivatives.
+
+namespace duet {
+DUET_ABI_BEGIN
+
+/// x₀ + gᵀε + ½ εᵀHε, where products of three ε vanish: a value, its gradient and its Hessian by N
+/// variables.
+///
+/// The same as a dual of N partials over a dual of N partials, save that each second derivative is
+/// kept and computed once: `hessian` runs on it.
+template <class T, int N, class Tag = derivative_tag<>>
+class second_dual : detail::infinitesimal_operators<second_dual<T, N, Tag>, T> {
+  static_assert(Scalar<T>, "duet: second_dual<T, N> needs a real number or a scalar of duet as T");
+  static_assert(N >= 1, "duet: second_dual<T, N> needs at least one variable");
+  static_assert(
+      !detail::contains_tag<T, Tag>(),
+      "duet: this differentiation happens inside another one with the same tag, and their "
+      "infinitesimals could not be told apart; give it its own: hessian<struct my_tag>(f, x)");
+
+public:
+  using value_type = T;
+  using gradient_type = detail::partials<T, N>;
+  using hessian_type = detail::lower_triangle<T, N>;
+
+  /// Zero.
+  second_dual() : value_(T(0)) {}
+  /// A constant.
+  template <ConstantOf<second_dual> U>
+  DUET_ALWAYS_INLINE second_dual(const U& constant) : value_(static_cast<T>(constant)) {}
+  DUET_ALWAYS_INLINE second_dual(const T& value, const gradient_type& gradient,
+                                 const hessian_type& hessian)
+      : value_(value), gradient_(gradient), hessian_(hessian) {}
+  /// The same level over another scalar; implicit where no precision or level is lost.
+  template <class U>
+    requires(!std::same_as<U, T> && std::constructible_from<T, U>)
+  explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
+      second_dual(const second_dual<U, N, Tag>& other)
+      : value_(static_cast<T>(other.value())) {
+    for (int i = 0; i < N; ++i) {
+      gradient_.set(i, static_cast<T>(other.partial(i)));
+      for (int j = 0; j <= i; ++j) {
+        hessian_.set(i, j, static_cast<T>(other.second_partial(i, j)));
+      }
+    }
+  }
+
+  /// The i-th variable of a function of N: value + εᵢ.
+  [[nodiscard]] static second_dual variable(const T& value, int i = 0) {
+    second_dual result(value);
+    result.gradient_.set(i, T(1));
+    return result;
+  }
+
+  [[nodiscard]] const T& value() const { return value_; }
+  [[nodiscard]] T partial(int i) const { return gradient_.get(i); }
+  [[nodiscard]] T second_partial(int i, int j) const { return hessian_.get(i, j); }
+  [[nodiscard]] const gradient_type& gradient() const { return gradient_; }
+  [[nodiscard]] const hessian_type& hessian() const { return hessian_; }
+
+  /// f applied to the value and every derivative: the same level over what f returns.
+  template <class F>
+  [[nodiscard]] auto map_parts(F&& f) const {
+    using U = std::decay_t<decltype(f(value_))>;
+    detail::partials<U, N> gradient;
+    detail::lower_triangle<U, N> hessian;
+    for (int i = 0; i < N; ++i) {
+      gradient.set(i, f(partial(i)));
+      for (int j = 0; j <= i; ++j) {
+        hessian.set(i, j, f(second_partial(i, j)));
+      }
+    }
+    return second_dual<U, N, Tag>(f(value_), gradient, hessian);
+  }
+
+  /// Does the predicate hold for the value and for every derivative?
+  template <class Predicate>
+  [[nodiscard]] bool all_of(Predicate&& predicate) const {
+    bool result = predicate(value_);
+    for (int i = 0; i < N; ++i) {
+      result = result && predicate(partial(i));
+      for (int j = 0; j <= i; ++j) {
+        result = result && predicate(second_partial(i, j));
+      }
+    }
+    return result;
+  }
+
+  /// Drops the derivatives; explicit for that reason.
+  template <Arithmetic U>
+    requires std::constructible_from<U, T>
+  [[nodiscard]] explicit operator U() const { return static_cast<U>(value_); }
+
+  // The kernels behind the operators of detail::infinitesimal_operators.
+
+  [[nodiscard]] DUET_ALWAYS_INLINE second_dual negated() const {
+    const auto f = [](const auto& p) DUET_INLINE_LAMBDA { return -p; };
+    return {T(-value_), gradient_type::map(f, gradient_), hessian_type::map(f, hessian_)};
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE second_dual plus(const T& c) const {
+    return {T(value_ + c), gradient_, hessian_};
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE second_dual times(const T& c) const {
+    const auto f = [&](const auto& p) DUET_INLINE_LAMBDA { return p * c; };
+    return {T(value_ * c), gradient_type::map(f, gradient_), hessian_type::map(f, hessian_)};
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE second_dual divided_by(const T& c) const {
+    return composed(T(value_ / c), T(T(1) / c), T(0));
+  }
+  /// c / *this
+  [[nodiscard]] DUET_ALWAYS_INLINE second_dual dividing(const T& c) const {
+    const T inverse = T(1) / value_;
+    const T slope = -(c * inverse) * inverse;
+    return composed(T(c / value_), slope, T(-2 * slope * inverse));
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual sum(const second_dual& a,
+                                                          const second_dual& b) {
+    const auto f = [](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p + q; };
+    return {T(a.value_ + b.value_), gradient_type::map(f, a.gradient_, b.gradient_),
+            hessian_type::map(f, a.hessian_, b.hessian_)};
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual difference(const second_dual& a,
+                                                                 const second_dual& b) {
+    const auto f = [](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p - q; };
+    return {T(a.value_ - b.value_), gradient_type::map(f, a.gradient_, b.gradient_),
+            hessian_type::map(f, a.hessian_, b.hessian_)};
+  }
+  /// H = a H_b + b H_a + g_a g_bᵀ + g_b g_aᵀ
+  [[nodiscard]] static second_dual product(const second_dual& a, const second_dual& b) {
+    const auto f = [&](const auto& p, const auto& q)
+                       DUET_INLINE_LAMBDA { return p * b.value_ + q * a.value_; };
+    return {T(a.value_ * b.value_), gradient_type::map(f, a.gradient_, b.gradient_),
+            hessian_type::with_outer_products(
+                [&](int k) DUET_INLINE_LAMBDA {
+                  return f(a.hessian_.packet_at(k), b.hessian_.packet_at(k));
+                },
+                a.gradient_, b.gradient_, b.gradient_, a.gradient_)};
+  }
+  /// a b⁻¹, of which the value is the exact quotient.
+  [[nodiscard]] static second_dual quotient(const second_dual& a, const second_dual& b) {
+    const T inverse = T(1) / b.value_;
+    const T slope = -inverse * inverse;
+    const T curvature = -2 * slope * inverse;
+    const T value = a.value_ / b.value_;
+    if (!detail::is_all_finite(curvature)) [[unlikely]] {
+      return composed<2>(value, {&a, &b}, {inverse, T(a.value_ * slope)},
+                         {{{T(0), slope}, {slope, T(a.value_ * curvature)}}});
+    }
+    second_dual result = product(a, b.composed(inverse, slope, curvature));
+    result.value_ = value;
+    return result;
+  }
+
+  /// A function of this number, of value y and with first and second derivative there:
+  /// H = f′ H + f″ g gᵀ.
+  [[nodiscard]] DUET_ALWAYS_INLINE second_dual composed(const T& y, const T& slope,
+                                                        const T& curvature) const {
+    if (detail::is_all_finite(slope) && detail::is_all_finite(curvature)) [[likely]] {
+      const auto scaled = [](const T& c) DUET_INLINE_LAMBDA {
+        return [&c](const auto& p)
+                   DUET_INLINE_LAMBDA { return std::remove_cvref_t<decltype(p)>(p * c); };
+      };
+      const auto bent = gradient_type::map(scaled(curvature), gradient_);
+      return {y, gradient_type::map(scaled(slope), gradient_),
+              hessian_type::with_outer_products(
+                  [&](int k) DUET_INLINE_LAMBDA { return scaled(slope)(hessian_.packet_at(k)); },
+                  gradient_, bent)};
+    }
+    return composed<1>(y, {this}, {slope}, {{{curvature}}});
+  }
+
+  /// A function of K numbers, of value y and with slopes s_a and second derivatives c_ab there,
+  /// where zeros survive: g = Σ s_a g_a, H = Σ s_a H_a + Σ c_ab g_a g_bᵀ.
+  template <std::size_t K>
+  [[nodiscard, gnu::noinline]] static second_dual
+  composed(const T& y, const std::array<const second_dual*, K>& x, const std::array<T, K>& slopes,
+           const std::array<std::array<T, K>, K>& curvatures) {
+    second_dual result(y);
+    for (int i = 0; i < N; ++i) {
+      T first(0);
+      for (std::size_t a = 0; a < K; ++a) {
+        first = first + detail::guarded_product(slopes[a], x[a]->partial(i));
+      }
+      result.gradient_.set(i, first);
+      for (int j = 0; j <= i; ++j) {
+        T second(0);
+        for (std::size_t a = 0; a < K; ++a) {
+          second = second + detail::guarded_product(slopes[a], x[a]->second_partial(i, j));
+          for (std::size_t b = 0; b < K; ++b) {
+            second = second + detail::guarded_product(curvatures[a][b],
+                                                      T(x[a]->partial(i) * x[b]->partial(j)));
+          }
+        }
+        result.hessian_.set(i, j, second);
+      }
+    }
+    return result;
+  }
+
+private:
+  T value_;
+  gradient_type gradient_;
+  hessian_type hessian_;
+};
+
+DUET_ABI_END
+
+template <class T, int N, class Tag>
+struct scalar_traits<second_dual<T, N, Tag>> {
+  using value_type = T;
+  using real_type = typename scalar_traits<T>::real_type;
+  static constexpr bool is_infinitesimal = true;
+  static constexpr int order = scalar_traits<T>::order + 2;
+};
+
+template <class T, int N, class Tag>
+struct level_traits<second_dual<T, N, Tag>> {
+  using tag = Tag;
+  template <class U>
+  using rebind = second_dual<U, N, Tag>;
+};
+
+} // namespace duet
