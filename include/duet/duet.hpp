@@ -10,6 +10,7 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/jacobian.hpp>
+#include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/linear_solve.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
