@@ -12,6 +12,7 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/linear_solve.hpp>
+#include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/quaternion/euler.hpp>
