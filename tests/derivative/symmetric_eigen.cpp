@@ -126,8 +126,8 @@ double worst_part(const A& a, const E& e) {
   using S = typename A::Scalar;
   const Eigen::Matrix<S, Dynamic, Dynamic> full = a.template selfadjointView<Eigen::Lower>();
   const Eigen::Matrix<S, Dynamic, Dynamic> residual =
-      full * e.vectors - e.vectors * e.values.asDiagonal();
-  const Eigen::Matrix<S, Dynamic, Dynamic> gram = e.vectors.transpose() * e.vectors;
+      full.lazyProduct(e.vectors) - e.vectors.lazyProduct(e.values.asDiagonal().toDenseMatrix());
+  const Eigen::Matrix<S, Dynamic, Dynamic> gram = e.vectors.transpose().lazyProduct(e.vectors);
   double worst = 0;
   const auto read = [&](double x) {
     worst = std::max(worst, std::abs(x));

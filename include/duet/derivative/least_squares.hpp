@@ -117,10 +117,11 @@ template <class A, class B>
     const auto right = detail::converted<S>(b);
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
       const auto r = detail::residual(coefficients, right, x);
-      x += detail::mapped_infinitesimals([&](const auto& columns) { return qr.solve(columns); }, r);
+      detail::correct_infinitesimals(
+          x, [&](const auto& column) { return qr.solve(column); }, r);
       if (!is_constant) {
-        x += detail::mapped_infinitesimals(
-            [&](const auto& columns) { return detail::solve_normal_equations(qr, columns); },
+        detail::correct_infinitesimals(
+            x, [&](const auto& g) { return detail::solve_normal_equations(qr, g); },
             detail::transposed_slope_times<S>(coefficients, r));
       }
     }

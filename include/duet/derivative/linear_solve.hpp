@@ -107,8 +107,9 @@ template <class A, class B>
     const auto& coefficients = a.eval();
     const auto right = detail::converted<S>(b);
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
-      x += detail::mapped_infinitesimals([&](const auto& columns) { return lu.solve(columns); },
-                                         detail::residual(coefficients, right, x));
+      detail::correct_infinitesimals(
+          x, [&](const auto& column) { return lu.solve(column); },
+          detail::residual(coefficients, right, x));
     }
     return x;
   }

@@ -71,52 +71,50 @@ template <class Derived>
   return result;
 }
 
-/// A real-linear map of columns applied to all infinitesimal parts of x. The value part of the
-/// result is zero: a correction made of it leaves values as they are.
-///
-/// \param map  takes and returns a real matrix of any number of columns
-template <class Map, class Derived>
-[[nodiscard]] auto mapped_infinitesimals(const Map& map, const Eigen::MatrixBase<Derived>& x) {
-  using S = typename Derived::Scalar;
-  using R = real_type_t<S>;
-  constexpr int count = infinitesimal_count<S>;
-  constexpr int rows = Derived::RowsAtCompileTime;
-  constexpr int cols = Derived::ColsAtCompileTime;
-  // Off the heap where the caller's matrices are, and little enough for the stack.
-  constexpr bool is_small = rows > 0 && cols > 0 && rows * cols * count <= 1024;
-  constexpr int all_cols = is_small ? cols * count : Eigen::Dynamic;
-  constexpr int options = rows == 1 && all_cols != 1 ? Eigen::RowMajor : Eigen::ColMajor;
-  Eigen::Matrix<R, rows, all_cols, options> columns(x.rows(), x.cols() * count);
+/// One real column for every infinitesimal part: off the heap where their length is known, and they
+/// are little enough for the stack.
+template <class R, int Rows, int Count>
+using part_columns =
+    Eigen::Matrix<R, Rows, (Rows > 0 && Rows * Count <= 1024) ? Count : Eigen::Dynamic,
+                  Rows == 1 && Count != 1 ? Eigen::RowMajor : Eigen::ColMajor>;
+
+/// Adds map(r) to the infinitesimal parts of x, where the real-linear map takes and returns a real
+/// column. The values of x stay as they are, and so do parts that r does not have.
+template <class X, class Map, class Residual>
+void correct_infinitesimals(X& x, const Map& map, const Residual& r) {
+  using R = real_type_t<typename X::Scalar>;
+  constexpr int count = infinitesimal_count<typename X::Scalar>;
+  constexpr int rows = Residual::RowsAtCompileTime;
+  part_columns<R, rows, count> parts(r.rows(), count);
+  part_columns<R, X::RowsAtCompileTime, count> corrections(x.rows(), count);
   for (Eigen::Index j = 0; j < x.cols(); ++j) {
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      Eigen::Index k = -1;
-      auto read = [&](const R& part) {
+    for (Eigen::Index i = 0; i < r.rows(); ++i) {
+      int k = -1; // the value comes first
+      static_cast<void>(map_reals(r(i, j), [&](const R& part) {
         if (k >= 0) {
-          columns(i, j * count + k) = part;
+          parts(i, k) = part;
         }
         ++k;
         return part;
-      };
-      static_cast<void>(map_reals(x(i, j), read));
+      }));
     }
-  }
-  const auto mapped = map(columns).eval();
-  constexpr int mapped_rows = std::decay_t<decltype(mapped)>::RowsAtCompileTime;
-  Eigen::Matrix<S, mapped_rows, cols,
-                mapped_rows == 1 && cols != 1 ? Eigen::RowMajor : Eigen::ColMajor>
-      result(mapped.rows(), x.cols());
-  for (Eigen::Index j = 0; j < x.cols(); ++j) {
-    for (Eigen::Index i = 0; i < mapped.rows(); ++i) {
-      Eigen::Index k = -1;
-      auto write = [&](const R&) {
-        const R part = k >= 0 ? R(mapped(i, j * count + k)) : R(0);
+    for (int k = 0; k < count; ++k) {
+      const Eigen::Matrix<R, rows, 1> column = parts.col(k);
+      if (column.cwiseEqual(R(0)).all()) {
+        corrections.col(k).setZero();
+      } else {
+        corrections.col(k) = map(column);
+      }
+    }
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      int k = -1;
+      x(i, j) = map_reals(x(i, j), [&](const R& part) {
+        const R corrected = k >= 0 ? R(part + corrections(i, k)) : part;
         ++k;
-        return part;
-      };
-      result(i, j) = map_reals(S(0), write);
+        return corrected;
+      });
     }
   }
-  return result;
 }
 
 /// b − A x, entry by entry: a matrix of constants is not widened to one of duals.

@@ -88,23 +88,22 @@ template <class A, class Y>
   return r;
 }
 
-/// The correction of eigenpair j for real residuals, one in every column: in the basis of the
-/// eigenvectors the bordered matrix has no entries but λ_i − λ_j on its diagonal and the border.
-template <class Solver, class Columns>
-[[nodiscard]] Columns eigen_step(const Solver& solver, Eigen::Index j, const Columns& residuals) {
-  using R = typename Columns::Scalar;
+/// The correction of eigenpair j for a real residual: in the basis of the eigenvectors the bordered
+/// matrix has no entries but λ_i − λ_j on its diagonal and the border.
+template <class Solver, class Y>
+[[nodiscard]] Y eigen_step(const Solver& solver, Eigen::Index j, const Y& residual) {
+  using R = typename Y::Scalar;
   const auto& vectors = solver.eigenvectors();
   const auto& values = solver.eigenvalues();
   const Eigen::Index n = values.size();
-  Columns step(n + 1, residuals.cols());
-  for (Eigen::Index k = 0; k < residuals.cols(); ++k) {
-    auto column = (vectors.transpose() * residuals.col(k).head(n)).eval();
-    step(n, k) = column[j];
-    for (Eigen::Index i = 0; i < n; ++i) {
-      column[i] = i == j ? residuals(n, k) : R(column[i] / R(values[j] - values[i]));
-    }
-    step.col(k).head(n) = vectors * column;
+  constexpr int size = std::decay_t<decltype(values)>::RowsAtCompileTime;
+  auto v = (vectors.transpose() * residual.template head<size>(n)).eval();
+  Y step(n + 1);
+  step[n] = v[j];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    v[i] = i == j ? residual[n] : R(v[i] / R(values[j] - values[i]));
   }
+  step.template head<size>(n) = vectors * v;
   return step;
 }
 
@@ -158,8 +157,8 @@ template <class A>
       pair.head(n) = result.vectors.col(j);
       pair[n] = result.values[j];
       for (int order = 1; order <= scalar_traits<S>::order; ++order) {
-        pair += detail::mapped_infinitesimals(
-            [&](const auto& columns) { return detail::eigen_step(solver, j, columns); },
+        detail::correct_infinitesimals(
+            pair, [&](const auto& residual) { return detail::eigen_step(solver, j, residual); },
             detail::eigen_residual(matrix, pair));
       }
       result.vectors.col(j) = pair.head(n);
