@@ -25,6 +25,8 @@ struct eigenvalues_and_vectors {
   Values values;
   Vectors vectors;
 };
+template <class Values, class Vectors>
+eigenvalues_and_vectors(Values, Vectors) -> eigenvalues_and_vectors<Values, Vectors>;
 
 namespace detail {
 
