@@ -13,6 +13,9 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/jacobian.hpp>
+#include <duet/derivative/least_squares.hpp>
+#include <duet/derivative/linear_solve.hpp>
+#include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/dual/complex.hpp>
 #include <duet/dual/dynamic_dual.hpp>

@@ -24,7 +24,8 @@
 /// column that vanishes altogether Q has no derivative, and what Eigen does is kept.
 ///
 /// Not covered: Jacobi and Givens rotations (SVD, eigenvalue solvers), which skip zeros by value
-/// too. Perturb the input or write the derivative by hand where off-diagonal entries vanish.
+/// too. For symmetric matrices there is `symmetric_eigen`; else perturb the input or write the
+/// derivative by hand where off-diagonal entries vanish.
 
 namespace duet::detail {
 

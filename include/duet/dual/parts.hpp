@@ -8,14 +8,16 @@
 
 namespace duet::detail {
 
-/// f of every real number in x: its value and all its infinitesimal parts.
+/// f of every real number in x: its value first, then all its infinitesimal parts, always in the
+/// same order.
 template <class T, class F>
 [[nodiscard]] T map_reals(const T& x, F&& f) {
   if constexpr (!Infinitesimal<T>) {
     return f(x);
   } else if constexpr (requires { x.partials(); }) {
     const auto part = [&](const auto& p) { return map_reals(p, f); };
-    return T(part(x.value()), T::partials_type::map_elements(part, x.partials()));
+    const auto value = part(x.value());
+    return T(value, T::partials_type::map_elements(part, x.partials()));
   } else if constexpr (requires { x.hessian(); }) {
     return x.map_parts([&](const auto& p) { return map_reals(p, f); });
   } else {

@@ -78,7 +78,8 @@ public:
   /// f applied to the value and every derivative: the same level over what f returns.
   template <class F>
   [[nodiscard]] auto map_parts(F&& f) const {
-    using U = std::decay_t<decltype(f(value_))>;
+    const auto value = f(value_);
+    using U = std::remove_const_t<decltype(value)>;
     detail::partials<U, N> gradient;
     detail::lower_triangle<U, N> hessian;
     for (int i = 0; i < N; ++i) {
@@ -87,7 +88,7 @@ public:
         hessian.set(i, j, f(second_partial(i, j)));
       }
     }
-    return second_dual<U, N, Tag>(f(value_), gradient, hessian);
+    return second_dual<U, N, Tag>(value, gradient, hessian);
   }
 
   /// Does the predicate hold for the value and for every derivative?

@@ -1,0 +1,132 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/matrix_parts.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+
+#include <sstream>
+#include <type_traits>
+
+/// \file
+/// Linear least squares, differentiated by the normal equations but computed without them.
+
+namespace duet {
+namespace detail {
+
+/// \throws invalid_input where no least-squares solution of A x = b can be asked for.
+template <class A, class B>
+void require_tall(const A& a, const B& b) {
+  static_assert(int(A::RowsAtCompileTime) >= int(A::ColsAtCompileTime) ||
+                    A::RowsAtCompileTime == Eigen::Dynamic,
+                "duet: least_squares: A must have as many rows as columns, or more");
+  static_assert(can_be_same(A::RowsAtCompileTime, B::RowsAtCompileTime),
+                "duet: least_squares: b must have as many rows as A");
+  std::ostringstream message;
+  if (a.rows() < a.cols()) {
+    message << "duet: least_squares: A is " << a.rows() << " x " << a.cols()
+            << ": fewer equations than unknowns";
+  } else if (a.cols() == 0) {
+    message << "duet: least_squares: A is empty";
+  } else if (a.rows() != b.rows()) {
+    message << "duet: least_squares: A has " << a.rows() << " rows, but b " << b.rows();
+  } else {
+    return;
+  }
+  throw invalid_input(message.str());
+}
+
+/// (AᵀA)⁻¹ g = P R⁻¹R⁻ᵀPᵀ g for A P = Q R.
+template <class QR, class G>
+[[nodiscard]] G solve_normal_equations(const QR& qr, const G& g) {
+  const Eigen::Index n = qr.cols();
+  constexpr int size = QR::ColsAtCompileTime;
+  const auto r = qr.matrixQR().template topLeftCorner<size, size>(n, n);
+  G x = qr.colsPermutation().transpose() * g;
+  r.template triangularView<Eigen::Upper>().transpose().solveInPlace(x);
+  r.template triangularView<Eigen::Upper>().solveInPlace(x);
+  return qr.colsPermutation() * x;
+}
+
+/// (A − A₀)ᵀ r, A₀ the values of A
+template <class S, class A, class X>
+[[nodiscard]] auto transposed_slope_times(const A& a, const X& r) {
+  Eigen::Matrix<S, A::ColsAtCompileTime, X::ColsAtCompileTime,
+                A::ColsAtCompileTime == 1 && X::ColsAtCompileTime != 1 ? Eigen::RowMajor
+                                                                       : Eigen::ColMajor>
+      g(a.cols(), r.cols());
+  for (Eigen::Index j = 0; j < r.cols(); ++j) {
+    for (Eigen::Index k = 0; k < a.cols(); ++k) {
+      g(k, j) = S(0);
+      for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        g(k, j) += S((a(i, k) - innermost(a(i, k))) * r(i, j));
+      }
+    }
+  }
+  return g;
+}
+
+} // namespace detail
+
+/// The x that minimises ‖A x − b‖, over the scalars that those of A and b promote to.
+///
+/// \param a  A, m × n of rank n
+/// \param b  a vector, or a matrix of right-hand sides
+///
+/// The values are those of `Eigen::ColPivHouseholderQR` over real numbers, to the last bit. The
+/// derivatives follow from Aᵀ(b − A x) = 0,
+///
+///   dx = A⁺(db − dA x) + (AᵀA)⁻¹dAᵀ(b − A x),
+///
+/// and so on order by order with the one factorisation A₀P = QR of the values: each step
+/// x ← x + (A₀ᵀA₀)⁻¹Aᵀ(b − A x) in the algebra of the infinitesimals makes one more order exact.
+/// A₀ᵀ(b − A x) is never formed, so that the square of cond(A) multiplies only what is left of b.
+///
+/// \throws invalid_input where sizes do not match, where A has entries that are not finite, and
+/// where
+///         the rank that Eigen finds is not n. Columns whose sizes differ by 1/ε count as
+///         dependent: choose the units of the unknowns accordingly.
+template <class A, class B>
+[[nodiscard]] auto least_squares(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  using S = detail::common_scalar_t<A, B>;
+  static_assert(!std::is_same_v<S, detail::no_promotion>,
+                "duet: least_squares: the scalars of A and b have no common type");
+  using R = real_type_t<S>;
+  detail::require_tall(a, b);
+  const auto matrix = detail::real_values<R>(a);
+  detail::require_finite("least_squares", matrix);
+  const Eigen::ColPivHouseholderQR<std::remove_const_t<decltype(matrix)>> qr(matrix);
+  if (qr.rank() < a.cols()) {
+    std::ostringstream message;
+    message << "duet: least_squares: A has rank " << qr.rank() << ", less than its " << a.cols()
+            << " columns";
+    throw invalid_input(message.str());
+  }
+  const auto values = qr.solve(detail::real_values<R>(b)).eval();
+  if constexpr (scalar_traits<S>::order == 0) {
+    return values;
+  } else {
+    auto x = detail::converted<S>(values);
+    const bool is_constant = detail::is_constant(a);
+    if (is_constant && detail::is_constant(b)) {
+      return x;
+    }
+    const auto& coefficients = a.eval();
+    const auto right = detail::converted<S>(b);
+    for (int order = 1; order <= scalar_traits<S>::order; ++order) {
+      const auto r = detail::residual(coefficients, right, x);
+      detail::correct_infinitesimals(
+          x, [&](const auto& column) { return qr.solve(column); }, r);
+      if (!is_constant) {
+        detail::correct_infinitesimals(
+            x, [&](const auto& g) { return detail::solve_normal_equations(qr, g); },
+            detail::transposed_slope_times<S>(coefficients, r));
+      }
+    }
+    return x;
+  }
+}
+
+} // namespace duet

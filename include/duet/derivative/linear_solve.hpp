@@ -1,0 +1,118 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/matrix_parts.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <type_traits>
+
+/// \file
+/// Systems of linear equations, differentiated by their own equation instead of through
+/// elimination.
+
+namespace duet {
+namespace detail {
+
+/// \throws invalid_input where a pivot is nothing but rounding.
+///
+/// The rounding of u_kk is that of the sum it is what remains of, so neither the units of the
+/// equations nor those of the unknowns matter. The factor 4 catches all but one in a hundred of
+/// random singular matrices; LU alone, which waits for a zero, would pass half of them.
+template <class LU>
+void require_regular(const LU& lu) {
+  using std::abs;
+  const auto& factors = lu.matrixLU();
+  using R = typename LU::Scalar;
+  const Eigen::Index n = factors.rows();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const R pivot = abs(factors(k, k));
+    R terms = pivot;
+    for (Eigen::Index j = 0; j < k; ++j) {
+      terms += R(abs(R(factors(k, j) * factors(j, k))));
+    }
+    if (pivot <= R(R(4 * n) * std::numeric_limits<R>::epsilon() * terms)) {
+      std::ostringstream message;
+      message << "duet: solve: A is singular: of pivot " << k + 1 << " of " << n
+              << " nothing but rounding remains, " << factors(k, k);
+      throw invalid_input(message.str());
+    }
+  }
+}
+
+/// \throws invalid_input where no solution of A x = b can be asked for.
+template <class A, class B>
+void require_square(const A& a, const B& b) {
+  static_assert(can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
+                "duet: solve: A must be square");
+  static_assert(can_be_same(A::RowsAtCompileTime, B::RowsAtCompileTime),
+                "duet: solve: b must have as many rows as A");
+  std::ostringstream message;
+  if (a.rows() != a.cols()) {
+    message << "duet: solve: A is " << a.rows() << " x " << a.cols() << ", but must be square";
+  } else if (a.rows() == 0) {
+    message << "duet: solve: A is empty";
+  } else if (a.rows() != b.rows()) {
+    message << "duet: solve: A has " << a.rows() << " rows, but b " << b.rows();
+  } else {
+    return;
+  }
+  throw invalid_input(message.str());
+}
+
+} // namespace detail
+
+/// The x with A x = b, over the scalars that those of A and b promote to.
+///
+/// \param a  A, square
+/// \param b  a vector, or a matrix of right-hand sides
+///
+/// The values are those of `Eigen::PartialPivLU` over real numbers, to the last bit. The
+/// derivatives follow from the equation itself,
+///
+///   dx = A⁻¹(db − dA x),
+///
+/// and so on order by order with the one factorisation of the values A₀: each step
+/// x ← x + A₀⁻¹(b − A x) in the algebra of the infinitesimals makes one more order exact. Their
+/// relative error is that of x, about cond(A) ε, but may grow with every order by another cond(A).
+///
+/// \throws invalid_input where sizes do not match, where A has entries that are not finite, and
+/// where
+///         A is singular: where a pivot is at most 4nε times the sum of the absolute terms that it
+///         is the sum of. What is nearly singular passes, and has an error to match.
+template <class A, class B>
+[[nodiscard]] auto solve(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  using S = detail::common_scalar_t<A, B>;
+  static_assert(!std::is_same_v<S, detail::no_promotion>,
+                "duet: solve: the scalars of A and b have no common type");
+  using R = real_type_t<S>;
+  detail::require_square(a, b);
+  const auto matrix = detail::real_values<R>(a);
+  detail::require_finite("solve", matrix);
+  const Eigen::PartialPivLU<std::remove_const_t<decltype(matrix)>> lu(matrix);
+  detail::require_regular(lu);
+  const auto values = lu.solve(detail::real_values<R>(b)).eval();
+  if constexpr (scalar_traits<S>::order == 0) {
+    return values;
+  } else {
+    auto x = detail::converted<S>(values);
+    if (detail::is_constant(a) && detail::is_constant(b)) {
+      return x;
+    }
+    const auto& coefficients = a.eval();
+    const auto right = detail::converted<S>(b);
+    for (int order = 1; order <= scalar_traits<S>::order; ++order) {
+      detail::correct_infinitesimals(
+          x, [&](const auto& column) { return lu.solve(column); },
+          detail::residual(coefficients, right, x));
+    }
+    return x;
+  }
+}
+
+} // namespace duet

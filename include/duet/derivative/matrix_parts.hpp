@@ -1,0 +1,149 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/structure.hpp>
+#include <duet/dual/eigen_traits.hpp>
+#include <duet/dual/parts.hpp>
+#include <duet/dual/structural_zero.hpp>
+
+#include <Eigen/Core>
+
+#include <sstream>
+#include <type_traits>
+
+/// \file
+/// Matrices of scalars as real matrices, one of the values and one of every infinitesimal part:
+/// what is factorised once for the values serves all parts.
+
+namespace duet::detail {
+
+/// How many infinitesimal parts a scalar has, over all levels.
+template <class S>
+inline constexpr int infinitesimal_count = 0;
+template <class T, int N, class Tag>
+inline constexpr int infinitesimal_count<dual<T, N, Tag>> = (N + 1) * (infinitesimal_count<T> + 1) -
+                                                            1;
+template <class T, int K, class Tag>
+inline constexpr int
+    infinitesimal_count<taylor<T, K, Tag>> = (K + 1) * (infinitesimal_count<T> + 1) - 1;
+
+/// The scalar that a matrix of A and one of B have in common; integers are differentiated as reals.
+template <class A, class B>
+using common_scalar_t =
+    promote_t<differentiable_t<typename A::Scalar>, differentiable_t<typename B::Scalar>>;
+
+/// Can sizes be the same, as far as they are known at compile time?
+[[nodiscard]] constexpr bool can_be_same(int a, int b) {
+  return a == b || a == Eigen::Dynamic || b == Eigen::Dynamic;
+}
+
+/// Every entry converted to T; the layout is kept.
+template <class T, class Derived>
+[[nodiscard]] auto converted(const Eigen::MatrixBase<Derived>& a) {
+  return a.unaryExpr([](const auto& x) { return static_cast<T>(x); }).eval();
+}
+
+/// The innermost value of every entry, as R; the layout is kept.
+template <class R, class Derived>
+[[nodiscard]] auto real_values(const Eigen::MatrixBase<Derived>& a) {
+  return a.unaryExpr([](const auto& x) { return static_cast<R>(innermost(x)); }).eval();
+}
+
+/// Are all infinitesimal parts exactly zero?
+template <class Derived>
+[[nodiscard]] bool is_constant(const Eigen::MatrixBase<Derived>& a) {
+  using S = typename Derived::Scalar;
+  bool result = true;
+  if constexpr (Infinitesimal<S>) {
+    for (Eigen::Index j = 0; j < a.cols(); ++j) {
+      for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        bool is_value = true;
+        auto check = [&](const real_type_t<S>& part) {
+          result = result && (is_value || part == 0);
+          is_value = false;
+          return part;
+        };
+        static_cast<void>(map_reals(a(i, j), check));
+      }
+    }
+  }
+  return result;
+}
+
+/// One real column for every infinitesimal part: off the heap where their length is known, and they
+/// are little enough for the stack.
+template <class R, int Rows, int Count>
+using part_columns =
+    Eigen::Matrix<R, Rows, (Rows > 0 && Rows * Count <= 1024) ? Count : Eigen::Dynamic,
+                  Rows == 1 && Count != 1 ? Eigen::RowMajor : Eigen::ColMajor>;
+
+/// Adds map(r) to the infinitesimal parts of x, where the real-linear map takes and returns a real
+/// column. The values of x stay as they are, and so do parts that r does not have.
+template <class X, class Map, class Residual>
+void correct_infinitesimals(X& x, const Map& map, const Residual& r) {
+  using R = real_type_t<typename X::Scalar>;
+  constexpr int count = infinitesimal_count<typename X::Scalar>;
+  constexpr int rows = Residual::RowsAtCompileTime;
+  part_columns<R, rows, count> parts(r.rows(), count);
+  part_columns<R, X::RowsAtCompileTime, count> corrections(x.rows(), count);
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    for (Eigen::Index i = 0; i < r.rows(); ++i) {
+      int k = -1; // the value comes first
+      static_cast<void>(map_reals(r(i, j), [&](const R& part) {
+        if (k >= 0) {
+          parts(i, k) = part;
+        }
+        ++k;
+        return part;
+      }));
+    }
+    for (int k = 0; k < count; ++k) {
+      const Eigen::Matrix<R, rows, 1> column = parts.col(k);
+      if (column.cwiseEqual(R(0)).all()) {
+        corrections.col(k).setZero();
+      } else {
+        corrections.col(k) = map(column);
+      }
+    }
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      int k = -1;
+      x(i, j) = map_reals(x(i, j), [&](const R& part) {
+        const R corrected = k >= 0 ? R(part + corrections(i, k)) : part;
+        ++k;
+        return corrected;
+      });
+    }
+  }
+}
+
+/// b − A x, entry by entry: a matrix of constants is not widened to one of duals.
+template <class A, class B, class X>
+[[nodiscard]] B residual(const A& a, const B& b, const X& x) {
+  using S = typename B::Scalar;
+  B r = b;
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    for (Eigen::Index k = 0; k < a.cols(); ++k) {
+      for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        r(i, j) = S(r(i, j) - S(a(i, k) * x(k, j)));
+      }
+    }
+  }
+  return r;
+}
+
+/// \throws invalid_input where a real matrix has an entry that is infinite or not a number.
+template <class Derived>
+void require_finite(const char* function, const Eigen::MatrixBase<Derived>& a) {
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      if (!is_all_finite(a(i, j))) {
+        std::ostringstream message;
+        message << "duet: " << function << ": entry (" << i << ", " << j << ") of A is not finite";
+        throw invalid_input(message.str());
+      }
+    }
+  }
+}
+
+} // namespace duet::detail

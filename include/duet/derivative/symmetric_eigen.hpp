@@ -1,0 +1,173 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/matrix_parts.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <type_traits>
+
+/// \file
+/// Eigenvalues and eigenvectors of symmetric matrices, differentiated by their own equations
+/// instead of through rotations that skip zeros.
+
+namespace duet {
+
+/// A = V diag(λ) Vᵀ: the eigenvalues ascend, and column i of `vectors` belongs to the i-th.
+template <class Values, class Vectors>
+struct eigenvalues_and_vectors {
+  Values values;
+  Vectors vectors;
+};
+template <class Values, class Vectors>
+eigenvalues_and_vectors(Values, Vectors) -> eigenvalues_and_vectors<Values, Vectors>;
+
+namespace detail {
+
+/// \throws invalid_input where A is no square matrix.
+template <class A>
+void require_symmetric(const A& a) {
+  static_assert(can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
+                "duet: symmetric_eigen: A must be square");
+  std::ostringstream message;
+  if (a.rows() != a.cols()) {
+    message << "duet: symmetric_eigen: A is " << a.rows() << " x " << a.cols()
+            << ", but must be square";
+  } else if (a.rows() == 0) {
+    message << "duet: symmetric_eigen: A is empty";
+  } else {
+    return;
+  }
+  throw invalid_input(message.str());
+}
+
+/// \throws invalid_input where two of the ascending eigenvalues are one but for rounding.
+template <class Values>
+void require_distinct(const Values& values) {
+  using std::abs;
+  using R = typename Values::Scalar;
+  const Eigen::Index n = values.size();
+  const R low = abs(values[0]);
+  const R high = abs(values[n - 1]);
+  const R rounding = R(4 * n) * std::numeric_limits<R>::epsilon() * std::max(low, high);
+  for (Eigen::Index i = 0; i + 1 < n; ++i) {
+    const R gap = values[i + 1] - values[i];
+    if (gap <= rounding) {
+      std::ostringstream message;
+      message << "duet: symmetric_eigen: eigenvalues " << i << " and " << i + 1 << ", both "
+              << values[i] << " with a gap of " << gap
+              << ", have no derivatives, as A is not constant";
+      throw invalid_input(message.str());
+    }
+  }
+}
+
+/// The bordered equations of one eigenpair y = (v, λ): what is left of
+///
+///   A v − λ v = 0,  (1 − vᵀv)/2 = 0.
+///
+/// Reads the lower triangle of A.
+template <class A, class Y>
+[[nodiscard]] Y eigen_residual(const A& a, const Y& y) {
+  using S = typename Y::Scalar;
+  const Eigen::Index n = a.rows();
+  Y r(n + 1);
+  S square = S(1);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    r[i] = -(y[n] * y[i]);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      r[i] += (i >= j ? a(i, j) : a(j, i)) * y[j];
+    }
+    square -= y[i] * y[i];
+  }
+  r[n] = square / 2;
+  return r;
+}
+
+/// The correction of eigenpair j for a real residual: in the basis of the eigenvectors the bordered
+/// matrix has no entries but λ_i − λ_j on its diagonal and the border.
+template <class Solver, class Y>
+[[nodiscard]] Y eigen_step(const Solver& solver, Eigen::Index j, const Y& residual) {
+  using R = typename Y::Scalar;
+  const auto& vectors = solver.eigenvectors();
+  const auto& values = solver.eigenvalues();
+  const Eigen::Index n = values.size();
+  constexpr int size = std::decay_t<decltype(values)>::RowsAtCompileTime;
+  auto v = (vectors.transpose() * residual.template head<size>(n)).eval();
+  Y step(n + 1);
+  step[n] = v[j];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    v[i] = i == j ? residual[n] : R(v[i] / R(values[j] - values[i]));
+  }
+  step.template head<size>(n) = vectors * v;
+  return step;
+}
+
+} // namespace detail
+
+/// Eigenvalues, ascending, and unit eigenvectors of a symmetric matrix.
+///
+/// \param a  A, of which the lower triangle is read, as Eigen does
+///
+/// The values are those of `Eigen::SelfAdjointEigenSolver` over real numbers, to the last bit, also
+/// the signs of the vectors. The derivatives follow from A v = λ v and vᵀv = 1,
+///
+///   dλ_j = v_jᵀ dA v_j,  dv_j = Σ_{i≠j} v_i (v_iᵀ dA v_j)/(λ_j − λ_i),
+///
+/// and so on order by order: each step of Newton's method in the algebra of the infinitesimals,
+/// with the bordered matrix of the values, makes one more order exact. Their relative error is
+/// about ε max|λ|/gap for vectors, and grows with every order by another such factor.
+///
+/// A repeated eigenvalue has neither vectors of its own nor derivatives: where it splits, its
+/// vectors jump. Where a gap is at most 4nε max|λ|, and so nothing but rounding, A must be a
+/// constant: all its infinitesimal parts zero.
+///
+/// \throws invalid_input where A is not square or has entries that are not finite, and at a
+/// repeated
+///         eigenvalue of a matrix that is not constant.
+/// \throws no_convergence where Eigen's solver does not converge.
+template <class A>
+[[nodiscard]] auto symmetric_eigen(const Eigen::MatrixBase<A>& a) {
+  using S = detail::common_scalar_t<A, A>;
+  using R = real_type_t<S>;
+  detail::require_symmetric(a);
+  const auto& matrix = a.eval();
+  const auto lower =
+      detail::real_values<R>(a.template triangularView<Eigen::Lower>().toDenseMatrix());
+  detail::require_finite("symmetric_eigen", lower);
+  const Eigen::SelfAdjointEigenSolver<std::remove_const_t<decltype(lower)>> solver(lower);
+  if (solver.info() != Eigen::Success) {
+    throw no_convergence("duet: symmetric_eigen: Eigen's solver did not converge");
+  }
+  eigenvalues_and_vectors result{detail::converted<S>(solver.eigenvalues()),
+                                 detail::converted<S>(solver.eigenvectors())};
+  if constexpr (scalar_traits<S>::order > 0) {
+    if (detail::is_constant(a.template triangularView<Eigen::Lower>().toDenseMatrix())) {
+      return result;
+    }
+    detail::require_distinct(solver.eigenvalues());
+    constexpr int size = decltype(result.values)::RowsAtCompileTime;
+    const Eigen::Index n = a.rows();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      Eigen::Matrix<S, size == Eigen::Dynamic ? Eigen::Dynamic : size + 1, 1> pair(n + 1);
+      pair.head(n) = result.vectors.col(j);
+      pair[n] = result.values[j];
+      for (int order = 1; order <= scalar_traits<S>::order; ++order) {
+        detail::correct_infinitesimals(
+            pair, [&](const auto& residual) { return detail::eigen_step(solver, j, residual); },
+            detail::eigen_residual(matrix, pair));
+      }
+      result.vectors.col(j) = pair.head(n);
+      result.values[j] = pair[n];
+    }
+  }
+  return result;
+}
+
+} // namespace duet

@@ -1,0 +1,209 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual/eigen_problems.hpp"
+
+#include <duet/derivative/least_squares.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+// x that minimises ‖A x − b‖: values to the last bit, derivatives against the normal equations and
+// QR over duals.
+
+using duet::dual;
+using duet::least_squares;
+using duet::taylor;
+using duet_test::check_solution;
+using duet_test::linear_problem;
+using duet_test::seeded;
+using Eigen::Dynamic;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+struct outer_tag;
+
+struct fit {
+  MatrixXd a, a_slope, b, b_slope;
+
+  /// AᵀA x = Aᵀb
+  [[nodiscard]] linear_problem normal() const {
+    linear_problem p{"normal equations", true, {}, {}, {}, {}};
+    p.a = a.transpose() * a;
+    p.a_slope = a_slope.transpose() * a + a.transpose() * a_slope;
+    p.b = a.transpose() * b;
+    p.b_slope = a_slope.transpose() * b + a.transpose() * b_slope;
+    return p;
+  }
+};
+
+fit random_fit(int m, int n, std::uint64_t seed = 1) {
+  duet_test::random_source random(seed + std::uint64_t(100 * m + n));
+  const auto draw = [&](int rows, int columns) -> MatrixXd {
+    return MatrixXd::NullaryExpr(rows, columns, [&] { return random.uniform(-1, 1); });
+  };
+  fit f{draw(m, n), draw(m, n), draw(m, 1), draw(m, 1)};
+  f.a.topRows(n) += 2 * MatrixXd::Identity(n, n);
+  return f;
+}
+
+template <int M, int N>
+void check(const fit& f) {
+  CAPTURE(f.a.rows());
+  CAPTURE(f.a.cols());
+  using D = dual<double, 3>;
+  const auto x =
+      least_squares(seeded<D, M, N>(f.a, f.a_slope, 3), seeded<D, M, 1>(f.b, f.b_slope, 3));
+  static_assert(std::is_same_v<decltype(x), const Eigen::Matrix<D, N, 1>>);
+  check_solution(x, f.normal(), 3);
+  const Eigen::Matrix<double, M, N> real_a = f.a;
+  const Eigen::Matrix<double, M, 1> real_b = f.b;
+  const auto real_x = real_a.colPivHouseholderQr().solve(real_b).eval();
+  CHECK(least_squares(real_a, real_b) == real_x);
+  for (int i = 0; i < x.size(); ++i) {
+    CHECK(x[i].value() == real_x[i]);
+  }
+}
+
+template <class A, class B>
+std::string message(const A& a, const B& b) {
+  try {
+    static_cast<void>(least_squares(a, b));
+  } catch (const duet::invalid_input& e) {
+    return e.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST_CASE("fixed and dynamic sizes: Eigen's values and the derivatives of the normal equations") {
+  check<2, 2>(random_fit(2, 2));
+  check<4, 1>(random_fit(4, 1));
+  check<6, 3>(random_fit(6, 3));
+  check<8, 6>(random_fit(8, 6));
+  check<Dynamic, 3>(random_fit(7, 3));
+  for (int n = 1; n <= 12; ++n) {
+    for (const int m : {n, n + 1, 3 * n}) {
+      check<Dynamic, Dynamic>(random_fit(m, n));
+    }
+  }
+}
+
+TEST_CASE("QR over duals gives the same, also where A and b have zeros") {
+  for (int zeros = 0; zeros < 4; ++zeros) {
+    fit f = random_fit(7, 3);
+    if (zeros == 1) {
+      f.a = MatrixXd(f.a.triangularView<Eigen::Upper>());
+    } else if (zeros == 2) {
+      f.b.setZero();
+    } else if (zeros == 3) {
+      f.a = MatrixXd::Identity(7, 3);
+      f.b.bottomRows(6).setZero();
+    }
+    const auto a = seeded<dual<double>, Dynamic, Dynamic>(f.a, f.a_slope);
+    const auto b = seeded<dual<double>, Dynamic, 1>(f.b, f.b_slope);
+    const auto x = least_squares(a, b);
+    check_solution(x, f.normal());
+    const auto unrolled = a.householderQr().solve(b).eval();
+    for (int i = 0; i < 3; ++i) {
+      CHECK(std::abs(x[i].epsilon() - unrolled[i].epsilon()) <= 1e-13);
+    }
+  }
+}
+
+// With N = AᵀA and c = Aᵀb as polynomials of t: N x‴ = c‴ − 3N′x″ − 3N″x′ − N‴x.
+TEST_CASE("higher orders, by Taylor numbers and nested duals") {
+  using series = taylor<double, 3>;
+  using nested = dual<dual<double>, 1, outer_tag>;
+  for (const auto [m, n] : {std::array{3, 1}, {4, 4}, {9, 4}, {20, 12}}) {
+    const fit f = random_fit(m, n);
+    const linear_problem p = f.normal();
+    const MatrixXd a_second = 2 * f.a_slope.transpose() * f.a_slope;
+    const MatrixXd b_second = 2 * f.a_slope.transpose() * f.b_slope;
+    const auto lu = p.a.fullPivLu();
+    VectorXd exact[] = {p.x(), p.x_slope(), {}, {}};
+    exact[2] = lu.solve(b_second - 2 * p.a_slope * exact[1] - a_second * exact[0]);
+    exact[3] = lu.solve(-3 * p.a_slope * exact[2] - 3 * a_second * exact[1]);
+    const auto as_series = [](double v, double s) { return series({v, s, 0, 0}); };
+    const auto as_nested = [](double v, double s) { return nested({v, s}, dual<double>(s)); };
+    const auto x =
+        least_squares(f.a.binaryExpr(f.a_slope, as_series), f.b.binaryExpr(f.b_slope, as_series));
+    const auto y =
+        least_squares(f.a.binaryExpr(f.a_slope, as_nested), f.b.binaryExpr(f.b_slope, as_nested));
+    for (int i = 0; i < n; ++i) {
+      double size = 1;
+      for (int k = 0; k <= 3; ++k) {
+        size += exact[k].norm();
+        CHECK(std::abs(x(i, 0).derivative(k) - exact[k][i]) <= 1e-13 * size);
+      }
+      CHECK(y(i, 0).value().value() == x(i, 0).value());
+      CHECK(std::abs(y(i, 0).value().epsilon() - exact[1][i]) <= 1e-13 * size);
+      CHECK(std::abs(y(i, 0).epsilon().value() - exact[1][i]) <= 1e-13 * size);
+      CHECK(std::abs(y(i, 0).epsilon().epsilon() - exact[2][i]) <= 1e-13 * size);
+    }
+  }
+}
+
+TEST_CASE("scalars and shapes of A and b may differ") {
+  const fit f = random_fit(5, 2);
+  fit only_a = f;
+  only_a.b_slope.setZero();
+  fit only_b = f;
+  only_b.a_slope.setZero();
+  const auto a = seeded<dual<double>, 5, 2, Eigen::RowMajor>(f.a, f.a_slope);
+  const auto b = seeded<dual<double>, Dynamic, 1>(f.b, f.b_slope);
+  check_solution(least_squares(a, f.b), only_a.normal());
+  const auto x = least_squares(Eigen::Matrix<double, 5, 2>(f.a), b);
+  static_assert(std::is_same_v<decltype(x), const Eigen::Matrix<dual<double>, 2, 1>>);
+  check_solution(x, only_b.normal());
+  check_solution(least_squares(a, b.replicate(1, 3)).col(2).eval(), f.normal());
+
+  const Eigen::Matrix<int, 2, 1> ones(1, 1);
+  CHECK(least_squares(ones, Eigen::Vector2i(1, 2))[0] == doctest::Approx(1.5).epsilon(1e-15));
+  CHECK(least_squares(ones.cast<float>(), Eigen::Vector2f(1, 2))[0] ==
+        doctest::Approx(1.5).epsilon(1e-6));
+  const auto l = least_squares(
+      ones, Eigen::Matrix<dual<long double>, 2, 1>(dual<long double>(1, 1), dual<long double>(2)));
+  CHECK(std::abs(l[0].epsilon() - 0.5L) <= 1e-18L);
+}
+
+TEST_CASE("what does not depend on a variable has zero partials") {
+  using D = dual<double, 2>;
+  const fit f = random_fit(6, 3);
+  const MatrixXd none = MatrixXd::Zero(6, 3);
+  const auto b = seeded<D, 6, 1>(f.b, none.col(0));
+  auto a = seeded<D, 6, 3>(f.a, none);
+  const auto constant = least_squares(a, b);
+  a(4, 2) = D::variable(f.a(4, 2), 1);
+  const auto one = least_squares(a, b);
+  for (int i = 0; i < 3; ++i) {
+    CHECK(constant[i].partial(0) == 0);
+    CHECK(constant[i].partial(1) == 0);
+    CHECK(one[i].partial(0) == 0);
+    CHECK(one[i].partial(1) != 0);
+  }
+}
+
+TEST_CASE("what has no unique solution is refused") {
+  const VectorXd b = VectorXd::Ones(3);
+  CHECK(message(MatrixXd(2, 3), b) ==
+        "duet: least_squares: A is 2 x 3: fewer equations than unknowns");
+  CHECK(message(MatrixXd(2, 0), b) == "duet: least_squares: A is empty");
+  CHECK(message(MatrixXd(4, 2), b) == "duet: least_squares: A has 4 rows, but b 3");
+  MatrixXd a{{1, 2}, {2, 4}, {3, 6}};
+  CHECK(message(a, b) == "duet: least_squares: A has rank 1, less than its 2 columns");
+  CHECK(message(a.cast<dual<double>>(), b) ==
+        "duet: least_squares: A has rank 1, less than its 2 columns");
+  a.setZero();
+  CHECK(message(a, b) == "duet: least_squares: A has rank 0, less than its 2 columns");
+  a(1, 0) = std::numeric_limits<double>::infinity();
+  CHECK(message(a, b) == "duet: least_squares: entry (1, 0) of A is not finite");
+}

@@ -1,0 +1,311 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/random.hpp"
+
+#include <duet/derivative/jacobian.hpp>
+#include <duet/derivative/symmetric_eigen.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+// A v = λ v: values to the last bit, derivatives against perturbation theory and against the
+// equations themselves.
+
+using duet::dual;
+using duet::symmetric_eigen;
+using duet::taylor;
+using Eigen::Dynamic;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+struct outer_tag;
+
+MatrixXd random_symmetric(int n, std::uint64_t seed) {
+  duet_test::random_source random(seed + std::uint64_t(n));
+  const MatrixXd a = MatrixXd::NullaryExpr(n, n, [&] { return random.uniform(-1, 1); });
+  return a + a.transpose();
+}
+
+/// value + ε slope, in the lower triangle; above it is what must not be read.
+template <class D, int N, class Make>
+Eigen::Matrix<D, N, N> lower(const MatrixXd& value, const MatrixXd& slope, Make make) {
+  Eigen::Matrix<D, N, N> a(value.rows(), value.rows());
+  for (int i = 0; i < value.rows(); ++i) {
+    for (int j = 0; j < value.rows(); ++j) {
+      a(i, j) =
+          i >= j ? make(value(i, j), slope(i, j)) : D(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return a;
+}
+
+/// λ_j′ = v_jᵀA′v_j and v_j′ = Σ v_i v_iᵀA′v_j/(λ_j − λ_i)
+struct perturbation {
+  perturbation(const MatrixXd& a, const MatrixXd& slope) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(a);
+    values = solver.eigenvalues();
+    vectors = solver.eigenvectors();
+    const MatrixXd b = vectors.transpose() * slope * vectors;
+    values_slope = b.diagonal();
+    gap = std::numeric_limits<double>::infinity();
+    MatrixXd rotation = MatrixXd::Zero(a.rows(), a.rows());
+    for (int i = 0; i < a.rows(); ++i) {
+      for (int j = 0; j < a.rows(); ++j) {
+        if (i != j) {
+          rotation(i, j) = b(i, j) / (values[j] - values[i]);
+          gap = std::min(gap, std::abs(values[j] - values[i]));
+        }
+      }
+    }
+    vectors_slope = vectors * rotation;
+  }
+
+  VectorXd values, values_slope;
+  MatrixXd vectors, vectors_slope;
+  double gap;
+};
+
+template <int N>
+void check(const MatrixXd& value, const MatrixXd& slope) {
+  CAPTURE(value.rows());
+  using D = dual<double, 2>;
+  const auto make = [](double v, double s) {
+    D d(v);
+    d.set_partial(0, s);
+    d.set_partial(1, -2 * s);
+    return d;
+  };
+  const auto e = symmetric_eigen(lower<D, N>(value, slope, make));
+  static_assert(std::is_same_v<std::decay_t<decltype(e.values)>, Eigen::Matrix<D, N, 1>>);
+  static_assert(std::is_same_v<std::decay_t<decltype(e.vectors)>, Eigen::Matrix<D, N, N>>);
+  const Eigen::Matrix<double, N, N> real = value;
+  const auto plain = symmetric_eigen(real);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(real);
+  CHECK(plain.values == solver.eigenvalues());
+  CHECK(plain.vectors == solver.eigenvectors());
+  const perturbation exact(value, slope);
+  const double tolerance = 2e-14 * (1 + slope.norm()) * std::max(1.0, value.norm() / exact.gap) /
+                           std::min(1.0, exact.gap);
+  for (int j = 0; j < value.rows(); ++j) {
+    CHECK(e.values[j].value() == plain.values[j]);
+    CHECK(std::abs(e.values[j].partial(0) - exact.values_slope[j]) <= tolerance);
+    CHECK(std::abs(e.values[j].partial(1) + 2 * exact.values_slope[j]) <= 2 * tolerance);
+    const double sign = plain.vectors.col(j).dot(exact.vectors.col(j)) < 0 ? -1 : 1;
+    for (int i = 0; i < value.rows(); ++i) {
+      CHECK(e.vectors(i, j).value() == plain.vectors(i, j));
+      CHECK(std::abs(e.vectors(i, j).partial(0) - sign * exact.vectors_slope(i, j)) <= tolerance);
+      CHECK(std::abs(e.vectors(i, j).partial(1) + 2 * sign * exact.vectors_slope(i, j)) <=
+            2 * tolerance);
+    }
+  }
+}
+
+template <int N>
+void check_many() {
+  const int n = N;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    check<N>(random_symmetric(n, 10 * seed), random_symmetric(n, 10 * seed + 5));
+  }
+  // Diagonal, in any order: rotations skip these zeros, and the derivatives of them.
+  const MatrixXd slope = random_symmetric(n, 77);
+  check<N>(VectorXd::LinSpaced(n, 1, n).asDiagonal(), slope);
+  check<N>(VectorXd::LinSpaced(n, n, -1).asDiagonal(), slope);
+}
+
+/// The largest part of order `order` and below of what must vanish: A v − λ v, VᵀV − 1.
+template <class A, class E>
+double worst_part(const A& a, const E& e) {
+  using S = typename A::Scalar;
+  const Eigen::Matrix<S, Dynamic, Dynamic> full = a.template selfadjointView<Eigen::Lower>();
+  const Eigen::Matrix<S, Dynamic, Dynamic> residual =
+      full.lazyProduct(e.vectors) - e.vectors.lazyProduct(e.values.asDiagonal().toDenseMatrix());
+  const Eigen::Matrix<S, Dynamic, Dynamic> gram = e.vectors.transpose().lazyProduct(e.vectors);
+  double worst = 0;
+  const auto read = [&](double x) {
+    worst = std::max(worst, std::abs(x));
+    return x;
+  };
+  for (int i = 0; i < a.rows(); ++i) {
+    for (int j = 0; j < a.rows(); ++j) {
+      static_cast<void>(duet::detail::map_reals(residual(i, j), read));
+      static_cast<void>(duet::detail::map_reals(S(gram(i, j) - (i == j ? 1 : 0)), read));
+    }
+  }
+  return worst;
+}
+
+template <class A>
+std::string message(const A& a) {
+  try {
+    static_cast<void>(symmetric_eigen(a));
+  } catch (const duet::invalid_input& e) {
+    return e.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST_CASE("fixed sizes: Eigen's values, and the derivatives of perturbation theory") {
+  check_many<2>();
+  check_many<3>();
+  check_many<4>();
+  check_many<5>();
+  check_many<6>();
+}
+
+TEST_CASE("dynamic sizes") {
+  for (int n = 1; n <= 12; ++n) {
+    check<Dynamic>(random_symmetric(n, 1), random_symmetric(n, 2));
+    check<Dynamic>(VectorXd::LinSpaced(n, 0, 3).asDiagonal(), random_symmetric(n, 3));
+  }
+}
+
+TEST_CASE("iterations over duals give the same where no entry is zero") {
+  using D = dual<double>;
+  const MatrixXd value = random_symmetric(4, 8);
+  const MatrixXd slope = random_symmetric(4, 9);
+  const Eigen::Matrix<D, 4, 4> a =
+      value.binaryExpr(slope, [](double v, double s) { return D(v, s); });
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<D, 4, 4>> unrolled(a);
+  const auto e = symmetric_eigen(a);
+  for (int i = 0; i < 4; ++i) {
+    CHECK(std::abs(e.values[i].epsilon() - unrolled.eigenvalues()[i].epsilon()) <= 1e-13);
+    for (int j = 0; j < 4; ++j) {
+      // Signs may differ: over duals every reflector is made.
+      const D v = e.vectors(i, j);
+      const D w = unrolled.eigenvectors()(i, j);
+      CHECK(std::abs((v * v).epsilon() - (w * w).epsilon()) <= 1e-13);
+    }
+  }
+}
+
+// A = R(t) diag(1 + t, 4) R(t)ᵀ with R a rotation by t: the vectors turn with unit speed.
+TEST_CASE("a closed form to third order") {
+  using series = taylor<double, 3>;
+  const series t = series::variable(0.3);
+  const series c = cos(t);
+  const series s = sin(t);
+  Eigen::Matrix<series, 2, 2> a;
+  a << (1 + t) * c * c + 4 * s * s, 0, (1 + t - 4) * c * s, (1 + t) * s * s + 4 * c * c;
+  const auto e = symmetric_eigen(a);
+  const double sign_0 = e.vectors(0, 0).value() > 0 ? 1 : -1;
+  const double sign_1 = e.vectors(1, 1).value() > 0 ? 1 : -1;
+  for (int k = 0; k <= 3; ++k) {
+    CHECK(std::abs(e.values[0].derivative(k) - series(1 + t).derivative(k)) <= 1e-14);
+    CHECK(std::abs(e.values[1].derivative(k) - (k == 0 ? 4 : 0)) <= 1e-14);
+    CHECK(std::abs(sign_0 * e.vectors(0, 0).derivative(k) - c.derivative(k)) <= 1e-14);
+    CHECK(std::abs(sign_0 * e.vectors(1, 0).derivative(k) - s.derivative(k)) <= 1e-14);
+    CHECK(std::abs(sign_1 * e.vectors(0, 1).derivative(k) + s.derivative(k)) <= 1e-14);
+    CHECK(std::abs(sign_1 * e.vectors(1, 1).derivative(k) - c.derivative(k)) <= 1e-14);
+  }
+}
+
+TEST_CASE("the equations hold in every part of Taylor numbers and nested duals") {
+  using series = taylor<double, 3>;
+  using nested = dual<dual<double, 2>, 2, outer_tag>;
+  for (const int n : {1, 2, 3, 7}) {
+    for (const bool diagonal : {false, true}) {
+      const MatrixXd value =
+          diagonal ? MatrixXd(VectorXd::LinSpaced(n, 3, 1).asDiagonal()) : random_symmetric(n, 4);
+      const MatrixXd slope = random_symmetric(n, 6);
+      const auto a = lower<series, Dynamic>(value, slope, [](double v, double s) {
+        return series({v, s, 0.5 * s * s, s - 1});
+      });
+      CHECK(worst_part(a, symmetric_eigen(a)) <= 1e-10);
+      const auto b = lower<nested, Dynamic>(value, slope, [](double v, double s) {
+        using D = dual<double, 2>;
+        const nested x(D::variable(v, 0));
+        return nested(x + s * nested::variable(D(0), 0) +
+                      s * s * nested::variable(D::variable(0, 1), 1));
+      });
+      CHECK(worst_part(b, symmetric_eigen(b)) <= 1e-10);
+    }
+  }
+}
+
+TEST_CASE("inside a differentiated function: the stretch of a symmetric tensor") {
+  const auto largest = [](const auto& p) {
+    using T = std::decay_t<decltype(p[0])>;
+    Eigen::Matrix<T, 2, 2> a;
+    a << p[0], p[2], p[2], p[1];
+    return duet::column(symmetric_eigen(a).values[1]);
+  };
+  // λ = (a + c)/2 + √((a − c)²/4 + b²) at a = 4, c = 1, b = 2: 5, with ∂λ = v vᵀ, v = (2, 1)/√5.
+  const auto [value, J] = duet::jacobian(largest, Eigen::Vector3d(4, 1, 2));
+  CHECK(value[0] == doctest::Approx(5).epsilon(1e-15));
+  CHECK((J - Eigen::RowVector3d(0.8, 0.2, 0.8)).norm() <= 1e-15);
+}
+
+TEST_CASE("what does not depend on a variable has zero partials") {
+  using D = dual<double, 2>;
+  Eigen::Matrix<D, 3, 3> a = random_symmetric(3, 1).cast<D>();
+  const auto constant = symmetric_eigen(a);
+  a(2, 1) = D::variable(a(2, 1).value(), 1);
+  const auto one = symmetric_eigen(a);
+  for (int i = 0; i < 3; ++i) {
+    CHECK(constant.values[i].partial(1) == 0);
+    CHECK(one.values[i].partial(0) == 0);
+    CHECK(one.values[i].partial(1) != 0);
+    for (int j = 0; j < 3; ++j) {
+      CHECK(constant.vectors(i, j).partial(1) == 0);
+      CHECK(one.vectors(i, j).partial(0) == 0);
+    }
+  }
+}
+
+TEST_CASE("repeated eigenvalues have no derivatives, but constants are fine") {
+  using D = dual<double>;
+  Eigen::Matrix<D, 3, 3> a = Eigen::Vector3d(5, 2, 5).asDiagonal().toDenseMatrix().cast<D>();
+  CHECK(symmetric_eigen(a).values[2].epsilon() == 0);
+  a(0, 1) = D(0, 1); // above the diagonal, not read
+  CHECK(message(a) == "");
+  a(2, 0) = D(0, 1);
+  CHECK(message(a) == "duet: symmetric_eigen: eigenvalues 1 and 2, both 5 with a gap of 0, have no "
+                      "derivatives, as A is not constant");
+  CHECK(message(a.cast<dual<D, 1, outer_tag>>()) == message(a));
+  CHECK(
+      message(Eigen::Matrix<D, 2, 2>(Eigen::Matrix<D, 2, 2>::Constant(D(0, 1)))) ==
+      "duet: symmetric_eigen: eigenvalues 0 and 1, both 0 with a gap of 0, have no derivatives, as "
+      "A is not constant");
+  // A gap that is only small is one: 64 ε, and vectors that turn by 1/gap.
+  constexpr double gap = 64 * std::numeric_limits<double>::epsilon();
+  const Eigen::Matrix<D, 2, 2> close{{D(1), D(0)}, {D(0, 1), D(1 + gap)}};
+  CHECK(symmetric_eigen(close).vectors(1, 0).epsilon() *
+            symmetric_eigen(close).vectors(0, 0).value() ==
+        doctest::Approx(-1 / gap));
+  // Rounding keeps two eigenvalues of a full matrix apart, but not far enough to be two.
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    duet_test::random_source random(seed);
+    const int n = random.integer(2, 12);
+    const MatrixXd q = random_symmetric(n, seed).householderQr().householderQ();
+    VectorXd values = VectorXd::NullaryExpr(n, [&] { return random.uniform(-1, 1); });
+    values[1] = values[0];
+    const MatrixXd full = q * values.asDiagonal() * q.transpose();
+    CHECK(message(full.unaryExpr([](double x) { return D(x, 1); })) != "");
+  }
+}
+
+TEST_CASE("what is no symmetric matrix is refused") {
+  CHECK(message(MatrixXd(3, 2)) == "duet: symmetric_eigen: A is 3 x 2, but must be square");
+  CHECK(message(MatrixXd(0, 0)) == "duet: symmetric_eigen: A is empty");
+  MatrixXd a = MatrixXd::Identity(2, 2);
+  a(1, 0) = std::numeric_limits<double>::infinity();
+  CHECK(message(a) == "duet: symmetric_eigen: entry (1, 0) of A is not finite");
+}
+
+TEST_CASE("float, long double and integers") {
+  CHECK(symmetric_eigen(Eigen::Matrix2i{{0, 0}, {1, 0}}).values[1] == doctest::Approx(1));
+  CHECK(symmetric_eigen(Eigen::Matrix2f{{0, 0}, {1, 0}}).values[0] == doctest::Approx(-1));
+  using L = dual<long double>;
+  const auto e = symmetric_eigen(Eigen::Matrix<L, 2, 2>{{L(1), L(0)}, {L(0, 1), L(3)}});
+  CHECK(std::abs(e.vectors(0, 0).value() * e.vectors(1, 0).epsilon() + 0.5L) <= 1e-18L);
+}
