@@ -1,18 +1,35 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Gradients of f_grad by 4, 7, 12 and 32 variables.
+/// Gradients of f_grad by 1 to 32 variables in one pass, and by 100 and 1000.
 
 #include "support/contenders.hpp"
 #include "support/contest.hpp"
 #include "workloads.hpp"
 
+#include <duet/derivative/chunked.hpp>
+
+#if DUET_BENCH_ADOLC
+#include <adolc/adolc.h>
+#endif
+
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace duet_bench {
 namespace {
+
+template <std::size_t N>
+[[nodiscard]] inputs<double, N> point() {
+  inputs<double, N> at;
+  for (std::size_t i = 0; i < N; ++i) {
+    at[i] = 0.3 + 0.9 * std::sin(1.0 + double(i));
+  }
+  return at;
+}
 
 /// The value, then the gradient.
 template <class Library, std::size_t N>
@@ -25,12 +42,35 @@ std::array<double, N + 1> gradient_by(const inputs<double, N>& at) {
   return result;
 }
 
+#if DUET_BENCH_ADOLC
+/// Reverse mode on a tape that is recorded once; only the gradient is timed.
+template <std::size_t N>
+void add_reverse_mode(const std::string& workload, const std::array<double, N + 1>& expected) {
+  inputs<double, N> at = point<N>();
+  constexpr short tape = short(N);
+  trace_on(tape);
+  std::vector<adouble> x(N);
+  for (std::size_t i = 0; i < N; ++i) {
+    x[i] <<= at[i];
+  }
+  double value;
+  f_grad(x) >>= value;
+  trace_off();
+  const auto reverse = [](const inputs<double, N>& here) {
+    std::array<double, N + 1> result;
+    ::gradient(tape, int(N), here.data(), &result[1]);
+    return result;
+  };
+  auto actual = reverse(at);
+  actual[0] = value;
+  expect_agreement(workload, "adolc_reverse", expected, actual);
+  contest(workload, "adolc_reverse", at, reverse);
+}
+#endif
+
 template <std::size_t N>
 void add() {
-  inputs<double, N> at;
-  for (std::size_t i = 0; i < N; ++i) {
-    at[i] = 0.3 + 0.9 * std::sin(1.0 + double(i));
-  }
+  const inputs<double, N> at = point<N>();
   const std::string workload = "gradient_" + std::to_string(N);
   const auto expected = gradient_by<duet_contender>(at);
   contest(workload, "value", at, [](const auto& x) { return f_grad(x); });
@@ -39,13 +79,63 @@ void add() {
     expect_agreement(workload, library::name, expected, gradient_by<library>(at));
     contest(workload, library::name, at, [](const auto& x) { return gradient_by<library>(x); });
   });
+#if DUET_BENCH_ADOLC
+  add_reverse_mode<N>(workload, expected);
+#endif
+}
+
+/// All variables at once in numbers on the heap: N partials each are too many for the stack.
+template <class Library, std::size_t N>
+std::array<double, N + 1> wide_gradient_by(const inputs<double, N>& at) {
+  using number = typename Library::template number<int(N)>;
+  std::vector<number> x;
+  x.reserve(N);
+  for (std::size_t i = 0; i < N; ++i) {
+    x.push_back(Library::template variable<int(N)>(at[i], int(i)));
+  }
+  const number y = f_grad(x);
+  std::array<double, N + 1> result;
+  result[0] = Library::value(y);
+  Library::template write_partials<int(N)>(y, &result[1]);
+  return result;
+}
+
+template <std::size_t N>
+void add_wide() {
+  const inputs<double, N> at = point<N>();
+  const std::string workload = "gradient_" + std::to_string(N);
+  const auto in_passes = [](const inputs<double, N>& x) {
+    std::array<double, N + 1> result;
+    Eigen::Map<Eigen::Matrix<double, int(N), 1>> gradient(&result[1]);
+    result[0] = duet::gradient_into([](const auto& v) { return f_grad(v); }, x, gradient);
+    return result;
+  };
+  const auto expected = in_passes(at);
+  contest(workload, "value", at, [](const auto& x) { return f_grad(x); });
+  contest(workload, "duet", at, in_passes);
+  for_each_contender([&](auto contender) {
+    using library = decltype(contender);
+    if constexpr (!std::is_same_v<library, duet_contender>) {
+      expect_agreement(workload, library::name, expected, wide_gradient_by<library, N>(at));
+      contest(workload, library::name, at,
+              [](const auto& x) { return wide_gradient_by<library, N>(x); });
+    }
+  });
+#if DUET_BENCH_ADOLC
+  add_reverse_mode<N>(workload, expected);
+#endif
 }
 
 const bool registered = [] {
+  add<1>();
   add<4>();
+  add<6>();
   add<7>();
   add<12>();
+  add<16>();
   add<32>();
+  add_wide<100>();
+  add_wide<1000>();
   return true;
 }();
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// First, second and third derivative of f_scalar.
+/// Derivatives of f_scalar: the first, and all up to the second, third, fifth and tenth.
 
 #include "support/contenders.hpp"
 #include "support/contest.hpp"
@@ -92,10 +92,14 @@ const bool registered = [] {
   add("scalar_2", "nested", two, by_nested_dual_2);
   add("scalar_3", "duet", three, by_taylor<3>);
   add("scalar_3", "nested", three, by_nested_dual_3);
+  add("scalar_5", "duet", by_taylor<5>(point), by_taylor<5>);
+  add("scalar_10", "duet", by_taylor<10>(point), by_taylor<10>);
 #if DUET_BENCH_BOOST
   add(first, "boost", one, by_boost<1>);
   add("scalar_2", "boost", two, by_boost<2>);
   add("scalar_3", "boost", three, by_boost<3>);
+  add("scalar_5", "boost", by_taylor<5>(point), by_boost<5>);
+  add("scalar_10", "boost", by_taylor<10>(point), by_boost<10>);
 #endif
   return true;
 }();

@@ -46,18 +46,20 @@ inline value_and_slope f_scalar_by_hand(double x) {
 template <class S, std::size_t N>
 using inputs = std::array<S, N>;
 
-/// A loop of short statements over N inputs, each with its neighbour: a sine, an exponential, a
+/// A loop of short statements over the inputs, each with its neighbour: a sine, an exponential, a
 /// root or a quotient in turn, between products and sums.
-template <class S, std::size_t N>
-S f_grad(const inputs<S, N>& x) {
+template <class X>
+auto f_grad(const X& x) {
   using std::exp;
   using std::sin;
   using std::sqrt;
+  using S = typename X::value_type;
+  const std::size_t n = x.size();
   S sum = x[0];
-  S carry = x[N - 1];
-  for (std::size_t i = 0; i < N; ++i) {
+  S carry = x[n - 1];
+  for (std::size_t i = 0; i < n; ++i) {
     const S& a = x[i];
-    const S& b = x[i + 1 < N ? i + 1 : 0];
+    const S& b = x[i + 1 < n ? i + 1 : 0];
     const S u = a * b + 0.5 * carry;
     switch (i % 4) {
     case 0:
@@ -75,7 +77,7 @@ S f_grad(const inputs<S, N>& x) {
     const S step = a - b;
     sum = sum + carry * step;
   }
-  return sum * carry;
+  return S(sum * carry);
 }
 
 /// The seven-joint arm of the benches: Denavit–Hartenberg rows in Craig's convention, those of a

@@ -92,7 +92,7 @@ private:
         duet = t;
       } else if (name == "hand") {
         hand = t;
-      } else if (name != "value" && (best == 0 || t < best)) {
+      } else if (name != "value" && name != "adolc_reverse" && (best == 0 || t < best)) {
         best = t;
       }
     }
