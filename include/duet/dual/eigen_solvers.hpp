@@ -25,7 +25,8 @@
 ///
 /// Not covered: Jacobi and Givens rotations (SVD, eigenvalue solvers), which skip zeros by value
 /// too. For symmetric matrices there is `symmetric_eigen`; else perturb the input or write the
-/// derivative by hand where off-diagonal entries vanish.
+/// derivative by hand where off-diagonal entries vanish. EigenSolver's derivatives are one step of
+/// its iteration behind the values.
 
 namespace duet::detail {
 
