@@ -31,7 +31,9 @@ template <class Tag = void, class F, VectorLike X>
   constexpr int n = detail::partials_per_pass<X>;
   using output =
       std::decay_t<decltype(detail::evaluated(f(detail::constants<dual<T, n, tag>>(x))))>;
-  static_assert(VectorLike<output>, "duet: jacobian needs a function that returns a vector");
+  static_assert(VectorLike<output>,
+                "duet: jacobian needs a function that returns a vector; where it returns a "
+                "rotation, say the frame: jacobian(f, x, frame::body)");
   using result_argument = detail::vector_argument<output>;
   using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
   using S = typename detail::vector_argument<value>::scalar;

@@ -62,6 +62,16 @@ void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
   }
 }
 
+/// Said where a rotation, pose or tuple is given without a frame.
+template <class X>
+constexpr void ask_for_frame() {
+  static_assert(!ManifoldPoint<X>, "duet: to differentiate by rotations, poses or tuples say the "
+                                   "frame: jacobian(f, x, frame::body)");
+}
+
+template <class X>
+concept NeedsFrame = ManifoldPoint<X> && !VectorLike<X> && !Scalar<X> && !Arithmetic<X>;
+
 } // namespace detail
 
 /// f(x) and the matrix ∂y/∂x in tangent coordinates: column j is the velocity of y = f(x) while x
@@ -130,6 +140,19 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
   using vector = Eigen::Matrix<typename manifold<X>::scalar, n, 1>;
   return hessian<std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
       moved, vector(vector::Zero()));
+}
+
+template <class Tag = void, class F, detail::NeedsFrame X>
+void jacobian(F&&, const X&) {
+  detail::ask_for_frame<X>();
+}
+template <class Tag = void, class F, detail::NeedsFrame X>
+void gradient(F&&, const X&) {
+  detail::ask_for_frame<X>();
+}
+template <class Tag = void, class F, detail::NeedsFrame X>
+void hessian(F&&, const X&) {
+  detail::ask_for_frame<X>();
 }
 
 } // namespace duet
