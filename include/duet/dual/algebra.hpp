@@ -132,11 +132,14 @@ concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& 
                             !ConstantOf<B, A>;
 
 /// The value of x for a comparison of A and B. Fields other than the reals need not compare with
-/// every arithmetic type.
+/// every arithmetic type; to built-in reals an integer is converted here, as a literal would be,
+/// because of -Wconversion.
 template <class A, class B, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr decltype(auto) comparable(const X& x) {
   using number = real_type_t<promote_t<A, B>>;
-  if constexpr (Real<number>) {
+  if constexpr (std::integral<X> && std::floating_point<number>) {
+    return static_cast<number>(x);
+  } else if constexpr (Real<number>) {
     return innermost(x);
   } else {
     return number(innermost(x));
