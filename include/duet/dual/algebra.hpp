@@ -13,11 +13,12 @@
 
 namespace duet::detail {
 
-/// What the kernels take a constant of type U as: a T. Arithmetic constants stay plain where T is
-/// over another field than the reals, so that x · 2 is what that field makes of it: a complex 2
-/// would cost digits and signs of zeros.
+/// What the kernels take a constant of type U as: a T. Arithmetic constants stay plain however deep
+/// T is nested, or its zero partials would meet infinite values; and where T is over another field
+/// than the reals, so that x · 2 is what that field makes of it: a complex 2 would cost digits and
+/// signs of zeros.
 template <class T, class U>
-using operand_t = std::conditional_t<Arithmetic<U> && !Real<real_type_t<T>>, constant_t<T>, T>;
+using operand_t = std::conditional_t<Arithmetic<U>, constant_t<T>, T>;
 
 /// Base of an infinitesimal number D over T, which supplies the kernels: `sum`, `difference`,
 /// `product`, `quotient` of two D, `negated`, `plus`, `times`, `divided_by` with an operand_t, and
