@@ -67,6 +67,7 @@ void check_algebra_over() {
   CHECK(same(floor(D(2.5, 1)), 2, 0));
   CHECK(same(ldexp(a, 3), 24, 16));
   CHECK(same(lerp(a, b, D(0.5, 1)), 3.5, 1.5));
+  CHECK(same(midpoint(a, b), 3.5, 0.5));
   CHECK(isfinite(a));
   CHECK_FALSE(signbit(a));
   CHECK(atan2(D(T(0), T(1)), D(T(2))).epsilon() == 0.5);

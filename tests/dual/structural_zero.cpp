@@ -199,3 +199,30 @@ TEST_CASE("what does not depend on the inner variable is not poisoned by it") {
   CHECK(z.partial(1) == 0);
   CHECK(z.partial(1).epsilon() == 0);
 }
+
+TEST_CASE("in quotients no level poisons another") {
+  using nested = dual<D, 1, outer_tag>;
+  const nested x = nested::variable(D(0)); // varies in the outer level only
+  for (const nested& y : {1 / x, nested(1) / x, x / x, 0 / x, infinity / x, 1 / (x * 2)}) {
+    CHECK(y.value().epsilon() == 0);
+    CHECK(y.epsilon().epsilon() == 0);
+  }
+  CHECK((1 / x).epsilon().value() == -infinity);
+  // Second derivatives are those of the series.
+  const nested both(variable(0), 1);
+  CHECK((1 / both).epsilon().epsilon() == infinity);
+  CHECK((nested(1) / both).epsilon().epsilon() == infinity);
+  CHECK((1 / taylor<double, 2>::variable(0)).derivative(2) == infinity);
+}
+
+TEST_CASE("arithmetic constants leave infinite values alone at every level") {
+  using nested = dual<D, 2, outer_tag>;
+  const nested x(variable(infinity));
+  for (const nested& y : {x * 2, 2 * x, x / 2, x + 1, 1 - x, -x}) {
+    CHECK(std::isfinite(y.value().epsilon()));
+    CHECK(y.partial(1).value() == 0);
+    CHECK(y.partial(1).epsilon() == 0);
+  }
+  CHECK((nested(infinity) * 2).value().epsilon() == 0);
+  CHECK((taylor<D, 2, outer_tag>(infinity) * 2).value().epsilon() == 0);
+}

@@ -13,11 +13,12 @@
 
 namespace duet::detail {
 
-/// What the kernels take a constant of type U as: a T. Arithmetic constants stay plain where T is
-/// over another field than the reals, so that x · 2 is what that field makes of it: a complex 2
-/// would cost digits and signs of zeros.
+/// What the kernels take a constant of type U as: a T. Arithmetic constants stay plain however deep
+/// T is nested, or its zero partials would meet infinite values; and where T is over another field
+/// than the reals, so that x · 2 is what that field makes of it: a complex 2 would cost digits and
+/// signs of zeros.
 template <class T, class U>
-using operand_t = std::conditional_t<Arithmetic<U> && !Real<real_type_t<T>>, constant_t<T>, T>;
+using operand_t = std::conditional_t<Arithmetic<U>, constant_t<T>, T>;
 
 /// Base of an infinitesimal number D over T, which supplies the kernels: `sum`, `difference`,
 /// `product`, `quotient` of two D, `negated`, `plus`, `times`, `divided_by` with an operand_t, and
@@ -132,11 +133,14 @@ concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& 
                             !ConstantOf<B, A>;
 
 /// The value of x for a comparison of A and B. Fields other than the reals need not compare with
-/// every arithmetic type.
+/// every arithmetic type; to built-in reals an integer is converted here, as a literal would be,
+/// because of -Wconversion.
 template <class A, class B, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr decltype(auto) comparable(const X& x) {
   using number = real_type_t<promote_t<A, B>>;
-  if constexpr (Real<number>) {
+  if constexpr (std::integral<X> && std::floating_point<number>) {
+    return static_cast<number>(x);
+  } else if constexpr (Real<number>) {
     return innermost(x);
   } else {
     return number(innermost(x));

@@ -141,8 +141,13 @@ public:
   }
   /// c / *this
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual dividing(const T& c) const {
-    const T inverse = T(1) / value_;
-    return {T(c / value_), detail::chain(T(-(c * inverse) * inverse), partials_)};
+    if constexpr (Infinitesimal<T>) { // zero partials of T survive in quotients only
+      const T value = c / value_;
+      return {value, detail::chain(T(-(value / value_)), partials_)};
+    } else {
+      const T inverse = T(1) / value_;
+      return {T(c / value_), detail::chain(T(-(c * inverse) * inverse), partials_)};
+    }
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual sum(const dual& a, const dual& b) {
     return {T(a.value_ + b.value_), partials_type::map([](const auto& p, const auto& q)
@@ -165,8 +170,14 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual quotient(const dual& a, const dual& b) {
     // The derivative goes through the inverse, so that it need not wait for the exact quotient.
     const T inverse = T(1) / b.value_;
-    const detail::chain_of_quotient<T> kernel{T(a.value_ * inverse), inverse};
-    return {T(a.value_ / b.value_), detail::combined(kernel, a.partials_, b.partials_)};
+    if constexpr (Infinitesimal<T>) { // zero partials of T survive in quotients only
+      const T value = a.value_ / b.value_;
+      const detail::chain_of_quotient<T> kernel{value, inverse};
+      return {value, detail::combined(kernel, a.partials_, b.partials_)};
+    } else {
+      const detail::chain_of_quotient<T> kernel{T(a.value_ * inverse), inverse};
+      return {T(a.value_ / b.value_), detail::combined(kernel, a.partials_, b.partials_)};
+    }
   }
 
 private:

@@ -13,9 +13,9 @@
 #include <duet/dual/taylor_lift.hpp>
 
 /// \file
-/// The smooth functions of `<cmath>` over dual and Taylor numbers. Values are those of `<cmath>`;
-/// derivatives are in rules.hpp and its like. Complex numbers have those of `<complex>` that are in
-/// complex.hpp's list.
+/// The smooth functions of `<cmath>`, and `midpoint`, over dual and Taylor numbers. Values are
+/// those of the standard library; derivatives are in rules.hpp and its like. Complex numbers have
+/// those of `<complex>` that are in complex.hpp's list.
 
 namespace duet {
 
@@ -211,6 +211,13 @@ template <class A, class B, class C>
   requires detail::MixedReals<A, promote_t<B, C>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto lerp(const A& a, const B& b, const C& t) {
   return detail::lift_promoted(rule::lerp{}, a, b, t);
+}
+
+/// (a + b)/2 without overflow, as that of `<numeric>`.
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto midpoint(const A& a, const B& b) {
+  return detail::lift_promoted(rule::midpoint{}, a, b);
 }
 
 } // namespace duet

@@ -110,8 +110,10 @@ public:
       unrolled<count>([&](int i) DUET_INLINE_LAMBDA { packets_[i] = packet{}; });
     }
   }
-  DUET_ALWAYS_INLINE constexpr packed_partials(const packed_partials& other) { assign(other); }
-  DUET_ALWAYS_INLINE constexpr packed_partials& operator=(const packed_partials& other) {
+  DUET_ALWAYS_INLINE constexpr packed_partials(const packed_partials& other) noexcept {
+    assign(other);
+  }
+  DUET_ALWAYS_INLINE constexpr packed_partials& operator=(const packed_partials& other) noexcept {
     assign(other);
     return *this;
   }

@@ -10,10 +10,11 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <numeric>
 
 /// \file
-/// The derivatives of pow, atan2, hypot, fma, lerp and the remainders. `slopes(y, x…)` returns the
-/// partial derivatives where the value is y.
+/// The derivatives of pow, atan2, hypot, fma, lerp, midpoint and the remainders. `slopes(y, x…)`
+/// returns the partial derivatives where the value is y.
 
 namespace duet::detail {
 
@@ -198,6 +199,24 @@ struct lerp {
   template <class T>
   std::array<T, 3> slopes(const T&, const T& a, const T& b, const T& t) const {
     return {1 - t, t, b - a};
+  }
+};
+
+/// (a + b)/2
+struct midpoint {
+  template <class T>
+  T value(const T& a, const T& b) const {
+    if constexpr (std::floating_point<T> || Infinitesimal<T>) {
+      using std::midpoint;
+      return midpoint(a, b);
+    } else { // <numeric> knows built-in types only; wider exponents leave room for the sum
+      return (a + b) / 2;
+    }
+  }
+  template <class T>
+  std::array<T, 2> slopes(const T&, const T&, const T&) const {
+    const T half(real_type_t<T>(0.5));
+    return {half, half};
   }
 };
 

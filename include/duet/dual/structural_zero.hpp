@@ -37,6 +37,16 @@ template <class T>
   }
 }
 
+template <class T>
+[[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial);
+
+/// The same for a partial of a slope, which is zero where the slope does not depend on the inner
+/// variable.
+template <class T>
+[[nodiscard]] constexpr T product_of_partial(const T& slope, const T& partial) {
+  return is_structural_zero(slope) ? T(0) : guarded_product(slope, partial);
+}
+
 /// slope · partial, zero where the partial is a structural zero; for nested scalars part by part,
 /// or what does not depend on the inner variable would be poisoned by it.
 template <class T>
@@ -54,7 +64,7 @@ template <class T>
              T::partials_type::map_elements(
                  [&](const part& s, const part& p) {
                    return part(guarded_product(slope.value(), p) +
-                               guarded_product(s, partial.value()));
+                               product_of_partial(s, partial.value()));
                  },
                  slope.partials(), partial.partials()));
   } else {
@@ -63,7 +73,7 @@ template <class T>
     for (int k = 0; k <= highest; ++k) {
       auto sum = guarded_product(slope.value(), partial.coefficient(k));
       for (int j = 1; j <= k; ++j) {
-        sum = sum + guarded_product(slope.coefficient(j), partial.coefficient(k - j));
+        sum = sum + product_of_partial(slope.coefficient(j), partial.coefficient(k - j));
       }
       result.set_coefficient(k, sum);
     }
@@ -143,8 +153,8 @@ struct chain_of_two {
   }
 };
 
-/// (p − ratio · q) · inverse, where ratio = value · inverse and so is not finite if `inverse` is
-/// not.
+/// (p − ratio · q) · inverse, where for numbers ratio = value · inverse and so is not finite if
+/// `inverse` is not.
 template <class T>
 struct chain_of_quotient {
   // Two masks cost more than a branch.
@@ -152,7 +162,9 @@ struct chain_of_quotient {
   static constexpr int masked_packets = 2;
   T ratio, inverse;
 
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const { return is_all_finite(ratio); }
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const {
+    return is_all_finite(ratio) && (!Infinitesimal<T> || is_all_finite(inverse));
+  }
   template <class Product, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr P operator()(Product product, const P& p,
                                                           const P& q) const {
