@@ -15,6 +15,7 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/linear_solve.hpp>
+#include <duet/derivative/second_order.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/dual/complex.hpp>

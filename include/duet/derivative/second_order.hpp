@@ -1,0 +1,97 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/gradient.hpp>
+#include <duet/derivative/seed.hpp>
+#include <duet/derivative/structure.hpp>
+
+#include <Eigen/Core>
+
+#include <string>
+#include <type_traits>
+
+/// \file
+/// Parts of a Hessian that cost less than all of it: its product with a vector, and the block of
+/// two groups of variables.
+
+namespace duet {
+
+template <class Y, class G>
+struct value_gradient_and_product {
+  Y value;
+  G gradient;
+  G product;
+};
+
+/// f(x), ∇f and H v, H the matrix of second derivatives at x: the derivative of the gradient along
+/// v, at about twice the cost of the gradient, for any number of components.
+///
+/// \param x, v  Eigen vectors or `std::array`s of one size; f returns a scalar
+/// \throws invalid_input where the sizes differ or x is empty
+template <class Tag = void, class F, VectorLike X, VectorLike V>
+[[nodiscard]] auto hessian_vector_product(F&& f, const X& x, const V& v) {
+  using argument = detail::vector_argument<X>;
+  using direction = detail::vector_argument<V>;
+  using T = promote_t<typename argument::scalar, typename direction::scalar>;
+  using tag = detail::tag_for<Tag, F>;
+  using along = derivative_tag<tag, struct direction_of_gradient>;
+  using D = dual<T, 1, along>;
+  if (argument::size(x) != direction::size(v)) {
+    throw invalid_input("duet: hessian_vector_product: the point has " +
+                        std::to_string(argument::size(x)) + " components, the vector " +
+                        std::to_string(direction::size(v)));
+  }
+  auto moving = argument::template make<D>(x);
+  for (Eigen::Index i = 0; i < argument::size(x); ++i) {
+    moving[std::size_t(i)] = D(T(argument::get(x, i)), T(direction::get(v, i)));
+  }
+  const auto [y, g] =
+      gradient<std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(f, moving);
+  const auto value = detail::part<along>(y, 0);
+  const auto slope = detail::parts<along>(g, 0);
+  return value_gradient_and_product<std::remove_const_t<decltype(value)>,
+                                    std::remove_const_t<decltype(slope)>>{
+      value, slope, detail::parts<along>(g, 1)};
+}
+
+template <class Y, class M>
+struct value_and_mixed_hessian {
+  Y value;
+  M mixed;
+};
+
+/// f(x, y) and the matrix ∂²f/∂xᵢ∂yⱼ, n × m, of two groups of up to 32 variables each: what only
+/// one group goes into is computed with the derivatives of that group alone.
+///
+/// \param x, y  Eigen vectors or `std::array`s of sizes known at compile time; f(x, y), over
+///              different scalars for x and y, returns a scalar
+template <class Tag = void, class F, VectorLike X, VectorLike Y>
+[[nodiscard]] auto mixed_hessian(F&& f, const X& x, const Y& y) {
+  constexpr int n = detail::vector_argument<X>::size_at_compile_time;
+  constexpr int m = detail::vector_argument<Y>::size_at_compile_time;
+  static_assert(
+      n > 0 && m > 0 && n <= detail::single_pass_limit && m <= detail::single_pass_limit,
+      "duet: mixed_hessian needs vectors of at most 32 components, known at compile time");
+  using tag = detail::tag_for<Tag, F>;
+  using first = derivative_tag<tag, struct first_group>;
+  using second = derivative_tag<tag, struct second_group>;
+  using A = dual<typename detail::vector_argument<X>::scalar, n, first>;
+  using B = dual<typename detail::vector_argument<Y>::scalar, m, second>;
+  const auto z = detail::evaluated(f(detail::seeded<A, n>(x, 0), detail::seeded<B, m>(y, 0)));
+  static_assert(Scalar<std::remove_const_t<decltype(z)>>,
+                "duet: mixed_hessian needs a function that returns a scalar");
+  const auto by_first = detail::part<first>(z, 0);
+  using S = decltype(detail::part<second>(by_first, 0));
+  value_and_mixed_hessian<S, Eigen::Matrix<S, n, m>> result;
+  result.value = detail::part<second>(by_first, 0);
+  for (int i = 0; i < n; ++i) {
+    const auto row = detail::part<first>(z, i + 1);
+    for (int j = 0; j < m; ++j) {
+      result.mixed(i, j) = detail::part<second>(row, j + 1);
+    }
+  }
+  return result;
+}
+
+} // namespace duet
