@@ -22,6 +22,10 @@
 #include <duet/dual/dynamic_dual.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/domain.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>

@@ -1,0 +1,88 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual/math.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <cmath>
+#include <concepts>
+
+/// \file
+/// Dual numbers, vectors and quaternions of rigid motion, and how they come apart (N10–N16).
+///
+/// A dual quaternion is a quaternion over dual numbers. Product, norm, exponential, logarithm and
+/// powers are those of quaternion/, of which there is no second version.
+
+namespace duet {
+
+/// a + εb of rigid motion (N10), T any scalar, derivative duals included.
+template <class T>
+using screw_dual = dual<T, 1, screw_tag>;
+/// a⃗ + εb⃗: a line, a screw, a twist (N12).
+template <class T>
+using dual_vector = vector3<screw_dual<T>>;
+/// p + εq of quaternions p and q, or four dual numbers: both readings of N13 are this one object.
+template <class T>
+using dual_quaternion = quaternion<screw_dual<T>>;
+
+template <class T>
+[[nodiscard]] dual_vector<T> make_dual_vector(const vector3<T>& a, const vector3<T>& b) {
+  using D = screw_dual<T>;
+  return {D(a[0], b[0]), D(a[1], b[1]), D(a[2], b[2])};
+}
+/// p + εq
+template <class T>
+[[nodiscard]] constexpr dual_quaternion<T> make_dual_quaternion(const quaternion<T>& p,
+                                                                const quaternion<T>& q) {
+  using D = screw_dual<T>;
+  return {D(p.w(), q.w()), D(p.x(), q.x()), D(p.y(), q.y()), D(p.z(), q.z())};
+}
+
+/// p of p + εq.
+template <class T>
+[[nodiscard]] constexpr quaternion<T> real_part(const dual_quaternion<T>& a) {
+  return {a.w().value(), a.x().value(), a.y().value(), a.z().value()};
+}
+/// q of p + εq.
+template <class T>
+[[nodiscard]] constexpr quaternion<T> dual_part(const dual_quaternion<T>& a) {
+  return {a.w().epsilon(), a.x().epsilon(), a.y().epsilon(), a.z().epsilon()};
+}
+template <class T>
+[[nodiscard]] vector3<T> real_part(const dual_vector<T>& v) {
+  return {v[0].value(), v[1].value(), v[2].value()};
+}
+template <class T>
+[[nodiscard]] vector3<T> dual_part(const dual_vector<T>& v) {
+  return {v[0].epsilon(), v[1].epsilon(), v[2].epsilon()};
+}
+
+/// N10: a − εb, the conjugate of a dual number. (`conj` of a scalar is the identity in generic
+/// code.)
+template <class T>
+[[nodiscard]] constexpr screw_dual<T> dual_conj(const screw_dual<T>& d) {
+  return {d.value(), -d.epsilon()};
+}
+/// N15, second conjugate: p − εq, which keeps products: (AB)° = A° B°.
+template <class T>
+[[nodiscard]] constexpr dual_quaternion<T> dual_conj(const dual_quaternion<T>& a) {
+  return {dual_conj(a.w()), dual_conj(a.x()), dual_conj(a.y()), dual_conj(a.z())};
+}
+/// N15, third conjugate: p* − εq*, which carries points: A (1 + εx) A^(3) = 1 + ε(Rx + t). (The
+/// first is `conj`: p* + εq*, the inverse of a unit, which carries lines.)
+template <class T>
+[[nodiscard]] constexpr dual_quaternion<T> point_conj(const dual_quaternion<T>& a) {
+  return dual_conj(conj(a));
+}
+
+/// N16: is A A* = 1, that is |p| = 1 and p·q = 0, each to within the tolerance? `normalized`
+/// restores both.
+template <class T>
+[[nodiscard]] bool is_unit(const dual_quaternion<T>& a, double tolerance = 1e-12) {
+  using std::abs;
+  const screw_dual<T> square = norm2(a);
+  return abs(innermost(square.value()) - 1) <= tolerance &&
+         abs(innermost(square.epsilon())) <= tolerance;
+}
+
+} // namespace duet

@@ -1,0 +1,111 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/dual/eigen_traits.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <sstream>
+
+/// \file
+/// Unit dual quaternions as rigid displacements x ↦ R x + t (N17): points, directions, lines,
+/// planes, matrices.
+
+namespace duet {
+
+/// N17: α + εβ with β = ½ t α: first the rotation, a unit quaternion, then the translation.
+template <class A, class B>
+  requires Promotable<A, B>
+[[nodiscard]] dual_quaternion<promote_t<A, B>> pose(const quaternion<A>& rotation,
+                                                    const vector3<B>& translation) {
+  using T = promote_t<A, B>;
+  const quaternion<T> alpha(rotation);
+  const quaternion<T> half(T(0), T(translation[0]) / 2, T(translation[1]) / 2,
+                           T(translation[2]) / 2);
+  return make_dual_quaternion(alpha, half * alpha);
+}
+
+/// α, the rotation of a pose.
+template <class T>
+[[nodiscard]] constexpr quaternion<T> rotation(const dual_quaternion<T>& a) {
+  return real_part(a);
+}
+/// N17: t = 2 β α*.
+template <class T>
+[[nodiscard]] vector3<T> translation(const dual_quaternion<T>& a) {
+  const quaternion<T> half = dual_part(a) * conj(real_part(a));
+  return {2 * half.x(), 2 * half.y(), 2 * half.z()};
+}
+
+/// R x + t.
+template <class T, class U>
+  requires Promotable<T, U>
+[[nodiscard]] vector3<promote_t<T, U>> transform_point(const dual_quaternion<T>& a,
+                                                       const vector3<U>& x) {
+  return rotate(rotation(a), x) + translation(a).template cast<promote_t<T, U>>();
+}
+/// R n: what has no place, as a velocity of translation or a normal.
+template <class T, class U>
+  requires Promotable<T, U>
+[[nodiscard]] vector3<promote_t<T, U>> transform_direction(const dual_quaternion<T>& a,
+                                                           const vector3<U>& n) {
+  return rotate(rotation(a), n);
+}
+
+/// A line l + εm in Plücker coordinates, direction l and moment m = point × l, carried along:
+/// A (l + εm) A*. Also any screw and twist.
+template <class T, class U>
+  requires Promotable<T, U>
+[[nodiscard]] dual_vector<promote_t<T, U>> transform_line(const dual_quaternion<T>& a,
+                                                          const dual_vector<U>& line) {
+  return rotate(a, line);
+}
+
+/// The plane n·x = offset.
+template <class T>
+struct plane {
+  vector3<T> normal;
+  T offset;
+};
+
+/// The plane carried along: n ↦ R n, offset ↦ offset + R n·t.
+template <class T, class U>
+  requires Promotable<T, U>
+[[nodiscard]] plane<promote_t<T, U>> transform_plane(const dual_quaternion<T>& a,
+                                                     const plane<U>& p) {
+  using R = promote_t<T, U>;
+  const vector3<R> normal = rotate(rotation(a), p.normal);
+  return {normal, R(p.offset) + normal.dot(translation(a).template cast<R>())};
+}
+
+/// The matrix [R t; 0 1].
+template <class T>
+[[nodiscard]] Eigen::Matrix<T, 4, 4> transform_matrix(const dual_quaternion<T>& a) {
+  Eigen::Matrix<T, 4, 4> m = Eigen::Matrix<T, 4, 4>::Identity();
+  m.template topLeftCorner<3, 3>() = rotation_matrix(rotation(a));
+  m.template topRightCorner<3, 1>() = translation(a);
+  return m;
+}
+
+/// The pose of a matrix [R t; 0 1].
+/// \throws invalid_input where the last row is another, and as `from_rotation_matrix`
+template <class T>
+[[nodiscard]] dual_quaternion<T> from_transform_matrix(const Eigen::Matrix<T, 4, 4>& m) {
+  if (!(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 && innermost(m(3, 2)) == 0 &&
+        innermost(m(3, 3)) == 1)) {
+    std::ostringstream message;
+    message << "duet: from_transform_matrix: the last row is " << innermost(m(3, 0)) << " "
+            << innermost(m(3, 1)) << " " << innermost(m(3, 2)) << " " << innermost(m(3, 3))
+            << ", not 0 0 0 1";
+    throw invalid_input(message.str());
+  }
+  const matrix3<T> r = m.template topLeftCorner<3, 3>();
+  const vector3<T> t = m.template topRightCorner<3, 1>();
+  return pose(from_rotation_matrix(r), t);
+}
+
+} // namespace duet

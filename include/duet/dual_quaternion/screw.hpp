@@ -1,0 +1,85 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/select.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+
+#include <cmath>
+
+/// \file
+/// Screw motion: interpolation along it (N19), its axis, angle and pitch.
+
+namespace duet {
+
+/// N19: C(τ) = A (A* B)^τ, the screw motion from A to B along the shorter rotation: SLERP over dual
+/// numbers. Both are unit; B's sign is aligned with A's.
+template <class A, class B, class S>
+  requires Promotable<A, B>
+[[nodiscard]] auto sclerp(const dual_quaternion<A>& a, const dual_quaternion<B>& b, const S& tau) {
+  return slerp(a, b, tau);
+}
+
+enum class screw_kind {
+  none,        ///< no motion
+  translation, ///< along the axis, which stands nowhere in particular
+  rotation,    ///< about the axis
+  screw        ///< both
+};
+
+/// A rigid displacement as one motion along and about one line.
+template <class T>
+struct screw_motion {
+  vector3<T> axis;   ///< unit direction n of the line
+  vector3<T> moment; ///< point × n
+  T angle;           ///< φ ∈ [0, π], radians
+  T translation;     ///< d along the axis, in units of length
+  screw_kind kind;
+};
+
+/// The screw of a pose, the same for A and −A: log A = ½ (φ + εd)(n + εm).
+///
+/// \param tolerance  an angle up to this is none (radians), and a translation up to this none
+/// (units
+///                   of length): a pure translation has angle 0, its direction as axis, moment 0
+///                   and d ≥ 0; no motion has zeros. Below about 1e-8 the place of the axis would
+///                   be rounding noise, which is why that is the default.
+template <class T>
+[[nodiscard]] screw_motion<T> screw_parameters(const dual_quaternion<T>& a,
+                                               double tolerance = 1e-8) {
+  const dual_quaternion<T> short_way = select(
+      innermost(a.w()) < 0, [&] { return -a; }, [&] { return a; });
+  const dual_vector<T> half = detail::log_vector(short_way, "screw_parameters");
+  const vector3<T> turn = 2 * real_part(half);  // φ n
+  const vector3<T> shift = 2 * dual_part(half); // d n + φ m
+  const auto length = [](const vector3<T>& v) { return norm(quaternion<T>(T(0), v)); };
+  const vector3<T> none = vector3<T>::Zero();
+  if (!(innermost(length(turn)) > tolerance)) {
+    const T d = length(shift);
+    if (!(innermost(d) > tolerance)) {
+      return {none, none, T(0), T(0), screw_kind::none};
+    }
+    return {vector3<T>(shift / d), none, T(0), d, screw_kind::translation};
+  }
+  const T angle = length(turn);
+  const vector3<T> axis = turn / angle;
+  const T d = shift.dot(axis);
+  using std::abs;
+  return {axis, vector3<T>((shift - d * axis) / angle), angle, d,
+          abs(innermost(d)) > tolerance ? screw_kind::screw : screw_kind::rotation};
+}
+
+/// The pose exp(½ (φ + εd)(n + εm)) of a screw motion: unit axis n, moment m perpendicular to it.
+template <class T>
+[[nodiscard]] dual_quaternion<T> from_screw(const vector3<T>& axis, const vector3<T>& moment,
+                                            const T& angle, const T& translation) {
+  return exp(dual_vector<T>(make_dual_vector(axis, moment) *
+                            screw_dual<T>(T(angle / 2), T(translation / 2))));
+}
+template <class T>
+[[nodiscard]] dual_quaternion<T> from_screw(const screw_motion<T>& s) {
+  return from_screw(s.axis, s.moment, s.angle, s.translation);
+}
+
+} // namespace duet

@@ -1,0 +1,123 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/derivative/frame.hpp>
+#include <duet/derivative/manifold.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <type_traits>
+
+/// \file
+/// Velocities of rigid motion (N18), as columns [v; ω] and as dual vectors ω + εv.
+
+namespace duet {
+
+/// [v; ω]: linear, then angular.
+template <class T>
+using vector6 = Eigen::Matrix<T, 6, 1>;
+template <class T>
+using matrix6 = Eigen::Matrix<T, 6, 6>;
+
+/// ω + εv as the column [v; ω].
+template <class T>
+[[nodiscard]] vector6<T> twist_of(const dual_vector<T>& v) {
+  vector6<T> result;
+  result << dual_part(v), real_part(v);
+  return result;
+}
+/// The column [v; ω] as ω + εv.
+template <class T>
+[[nodiscard]] dual_vector<T> dual_vector_of(const vector6<T>& twist) {
+  return make_dual_vector(vector3<T>(twist.template tail<3>()),
+                          vector3<T>(twist.template head<3>()));
+}
+
+/// N18: the twist [v; ω] of a moving pose with Ȧ = ½ V^s A = ½ A V^b, V = ω + εv.
+///
+/// `frame::spatial`: fixed axes, v the velocity of the body point at the fixed origin,
+/// v^s = ṫ + t × ω^s. `frame::body`: moving axes, v^b = Rᵀṫ. `frame::hybrid`: fixed axes, v = ṫ.
+template <class A, class B, class Frame>
+  requires Promotable<A, B>
+[[nodiscard]] vector6<promote_t<A, B>> twist(const dual_quaternion<A>& a,
+                                             const dual_quaternion<B>& a_dot, Frame frame) {
+  using T = promote_t<A, B>;
+  if constexpr (std::same_as<Frame, hybrid_frame>) {
+    vector6<T> v = twist(a, a_dot, frame::spatial);
+    const vector3<T> omega = v.template tail<3>();
+    v.template head<3>() += omega.cross(translation(a).template cast<T>());
+    return v;
+  } else {
+    return twist_of<T>(angular_velocity(a, a_dot, frame));
+  }
+}
+
+/// N18: the rate Ȧ of a pose that moves with a twist [v; ω].
+template <class A, class B, class Frame>
+  requires Promotable<A, B>
+[[nodiscard]] dual_quaternion<promote_t<A, B>> pose_rate(const dual_quaternion<A>& a,
+                                                         const vector6<B>& twist, Frame frame) {
+  return quaternion_rate(a, dual_vector_of(twist), frame);
+}
+
+/// The adjoint [R t̂R; 0 R]: V^s = Ad(A) V^b for twists [v; ω], and twists in a moved frame.
+template <class T>
+[[nodiscard]] matrix6<T> Ad(const dual_quaternion<T>& a) {
+  const matrix3<T> r = rotation_matrix(rotation(a));
+  const vector3<T> t = translation(a);
+  matrix6<T> m;
+  m << r, matrix3<T>::Zero(), matrix3<T>::Zero(), r;
+  for (int j = 0; j < 3; ++j) {
+    m.template block<3, 1>(0, 3 + j) = t.cross(vector3<T>(r.col(j)));
+  }
+  return m;
+}
+
+/// [ω̂ v̂; 0 ω̂]: ad(V) W is the derivative of Ad(exp(½ V t)) W at t = 0, the Lie bracket of twists.
+template <class T>
+[[nodiscard]] matrix6<T> ad(const vector6<T>& twist) {
+  matrix6<T> m = matrix6<T>::Zero();
+  const auto hat = [](const vector3<T>& w) {
+    const T zero(0);
+    matrix3<T> h;
+    h << zero, -w[2], w[1], w[2], zero, -w[0], -w[1], w[0], zero;
+    return h;
+  };
+  m.template topLeftCorner<3, 3>() = hat(twist.template tail<3>());
+  m.template bottomRightCorner<3, 3>() = m.template topLeftCorner<3, 3>();
+  m.template topRightCorner<3, 3>() = hat(twist.template head<3>());
+  return m;
+}
+
+/// A pose is moved by a small twist δ = [v; ω]: exp(δ/2) A in `frame::spatial`, A exp(δ/2) in
+/// `frame::body`. Its rate is told as a twist.
+template <class T>
+struct manifold<quaternion<dual<T, 1, screw_tag>>> {
+  static constexpr int dimension = 6;
+  using scalar = T;
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const dual_quaternion<T>& a, const Delta& delta,
+                                 Frame frame = {}) {
+    using S = std::decay_t<decltype(delta[0])>;
+    const auto step =
+        duet::exp(dual_vector<S>(dual_vector_of(vector6<S>(delta)) * real_type_t<S>(0.5)));
+    if constexpr (detail::is_spatial(frame)) {
+      return step * a;
+    } else {
+      return a * step;
+    }
+  }
+  template <class Frame>
+  [[nodiscard]] static vector6<T> velocity(const dual_quaternion<T>& a,
+                                           const dual_quaternion<T>& rate, Frame frame) {
+    return twist(a, rate, frame);
+  }
+};
+
+} // namespace duet

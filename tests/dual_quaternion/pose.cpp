@@ -1,0 +1,103 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual_quaternion/cases.hpp"
+
+#include <duet/core/errors.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/norm.hpp>
+
+#include <Eigen/Geometry>
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+// N17: rigid displacements of points, directions, lines and planes, against Eigen's isometries.
+
+using duet::conj;
+using duet::real_part;
+using duet_test::gap;
+using duet_test::poses;
+using duet_test::vector;
+
+using dual_quaternion = duet::dual_quaternion<double>;
+
+namespace {
+
+Eigen::Isometry3d isometry(const dual_quaternion& a) {
+  const auto q = duet::rotation(a);
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.linear() = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).toRotationMatrix();
+  result.translation() = duet::translation(a);
+  return result;
+}
+
+const vector point(0.7, -1.9, 0.4);
+const vector direction(0.6, 0, -0.8);
+
+} // namespace
+
+TEST_CASE("there and back") {
+  for (const auto& a : poses()) {
+    const auto again = duet::pose(duet::rotation(a), duet::translation(a));
+    CHECK(gap(again, a) < 1e-15);
+    const dual_quaternion from_matrix = duet::from_transform_matrix(duet::transform_matrix(a));
+    CHECK(std::min(gap(from_matrix, a), gap(from_matrix, -a)) < 1e-14);
+  }
+  const auto b = duet::pose(duet::from_rotation_vector(vector(0.1, 0.2, 0.3)), vector(1, -2, 3));
+  CHECK(gap(duet::translation(b), vector(1, -2, 3)) < 1e-15);
+}
+
+TEST_CASE("matrices, points and directions") {
+  for (const auto& a : poses()) {
+    const auto expected = isometry(a);
+    CHECK(gap(duet::transform_matrix(a), expected.matrix()) < 1e-14);
+    CHECK(gap(duet::transform_point(a, point), expected * point) < 1e-14);
+    CHECK(gap(duet::transform_direction(a, direction), expected.linear() * direction) < 1e-14);
+  }
+}
+
+TEST_CASE("products compose, the conjugate undoes") {
+  const auto all = poses();
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    const auto& a = all[i];
+    const auto& b = all[i + 1];
+    CHECK(gap(duet::transform_matrix(a * b), (isometry(a) * isometry(b)).matrix()) < 2e-14);
+    CHECK(gap(duet::transform_point(conj(a), duet::transform_point(a, point)), point) < 1e-14);
+  }
+}
+
+TEST_CASE("N15 carries points: A (1 + εx) A^(3) = 1 + ε(Rx + t)") {
+  for (const auto& a : poses()) {
+    const auto x = duet::make_dual_quaternion(duet::quaternion<double>(1.0),
+                                              duet::quaternion<double>(0.0, point));
+    const auto moved = a * x * duet::point_conj(a);
+    CHECK(gap(duet::dual_part(moved).vec(), duet::transform_point(a, point)) < 1e-14);
+    CHECK(std::abs(duet::dual_part(moved).w()) < 1e-15);
+  }
+}
+
+TEST_CASE("lines in Plücker coordinates and planes") {
+  for (const auto& a : poses()) {
+    const auto line = duet::make_dual_vector(direction, vector(point.cross(direction)));
+    const auto moved = duet::transform_line(a, line);
+    const vector moved_point = duet::transform_point(a, point);
+    const vector moved_direction = duet::transform_direction(a, direction);
+    CHECK(gap(real_part(moved), moved_direction) < 1e-14);
+    CHECK(gap(duet::dual_part(moved), moved_point.cross(moved_direction)) < 4e-14);
+
+    const duet::plane<double> plane{direction, direction.dot(point)};
+    const auto moved_plane = duet::transform_plane(a, plane);
+    CHECK(std::abs(moved_plane.normal.dot(moved_point) - moved_plane.offset) < 2e-14);
+  }
+}
+
+TEST_CASE("matrices that are no poses") {
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m(3, 0) = 0.5;
+  CHECK_THROWS_WITH_AS(static_cast<void>(duet::from_transform_matrix(m)),
+                       "duet: from_transform_matrix: the last row is 0.5 0 0 1, not 0 0 0 1",
+                       duet::invalid_input);
+  m(3, 0) = 0;
+  m(0, 0) = 2;
+  CHECK_THROWS_AS(static_cast<void>(duet::from_transform_matrix(m)), duet::invalid_input);
+}

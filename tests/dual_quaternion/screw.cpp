@@ -1,0 +1,148 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual_quaternion/cases.hpp"
+
+#include <duet/comparison/compare.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/interop/multiprecision.hpp>
+#include <duet/quaternion/domain.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+// Exponential, logarithm, ScLERP (N19) and screw parameters, with no special case for translations.
+
+using duet::conj;
+using duet::exp;
+using duet::sclerp;
+using duet::screw_kind;
+using duet::screw_parameters;
+using duet_test::gap;
+using duet_test::poses;
+using duet_test::vector;
+
+using number = duet::screw_dual<double>;
+using dual_quaternion = duet::dual_quaternion<double>;
+
+TEST_CASE("exp undoes log, powers add up") {
+  for (const auto& a : poses()) {
+    // Near a full turn the logarithm magnifies the rounding of A by 1/(2π − φ).
+    const double tolerance = duet::real_part(a).w() < -0.9999 ? 1e-8 : 4e-15;
+    CHECK(gap(exp(duet::dual_vector<double>(log(a).vec())), a) < tolerance);
+    CHECK(gap(pow(a, 2), a * a) < tolerance);
+    CHECK(gap(pow(a, 0.25) * pow(a, 0.75), a) < tolerance);
+    CHECK(gap(pow(a, -1), conj(a)) < tolerance);
+  }
+}
+
+TEST_CASE("N19: ScLERP goes from A to B, evenly, wherever they are") {
+  const auto all = poses();
+  for (std::size_t i = 0; i + 3 < all.size(); i += 3) {
+    const auto& a = all[i];
+    const auto b = all[i + 3];
+    CHECK(gap(duet::transform_matrix(sclerp(a, b, 0.0)), duet::transform_matrix(a)) < 1e-14);
+    CHECK(gap(duet::transform_matrix(sclerp(a, b, 1.0)), duet::transform_matrix(b)) < 4e-14);
+    if (std::abs(dot(a, b).value()) < 1e-12) {
+      continue; // half a turn apart: both ways are equally short
+    }
+    CHECK(gap(sclerp(a, b, 0.4), sclerp(a, -b, 0.4)) == 0);
+    // Moving both moves what is between them.
+    const auto c = duet::pose(duet::from_rotation_vector(vector(0.4, -0.2, 1)), vector(1, 2, -1));
+    CHECK(gap(sclerp(c * a, c * b, 0.3), c * sclerp(a, b, 0.3)) < 4e-14);
+    // Equal steps are the same displacement.
+    const auto step = conj(sclerp(a, b, 0.25)) * sclerp(a, b, 0.5);
+    CHECK(gap(conj(sclerp(a, b, 0.5)) * sclerp(a, b, 0.75), step) < 2e-14);
+  }
+}
+
+TEST_CASE("a pure translation is a straight line") {
+  const auto a = duet::pose(duet::quaternion<double>(1.0), vector(1, 0, 0));
+  const auto b = duet::pose(duet::quaternion<double>(1.0), vector(1, 4, -2));
+  CHECK(gap(duet::translation(sclerp(a, b, 0.25)), vector(1, 1, -0.5)) == 0);
+  const auto [c, rate] = duet::derivative([&](auto t) { return sclerp(a, b, t); }, 0.25);
+  CHECK(gap(2 * duet::dual_part(rate).vec(), vector(0, 4, -2)) == 0);
+}
+
+TEST_CASE("screw parameters of known motions") {
+  // A turn by 1.2 about a line through (1, 2, 0) along z, with a shift of 0.5 along it.
+  const vector axis(0, 0, 1);
+  const vector place(1, 2, 0);
+  const auto a = duet::from_screw(axis, vector(place.cross(axis)), 1.2, 0.5);
+  for (const auto& s : {screw_parameters(a), screw_parameters(-a)}) {
+    CHECK(s.kind == screw_kind::screw);
+    CHECK(gap(s.axis, axis) < 1e-15);
+    CHECK(gap(s.moment, place.cross(axis)) < 1e-15 * 4);
+    CHECK(s.angle == doctest::Approx(1.2).epsilon(1e-15));
+    CHECK(s.translation == doctest::Approx(0.5).epsilon(1e-15));
+  }
+  CHECK(gap(duet::transform_point(a, place), place + 0.5 * axis) < 1e-15);
+
+  const auto turn = duet::from_screw(axis, vector(place.cross(axis)), 1.2, 0.0);
+  CHECK(screw_parameters(turn).kind == screw_kind::rotation);
+
+  const auto shift = duet::pose(duet::quaternion<double>(1.0), vector(0, -3, 4));
+  const auto s = screw_parameters(shift);
+  CHECK(s.kind == screw_kind::translation);
+  CHECK(gap(s.axis, vector(0, -0.6, 0.8)) < 1e-15);
+  CHECK(s.translation == doctest::Approx(5).epsilon(1e-15));
+  CHECK(s.angle == 0);
+  CHECK(s.moment.isZero(0));
+
+  const auto none = screw_parameters(dual_quaternion(number(1)));
+  CHECK(none.kind == screw_kind::none);
+  CHECK(none.axis.isZero(0));
+  CHECK(none.translation == 0);
+
+  // The tolerance decides what a tiny rotation is.
+  const auto tiny = duet::from_screw(axis, vector(place.cross(axis)), 1e-9, 0.5);
+  CHECK(screw_parameters(tiny).kind == screw_kind::translation);
+  CHECK(screw_parameters(tiny, 1e-12).kind == screw_kind::screw);
+  CHECK(screw_parameters(tiny, 1e-12).angle == doctest::Approx(1e-9).epsilon(1e-12));
+}
+
+TEST_CASE("screw parameters and back") {
+  for (const auto& a : poses()) {
+    const auto s = screw_parameters(a, 1e-300);
+    if (s.kind == screw_kind::none || s.kind == screw_kind::translation) {
+      continue;
+    }
+    CHECK(std::abs(s.axis.norm() - 1) < 1e-15);
+    CHECK(s.angle >= 0);
+    CHECK(s.angle <= 3.1415926535897936);
+    if (s.angle > 1e-5) {
+      CHECK(std::abs(s.axis.dot(s.moment)) < 1e-13 * (1 + s.moment.norm()));
+      const auto again = duet::from_screw(s);
+      CHECK(std::min(gap(again, a), gap(again, -a)) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("the derivative of ScLERP is a constant twist, judged in fifty digits") {
+  // Ċ = C log(A* B), whatever τ; poses are made of screws of moderate angle.
+  const auto ends = [](const auto& w, const auto& t) {
+    return std::pair(duet::pose(duet::from_rotation_vector(t), w),
+                     duet::pose(duet::from_rotation_vector((w / 2).eval()), t));
+  };
+  const auto automatic = [&](const auto& w, const auto& t, const auto& tau) {
+    const auto [a, b] = ends(w, t);
+    const auto path = [a = a, b = b](const auto& u) { return sclerp(a, b, u); };
+    const auto rate = duet::derivative(path, tau).derivative;
+    return std::array{duet::real_part(rate), duet::dual_part(rate)};
+  };
+  const auto closed_form = [&](const auto& w, const auto& t, const auto& tau) {
+    const auto [a, b] = ends(w, t);
+    const auto aligned = innermost(dot(a, b)) < 0 ? -b : b;
+    auto relative = log(conj(a) * aligned);
+    const auto rate = sclerp(a, b, tau) * relative;
+    return std::array{duet::real_part(rate), duet::dual_part(rate)};
+  };
+  const auto c = duet::compare<double, duet::real_50>(
+      "N19", automatic, closed_form,
+      duet::sampler(duet::vectors<3>{2}, duet::vectors<3>{1.5}, duet::real_numbers{0, 1}),
+      {.samples = 200});
+  CHECK_MESSAGE(c.outcome == duet::verdict::agrees, to_text(c));
+}

@@ -1,0 +1,117 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual_quaternion/cases.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+// N18: twists in three frames, Ad and ad, and Jacobians of and into poses.
+
+using duet::Ad;
+using duet::ad;
+using duet::twist;
+using duet::vector6;
+using duet_test::gap;
+using duet_test::poses;
+using duet_test::vector;
+namespace frame = duet::frame;
+
+namespace {
+
+const vector6<double> v_body = (vector6<double>() << 0.3, -1, 2, 0.5, 0.7, -0.2).finished();
+const vector point(0.7, -1.9, 0.4);
+
+} // namespace
+
+TEST_CASE("twists of a moving pose, from the motion of its parts") {
+  // A(t): rotation exp(½ w t) q, translation p + u t + ½ a t².
+  const auto q = duet::from_rotation_vector(vector(0.2, 0.5, -1));
+  const vector w(0.4, -0.3, 0.9), p(1, 2, 3), u(-1, 0.5, 0.25), a(2, 0, 1);
+  const auto motion = [&](auto t) {
+    return duet::pose(duet::from_rotation_vector((w * t).eval()) * q,
+                      (p + u * t + a * (t * t / 2)).eval());
+  };
+  const double t = 0.6;
+  const auto [pose, rate] = duet::derivative(motion, t);
+  const vector velocity = u + a * t;
+  const vector place = duet::translation(pose);
+  const auto R = duet::rotation_matrix(duet::rotation(pose));
+  vector6<double> expected;
+  expected << velocity + place.cross(w), w;
+  CHECK(gap(twist(pose, rate, frame::spatial), expected) < 1e-14);
+  expected << R.transpose() * velocity, R.transpose() * w;
+  CHECK(gap(twist(pose, rate, frame::body), expected) < 1e-14);
+  expected << velocity, w;
+  CHECK(gap(twist(pose, rate, frame::hybrid), expected) < 1e-14);
+}
+
+TEST_CASE("pose_rate undoes twist, Ad changes the frame") {
+  for (const auto& a : poses()) {
+    const auto rate = duet::pose_rate(a, v_body, frame::body);
+    CHECK(gap(twist(a, rate, frame::body), v_body) < 1e-14);
+    const vector6<double> v_spatial = twist(a, rate, frame::spatial);
+    CHECK(gap(v_spatial, Ad(a) * v_body) < 4e-14);
+    CHECK(gap(duet::pose_rate(a, v_spatial, frame::spatial), rate) < 4e-14);
+    // Twists are lines with a pitch: Ad is A V A*.
+    CHECK(gap(duet::twist_of(duet::transform_line(a, duet::dual_vector_of(v_body))), v_spatial) <
+          4e-14);
+  }
+}
+
+TEST_CASE("Ad is a homomorphism, ad its derivative and the Lie bracket") {
+  const auto all = poses();
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    CHECK(gap(Ad(all[i] * all[i + 1]), Ad(all[i]) * Ad(all[i + 1])) < 4e-14);
+  }
+  const vector6<double> w = (vector6<double>() << 1, 0.4, -0.3, -0.8, 0.1, 0.6).finished();
+  const auto moved = [&](auto t) {
+    const auto step = exp((duet::dual_vector_of(v_body) * (t / 2)).eval());
+    return (Ad(step) * w).eval();
+  };
+  CHECK(gap(duet::derivative(moved, 0).derivative, ad(v_body) * w) < 1e-15);
+  CHECK(gap(ad(v_body) * w, -(ad(w) * v_body)) < 1e-15);
+}
+
+TEST_CASE("Jacobians of and into poses") {
+  for (const auto& a : poses()) {
+    const auto place = [](const auto& x) { return duet::transform_point(x, point); };
+    const auto body = duet::jacobian(place, a, frame::body).jacobian;
+    const auto R = duet::rotation_matrix(duet::rotation(a));
+    Eigen::Matrix<double, 3, 6> expected;
+    expected.leftCols<3>() = R;
+    for (int j = 0; j < 3; ++j) {
+      expected.col(3 + j) = R * vector(vector::Unit(j)).cross(point);
+    }
+    CHECK(gap(body, expected) < 1e-14);
+    CHECK(gap(duet::jacobian(place, a, frame::spatial).jacobian * Ad(a), body) < 4e-14);
+
+    const auto inverse = [](const auto& x) { return conj(x); };
+    CHECK(gap(duet::jacobian(inverse, a, frame::body).jacobian, -Ad(a)) < 1e-14);
+  }
+}
+
+TEST_CASE("accelerations: the classical one is not the derivative of the spatial twist") {
+  // Uniform rotation about z of a body at distance 2: the origin of the body accelerates inwards.
+  const auto motion = [](auto t) {
+    using T = decltype(t);
+    return duet::pose(duet::from_rotation_vector(duet::vector3<T>(T(0), T(0), t)),
+                      duet::vector3<T>(2 * cos(t), 2 * sin(t), T(0)));
+  };
+  const auto twists = [&](auto frame_of_twist) {
+    return [=](auto t) {
+      const auto inner = [&](auto s) { return motion(s); };
+      const auto [pose, rate] = duet::derivative(inner, t);
+      return twist(pose, rate, frame_of_twist);
+    };
+  };
+  const double t = 0.8;
+  CHECK(duet::derivative(twists(frame::spatial), t).derivative.norm() < 1e-15);
+  const auto classical = duet::derivative(twists(frame::hybrid), t).derivative;
+  CHECK(gap(classical.head<3>(), vector(-2 * std::cos(t), -2 * std::sin(t), 0)) < 1e-15);
+}
