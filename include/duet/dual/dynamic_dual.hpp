@@ -73,9 +73,10 @@ public:
     return result;
   }
 
-  /// The same for any f, one element at a time.
+  /// The same for any f, one element at a time. (Inlined, g++ would warn of what no row holds.)
   template <class F, class... Rows>
-  [[nodiscard]] static dynamic_partials map_elements(F&& f, const Rows&... rows) {
+  [[nodiscard, gnu::noinline, gnu::cold]] static dynamic_partials
+  map_elements(F&& f, const Rows&... rows) {
     dynamic_partials result;
     result.grow(std::max({rows.size_...}));
     for (int i = 0; i < result.size_; ++i) {
@@ -95,15 +96,7 @@ private:
       return (packets_[i]);
     }
   }
-  // g++ does not see that only what is below size_ is read.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
   [[nodiscard]] T element(int i) const { return const_cast<dynamic_partials&>(*this).element(i); }
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic pop
-#endif
 
   [[nodiscard]] DUET_ALWAYS_INLINE packet packet_or_zero(int p) const {
     return size_ > 0 ? packets_[p] : packet{};
