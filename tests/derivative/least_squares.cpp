@@ -86,10 +86,7 @@ std::string message(const A& a, const B& b) {
 
 TEST_CASE("fixed and dynamic sizes: Eigen's values and the derivatives of the normal equations") {
   check<2, 2>(random_fit(2, 2));
-  check<4, 1>(random_fit(4, 1));
-  check<6, 3>(random_fit(6, 3));
-  check<8, 6>(random_fit(8, 6));
-  check<Dynamic, 3>(random_fit(7, 3));
+  check<4, 3>(random_fit(4, 3));
   for (int n = 1; n <= 12; ++n) {
     for (const int m : {n, n + 1, 3 * n}) {
       check<Dynamic, Dynamic>(random_fit(m, n));

@@ -157,9 +157,6 @@ std::string message(const A& a) {
 TEST_CASE("fixed sizes: Eigen's values, and the derivatives of perturbation theory") {
   check_many<2>();
   check_many<3>();
-  check_many<4>();
-  check_many<5>();
-  check_many<6>();
 }
 
 TEST_CASE("dynamic sizes") {
