@@ -41,7 +41,7 @@ public:
   /// \throws invalid_input beyond the capacity
   void set(int i, const T& x) {
     grow(i + 1);
-    element(i) = x;
+    set_element(i, x);
   }
   void copy_to(T* out) const {
     for (int i = 0; i < size_; ++i) {
@@ -54,7 +54,7 @@ public:
   [[nodiscard]] static dynamic_partials unit(int i, int n) {
     dynamic_partials result;
     result.grow(std::max(n, i + 1));
-    result.element(i) = T(1);
+    result.set_element(i, T(1));
     return result;
   }
 
@@ -80,7 +80,7 @@ public:
     dynamic_partials result;
     result.grow(std::max({rows.size_...}));
     for (int i = 0; i < result.size_; ++i) {
-      result.element(i) = f(rows.get(i)...);
+      result.set_element(i, f(rows.get(i)...));
     }
     return result;
   }
@@ -89,14 +89,20 @@ private:
   struct uninitialised {};
   dynamic_partials(uninitialised, int size) : size_(size) {}
 
-  [[nodiscard]] decltype(auto) element(int i) {
+  [[nodiscard]] T element(int i) const {
     if constexpr (width > 1) {
       return packets_[i / width][i % width];
     } else {
-      return (packets_[i]);
+      return packets_[i];
     }
   }
-  [[nodiscard]] T element(int i) const { return const_cast<dynamic_partials&>(*this).element(i); }
+  void set_element(int i, const T& x) {
+    if constexpr (width > 1) {
+      packets_[i / width][i % width] = x;
+    } else {
+      packets_[i] = x;
+    }
+  }
 
   [[nodiscard]] DUET_ALWAYS_INLINE packet packet_or_zero(int p) const {
     return size_ > 0 ? packets_[p] : packet{};
@@ -112,7 +118,7 @@ private:
       packets_[p] = packet{};
     }
     for (int i = size_; i < std::min(size, (size_ + width - 1) / width * width); ++i) {
-      element(i) = T(0);
+      set_element(i, T(0));
     }
     size_ = std::max(size_, size);
   }
