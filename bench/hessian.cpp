@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Hessians of f_grad by 3, 6 and 12 variables.
+/// Hessians of f_grad by 3, 6 and 12 variables, beside duals over duals. (Ceres' Jet does not take
+/// a double where it is nested.)
 
-#include "support/contenders.hpp"
 #include "support/contest.hpp"
 #include "workloads.hpp"
 
@@ -57,26 +57,6 @@ hessian<N> by_nested_duals(const inputs<double, N>& at) {
   return result;
 }
 
-#if DUET_BENCH_CERES
-template <std::size_t N>
-hessian<N> by_nested_jets(const inputs<double, N>& at) {
-  using inner = ceres::Jet<double, int(N)>;
-  using number = ceres::Jet<inner, int(N)>;
-  inputs<number, N> x;
-  for (std::size_t i = 0; i < N; ++i) {
-    x[i] = number(inner(at[i], int(i)), int(i));
-  }
-  const number y = f_grad(x);
-  hessian<N> result;
-  for (std::size_t i = 0; i < N; ++i) {
-    for (std::size_t j = 0; j < N; ++j) {
-      result[N * i + j] = y.v[int(i)].v[int(j)];
-    }
-  }
-  return result;
-}
-#endif
-
 template <std::size_t N>
 void add() {
   inputs<double, N> at;
@@ -88,10 +68,6 @@ void add() {
   contest(workload, "duet", at, by_second_dual<N>);
   expect_agreement(workload, "nested", expected, by_nested_duals(at));
   contest(workload, "nested", at, by_nested_duals<N>);
-#if DUET_BENCH_CERES
-  expect_agreement(workload, "ceres", expected, by_nested_jets(at));
-  contest(workload, "ceres", at, by_nested_jets<N>);
-#endif
 }
 
 const bool registered = [] {
