@@ -7,6 +7,7 @@
 #include "support/contest.hpp"
 #include "workloads.hpp"
 
+#include <duet/dual/math.hpp>
 #include <duet/dual/second_dual.hpp>
 
 #include <array>
