@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -171,4 +172,16 @@ TEST_CASE("directional derivatives") {
   CHECK_THROWS_WITH_AS(static_cast<void>(directional_derivative(f, x, longer)),
                        "duet: directional_derivative: the point has 2 components, the direction 3",
                        duet::invalid_input);
+}
+
+TEST_CASE("scalars are visited from the first to the last") {
+  std::string order;
+  const auto record = [&](double x) {
+    order += std::to_string(int(x));
+    return x;
+  };
+  static_cast<void>(
+      duet::map_scalars(record, std::tuple(1.0, std::pair(2.0, quaternion<double>(3, 4, 5, 6)),
+                                           std::array{7.0, 8.0}, Eigen::Vector2d(9, 0))));
+  CHECK(order == "1234567890");
 }

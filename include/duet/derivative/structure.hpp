@@ -20,9 +20,9 @@
 
 namespace duet {
 
-/// Scalars inside an object: `structure<X>::map(f, x)` is the same object with f applied to each.
-/// Scalars, Eigen matrices, arrays, complex numbers and tuples are here; rotations and poses add
-/// their own.
+/// Scalars inside an object: `structure<X>::map(f, x)` is the same object with f applied to each,
+/// from the first to the last (which is why results are made in braces). Scalars, Eigen matrices,
+/// arrays, complex numbers and tuples are here; rotations and poses add their own.
 template <class X>
 struct structure;
 
@@ -82,8 +82,11 @@ template <class... T>
 struct structure<std::tuple<T...>> {
   template <class F>
   [[nodiscard]] static constexpr auto map(F&& f, const std::tuple<T...>& x) {
-    return std::apply([&](const T&... t) { return std::make_tuple(structure<T>::map(f, t)...); },
-                      x);
+    return std::apply(
+        [&](const T&... t) {
+          return std::tuple<decltype(structure<T>::map(f, t))...>{structure<T>::map(f, t)...};
+        },
+        x);
   }
 };
 
@@ -91,7 +94,9 @@ template <class A, class B>
 struct structure<std::pair<A, B>> {
   template <class F>
   [[nodiscard]] static constexpr auto map(F&& f, const std::pair<A, B>& x) {
-    return std::make_pair(structure<A>::map(f, x.first), structure<B>::map(f, x.second));
+    return std::pair<decltype(structure<A>::map(f, x.first)),
+                     decltype(structure<B>::map(f, x.second))>{structure<A>::map(f, x.first),
+                                                               structure<B>::map(f, x.second)};
   }
 };
 

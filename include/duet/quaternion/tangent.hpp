@@ -20,7 +20,7 @@ struct structure<quaternion<T>> {
   template <class F>
   [[nodiscard]] static constexpr auto map(F&& f, const quaternion<T>& q) {
     using result = std::decay_t<std::invoke_result_t<F, const T&>>;
-    return quaternion<result>(f(q.w()), f(q.x()), f(q.y()), f(q.z()));
+    return quaternion<result>{f(q.w()), f(q.x()), f(q.y()), f(q.z())}; // in this order
   }
 };
 
