@@ -2,6 +2,7 @@
 
 #include "support/random.hpp"
 
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/interop/eigen.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -69,4 +70,23 @@ TEST_CASE("axis and angle agree") {
     CHECK(norm(duet::from_eigen(turn) - duet::from_rotation_vector(Eigen::Vector3d(angle * n))) <=
           1e-15);
   }
+}
+
+TEST_CASE("poses and isometries act alike and convert without a change") {
+  const auto a = duet::pose(duet::from_rotation_vector(Eigen::Vector3d(0.4, -1, 2)),
+                            Eigen::Vector3d(1, 2, -3));
+  const auto b = duet::pose(duet::from_rotation_vector(Eigen::Vector3d(-2, 0.1, 0.3)),
+                            Eigen::Vector3d(0, 0.5, 4));
+  const Eigen::Isometry3d product = duet::to_eigen(a) * duet::to_eigen(b);
+  CHECK((product.matrix() - duet::transform_matrix(a * b)).cwiseAbs().maxCoeff() < 4e-15);
+  const Eigen::Vector3d x(0.3, -0.7, 2);
+  CHECK((duet::to_eigen(a) * x - duet::transform_point(a, x)).norm() < 2e-15);
+  CHECK((duet::to_eigen(a).inverse().matrix() - duet::transform_matrix(conj(a)))
+            .cwiseAbs()
+            .maxCoeff() < 2e-15);
+  const auto back = duet::from_eigen(duet::to_eigen(a));
+  CHECK((duet::transform_matrix(back) - duet::transform_matrix(a)).cwiseAbs().maxCoeff() < 2e-15);
+  Eigen::Isometry3d mirror = Eigen::Isometry3d::Identity();
+  mirror.linear()(0, 0) = -1;
+  CHECK_THROWS_AS(static_cast<void>(duet::from_eigen(mirror)), duet::invalid_input);
 }

@@ -13,12 +13,13 @@
 
 namespace duet {
 
-/// N19: C(τ) = A (A* B)^τ, the screw motion from A to B along the shorter rotation: SLERP over dual
-/// numbers. Both are unit; B's sign is aligned with A's.
+/// N19: C(τ) = A (A* B)^τ, the screw motion from A to B along the shorter rotation unless
+/// another way is asked for: SLERP over dual numbers. Both are unit.
 template <class A, class B, class S>
   requires Promotable<A, B>
-[[nodiscard]] auto sclerp(const dual_quaternion<A>& a, const dual_quaternion<B>& b, const S& tau) {
-  return slerp(a, b, tau);
+[[nodiscard]] auto sclerp(const dual_quaternion<A>& a, const dual_quaternion<B>& b, const S& tau,
+                          way round = way::shortest) {
+  return slerp(a, b, tau, round);
 }
 
 enum class screw_kind {

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <Eigen/Geometry>
@@ -27,6 +29,20 @@ from_eigen(const Eigen::QuaternionBase<Derived>& q) {
 template <class T>
 [[nodiscard]] quaternion<T> from_eigen(const Eigen::AngleAxis<T>& rotation) {
   return from_eigen(Eigen::Quaternion<T>(rotation));
+}
+
+template <class T>
+[[nodiscard]] Eigen::Transform<T, 3, Eigen::Isometry> to_eigen(const dual_quaternion<T>& a) {
+  Eigen::Transform<T, 3, Eigen::Isometry> result;
+  result.matrix() = transform_matrix(a);
+  return result;
+}
+
+/// \throws invalid_input where the linear part is no rotation
+template <class T>
+[[nodiscard]] dual_quaternion<T>
+from_eigen(const Eigen::Transform<T, 3, Eigen::Isometry>& isometry) {
+  return from_transform_matrix(Eigen::Matrix<T, 4, 4>(isometry.matrix()));
 }
 
 } // namespace duet

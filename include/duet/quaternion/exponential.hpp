@@ -178,21 +178,40 @@ template <class T, ScalarFor<T> S>
       });
 }
 
-/// SLERP from a to b, both of unit norm: a (a* b)^τ (N9), along the shorter arc: b's sign is
-/// aligned with a's first. Where a and b are a half turn apart the arcs are equal and b is taken as
-/// it is. \throws invalid_input where a or b is zero
+/// Which way round `slerp` goes: q and −q are the same rotation, reached by two arcs.
+enum class way {
+  shortest, ///< the sign of b is aligned with a's
+  longest,  ///< the other way round
+  as_given  ///< by the signs as they are
+};
+
+/// Are two rotations, or those of two poses, half a turn apart to within a tolerance in radians, so
+/// that neither way from one to the other is the shorter?
+template <class A, class B>
+[[nodiscard]] bool is_half_turn_apart(const quaternion<A>& a, const quaternion<B>& b,
+                                      double tolerance = 1e-9) {
+  using std::abs;
+  return 2 * abs(innermost(dot(a, b))) <= tolerance;
+}
+
+/// SLERP from a to b, both of unit norm: a (a* b)^τ (N9), along the shorter arc unless another way
+/// is asked for. Where a and b are exactly half a turn apart both arcs are equal and b is taken as
+/// it is, see `is_half_turn_apart`. \throws invalid_input where a or b is zero
 template <class A, class B, class S>
   requires Promotable<A, B> && ScalarFor<S, promote_t<A, B>>
-[[nodiscard]] auto slerp(const quaternion<A>& a, const quaternion<B>& b, const S& tau) {
+[[nodiscard]] auto slerp(const quaternion<A>& a, const quaternion<B>& b, const S& tau,
+                         way round = way::shortest) {
   using T = promote_t<A, B>;
   const T cosine = dot(a, b);
-  const bool other_side = innermost(cosine) < 0;
+  const bool other_side = round == way::shortest ? innermost(cosine) < 0
+                                                 : round == way::longest && innermost(cosine) > 0;
   // a* a has no vector part. Subtracting it first keeps all digits of a small rotation.
   const quaternion<B> aligned = select(
       other_side, [&] { return -b; }, [&] { return b; });
   const quaternion<T> difference = conj(a) * (aligned - a);
-  using std::abs;
-  const quaternion<T> relative(T(abs(cosine)), difference.x(), difference.y(), difference.z());
+  const quaternion<T> relative(select(
+                                   other_side, [&] { return T(-cosine); }, [&] { return cosine; }),
+                               difference.x(), difference.y(), difference.z());
   const vector3<T> v = detail::log_vector(relative, "slerp");
   using R = promote_t<T, S>;
   const auto t = detail::as_constant<R>(tau);

@@ -1,0 +1,144 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/select.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+#include <vector>
+
+/// \file
+/// Means of rotations and of poses.
+
+namespace duet {
+
+namespace detail {
+
+inline void require_weights(std::size_t count, const std::vector<double>& weights) {
+  std::ostringstream message;
+  if (count == 0) {
+    message << "duet: average: there is nothing to average";
+  } else if (!weights.empty() && weights.size() != count) {
+    message << "duet: average: " << weights.size() << " weights for " << count << " elements";
+  } else {
+    double sum = weights.empty() ? 1 : 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (!(weights[i] >= 0 && weights[i] <= std::numeric_limits<double>::max())) {
+        message << "duet: average: weight " << i << " is " << weights[i]
+                << ", not a number from 0 up";
+        throw invalid_input(message.str());
+      }
+      sum += weights[i];
+    }
+    if (sum > 0) {
+      return;
+    }
+    message << "duet: average: all weights are 0";
+  }
+  throw invalid_input(message.str());
+}
+
+/// Newton's method for the mean of real rotations; also the inverse matrix of its last equation,
+/// which the infinitesimal parts of the mean have in common.
+template <class R>
+struct rotation_mean {
+  quaternion<R> value;
+  matrix3<R> inverse_slope;
+
+  rotation_mean(const std::vector<quaternion<R>>& q, const std::vector<R>& weights)
+      : value(start(q, weights)), inverse_slope(matrix3<R>::Identity()) {
+    constexpr int limit = 50;
+    R last_step = std::numeric_limits<R>::max();
+    for (int i = 0; i < limit; ++i) {
+      vector3<R> residual = vector3<R>::Zero();
+      matrix3<R> slope = matrix3<R>::Zero();
+      for (std::size_t k = 0; k < q.size(); ++k) {
+        const vector3<R> r = rotation_vector(quaternion<R>(conj(value) * q[k]));
+        residual += weights[k] * r;
+        slope += weights[k] * left_jacobian_inverse(r);
+      }
+      inverse_slope = slope.inverse();
+      const vector3<R> step = inverse_slope * residual;
+      const R length = step.norm();
+      value = normalized(quaternion<R>(value * duet::exp(vector3<R>(step / R(2)))));
+      // Quadratic convergence ends in rounding: the last step is not shorter than the one before.
+      if (length <= 8 * std::numeric_limits<R>::epsilon() ||
+          (length < R(1e-10) && length >= last_step)) {
+        return;
+      }
+      last_step = length;
+    }
+    std::ostringstream message;
+    message << "duet: average: no mean found in " << limit << " steps, the last one " << last_step
+            << " rad: the rotations are too far apart";
+    throw no_convergence(message.str());
+  }
+
+private:
+  /// The sum of all, each with the sign nearer to the first.
+  static quaternion<R> start(const std::vector<quaternion<R>>& q, const std::vector<R>& weights) {
+    quaternion<R> sum;
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      sum = sum + q[k] * (dot(q[0], q[k]) < 0 ? R(-weights[k]) : weights[k]);
+    }
+    return normalized(sum);
+  }
+};
+
+} // namespace detail
+
+/// The mean m of unit quaternions, of rotations or of poses: Σ wᵢ log(m* qᵢ) = 0, each qᵢ with the
+/// sign nearer to m.
+///
+/// Of rotations it is the one with the smallest sum of squared angles, unique where all are less
+/// than a quarter turn from one of them; of poses the bi-invariant mean: moving or turning all
+/// moves the mean along, from the left and from the right, and its rotation is the mean of the
+/// rotations. Infinitesimal parts, those of poses among them, follow from the equation, not through
+/// the iteration.
+///
+/// \param weights  wᵢ ≥ 0 in proportion, or none for equal ones
+/// \throws invalid_input for nothing to average and for weights that are negative, not finite, all
+///         zero or too many or few; no_convergence where the rotations are all over the place
+template <class T>
+[[nodiscard]] quaternion<T> average(const std::vector<quaternion<T>>& q,
+                                    const std::vector<double>& weights = {}) {
+  using R = real_type_t<T>;
+  detail::require_weights(q.size(), weights);
+  double sum = 0;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    sum += weights.empty() ? 1 : weights[k];
+  }
+  std::vector<R> w;
+  std::vector<quaternion<R>> values;
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    w.push_back(R(weights.empty() ? 1 : weights[k]) / R(sum));
+    values.push_back(detail::innermost_of(q[k]));
+  }
+  const detail::rotation_mean<R> mean(values, w);
+  quaternion<T> m(mean.value);
+  for (int order = 1; order <= scalar_traits<T>::order; ++order) {
+    vector3<T> residual = vector3<T>::Zero();
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      const quaternion<T> aligned = select(
+          dot(mean.value, values[k]) < 0, [&] { return -q[k]; }, [&] { return q[k]; });
+      const vector3<T> half = detail::log_vector(quaternion<T>(conj(m) * aligned), "average");
+      for (int i = 0; i < 3; ++i) {
+        residual[i] += w[k] * half[i];
+      }
+    }
+    m = m * duet::exp(vector3<T>(mean.inverse_slope.template cast<T>() * residual));
+  }
+  return m;
+}
+
+} // namespace duet

@@ -1,0 +1,60 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// Curves built from SLERP and nothing else: squad and Bézier curves, of rotations and of poses.
+
+namespace duet {
+
+/// The inner control point of `squad` at q between two neighbours:
+/// s = q exp(−¼(log(q* next) + log(q* previous))). Signs must be aligned. At an end, where there is
+/// no neighbour, q itself serves.
+template <class T>
+[[nodiscard]] quaternion<T> squad_control(const quaternion<T>& previous, const quaternion<T>& q,
+                                          const quaternion<T>& next) {
+  const vector3<T> forth = detail::log_vector(quaternion<T>(conj(q) * next), "squad_control");
+  const vector3<T> back = detail::log_vector(quaternion<T>(conj(q) * previous), "squad_control");
+  return q * duet::exp(vector3<T>((forth + back) / T(-4)));
+}
+
+/// Shoemake's spherical and quadrangle interpolation from a to b with control points p and q:
+/// slerp(slerp(a, b, τ), slerp(p, q, τ), 2τ(1 − τ)). Signs must be aligned, and are not changed.
+///
+/// With control points by `squad_control` and equal parameter steps, segments join with one angular
+/// velocity, not with one angular acceleration.
+template <class T, ScalarFor<T> S>
+[[nodiscard]] auto squad(const quaternion<T>& a, const quaternion<T>& p, const quaternion<T>& q,
+                         const quaternion<T>& b, const S& tau) {
+  return slerp(slerp(a, b, tau, way::as_given), slerp(p, q, tau, way::as_given),
+               2 * tau * (1 - tau), way::as_given);
+}
+
+/// The Bézier curve of n + 1 control points at τ ∈ [0, 1] by de Casteljau's repeated SLERP, each
+/// along the shorter way. It starts at the first with n times the velocity of SLERP to the second,
+/// and ends alike.
+///
+/// \throws invalid_input where there are no points
+template <class T, ScalarFor<T> S>
+[[nodiscard]] quaternion<promote_t<T, S>> bezier(const std::vector<quaternion<T>>& points,
+                                                 const S& tau) {
+  using R = promote_t<T, S>;
+  if (points.empty()) {
+    throw invalid_input("duet: bezier: there are no control points");
+  }
+  std::vector<quaternion<R>> q(points.begin(), points.end());
+  for (std::size_t n = q.size(); n > 1; --n) {
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      q[i] = slerp(q[i], q[i + 1], tau);
+    }
+  }
+  return q[0];
+}
+
+} // namespace duet

@@ -1,0 +1,147 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual_quaternion/cases.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/interop/multiprecision.hpp>
+#include <duet/quaternion/average.hpp>
+#include <duet/quaternion/domain.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+// Means of rotations and poses, and their derivatives.
+
+using duet::average;
+using duet::conj;
+using duet_test::gap;
+using duet_test::vector;
+using rotation = duet::quaternion<double>;
+using dual_quaternion = duet::dual_quaternion<double>;
+
+namespace {
+
+std::vector<dual_quaternion> some_poses(int count, double largest_angle) {
+  duet_test::random_source random(11);
+  std::vector<dual_quaternion> result;
+  for (int i = 0; i < count; ++i) {
+    const auto axis = random.direction<3>();
+    const double angle = random.uniform(0, largest_angle);
+    const double sign = i % 2 == 0 ? 1 : -1;
+    result.push_back(
+        sign *
+        duet::pose(duet::from_rotation_vector(vector(angle * vector(axis[0], axis[1], axis[2]))),
+                   vector(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2))));
+  }
+  return result;
+}
+
+template <class T>
+std::vector<duet::quaternion<T>> rotations_of(const std::vector<duet::dual_quaternion<T>>& poses) {
+  std::vector<duet::quaternion<T>> result;
+  for (const auto& a : poses) {
+    result.push_back(duet::rotation(a));
+  }
+  return result;
+}
+
+template <class Q>
+std::string message(const std::vector<Q>& q, const std::vector<double>& weights) {
+  try {
+    static_cast<void>(average(q, weights));
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+double gap_of_poses(const dual_quaternion& a, const dual_quaternion& b) {
+  return std::min(gap(a, b), gap(a, -b));
+}
+
+} // namespace
+
+TEST_CASE("of two: half way along the screw between them") {
+  const auto p = some_poses(2, 1.5);
+  CHECK(gap_of_poses(average(p), slerp(p[0], p[1], 0.5)) < 2e-15);
+  CHECK(gap_of_poses(average(p, {3, 1}), slerp(p[0], p[1], 0.25)) < 2e-15);
+  CHECK(gap_of_poses(average(p, {0, 2}), p[1]) < 1e-15);
+}
+
+TEST_CASE("the equation holds, in rotation and translation") {
+  for (const double angle : {1e-8, 0.5, 1.5}) {
+    const auto p = some_poses(9, angle);
+    const auto mean = average(p);
+    CHECK(is_unit(mean, 4e-15));
+    duet::dual_vector<double> sum = duet::dual_vector<double>::Zero();
+    for (const auto& a : p) {
+      const auto relative = conj(mean) * a;
+      sum += log(relative.w().value() < 0 ? -relative : relative).vec();
+    }
+    CHECK(duet::real_part(sum).norm() < 1e-15);
+    CHECK(duet::dual_part(sum).norm() < 1e-14);
+    CHECK(gap(duet::rotation_matrix(duet::rotation(mean)),
+              duet::rotation_matrix(average(rotations_of(p)))) < 1e-15);
+  }
+}
+
+TEST_CASE("pure translations have the mean of the translations") {
+  std::vector<dual_quaternion> p;
+  for (const vector& t : {vector(1, 2, 3), vector(-2, 0, 1), vector(4, 4, 2)}) {
+    p.push_back(duet::pose(rotation(1.0), t));
+  }
+  CHECK(gap(duet::translation(average(p)), vector(1, 2, 2)) < 1e-15);
+}
+
+TEST_CASE("moving all moves the mean along, from either side") {
+  const auto p = some_poses(7, 1.4);
+  const auto c = duet::pose(duet::from_rotation_vector(vector(2, -1, 0.4)), vector(3, 1, -2));
+  std::vector<dual_quaternion> left;
+  std::vector<dual_quaternion> right;
+  for (const auto& a : p) {
+    left.push_back(c * a);
+    right.push_back(a * c);
+  }
+  CHECK(gap_of_poses(average(left), c * average(p)) < 2e-14);
+  CHECK(gap_of_poses(average(right), average(p) * c) < 2e-14);
+}
+
+TEST_CASE("derivatives to third order, against 50-digit differences of 50-digit means") {
+  const auto p = some_poses(5, 1.2);
+  const auto moving = [&]<class T>(const T& t) {
+    std::vector<duet::dual_quaternion<T>> q(p.begin(), p.end());
+    const duet::vector3<T> turn(T(0.4 * t), T(-0.7 * t * t), T(sin(t)));
+    q[1] = duet::pose(duet::from_rotation_vector(turn), duet::vector3<T>(t, t * t, -t)) * q[1];
+    return average(q);
+  };
+  const auto d = duet::derivatives<3>(moving, 0.3);
+  using wide = duet::real_50;
+  const wide h("1e-9");
+  std::vector<duet::dual_quaternion<wide>> at;
+  for (int k = -2; k <= 2; ++k) {
+    at.push_back(moving(wide(wide(0.3) + k * h)));
+  }
+  const auto difference = [&](std::vector<int> weights, const wide& scale) {
+    duet::dual_quaternion<wide> sum;
+    for (std::size_t k = 0; k < 5; ++k) {
+      sum = sum + at[k] * wide(weights[k]);
+    }
+    return dual_quaternion(sum * wide(1 / scale));
+  };
+  CHECK(gap(d[0], dual_quaternion(at[2])) < 2e-15);
+  CHECK(gap(d[1], difference({1, -8, 0, 8, -1}, wide(12 * h))) < 1e-14);
+  CHECK(gap(d[2], difference({-1, 16, -30, 16, -1}, wide(12 * h * h))) < 1e-13);
+  CHECK(gap(d[3], difference({-1, 2, 0, -2, 1}, wide(2 * h * h * h))) < 1e-12);
+}
+
+TEST_CASE("what has no mean") {
+  const std::vector<rotation> q = {rotation(1, 0, 0, 0), rotation(0, 1, 0, 0)};
+  CHECK(message(std::vector<rotation>(), {}) == "duet: average: there is nothing to average");
+  CHECK(message(q, {1}) == "duet: average: 1 weights for 2 elements");
+  CHECK(message(q, {1, -2}) == "duet: average: weight 1 is -2, not a number from 0 up");
+  CHECK(message(q, {1, NAN}) == "duet: average: weight 1 is nan, not a number from 0 up");
+  CHECK(message(q, {0, 0}) == "duet: average: all weights are 0");
+}

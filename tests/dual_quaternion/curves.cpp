@@ -1,0 +1,122 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual_quaternion/cases.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/quaternion/curves.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+// Squad and Bézier curves, of poses and so of rotations; the long way round.
+
+using duet::bezier;
+using duet::squad;
+using duet::squad_control;
+using duet::way;
+using duet_test::gap;
+using duet_test::vector;
+using dual_quaternion = duet::dual_quaternion<double>;
+
+namespace {
+
+/// Poses along a smooth motion, signs aligned.
+std::vector<dual_quaternion> table() {
+  std::vector<dual_quaternion> result;
+  for (int i = 0; i < 6; ++i) {
+    const double t = 0.5 * i;
+    result.push_back(
+        duet::pose(duet::from_rotation_vector(vector(std::sin(t), 0.6 * t, 0.3 * t * t)),
+                   vector(t, t * t, 1)));
+    if (i > 0 && dot(result[std::size_t(i - 1)], result.back()).value() < 0) {
+      result.back() = -result.back();
+    }
+  }
+  return result;
+}
+
+template <class D>
+duet::vector6<double> body_twist(const D& d) {
+  return duet::twist(d.value, d.derivative, duet::frame::body);
+}
+
+} // namespace
+
+TEST_CASE("squad goes through the poses, with one velocity where segments join") {
+  const auto p = table();
+  const auto segment = [&](std::size_t i) {
+    return [&p, i](const auto& tau) {
+      return squad(p[i], squad_control(p[i - 1], p[i], p[i + 1]),
+                   squad_control(p[i], p[i + 1], p[i + 2]), p[i + 1], tau);
+    };
+  };
+  for (std::size_t i = 1; i + 3 < p.size(); ++i) {
+    const auto begin = duet::derivative(segment(i), 0.0);
+    const auto end = duet::derivative(segment(i), 1.0);
+    CHECK(gap(begin.value, p[i]) < 2e-15);
+    CHECK(gap(end.value, p[i + 1]) < 4e-15);
+    CHECK(gap(body_twist(end), body_twist(duet::derivative(segment(i + 1), 0.0))) < 4e-14);
+  }
+  // The velocity there: the mean of the logarithms to both sides.
+  const auto forth = log(conj(p[1]) * p[2]).vec();
+  const auto back = log(conj(p[1]) * p[0]).vec();
+  const duet::dual_vector<double> mean = forth - back;
+  CHECK(gap(body_twist(duet::derivative(segment(1), 0.0)), duet::twist_of(mean)) < 2e-14);
+}
+
+TEST_CASE("Bézier curves start and end along the control polygon, n times as fast") {
+  const auto p = table();
+  for (std::size_t n = 1; n <= 4; ++n) {
+    const std::vector<dual_quaternion> points(p.begin(), p.begin() + int(n) + 1);
+    const auto curve = [&](const auto& tau) { return bezier(points, tau); };
+    const auto begin = duet::derivative(curve, 0.0);
+    const auto end = duet::derivative(curve, 1.0);
+    CHECK(gap(begin.value, points.front()) < 2e-15);
+    CHECK(gap(end.value, points.back()) < 2e-14);
+    const auto speed = double(n) * 2.0;
+    const duet::dual_vector<double> first = log(conj(points[0]) * points[1]).vec() * speed;
+    const duet::dual_vector<double> last = log(conj(points[n - 1]) * points[n]).vec() * speed;
+    CHECK(gap(body_twist(begin), duet::twist_of(first)) < 4e-14);
+    CHECK(gap(body_twist(end), duet::twist_of(last)) < 4e-14);
+  }
+  CHECK(gap(bezier(std::vector<dual_quaternion>{p[0]}, 0.4), p[0]) == 0);
+  CHECK(gap(bezier(std::vector<dual_quaternion>{p[0], p[1]}, 0.4), sclerp(p[0], p[1], 0.4)) == 0);
+  CHECK_THROWS_WITH_AS(static_cast<void>(bezier(std::vector<dual_quaternion>(), 0.4)),
+                       "duet: bezier: there are no control points", duet::invalid_input);
+}
+
+TEST_CASE("third derivatives agree with the slopes of second ones") {
+  const auto p = table();
+  const auto curve = [&](const auto& tau) { return bezier(p, tau); };
+  const auto d = duet::derivatives<3>(curve, 0.4);
+  const auto second = [&](const auto& tau) { return duet::derivatives<2>(curve, tau)[2]; };
+  CHECK(gap(d[3], duet::derivative(second, 0.4).derivative) < 4e-12);
+}
+
+TEST_CASE("the long way round, the short one, and the one the signs say") {
+  const auto a = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
+  const auto b = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 1.0), vector(0, 0, 2));
+  for (const auto& goal : {b, -b}) {
+    const auto angle = [&](way round) {
+      const auto d = duet::derivative([&](auto t) { return sclerp(a, goal, t, round); }, 0.0);
+      CHECK(gap(duet::transform_matrix(sclerp(a, goal, 1.0, round)), duet::transform_matrix(b)) <
+            2e-15);
+      return duet::twist(d.value, d.derivative, duet::frame::body)[5];
+    };
+    const double long_way = 1 - 2 * 3.141592653589793;
+    CHECK(angle(way::shortest) == doctest::Approx(1.0).epsilon(1e-15));
+    CHECK(angle(way::longest) == doctest::Approx(long_way).epsilon(1e-15));
+    CHECK(angle(way::as_given) ==
+          doctest::Approx(duet::real_part(goal).w() > 0 ? 1.0 : long_way).epsilon(1e-15));
+  }
+  CHECK_FALSE(is_half_turn_apart(a, b));
+  const auto half_turn = duet::pose(duet::quaternion<double>(0, 0.6, 0.8, 0), vector(1, 2, 3));
+  CHECK(is_half_turn_apart(a, half_turn));
+  CHECK_FALSE(is_half_turn_apart(
+      a, duet::pose(duet::from_axis_angle(vector(1, 0, 0), 3.1415926), vector(1, 2, 3))));
+}

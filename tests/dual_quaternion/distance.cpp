@@ -1,0 +1,116 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "dual_quaternion/cases.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual_quaternion/distance.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+// Distances of poses and of screw motions; poses as seven coordinates (N20, N21).
+
+using duet::screw_parameters;
+using duet_test::gap;
+using duet_test::poses;
+using duet_test::vector;
+using dual_quaternion = duet::dual_quaternion<double>;
+
+TEST_CASE("the distance is a metric that knows no fixed frame") {
+  const auto all = poses();
+  const double length = 0.5;
+  for (std::size_t i = 0; i + 7 < all.size(); ++i) {
+    const auto& a = all[i];
+    const auto& b = all[i + 4];
+    const auto& c = all[i + 7];
+    const double ab = distance(a, b, length);
+    CHECK(distance(a, a, length) < 1e-15);
+    CHECK(distance(b, a, length) == doctest::Approx(ab).epsilon(1e-13));
+    CHECK(distance(a, -b, length) == ab);
+    CHECK(distance(c * a, c * b, length) == doctest::Approx(ab).epsilon(1e-12).scale(0.01));
+    CHECK(distance(a, c, length) <= ab + distance(b, c, length) + 1e-14);
+  }
+  const auto a = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 0.3), vector(1, 2, 3));
+  const auto b = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 1.1), vector(1, 2, 4));
+  CHECK(distance(a, b, 10.0) == doctest::Approx(std::sqrt(1 + 64)).epsilon(1e-15));
+  CHECK(distance(a, b, 0.0) == doctest::Approx(1).epsilon(1e-15));
+  CHECK_THROWS_WITH_AS(static_cast<void>(distance(a, b, -1)),
+                       "duet: distance: length is -1, not a number from 0 up", duet::invalid_input);
+}
+
+TEST_CASE("a pose on a screw motion, and one beside it, is found again") {
+  // A corkscrew of three turns.
+  const duet::screw_motion<double> motion = {vector(0, 0, 1), vector(0, -1, 0),
+                                             6 * 3.141592653589793, 0.9, duet::screw_kind::screw};
+  const auto start = duet::pose(duet::from_rotation_vector(vector(0.2, -1, 0.4)), vector(1, 0, 2));
+  for (const double tau : {0.0, 0.123, 0.5, 0.77, 1.0}) {
+    const auto on = start * duet::from_screw(motion.axis, motion.moment, motion.angle * tau,
+                                             motion.translation * tau);
+    const auto found = nearest_on_screw(start, motion, on, 0.3);
+    CHECK(found.tau == doctest::Approx(tau).epsilon(1e-12));
+    CHECK(found.squared_distance < 1e-24);
+    const auto beside = on * duet::pose(duet::quaternion<double>(1.0), vector(0.1, 0, 0));
+    const auto near = nearest_on_screw(start, motion, beside, 0.3);
+    for (int i = 0; i <= 2000; ++i) {
+      const double t = i / 2000.0;
+      const auto there = start * duet::from_screw(motion.axis, motion.moment, motion.angle * t,
+                                                  motion.translation * t);
+      CHECK_GE(squared_distance(there, beside, 0.3), near.squared_distance - 1e-15);
+    }
+  }
+}
+
+TEST_CASE("outside, an end is nearest") {
+  const auto start = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
+  const auto goal = duet::pose(duet::quaternion<double>(1.0), vector(2, 0, 0));
+  const auto motion = screw_parameters(conj(start) * goal);
+  const auto at = [&](double x) {
+    return nearest_on_screw(start, motion,
+                            duet::pose(duet::quaternion<double>(1.0), vector(x, 1, 0)), 1.0)
+        .tau;
+  };
+  CHECK(at(-1) == 0);
+  CHECK(at(0.5) == doctest::Approx(0.25).epsilon(1e-14));
+  CHECK(at(3) == 1);
+}
+
+TEST_CASE("the nearest place is differentiated by the equation that it solves") {
+  const auto start = duet::pose(duet::from_rotation_vector(vector(0.2, -1, 0.4)), vector(1, 0, 2));
+  const auto goal = duet::pose(duet::from_rotation_vector(vector(1.2, 0.3, 0)), vector(0, 1, 4));
+  const auto motion = screw_parameters(conj(start) * goal);
+  const auto tau = [&](const auto& t) {
+    using T = std::decay_t<decltype(t)>;
+    const duet::screw_motion<T> m = {motion.axis.cast<T>(), motion.moment.cast<T>(),
+                                     T(motion.angle), T(motion.translation), motion.kind};
+    const auto p =
+        duet::pose(duet::quaternion<T>(duet::rotation(goal)), duet::vector3<T>(t, t * t, T(3)));
+    return nearest_on_screw(duet::dual_quaternion<T>(start), m, p, 0.7).tau;
+  };
+  const double h = 1e-3;
+  const auto slope = [&](double step) { return (tau(0.4 + step) - tau(0.4 - step)) / (2 * step); };
+  CHECK(duet::derivative(tau, 0.4).derivative ==
+        doctest::Approx((4 * slope(h) - slope(2 * h)) / 3).epsilon(1e-8));
+}
+
+TEST_CASE("N21: J2 takes the rate of [t; α] to the spatial twist, and back") {
+  for (const auto& a : poses()) {
+    duet::vector6<double> v;
+    v << 0.3, -1, 0.4, 0.7, 0.2, -0.5;
+    const auto gamma = duet::pose_coordinates(a);
+    CHECK(gap(duet::from_pose_coordinates(gamma), a) < 2e-15);
+    const auto rate = duet::pose_coordinates_rate(a, v);
+    CHECK(gap(duet::pose_rate_matrix(a) * rate, v) < 1e-14);
+    // The same by AD: along A exp(½Vt) in spatial axes.
+    const auto by_ad = duet::derivative(
+        [&](auto t) {
+          using S = decltype(t);
+          const duet::dual_vector<S> half = duet::dual_vector_of<S>(v.cast<S>() * S(t / 2));
+          return duet::pose_coordinates(duet::exp(half) * duet::dual_quaternion<S>(a));
+        },
+        0.0);
+    CHECK(gap(by_ad.derivative, rate) < 1e-14);
+  }
+}
