@@ -1,0 +1,141 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "support/random.hpp"
+
+#include <duet/dual/math.hpp>
+#include <duet/interop/multiprecision.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// A formula of the documents by three routes: duet over duals, Taylor numbers and nested duals,
+/// the textbook's closed form, and that closed form in 50 digits, which is taken as the truth.
+
+namespace duet_formulas {
+
+using wide = duet::real_50;
+template <class T>
+using numbers = std::vector<T>;
+
+/// What an argument is made of; its special values are those that formulas stumble over.
+enum class argument {
+  number,     ///< any
+  fraction,   ///< from 0 to 1
+  vector,     ///< three components
+  rotation,   ///< a rotation vector: none, tiny, half turn, nearly full turn
+  quaternion, ///< four components, not zero
+};
+
+/// How far a route may be from the truth.
+struct bounds {
+  double value = 4;  ///< of the formula, in ulp
+  double slope = 16; ///< of its first derivative, in ulp
+};
+
+/// One row of the table.
+struct formula {
+  std::string label;
+  std::string text;     ///< the formula, in TeX
+  std::string function; ///< what computes it
+  std::string header;   ///< below include/duet/
+  std::vector<argument> arguments;
+  bounds limits;
+  /// Do all arguments but the last stand still?
+  bool only_last_moves = false;
+  /// Is this input one that the formula is defined at?
+  std::function<bool(const numbers<double>&)> is_valid;
+
+  /// Value and first derivative along a direction, in a row.
+  std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> closed;
+  std::function<numbers<wide>(const numbers<wide>&, const numbers<wide>&)> truth;
+  /// The same by duet over duals; over Taylor numbers and nested duals the second derivative too.
+  std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> dual;
+  std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> taylor;
+  std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> nested;
+};
+
+/// A row of which another test is the proof.
+struct reference {
+  std::string label;
+  std::string text;
+  std::string function;
+  std::string test;
+};
+
+/// `library` and `closed` are templates over the scalar: library(x) → f(x) with duet, and
+/// closed(x, ẋ) → f and ∂f/∂x ẋ written out.
+template <class Library, class Closed>
+formula make_formula(std::string label, std::string text, std::string function, std::string header,
+                     std::vector<argument> arguments, const Library& library, const Closed& closed,
+                     bounds limits = {},
+                     std::function<bool(const numbers<double>&)> is_valid = {}) {
+  formula f;
+  f.label = std::move(label);
+  f.text = std::move(text);
+  f.function = std::move(function);
+  f.header = std::move(header);
+  f.arguments = std::move(arguments);
+  f.limits = limits;
+  f.is_valid = std::move(is_valid);
+  using first = duet::dual<double, 1, duet::derivative_tag<struct inner>>;
+  using second = duet::dual<first, 1, duet::derivative_tag<struct outer>>;
+  using series = duet::taylor<double, 2>;
+  f.closed = [closed](const numbers<double>& x, const numbers<double>& d) { return closed(x, d); };
+  f.truth = [closed](const numbers<wide>& x, const numbers<wide>& d) { return closed(x, d); };
+  f.dual = [library](const numbers<double>& x, const numbers<double>& d) {
+    numbers<first> s;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      s.push_back(first(x[i], d[i]));
+    }
+    const numbers<first> y = library(s);
+    numbers<double> result;
+    for (const first& part : y) {
+      result.push_back(part.value());
+    }
+    for (const first& part : y) {
+      result.push_back(part.epsilon());
+    }
+    return result;
+  };
+  f.nested = [library](const numbers<double>& x, const numbers<double>& d) {
+    numbers<second> s;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      s.push_back(second(first(x[i], d[i]), first(d[i], 0)));
+    }
+    const numbers<second> y = library(s);
+    numbers<double> result;
+    for (const second& part : y) {
+      result.push_back(part.value().value());
+    }
+    for (const second& part : y) {
+      result.push_back(part.value().epsilon());
+    }
+    for (const second& part : y) {
+      result.push_back(part.epsilon().epsilon());
+    }
+    return result;
+  };
+  f.taylor = [library](const numbers<double>& x, const numbers<double>& d) {
+    numbers<series> s;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      s.push_back(x[i] + d[i] * series::variable(0));
+    }
+    const numbers<series> y = library(s);
+    numbers<double> result;
+    for (int k = 0; k <= 2; ++k) {
+      for (const series& part : y) {
+        result.push_back(part.derivative(k));
+      }
+    }
+    return result;
+  };
+  return f;
+}
+
+} // namespace duet_formulas
