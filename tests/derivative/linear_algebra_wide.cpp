@@ -1,13 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "dual/eigen_problems.hpp"
 #include "support/multiprecision.hpp"
+#include "support/random.hpp"
 
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/linear_solve.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
 
-#include <Eigen/SVD>
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -21,24 +20,56 @@
 
 using duet::dual;
 using duet::taylor;
-using duet_test::real_50;
-using duet_test::seeded;
 using Eigen::Dynamic;
 using Eigen::MatrixXd;
 
 namespace {
 
-using wide = Eigen::Matrix<real_50, Dynamic, Dynamic>;
+// Every type of matrix that Eigen factorises takes seconds to compile: all are of dynamic size, and
+// of the harder kind of 50 digits, that with expression templates.
+using real_50 = duet_test::real_50_et;
+template <class T>
+using matrix = Eigen::Matrix<T, Dynamic, Dynamic>;
+template <class T>
+using vector = Eigen::Matrix<T, Dynamic, 1>;
+using wide = matrix<real_50>;
 using wide_dual = dual<real_50>;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 wide widened(const MatrixXd& m) {
-  return m.unaryExpr([](double x) { return real_50(x); });
+  wide result(m.rows(), m.cols());
+  for (int i = 0; i < m.size(); ++i) {
+    result(i) = m(i);
+  }
+  return result;
 }
 
-auto widened(const MatrixXd& value, const MatrixXd& slope) {
-  const auto make = [](double v, double s) { return wide_dual(real_50(v), real_50(s)); };
-  return value.binaryExpr(slope, make).eval();
+template <class T>
+matrix<dual<T>> moving(const MatrixXd& value, const MatrixXd& slope) {
+  matrix<dual<T>> result(value.rows(), value.cols());
+  for (int i = 0; i < value.size(); ++i) {
+    result(i) = dual<T>(T(value(i)), T(slope(i)));
+  }
+  return result;
+}
+
+/// A x + y
+vector<real_50> product(const wide& a, const vector<real_50>& x, vector<real_50> y) {
+  for (int i = 0; i < a.rows(); ++i) {
+    for (int k = 0; k < a.cols(); ++k) {
+      y[i] += a(i, k) * x[k];
+    }
+  }
+  return y;
+}
+
+/// AᵀB
+wide transposed_times(const wide& a, const wide& b) {
+  wide result = wide::Zero(a.cols(), b.cols());
+  for (int j = 0; j < b.cols(); ++j) {
+    result.col(j) = product(a.transpose(), b.col(j), result.col(j));
+  }
+  return result;
 }
 
 MatrixXd hilbert(int rows, int columns) {
@@ -46,9 +77,14 @@ MatrixXd hilbert(int rows, int columns) {
                                [](auto i, auto j) { return 1.0 / double(i + j + 1); });
 }
 
+double size(const vector<real_50>& x) {
+  return double(real_50(sqrt(transposed_times(x, x)(0, 0))));
+}
+
 double condition(const MatrixXd& a) {
-  const auto singular = Eigen::JacobiSVD<MatrixXd>(a).singularValues().eval();
-  return singular[0] / singular[singular.size() - 1];
+  const wide wide_a = widened(a);
+  const auto squares = duet::symmetric_eigen(transposed_times(wide_a, wide_a)).values;
+  return double(real_50(sqrt(real_50(squares[squares.size() - 1] / squares[0]))));
 }
 
 MatrixXd draw(int rows, int columns, int seed) {
@@ -57,8 +93,8 @@ MatrixXd draw(int rows, int columns, int seed) {
 }
 
 /// ‖computed − exact‖ / ‖exact‖ of values, then of slopes.
-template <class X, class W>
-std::array<double, 2> relative_errors(const X& computed, const W& exact) {
+std::array<double, 2> relative_errors(const vector<dual<double>>& computed,
+                                      const vector<wide_dual>& exact) {
   std::array<double, 2> result{};
   for (int k = 0; k < 2; ++k) {
     real_50 error = 0;
@@ -84,17 +120,19 @@ TEST_CASE("Hilbert systems: errors below cond(A) ε / 10") {
     const MatrixXd a_slope = draw(n, n, n);
     const MatrixXd b = draw(n, 1, n + 100);
     const MatrixXd b_slope = draw(n, 1, n + 200);
-    const auto exact = duet::solve(widened(a, a_slope), widened(b, b_slope));
+    const vector<wide_dual> wide_b = moving<real_50>(b, b_slope);
+    const auto exact = duet::solve(moving<real_50>(a, a_slope), wide_b);
     // In 50 digits it is the closed form A⁻¹(b′ − A′x).
-    const auto lu = widened(a).partialPivLu();
-    const wide x = lu.solve(widened(b));
-    const wide slope = lu.solve(widened(b_slope) - widened(a_slope) * x);
+    const Eigen::PartialPivLU<wide> lu(widened(a));
+    const auto solved = [&](const vector<real_50>& r) { return lu.solve(r).eval(); };
+    const vector<real_50> x = solved(widened(b));
+    const vector<real_50> slope = solved(product(widened(-a_slope), x, widened(b_slope)));
     for (int i = 0; i < n; ++i) {
-      CHECK(exact(i).value() == x(i));
-      CHECK(abs(real_50(exact(i).epsilon() - slope(i))) <= 1e-35 * slope.norm());
+      CHECK((exact(i).value() == x(i)));
+      CHECK(double(abs(real_50(exact(i).epsilon() - slope(i)))) <= 1e-35 * size(slope));
     }
-    const auto computed = duet::solve(seeded<dual<double>, Dynamic, Dynamic>(a, a_slope),
-                                      seeded<dual<double>, Dynamic, 1>(b, b_slope));
+    const vector<dual<double>> moving_b = moving<double>(b, b_slope);
+    const auto computed = duet::solve(moving<double>(a, a_slope), moving_b);
     const auto errors = relative_errors(computed, exact);
     const double bound = condition(a) * epsilon / 10;
     CHECK(errors[0] <= bound);
@@ -110,19 +148,23 @@ TEST_CASE("Hilbert fits: errors below 2 cond(A) ε") {
     const MatrixXd a_slope = draw(2 * n, n, n);
     const MatrixXd b = draw(2 * n, 1, n + 100);
     const MatrixXd b_slope = draw(2 * n, 1, n + 200);
-    const auto exact = duet::least_squares(widened(a, a_slope), widened(b, b_slope));
+    const vector<wide_dual> wide_b = moving<real_50>(b, b_slope);
+    const auto exact = duet::least_squares(moving<real_50>(a, a_slope), wide_b);
     const wide wide_a = widened(a);
     const wide wide_slope = widened(a_slope);
-    const auto lu = wide(wide_a.transpose() * wide_a).partialPivLu();
-    const wide x = lu.solve(wide_a.transpose() * widened(b));
-    const wide slope = lu.solve(wide_slope.transpose() * (widened(b) - wide_a * x) +
-                                wide_a.transpose() * (widened(b_slope) - wide_slope * x));
+    const Eigen::PartialPivLU<wide> lu(transposed_times(wide_a, wide_a));
+    const auto solved = [&](const vector<real_50>& r) { return lu.solve(r).eval(); };
+    const vector<real_50> x = solved(transposed_times(wide_a, widened(b)));
+    const vector<real_50> rest = product(widened(-a), x, widened(b));
+    const vector<real_50> rest_slope = product(widened(-a_slope), x, widened(b_slope));
+    const vector<real_50> slope =
+        solved(product(wide_slope.transpose(), rest, transposed_times(wide_a, rest_slope)));
     for (int i = 0; i < n; ++i) {
-      CHECK(abs(real_50(exact(i).value() - x(i))) <= 1e-35 * x.norm());
-      CHECK(abs(real_50(exact(i).epsilon() - slope(i))) <= 1e-35 * slope.norm());
+      CHECK(double(abs(real_50(exact(i).value() - x(i)))) <= 1e-35 * size(x));
+      CHECK(double(abs(real_50(exact(i).epsilon() - slope(i)))) <= 1e-35 * size(slope));
     }
-    const auto computed = duet::least_squares(seeded<dual<double>, Dynamic, Dynamic>(a, a_slope),
-                                              seeded<dual<double>, Dynamic, 1>(b, b_slope));
+    const vector<dual<double>> moving_b = moving<double>(b, b_slope);
+    const auto computed = duet::least_squares(moving<double>(a, a_slope), moving_b);
     const auto errors = relative_errors(computed, exact);
     const double bound = 2 * condition(a) * epsilon;
     CHECK(errors[0] <= bound);
@@ -137,8 +179,10 @@ TEST_CASE("a fit that leaves nothing of b: errors below cond(A) ε / 10") {
   const MatrixXd none = MatrixXd::Zero(2 * n, n);
   const MatrixXd b = a.col(2);
   const MatrixXd b_slope = draw(2 * n, 1, 1);
-  const auto exact = duet::least_squares(widened(a, none), widened(b, b_slope));
-  const auto computed = duet::least_squares(a, seeded<dual<double>, Dynamic, 1>(b, b_slope));
+  const vector<wide_dual> wide_b = moving<real_50>(b, b_slope);
+  const auto exact = duet::least_squares(moving<real_50>(a, none), wide_b);
+  const vector<dual<double>> moving_b = moving<double>(b, b_slope);
+  const auto computed = duet::least_squares(a, moving_b);
   const auto errors = relative_errors(computed, exact);
   CHECK(errors[0] <= condition(a) * epsilon / 10);
   CHECK(errors[1] <= condition(a) * epsilon / 10);
@@ -149,13 +193,17 @@ TEST_CASE("eigenvalues and eigenvectors, the smallest 1e-9 of the largest") {
   const MatrixXd a = hilbert(n, n);
   const MatrixXd half = draw(n, n, 3);
   const MatrixXd slope = half + half.transpose();
-  const auto exact = duet::symmetric_eigen(widened(a, slope));
-  const auto computed = duet::symmetric_eigen(seeded<dual<double>, Dynamic, Dynamic>(a, slope));
+  const auto exact = duet::symmetric_eigen(moving<real_50>(a, slope));
+  const auto computed = duet::symmetric_eigen(moving<double>(a, slope));
   for (int j = 0; j < n; ++j) {
     // By 50 digits: λ′ = vᵀA′v
-    const wide v = exact.vectors.col(j).unaryExpr([](const auto& x) { return x.value(); });
-    const real_50 rate = (v.transpose() * widened(slope) * v)(0, 0);
-    CHECK(abs(real_50(exact.values[j].epsilon() - rate)) <= 1e-38);
+    vector<real_50> v(n);
+    for (int i = 0; i < n; ++i) {
+      v[i] = exact.vectors(i, j).value();
+    }
+    const vector<real_50> none = vector<real_50>::Zero(n);
+    const real_50 rate = transposed_times(v, product(widened(slope), v, none))(0, 0);
+    CHECK(double(abs(real_50(exact.values[j].epsilon() - rate))) <= 1e-38);
     double gap = 1;
     for (int i = 0; i < n; ++i) {
       if (i != j) {
@@ -164,55 +212,61 @@ TEST_CASE("eigenvalues and eigenvectors, the smallest 1e-9 of the largest") {
       }
     }
     const auto value_errors =
-        relative_errors(computed.values.segment(j, 1).eval(), exact.values.segment(j, 1).eval());
-    const auto vector_errors = relative_errors(
-        (computed.vectors.col(j) * (computed.vectors(0, j).value() * double(v(0)) < 0 ? -1.0 : 1.0))
-            .eval(),
-        exact.vectors.col(j).eval());
+        relative_errors(computed.values.segment(j, 1), exact.values.segment(j, 1));
+    const double sign = computed.vectors(0, j).value() * double(v[0]) < 0 ? -1 : 1;
+    const auto vector_errors =
+        relative_errors(sign * computed.vectors.col(j), exact.vectors.col(j));
     CHECK(value_errors[1] <= 10 * epsilon / gap);
     CHECK(vector_errors[0] <= 10 * epsilon / gap);
     CHECK(vector_errors[1] <= 10 * epsilon / gap);
   }
 }
 
-TEST_CASE("second order: Taylor numbers in 50 digits, and with expression templates") {
-  const auto check = [](auto zero) {
-    using R = decltype(zero);
-    using series = taylor<R, 2>;
-    const series t = series::variable(R(2));
-    Eigen::Matrix<series, 2, 2> a;
-    a << t, series(R(0)), series(R(1)), t * t;
-    const Eigen::Matrix<series, 2, 1> b(series(R(1)), t);
-    const auto close = [](const R& x, const R& y) { return abs(R(x - y)) <= 1e-45; };
-    // x₀ = 1/t, x₁ = (t − 1/t)/t²
-    const auto x = duet::solve(a, b);
-    const auto y = duet::least_squares(a, b);
-    const series exact = (t - 1 / t) / (t * t);
-    // λ of the symmetric matrix with this lower triangle
-    const auto e = duet::symmetric_eigen(a);
-    const series root = sqrt((t - t * t) * (t - t * t) + 4);
-    for (int k = 0; k <= 2; ++k) {
-      CHECK(close(x[0].coefficient(k), series(1 / t).coefficient(k)));
-      CHECK(close(x[1].coefficient(k), exact.coefficient(k)));
-      CHECK(close(y[1].coefficient(k), exact.coefficient(k)));
-      CHECK(close(e.values[1].coefficient(k), series((t + t * t + root) / 2).coefficient(k)));
-    }
+TEST_CASE("second order: Taylor numbers in 50 digits") {
+  using series = taylor<real_50, 2>;
+  const series t = series::variable(real_50(2));
+  const series square = t * t;
+  matrix<series> a(2, 2);
+  a(0, 0) = t;
+  a(0, 1) = series(real_50(0));
+  a(1, 0) = series(real_50(1));
+  a(1, 1) = square;
+  vector<series> b(2);
+  b[0] = series(real_50(1));
+  b[1] = t;
+  const auto close = [](const series& x, const series& y, int k) {
+    return abs(real_50(x.coefficient(k) - y.coefficient(k))) <= 1e-45;
   };
-  check(real_50(0));
-  check(duet_test::real_50_et(0));
+  // x₀ = 1/t, x₁ = (t − 1/t)/t²
+  const auto x = duet::solve(a, b);
+  const auto y = duet::least_squares(a, b);
+  const series inverse = 1 / t;
+  const series exact = (t - inverse) / square;
+  // λ of the symmetric matrix with this lower triangle
+  const auto e = duet::symmetric_eigen(a);
+  const series difference = t - square;
+  const series root = sqrt(difference * difference + 4);
+  const series largest = (t + square + root) / 2;
+  for (int k = 0; k <= 2; ++k) {
+    CHECK(close(x[0], inverse, k));
+    CHECK(close(x[1], exact, k));
+    CHECK(close(y[1], exact, k));
+    CHECK(close(e.values[1], largest, k));
+  }
 }
 
 TEST_CASE("messages with numbers of 50 digits") {
   const wide a = wide::Ones(2, 2);
+  const vector<real_50> right = vector<real_50>::Ones(2);
   CHECK_THROWS_WITH_AS(
-      static_cast<void>(duet::solve(a, a)),
+      static_cast<void>(duet::solve(a, right)),
       "duet: solve: A is singular: of pivot 2 of 2 nothing but rounding remains, 0",
       duet::invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(duet::least_squares(a, a)),
+  CHECK_THROWS_WITH_AS(static_cast<void>(duet::least_squares(a, right)),
                        "duet: least_squares: A has rank 1, less than its 2 columns",
                        duet::invalid_input);
   // More digits than doubles have tell these rows apart.
   wide b = a;
   b(1, 1) += real_50(1e-30);
-  CHECK(duet::solve(b, a).rows() == 2);
+  CHECK(duet::solve(b, right).rows() == 2);
 }

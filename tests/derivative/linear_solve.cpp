@@ -29,11 +29,6 @@ namespace {
 
 struct outer_tag;
 
-template <class X>
-MatrixXd values_of(const X& x) {
-  return x.unaryExpr([](const auto& s) { return double(duet::innermost(s)); });
-}
-
 template <int N>
 void check(const linear_problem& p) {
   CAPTURE(p.name);
@@ -46,8 +41,11 @@ void check(const linear_problem& p) {
   check_solution(x, p, 3);
   const Eigen::Matrix<double, N, N> real_a = p.a;
   const Eigen::Matrix<double, N, 1> real_b = p.b;
-  CHECK(values_of(x) == real_a.partialPivLu().solve(real_b));
-  CHECK(solve(real_a, real_b) == real_a.partialPivLu().solve(real_b));
+  const Eigen::Matrix<double, N, 1> real_x = real_a.partialPivLu().solve(real_b).eval();
+  CHECK((solve(real_a, real_b) == real_x));
+  for (int i = 0; i < x.size(); ++i) {
+    CHECK(x[i].value() == real_x[i]);
+  }
 }
 
 MatrixXd hilbert(int n) {
@@ -66,14 +64,11 @@ std::string message(const A& a, const B& b) {
 
 } // namespace
 
+// All fixed sizes here are 3: each size that Eigen factorises takes seconds to compile.
 TEST_CASE("fixed sizes: Eigen's values, and the derivatives A⁻¹(b′ − A′x)") {
-  const auto all = [](auto size) {
-    for (const auto& p : problems(size())) {
-      check<size()>(p);
-    }
-  };
-  all(std::integral_constant<int, 2>());
-  all(std::integral_constant<int, 3>());
+  for (const auto& p : problems(3)) {
+    check<3>(p);
+  }
 }
 
 TEST_CASE("dynamic sizes") {
@@ -105,9 +100,9 @@ TEST_CASE("higher orders, by Taylor numbers and nested duals") {
   for (const int n : {1, 2, 4, 12}) {
     for (const auto& p : problems(n)) {
       CAPTURE(p.name);
-      const auto lu = p.a.fullPivLu();
-      const VectorXd exact[] = {p.x(), p.x_slope(), lu.solve(-2 * p.a_slope * p.x_slope()),
-                                lu.solve(-3 * p.a_slope * lu.solve(-2 * p.a_slope * p.x_slope()))};
+      VectorXd exact[] = {p.x(), p.x_slope(), {}, {}};
+      exact[2] = -2 * p.solved(p.a_slope * exact[1]);
+      exact[3] = -3 * p.solved(p.a_slope * exact[2]);
       double size = 1;
       const auto as_series = [](double v, double d) { return series({v, d, 0, 0}); };
       const auto as_nested = [](double v, double d) { return nested({v, d}, dual<double>(d)); };
@@ -149,31 +144,37 @@ TEST_CASE("scalars and shapes of A and b may differ") {
   static_assert(std::is_same_v<decltype(by_b), const Eigen::Matrix<D, 3, 1>>);
   check_solution(by_a, only_a);
   check_solution(by_b, only_b);
-  check_solution(solve(a.transpose().transpose(), b + 0 * b), p);
+  const auto fixed_b = seeded<D, 3, 1>(p.b, p.b_slope);
+  check_solution(solve(a.transpose().transpose(), fixed_b + 0 * fixed_b), p);
 
   // Two levels meet: the mixed derivative is −A⁻¹A′A⁻¹b′.
   using E = dual<double, 1, outer_tag>;
   const auto mixed = solve(a, seeded<E, 3, 1>(p.b, p.b_slope));
-  const VectorXd cross = -p.a.fullPivLu().solve(p.a_slope * p.a.fullPivLu().solve(p.b_slope));
+  const VectorXd cross = -p.solved(p.a_slope * p.solved(p.b_slope));
   for (int i = 0; i < 3; ++i) {
     const auto& inner = duet::detail::part<outer_tag>(mixed[i], 1);
     CHECK(std::abs(duet::detail::part<duet::derivative_tag<>>(inner, 1) - cross[i]) <= 1e-13);
   }
 
   // Several right-hand sides, and the inverse.
-  const auto columns = solve(a, b.replicate(1, 3));
-  check_solution(columns.col(2).eval(), p);
-  const MatrixXd inverse = p.a.inverse();
-  const MatrixXd inverse_slope = -inverse * p.a_slope * inverse;
-  const auto x = solve(a, Eigen::Matrix3d::Identity());
-  for (int k = 0; k < 9; ++k) {
-    CHECK(std::abs(x(k).epsilon() - inverse_slope(k)) <= 1e-13 * inverse_slope.norm());
+  const auto dynamic_a = seeded<D, Dynamic, Dynamic>(p.a, p.a_slope);
+  const auto columns = solve(dynamic_a, b.replicate(1, 3));
+  check_solution(columns.col(2), p);
+  const auto x = solve(dynamic_a, MatrixXd::Identity(3, 3));
+  for (int j = 0; j < 3; ++j) {
+    const VectorXd inverse = p.solved(VectorXd::Unit(3, j));
+    const VectorXd inverse_slope = -p.solved(p.a_slope * inverse);
+    for (int i = 0; i < 3; ++i) {
+      CHECK(std::abs(x(i, j).epsilon() - inverse_slope[i]) <= 1e-13 * inverse_slope.norm());
+    }
   }
 
-  CHECK(solve(Eigen::Matrix2i{{2, 0}, {0, 4}}, Eigen::Vector2i(1, 1)) ==
-        Eigen::Vector2d(0.5, 0.25));
-  CHECK(solve(Eigen::Matrix2f{{2, 1}, {0, 4}}, Eigen::Vector2f(1, 1)) ==
-        Eigen::Vector2f(0.375F, 0.25F));
+  const Eigen::Vector3d of_integers =
+      solve(Eigen::Matrix3i{{2, 0, 0}, {0, 4, 0}, {0, 0, 1}}, Eigen::Vector3i(1, 1, 1));
+  CHECK((of_integers == Eigen::Vector3d(0.5, 0.25, 1)));
+  const Eigen::VectorXf of_floats =
+      solve(Eigen::MatrixXf{{2, 1}, {0, 4}}, Eigen::VectorXf::Ones(2));
+  CHECK((of_floats == Eigen::Vector2f(0.375F, 0.25F)));
   const auto l = solve(Eigen::Matrix<dual<long double>, 1, 1>(dual<long double>(4, 1)),
                        Eigen::Matrix<double, 1, 2>(2, 8));
   CHECK(l(0, 1).value() == 2);
@@ -183,34 +184,38 @@ TEST_CASE("scalars and shapes of A and b may differ") {
 TEST_CASE("inside a differentiated function") {
   const auto f = [](const auto& p) {
     using T = std::decay_t<decltype(p[0])>;
-    Eigen::Matrix<T, 2, 2> a;
-    a << p[0], p[1], p[1], 3.0;
-    return solve(a, Eigen::Vector2d(1, 2));
+    Eigen::Matrix<T, 3, 3> a;
+    a << p[0], p[1], 0.0, p[1], 3.0, 0.0, 0.0, 0.0, 1.0;
+    return solve(a, Eigen::Vector3d(1, 2, 4));
   };
-  const auto [x, J] = duet::jacobian(f, Eigen::Vector2d(2, 1)); // x = (3 − 2q, 2p − q)/(3p − q²)
-  CHECK((x - Eigen::Vector2d(0.2, 0.6)).norm() <= 1e-16);
-  const Eigen::Matrix2d expected{{-0.12, -0.32}, {0.04, 0.04}};
+  // x = ((3 − 2q)/(3p − q²), (2p − q)/(3p − q²), 4)
+  const auto [x, J] = duet::jacobian(f, Eigen::Vector2d(2, 1));
+  CHECK((x - Eigen::Vector3d(0.2, 0.6, 4)).norm() <= 1e-16);
+  const Eigen::Matrix<double, 3, 2> expected{{-0.12, -0.32}, {0.04, 0.04}, {0, 0}};
   CHECK((J - expected).norm() <= 1e-15);
 }
 
 TEST_CASE("what does not depend on a variable has zero partials") {
-  using D = dual<double, 2>;
-  const linear_problem p = duet_test::random_problem(5, false);
-  const MatrixXd none = MatrixXd::Zero(5, 5);
-  const auto constant = solve(seeded<D, 5, 5>(p.a, none), seeded<D, 5, 1>(p.b, none.col(0)));
-  auto a = seeded<D, 5, 5>(p.a, none);
+  using D = dual<double, 3>;
+  const linear_problem p = duet_test::random_problem(3, false);
+  const MatrixXd none = MatrixXd::Zero(3, 3);
+  auto a = seeded<D, 3, 3>(p.a, none);
+  const auto b = seeded<D, 3, 1>(p.b, none.col(0));
+  const auto constant = solve(a, b);
   a(1, 2) = D::variable(p.a(1, 2), 1);
-  const auto one = solve(a, seeded<D, 5, 1>(p.b, none.col(0)));
-  for (int i = 0; i < 5; ++i) {
+  const auto one = solve(a, b);
+  for (int i = 0; i < 3; ++i) {
     CHECK(constant[i].partial(0) == 0);
     CHECK(constant[i].partial(1) == 0);
     CHECK(one[i].partial(0) == 0);
     CHECK(one[i].partial(1) != 0);
   }
   // Nor are they poisoned by what is infinite.
-  const auto infinite = solve(Eigen::Matrix<D, 1, 1>(D(2)),
-                              Eigen::Matrix<double, 1, 1>(std::numeric_limits<double>::infinity()));
-  CHECK(infinite[0].value() == std::numeric_limits<double>::infinity());
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Eigen::Matrix<D, Dynamic, Dynamic> two{{D(2)}};
+  const Eigen::Matrix<D, Dynamic, 1> infinite_b{{D(infinity)}};
+  const auto infinite = solve(two, infinite_b);
+  CHECK(infinite[0].value() == infinity);
   CHECK(infinite[0].partial(0) == 0);
 }
 
@@ -230,8 +235,8 @@ TEST_CASE("units do not matter") {
     CHECK(columns[i] * x[i].value() == doctest::Approx(p.x()[i]).epsilon(1e-13));
     CHECK(columns[i] * x[i].epsilon() == doctest::Approx(p.x_slope()[i]).epsilon(1e-13));
   }
-  const Eigen::Matrix2d tiny{{0x1p-500, 0}, {0, 0x1p-500}};
-  CHECK(message(tiny, Eigen::Vector2d(1, 1)) == "");
+  const MatrixXd tiny = 0x1p-500 * MatrixXd::Identity(2, 2);
+  CHECK(message(tiny, VectorXd::Ones(2).eval()) == "");
 }
 
 TEST_CASE("what cannot be solved is refused") {
@@ -250,5 +255,5 @@ TEST_CASE("what cannot be solved is refused") {
   a(2, 1) = std::numeric_limits<double>::quiet_NaN();
   CHECK(message(a, b) == "duet: solve: entry (2, 1) of A is not finite");
   // Nearly singular is another thing.
-  CHECK(message(hilbert(12), VectorXd::Ones(12)) == "");
+  CHECK(message(hilbert(12), VectorXd::Ones(12).eval()) == "");
 }

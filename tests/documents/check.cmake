@@ -4,7 +4,11 @@
 # follows, with nothing but blank lines between, it must be what the program prints. Other blocks
 # are excerpts for the eye and are not compiled.
 #
-# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dfolder=<for programs> -P check.cmake
+# A program that begins with duet/duet.hpp, as all do that can, is given it precompiled: nothing else
+# is, so that it must still include what else it needs.
+#
+# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dcommon=<header, compiled beside it>
+#   -Dfolder=<for programs> -P check.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -40,7 +44,12 @@ while(TRUE)
   math(EXPR count "${count} + 1")
   set(program ${folder}/snippet_${count})
   file(WRITE ${program}.cpp "${code}")
-  execute_process(COMMAND ${compile} -Wall -Wextra -Werror ${program}.cpp -o ${program}
+  set(precompiled "")
+  if(code MATCHES "^\n*#include <duet/duet.hpp>\n")
+    set(precompiled -include ${common})
+  endif()
+  execute_process(
+    COMMAND ${compile} -Wall -Wextra -Werror ${precompiled} ${program}.cpp -o ${program}
     RESULT_VARIABLE result ERROR_VARIABLE log)
   if(NOT result EQUAL 0)
     message("${code}\n${log}")

@@ -25,10 +25,12 @@ struct linear_problem {
   Eigen::MatrixXd a, a_slope;
   Eigen::VectorXd b, b_slope;
 
-  [[nodiscard]] Eigen::VectorXd x() const { return a.fullPivLu().solve(b); }
-  [[nodiscard]] Eigen::VectorXd x_slope() const {
-    return a.fullPivLu().solve(b_slope - a_slope * x());
+  /// A⁻¹ r
+  [[nodiscard]] Eigen::VectorXd solved(const Eigen::VectorXd& r) const {
+    return a.fullPivLu().solve(r);
   }
+  [[nodiscard]] Eigen::VectorXd x() const { return solved(b); }
+  [[nodiscard]] Eigen::VectorXd x_slope() const { return solved(b_slope - a_slope * x()); }
 };
 
 inline linear_problem random_problem(int n, bool positive) {
@@ -48,26 +50,31 @@ inline linear_problem random_problem(int n, bool positive) {
 /// Of size n, every kind of zero.
 inline std::vector<linear_problem> problems(int n) {
   std::vector<linear_problem> all{random_problem(n, false), random_problem(n, true)};
-  const auto add = [&](const char* name, bool positive, auto change) {
-    linear_problem p = random_problem(n, positive);
-    p.name = name;
-    change(p);
-    all.push_back(p);
+  const auto add = [&](const char* name, bool positive) -> linear_problem& {
+    all.push_back(random_problem(n, positive));
+    all.back().name = name;
+    return all.back();
   };
-  add("a zero in the solution", true, [](auto& p) {
-    Eigen::VectorXd x = p.x();
-    x(0) = 0;
-    p.b = p.a * x;
-  });
-  add("b is zero", true, [](auto& p) { p.b.setZero(); });
-  add("b ends in zeros", true, [](auto& p) { p.b.tail(p.b.size() - 1).setZero(); });
-  add("b begins with zeros", false, [](auto& p) { p.b.head(p.b.size() - 1).setZero(); });
-  add("A is upper triangular", false,
-      [](auto& p) { p.a = p.a.template triangularView<Eigen::Upper>().toDenseMatrix().eval(); });
-  add("A is lower triangular", false,
-      [](auto& p) { p.a = p.a.template triangularView<Eigen::Lower>().toDenseMatrix().eval(); });
-  add("A is diagonal", true, [](auto& p) { p.a = Eigen::MatrixXd(p.a.diagonal().asDiagonal()); });
-  add("A is the identity", true, [](auto& p) { p.a.setIdentity(); });
+  linear_problem& zero_in_x = add("a zero in the solution", true);
+  Eigen::VectorXd x = zero_in_x.x();
+  x(0) = 0;
+  zero_in_x.b = zero_in_x.a * x;
+  add("b is zero", true).b.setZero();
+  add("b ends in zeros", true).b.tail(n - 1).setZero();
+  add("b begins with zeros", false).b.head(n - 1).setZero();
+  const auto keep = [n](linear_problem& p, bool below, bool above) {
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        if ((i > j && !below) || (i < j && !above)) {
+          p.a(i, j) = 0;
+        }
+      }
+    }
+  };
+  keep(add("A is upper triangular", false), false, true);
+  keep(add("A is lower triangular", false), true, false);
+  keep(add("A is diagonal", true), false, false);
+  add("A is the identity", true).a.setIdentity();
   return all;
 }
 
@@ -88,18 +95,30 @@ Eigen::Matrix<D, Rows, Columns, Options> seeded(const Eigen::MatrixXd& value,
   return result;
 }
 
-template <class X>
-void check_solution(const X& x, const linear_problem& p, int partials = 1) {
+/// Row i of `parts` is the value of x_i, then its partials, multiples of the first.
+inline void check_parts(const Eigen::MatrixXd& parts, const linear_problem& p) {
   const Eigen::VectorXd value = p.x();
   const Eigen::VectorXd slope = p.x_slope();
   const double tolerance = 1e-12 * (1 + value.norm() + slope.norm());
-  REQUIRE(x.size() == value.size());
-  for (int i = 0; i < x.size(); ++i) {
-    CHECK(std::abs(x(i).value() - value(i)) <= tolerance);
-    for (int k = 0; k < partials; ++k) {
-      CHECK(std::abs(x(i).partial(k) - (k + 1) * slope(i)) <= (k + 1) * tolerance);
+  REQUIRE(parts.rows() == value.size());
+  for (int i = 0; i < parts.rows(); ++i) {
+    CHECK(std::abs(parts(i, 0) - value(i)) <= tolerance);
+    for (int k = 1; k < parts.cols(); ++k) {
+      CHECK(std::abs(parts(i, k) - k * slope(i)) <= k * tolerance);
     }
   }
+}
+
+template <class X>
+void check_solution(const X& x, const linear_problem& p, int partials = 1) {
+  Eigen::MatrixXd parts(x.size(), partials + 1);
+  for (int i = 0; i < x.size(); ++i) {
+    parts(i, 0) = x(i).value();
+    for (int k = 0; k < partials; ++k) {
+      parts(i, k + 1) = x(i).partial(k);
+    }
+  }
+  check_parts(parts, p);
 }
 
 } // namespace duet_test

@@ -34,18 +34,29 @@ std::vector<double> inputs() {
   return result;
 }
 
-/// The m-th derivative of c_n: its series differentiated term by term.
-real_100 exact(int n, int m, const real_100& s) {
-  real_100 sum = 0;
-  for (int k = 70; k >= m; --k) { // 40^70/140! < 1e-128
-    real_100 term = 1;
+constexpr int last_power = 70; // 40^70/140! < 1e-128
+
+/// The coefficients of the m-th derivative of c_n: its series differentiated term by term, from
+/// s^0.
+std::vector<real_100> coefficients(int n, int m) {
+  std::vector<real_100> result;
+  for (int k = m; k <= last_power; ++k) {
+    real_100 term = k % 2 == 0 ? 1 : -1;
     for (int i = 2; i <= 2 * k + n; ++i) {
       term /= i;
     }
     for (int i = k; i > k - m; --i) {
       term *= i;
     }
-    sum += (k % 2 == 0 ? term : real_100(-term)) * pow(s, k - m);
+    result.push_back(term);
+  }
+  return result;
+}
+
+real_100 polynomial(const std::vector<real_100>& c, const real_100& s) {
+  real_100 sum = 0;
+  for (auto i = c.rbegin(); i != c.rend(); ++i) {
+    sum = sum * s + *i;
   }
   return sum;
 }
@@ -57,6 +68,10 @@ void check_derivatives() {
   worst_error of_root[5] = {worst_error("c of x²"), worst_error("(c of x²)'"),
                             worst_error("(c of x²)''"), worst_error("(c of x²)'''"),
                             worst_error("(c of x²)''''")};
+  std::vector<real_100> series[5];
+  for (int m = 0; m <= 4; ++m) {
+    series[m] = coefficients(N, m);
+  }
   for (const double s : inputs()) {
     const auto y = duet::derivatives<4>([](const auto& t) { return stumpff<N>(t); }, s);
     const double x = static_cast<float>(std::sqrt(s)); // its square is exact
@@ -66,8 +81,8 @@ void check_derivatives() {
     real_100 e[5];
     real_100 f[5];
     for (int m = 0; m <= 4; ++m) {
-      e[m] = exact(N, m, wide_s);
-      f[m] = exact(N, m, real_100(wide_x * wide_x));
+      e[m] = polynomial(series[m], wide_s);
+      f[m] = polynomial(series[m], real_100(wide_x * wide_x));
     }
     // By x = √s: Faà di Bruno for x².
     const real_100 g[5] = {f[0], 2 * wide_x * f[1], 4 * wide_x * wide_x * f[2] + 2 * f[1],

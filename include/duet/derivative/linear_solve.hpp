@@ -107,8 +107,9 @@ template <class A, class B>
     const auto& coefficients = a.eval();
     const auto right = detail::converted<S>(b);
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
+      // By name, the type that Eigen has solved for already where b is a vector.
       detail::correct_infinitesimals(
-          x, [&](const auto& column) { return lu.solve(column); },
+          x, [&](const auto& column) { return lu.solve(column).eval(); },
           detail::residual(coefficients, right, x));
     }
     return x;
