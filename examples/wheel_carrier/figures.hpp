@@ -3,13 +3,13 @@
 
 #include "carrier.hpp"
 #include "comparison.hpp"
-#include "csv.hpp"
 #include "table.hpp"
+
+#include "../support/csv.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -19,6 +19,8 @@
 /// What a run leaves in its folder: tables as CSV, pictures by gnuplot.
 
 namespace wheel_carrier {
+
+using example::csv_line;
 
 /// u, W, q, toe-in and camber of the left wheel in degrees, W from its design position.
 inline std::string path_csv(const std::vector<state>& states, const vector3& design) {
@@ -108,22 +110,6 @@ inline const char* path_script() {
          "plot 'path.csv' using 9:(1000*$1) skip 1 with lines lw 2 title 'toe-in', \\\n"
          "     'path.csv' using 10:(1000*$1) skip 1 with lines lw 2 title 'camber'\n"
          "unset multiplot\n";
-}
-
-/// Draws folder/name.svg and folder/name.png; false where gnuplot is absent or fails.
-inline bool draw(const std::string& folder, const std::string& name, const std::string& size,
-                 const std::string& script) {
-  write_file(folder + "/" + name + ".gnuplot",
-             "set terminal svg size " + size + " background rgb 'white'\nset output '" + name +
-                 ".svg'\n" + script + "set output\nset terminal pngcairo size " + size +
-                 "\nset output '" + name + ".png'\n" + script);
-  std::string quoted = "'";
-  for (const char c : folder) {
-    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  const std::string command =
-      "cd " + quoted + "' && gnuplot '" + name + ".gnuplot' >/dev/null 2>&1";
-  return std::system(command.c_str()) == 0;
 }
 
 } // namespace wheel_carrier

@@ -10,6 +10,9 @@
 #include "options.hpp"
 #include "table.hpp"
 
+#include "../support/csv.hpp"
+#include "../support/gnuplot.hpp"
+
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -173,12 +176,12 @@ void run(const options& given) {
 
   std::filesystem::create_directories(given.out);
   for (const auto& [name, content] : files) {
-    write_file(given.out + "/" + name, content);
+    example::write_file(given.out + "/" + name, content);
   }
   bool drawn = true;
   if (has_reference) {
-    drawn = draw(given.out, "errors", "1000,720", errors_script(curves)) &&
-            draw(given.out, "path", "1000,420", path_script());
+    drawn = example::draw(given.out, "errors", "1000,720", errors_script(curves)) &&
+            example::draw(given.out, "path", "1000,420", path_script());
   }
   std::printf("\nTables%s are in %s\n", has_reference && drawn ? " and pictures (SVG, PNG)" : "",
               given.out.c_str());

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "carrier.hpp"
-#include "csv.hpp"
+
+#include "../support/csv.hpp"
 
 #include <duet/spline/interpolate.hpp>
 
@@ -19,6 +20,9 @@
 /// The look-up table: orientations over u, made from the mechanism or read from a file.
 
 namespace wheel_carrier {
+
+using example::csv_file;
+using example::file_error;
 
 struct table {
   std::vector<double> u;

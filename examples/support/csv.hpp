@@ -15,7 +15,7 @@
 /// \file
 /// Comma-separated values, read and written the same under every locale.
 
-namespace wheel_carrier {
+namespace example {
 
 /// A file that cannot be used: `path:line: reason`.
 class file_error : public std::runtime_error {
@@ -36,7 +36,7 @@ struct csv_row {
 /// without any number, the header.
 class csv_file {
 public:
-  /// \param columns  how many numbers each row must hold; 0: any, after a name
+  /// \param columns  how many numbers each row must hold; 0: any, the first cell may be a name
   /// \throws file_error
   explicit csv_file(const std::string& path, std::size_t columns = 0) {
     std::ifstream in(path);
@@ -135,4 +135,4 @@ inline void write_file(const std::string& path, const std::string& content) {
   }
 }
 
-} // namespace wheel_carrier
+} // namespace example

@@ -1,0 +1,58 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// The screw motion between two poses (N19): in words, as a table of poses and velocities along it,
+// and as a picture. Velocities come from automatic differentiation and are held against the closed
+// form, a constant twist.
+
+#include "options.hpp"
+#include "path.hpp"
+
+#include "../support/csv.hpp"
+#include "../support/gnuplot.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+
+namespace screw_motion {
+namespace {
+
+void run(const options& given) {
+  const auto [from, to] = poses(given);
+  const duet::way round = given.is_long_way ? duet::way::longest : duet::way::shortest;
+  const screw between = screw_between(from, to, given.is_long_way);
+  std::cout << in_words(between);
+  if (is_half_turn_apart(from, to)) {
+    std::cout << "The poses are half a turn apart: the other way round is as short.\n";
+  }
+  const std::vector<sample> path = samples(from, to, round, given.steps);
+  const double difference = largest_difference(path, between);
+
+  std::filesystem::create_directories(given.out);
+  example::write_file(given.out + "/path.csv", path_csv(path));
+  example::write_file(given.out + "/frames.csv", frames_csv(path, between));
+  const bool drawn = example::draw(given.out, "path", "900,760", path_script());
+  std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
+            << "\n";
+  if (!drawn) {
+    std::cout << "No picture: gnuplot is not installed or failed\n";
+  }
+  std::printf("screw motion: kind=%s angle=%.6g translation=%.6g ad_vs_closed_form=%.2g\n",
+              kind_text(between.kind), between.angle, between.translation, difference);
+}
+
+} // namespace
+} // namespace screw_motion
+
+int main(int argc, char** argv) {
+  try {
+    if (const auto given = screw_motion::parse_options(argc, argv)) {
+      screw_motion::run(*given);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "screw_motion: " << error.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,165 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "../support/csv.hpp"
+
+#include <duet/core/errors.hpp>
+#include <duet/core/number_text.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/norm.hpp>
+
+#include <boost/program_options.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The command line, and poses as it and files give them.
+
+namespace screw_motion {
+
+using pose_type = duet::dual_quaternion<double>;
+
+struct options {
+  std::optional<std::string> from, to, file;
+  int steps = 60;
+  bool is_long_way = false;
+  std::string out = "screw_motion_out";
+};
+
+/// The pose of `x, y, z, qw, qx, qy, qz` or of a matrix [R t; 0 1], row by row, 12 or 16 numbers.
+/// \throws duet::invalid_input that says what is wrong, without a place
+inline pose_type parse_pose(const std::vector<double>& x) {
+  const std::string count = std::to_string(x.size());
+  if (x.size() == 7) {
+    const duet::quaternion<double> q(x[3], x[4], x[5], x[6]);
+    const double length = norm(q);
+    if (!(std::abs(length - 1) <= 1e-3)) {
+      throw duet::invalid_input("the quaternion has norm " + duet::to_text(length) + ", not 1");
+    }
+    return duet::pose(normalized(q), duet::vector3<double>(x[0], x[1], x[2]));
+  }
+  if (x.size() != 12 && x.size() != 16) {
+    throw duet::invalid_input("7 numbers (x, y, z, qw, qx, qy, qz) or 12 or 16 (a matrix, row by "
+                              "row) expected, got " +
+                              count);
+  }
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    m(Eigen::Index(i / 4), Eigen::Index(i % 4)) = x[i];
+  }
+  return duet::from_transform_matrix(m);
+}
+
+/// \throws std::runtime_error with the option's name
+inline pose_type parse_pose(const std::string& option, const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream cells(text);
+  std::string cell;
+  while (std::getline(cells, cell, ',')) {
+    const auto number = duet::parse_number(cell);
+    if (!number || !std::isfinite(*number)) {
+      throw std::runtime_error(option + ": '" + cell + "' is not a finite number");
+    }
+    numbers.push_back(*number);
+  }
+  try {
+    return parse_pose(numbers);
+  } catch (const duet::invalid_input& error) {
+    throw std::runtime_error(option + ": " + error.what());
+  }
+}
+
+/// The two poses of the command line, of the file, or of an example.
+inline std::pair<pose_type, pose_type> poses(const options& given) {
+  if (given.file) {
+    const example::csv_file file(*given.file);
+    std::vector<pose_type> result;
+    for (const example::csv_row& row : file.rows()) {
+      try {
+        result.push_back(parse_pose(row.numbers));
+      } catch (const duet::invalid_input& error) {
+        throw example::file_error(*given.file, row.line, error.what());
+      }
+    }
+    if (result.size() != 2) {
+      throw example::file_error(*given.file,
+                                "two poses are needed, not " + std::to_string(result.size()));
+    }
+    return {result[0], result[1]};
+  }
+  if (given.from && given.to) {
+    return {parse_pose("--from", *given.from), parse_pose("--to", *given.to)};
+  }
+  const auto turned = [](double x, double y, double z, double angle) {
+    return duet::from_axis_angle(duet::vector3<double>(x, y, z), angle);
+  };
+  return {duet::pose(turned(1, 0, 0, 0.3), duet::vector3<double>(0.6, 0, 0)),
+          duet::pose(turned(0.2, -0.1, 1, 2.6), duet::vector3<double>(-0.5, 0.3, 0.9))};
+}
+
+/// Nothing where only help was asked for.
+/// \throws std::exception with a one-line message
+inline std::optional<options> parse_options(int argc, char** argv) {
+  namespace po = boost::program_options;
+  po::options_description description(
+      "The screw motion from one pose to another, with its axis, angle and pitch in words, poses "
+      "and\nvelocities along it (path.csv) and a picture of frames on the way.\n"
+      "A pose is x,y,z,qw,qx,qy,qz (scalar first), or a matrix [R t; 0 1] row by row, 12 or 16 "
+      "numbers.\nAngles in radians, axes fixed. Options");
+  description.add_options()("help", "print this and stop")(
+      "from", po::value<std::string>()->value_name("POSE"), "the first pose, comma-separated")(
+      "to", po::value<std::string>()->value_name("POSE"),
+      "the second one")("file", po::value<std::string>()->value_name("FILE"),
+                        "both poses instead, each on a line of a CSV file")(
+      "steps", po::value<int>()->value_name("N"),
+      "rows of the table less one (default: 60)")("long-way", "turn the long way round")(
+      "out", po::value<std::string>()->value_name("DIR"),
+      "folder for the table and the picture (default: screw_motion_out)");
+  po::variables_map given;
+  po::store(
+      po::command_line_parser(argc, argv)
+          .options(description)
+          .style(po::command_line_style::default_style & ~po::command_line_style::allow_guessing)
+          .positional(po::positional_options_description())
+          .run(),
+      given);
+  if (given.count("help") != 0) {
+    std::cout << description;
+    return std::nullopt;
+  }
+  options result;
+  const auto text = [&](const char* name) -> std::optional<std::string> {
+    if (given.count(name) == 0) {
+      return std::nullopt;
+    }
+    return given[name].as<std::string>();
+  };
+  result.from = text("from");
+  result.to = text("to");
+  result.file = text("file");
+  result.out = text("out").value_or(result.out);
+  result.is_long_way = given.count("long-way") != 0;
+  if (given.count("steps") != 0) {
+    result.steps = given["steps"].as<int>();
+  }
+  if (result.from.has_value() != result.to.has_value()) {
+    throw std::runtime_error("--from and --to belong together");
+  }
+  if (result.file && result.from) {
+    throw std::runtime_error("--file and --from exclude each other");
+  }
+  if (result.steps < 1) {
+    throw std::runtime_error("--steps: 1 or more");
+  }
+  return result;
+}
+
+} // namespace screw_motion

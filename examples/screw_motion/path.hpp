@@ -1,0 +1,175 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "options.hpp"
+
+#include <duet/core/constants.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+/// \file
+/// The screw between two poses, and what is on the way.
+
+namespace screw_motion {
+
+using duet::vector3;
+using duet::vector6;
+using screw = duet::screw_motion<double>;
+
+/// B A*, the displacement that takes A to B in fixed axes.
+inline screw screw_between(const pose_type& from, const pose_type& to, bool is_long_way) {
+  screw s = duet::screw_parameters(to * conj(from));
+  if (is_long_way && s.angle > 0) {
+    s.angle -= 2 * duet::constant::pi<double>();
+  }
+  return s;
+}
+
+inline const char* kind_text(duet::screw_kind kind) {
+  switch (kind) {
+  case duet::screw_kind::translation:
+    return "translation";
+  case duet::screw_kind::rotation:
+    return "rotation";
+  case duet::screw_kind::screw:
+    return "screw";
+  default:
+    return "none";
+  }
+}
+
+inline std::string triple(const vector3<double>& v) {
+  std::ostringstream text;
+  const auto clean = [](double x) { return std::abs(x) < 1e-12 ? 0.0 : x; };
+  text << "(" << clean(v[0]) << ", " << clean(v[1]) << ", " << clean(v[2]) << ")";
+  return text.str();
+}
+
+/// The point of the axis next to the origin, n × m.
+inline vector3<double> place(const screw& s) { return s.axis.cross(s.moment); }
+
+inline std::string in_words(const screw& s) {
+  std::ostringstream text;
+  switch (s.kind) {
+  case duet::screw_kind::none:
+    return "The poses are the same.\n";
+  case duet::screw_kind::translation:
+    text << "A translation by " << s.translation << " along " << triple(s.axis) << ".\n";
+    return text.str();
+  default:
+    break;
+  }
+  text << "A turn by " << s.angle << " rad (" << s.angle * 180 / duet::constant::pi<double>()
+       << " degrees) about the line through " << triple(place(s)) << " along " << triple(s.axis);
+  if (s.kind == duet::screw_kind::screw) {
+    text << ",\nand a shift by " << s.translation << " along it: a pitch of "
+         << s.translation / s.angle * 2 * duet::constant::pi<double>() << " per turn";
+  }
+  text << ".\n";
+  return text.str();
+}
+
+struct sample {
+  double tau;
+  pose_type pose;
+  vector6<double> twist; ///< spatial, [v; ω] per unit of τ, by automatic differentiation
+};
+
+inline std::vector<sample> samples(const pose_type& from, const pose_type& to, duet::way round,
+                                   int steps) {
+  std::vector<sample> result;
+  for (int i = 0; i <= steps; ++i) {
+    const double tau = double(i) / steps;
+    const auto [a, a_dot] =
+        duet::derivative([&](auto t) { return duet::sclerp(from, to, t, round); }, tau);
+    result.push_back({tau, a, duet::twist(a, a_dot, duet::frame::spatial)});
+  }
+  return result;
+}
+
+/// The closed form of the twist, the same all the way: ω = φ n, v = d n + φ m.
+inline vector6<double> constant_twist(const screw& s) {
+  vector6<double> v;
+  v << s.translation * s.axis + s.angle * s.moment, s.angle * s.axis;
+  return v;
+}
+
+/// The largest difference between both twists, relative to the larger of 1 and the twist.
+inline double largest_difference(const std::vector<sample>& path, const screw& s) {
+  const vector6<double> exact = constant_twist(s);
+  double largest = 0;
+  for (const sample& p : path) {
+    largest = std::max(largest, (p.twist - exact).cwiseAbs().maxCoeff());
+  }
+  return largest / std::max(1.0, exact.cwiseAbs().maxCoeff());
+}
+
+/// Pose, velocity of its origin and angular velocity, in fixed axes, per unit of τ.
+inline std::string path_csv(const std::vector<sample>& path) {
+  std::string text = "tau,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
+  for (const sample& p : path) {
+    const auto gamma = duet::pose_coordinates(p.pose);
+    const vector3<double> omega = p.twist.tail<3>();
+    const vector3<double> v = p.twist.head<3>() + omega.cross(duet::translation(p.pose));
+    text += example::csv_line({p.tau, gamma[0], gamma[1], gamma[2], gamma[3], gamma[4], gamma[5],
+                               gamma[6], v[0], v[1], v[2], omega[0], omega[1], omega[2]});
+  }
+  return text;
+}
+
+/// Arrows of about ten frames on the way, and the axis: start, direction, which (0 to 2, 3 the
+/// axis).
+inline std::string frames_csv(const std::vector<sample>& path, const screw& s) {
+  std::string text = "x,y,z,dx,dy,dz,arrow\n";
+  double size = 0;
+  double low = 0;
+  double high = 0;
+  for (const sample& p : path) {
+    const vector3<double> way = duet::translation(p.pose) - duet::translation(path.front().pose);
+    size = std::max(size, way.norm());
+    const double along = s.axis.dot(duet::translation(p.pose));
+    low = &p == &path.front() ? along : std::min(low, along);
+    high = &p == &path.front() ? along : std::max(high, along);
+  }
+  const double length = size > 0 ? size / 6 : 1;
+  const std::size_t stride = std::max<std::size_t>(1, (path.size() - 1) / 10);
+  const auto add = [&](const vector3<double>& from, const vector3<double>& arrow, int which) {
+    text +=
+        example::csv_line({from[0], from[1], from[2], arrow[0], arrow[1], arrow[2], double(which)});
+  };
+  for (std::size_t i = 0; i < path.size(); i += stride) {
+    const duet::matrix3<double> r = duet::rotation_matrix(duet::rotation(path[i].pose));
+    for (int axis = 0; axis < 3; ++axis) {
+      add(duet::translation(path[i].pose), length * r.col(axis), axis);
+    }
+  }
+  if (s.kind == duet::screw_kind::rotation || s.kind == duet::screw_kind::screw) {
+    add(place(s) + (low - length) * s.axis, (high - low + 2 * length) * s.axis, 3);
+  }
+  return text;
+}
+
+inline const char* path_script() {
+  return "set datafile separator ','\nset grid\nset view equal xyz\nset view 62,35,1.2\n"
+         "set xyplane relative 0.05\n"
+         "set xlabel 'x'\nset ylabel 'y'\nset zlabel 'z'\nset key top left\n"
+         "splot 'path.csv' using 2:3:4 skip 1 with lines lw 2 lc rgb '#444444' title 'origin', \\\n"
+         "  'frames.csv' using ($7==0?$1:1/0):2:3:4:5:6 skip 1 with vectors lw 2 lc rgb '#d62728' "
+         "title 'x axis', \\\n"
+         "  'frames.csv' using ($7==1?$1:1/0):2:3:4:5:6 skip 1 with vectors lw 2 lc rgb '#2ca02c' "
+         "title 'y axis', \\\n"
+         "  'frames.csv' using ($7==2?$1:1/0):2:3:4:5:6 skip 1 with vectors lw 2 lc rgb '#1f77b4' "
+         "title 'z axis', \\\n"
+         "  'frames.csv' using ($7==3?$1:1/0):2:3:4:5:6 skip 1 with vectors nohead lw 1.5 dt 2 lc "
+         "rgb 'black' title 'screw axis'\n";
+}
+
+} // namespace screw_motion

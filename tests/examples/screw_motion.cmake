@@ -1,0 +1,58 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Runs the screw motion on good and bad poses: bad ones must end with status 1, one line that says what and
+# where, and nothing written.
+#
+# cmake -Dprogram=<screw_motion> -Dfolder=<for files> -P screw_motion.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+file(REMOVE_RECURSE ${folder})
+file(MAKE_DIRECTORY ${folder})
+
+function(run expected_result expected_text)
+  file(REMOVE_RECURSE ${folder}/out)
+  execute_process(COMMAND ${program} --out out ${ARGN} WORKING_DIRECTORY ${folder}
+    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  if(NOT result EQUAL expected_result)
+    message(FATAL_ERROR "${ARGN}: status ${result}, expected ${expected_result}\n${output}${error}")
+  endif()
+  if(expected_result EQUAL 1)
+    if(NOT error MATCHES "^screw_motion: [^\n]*${expected_text}[^\n]*\n$")
+      message(FATAL_ERROR "${ARGN}: says\n${error}instead of one line with: ${expected_text}")
+    endif()
+    if(EXISTS ${folder}/out)
+      message(FATAL_ERROR "${ARGN}: bad input, yet something was written")
+    endif()
+  elseif(NOT output MATCHES "${expected_text}")
+    message(FATAL_ERROR "${ARGN}: prints\n${output}without: ${expected_text}")
+  endif()
+endfunction()
+
+function(run_file expected_result expected_text content)
+  file(WRITE ${folder}/poses.csv "${content}")
+  run(${expected_result} "${expected_text}" --file poses.csv)
+endfunction()
+
+set(start 1,0,0,1,0,0,0)
+run(0 "kind=screw angle=2.5477 translation=0.620688 ad_vs_closed_form=[0-9.]+e-1[56]\n$")
+run(0 "kind=screw angle=-3.73548 translation=0.620688" --long-way)
+run(0 "^The poses are the same" --from ${start} --to ${start})
+run(0 "^A translation by 3 along \\(0, 0, 1\\)" --from ${start} --to 1,0,3,1,0,0,0)
+run(0 "the other way round is as short" --from ${start} --to 1,0,0,0,0,0,1)
+run(0 "A turn by 1.5708 rad \\(90 degrees\\) about the line through \\(0.5, -0.5, 0\\) along \\(0, 0, 1\\)"
+  --from ${start} --to 0,-1,0,0,1,0,0,0,0,0,1,0)
+run(0 "--long-way" --help)
+run_file(0 "kind=translation angle=0 translation=1" "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n0,0,1,1,0,0,0\n")
+
+run(1 "--to: the quaternion has norm 2, not 1" --from ${start} --to 1,0,0,2,0,0,0)
+run(1 "--to: 7 numbers .* expected, got 6" --from ${start} --to 1,0,0,1,0,0)
+run(1 "--from: 'nan' is not a finite number" --from 1,0,nan,1,0,0,0 --to ${start})
+run(1 "--from: .*not a rotation: .*det R = -1" --from 1,0,0,0,0,1,0,0,0,0,-1,0 --to ${start})
+run(1 "--from and --to belong together" --from ${start})
+run(1 "--steps: 1 or more" --steps 0)
+run(1 "unrecognised option '--bogus'" --bogus)
+run(1 "missing.csv: cannot be read" --file missing.csv)
+run_file(1 "poses.csv:2: the quaternion has norm 0, not 1" "0,0,0,1,0,0,0\n0,0,1,0,0,0,0\n")
+run_file(1 "poses.csv:2: column 5 is inf" "0,0,0,1,0,0,0\n0,0,0,1,inf,0,0\n")
+run_file(1 "poses.csv: two poses are needed, not 1" "0,0,0,1,0,0,0\n")
