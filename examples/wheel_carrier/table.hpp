@@ -22,6 +22,7 @@
 namespace wheel_carrier {
 
 using example::csv_file;
+using example::csv_row;
 using example::file_error;
 
 struct table {
