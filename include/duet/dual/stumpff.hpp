@@ -59,15 +59,22 @@ struct stumpff {
 
 /// L(s, w) = atan2(√s, w)/√s.
 ///
-/// With φ = atan2(√s, w): ∂L/∂w = −1/(s + w²) and ∂L/∂s = (sin φ cos φ − φ)/(2 (√s)³) = −2 L³
-/// c₃(4φ²), where φ² = L² s. Nothing cancels and nothing is divided by s.
+/// With φ = atan2(√s, w): ∂L/∂w = −1/(s + w²) and ∂L/∂s = (w/(s + w²) − L)/(2s) = −2 L³ c₃(4φ²),
+/// where φ² = L² s. In the last form nothing cancels and nothing is divided by s, which further
+/// derivatives need where φ is small. The other costs less, and loses no more than a factor of 6
+/// above φ = ½.
 struct arc_ratio {
   template <class T>
   T value(const T& s, const T& w) const;
   template <class T>
   std::array<T, 2> slopes(const T& ratio, const T& s, const T& w) const {
     const T squared = ratio * ratio;
-    return {-2 * squared * ratio * duet::stumpff<3>(T(4 * squared * s)), -1 / (s + w * w)};
+    const T argument = 4 * squared * s;
+    const T reciprocal = 1 / (s + w * w);
+    return {select(
+                innermost(argument) > 1, [&] { return T((w * reciprocal - ratio) / (2 * s)); },
+                [&] { return T(-2 * squared * ratio * duet::stumpff<3>(argument)); }),
+            -reciprocal};
   }
 };
 

@@ -46,7 +46,9 @@ template <class T, class U>
   requires Promotable<T, U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_point(const dual_quaternion<T>& a,
                                                        const vector3<U>& x) {
-  return rotate(rotation(a), x) + translation(a).template cast<promote_t<T, U>>();
+  const auto turned = rotate(rotation(a), x);
+  const vector3<T> t = translation(a);
+  return {turned[0] + t[0], turned[1] + t[1], turned[2] + t[2]}; // no packets to be put together
 }
 /// R n: what has no place, as a velocity of translation or a normal.
 template <class T, class U>

@@ -113,10 +113,26 @@ template <class A, class B>
   requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
 operator*(const quaternion<A>& p, const quaternion<B>& q) {
-  return {p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
-          p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),
-          p.w() * q.y() - p.x() * q.z() + p.y() * q.w() + p.z() * q.x(),
-          p.w() * q.z() + p.x() * q.y() - p.y() * q.x() + p.z() * q.w()};
+  // All four sums grow by one component of p at a time: fewer numbers wait in registers than where
+  // one sum is finished after the other.
+  using T = promote_t<A, B>;
+  T w = p.w() * q.w();
+  T x = p.w() * q.x();
+  T y = p.w() * q.y();
+  T z = p.w() * q.z();
+  w = w - p.x() * q.x();
+  x = x + p.x() * q.w();
+  y = y - p.x() * q.z();
+  z = z + p.x() * q.y();
+  w = w - p.y() * q.y();
+  x = x + p.y() * q.z();
+  y = y + p.y() * q.w();
+  z = z - p.y() * q.x();
+  w = w - p.z() * q.z();
+  x = x - p.z() * q.y();
+  y = y + p.z() * q.x();
+  z = z + p.z() * q.w();
+  return {w, x, y, z};
 }
 
 template <class T, ScalarFor<T> S>
