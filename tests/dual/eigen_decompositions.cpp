@@ -42,9 +42,9 @@ matrix<dual<double>, Size> moving(const MatrixXd& a, const MatrixXd& rate) {
 }
 
 /// dσ = uᵀ dA v
-template <int Size>
 void check_singular_values(const MatrixXd& a, const MatrixXd& rate) {
-  const Eigen::JacobiSVD<matrix<dual<double>, Size>> svd(moving<Size>(a, rate));
+  const auto m = moving<Eigen::Dynamic>(a, rate);
+  const Eigen::JacobiSVD<matrix<dual<double>, Eigen::Dynamic>> svd(m);
   const Eigen::JacobiSVD<MatrixXd> plain(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     const double expected = plain.matrixU().col(i).dot(rate * plain.matrixV().col(i));
@@ -65,13 +65,18 @@ void check_symmetric(const MatrixXd& a, const MatrixXd& rate) {
     const VectorXd v = plain.eigenvectors().col(i);
     CHECK(std::abs(solver.eigenvalues()[i].value() - plain.eigenvalues()[i]) < 1e-13);
     CHECK(std::abs(solver.eigenvalues()[i].epsilon() - v.dot(symmetric_rate * v)) < 1e-11);
-    const auto w = solver.eigenvectors().col(i).eval();
-    const auto residual = (m * w - solver.eigenvalues()[i] * w).eval();
+    const auto& w = solver.eigenvectors();
+    dual<double> square = 0;
     for (Eigen::Index k = 0; k < a.rows(); ++k) {
-      CHECK(std::abs(residual[k].value()) < 1e-13);
-      CHECK(std::abs(residual[k].epsilon()) < 1e-10);
+      dual<double> residual = -solver.eigenvalues()[i] * w(k, i);
+      for (Eigen::Index l = 0; l < a.rows(); ++l) {
+        residual += m(k, l) * w(l, i);
+      }
+      CHECK(std::abs(residual.value()) < 1e-13);
+      CHECK(std::abs(residual.epsilon()) < 1e-10);
+      square += w(k, i) * w(k, i);
     }
-    CHECK(std::abs(w.squaredNorm().epsilon()) < 1e-11);
+    CHECK(std::abs(square.epsilon()) < 1e-11);
   }
 }
 
@@ -82,10 +87,7 @@ TEST_CASE("singular values") {
   for (const Eigen::Index n : {2, 3, 5, 8, 12}) {
     const MatrixXd a = random_matrix(random, n);
     const MatrixXd rate = random_matrix(random, n);
-    check_singular_values<Eigen::Dynamic>(a, rate);
-    if (n == 3) {
-      check_singular_values<3>(a, rate);
-    }
+    check_singular_values(a, rate);
   }
 }
 
@@ -116,7 +118,7 @@ TEST_CASE("eigenvalues of a general matrix: their sums of powers are traces") {
       sum_of_squares += lambda.real() * lambda.real() - lambda.imag() * lambda.imag();
     }
     const auto trace = m.trace();
-    const auto trace_of_square = (m * m).trace();
+    const auto trace_of_square = m.lazyProduct(m).trace();
     CHECK(std::abs((sum - trace).value()) < 1e-12);
     CHECK(std::abs((sum - trace).epsilon()) < 1e-3);
     CHECK(std::abs((sum_of_squares - trace_of_square).value()) < 1e-12);

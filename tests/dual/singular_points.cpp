@@ -58,7 +58,7 @@ bool agrees(T x, double expected) {
 
 /// Are all infinitesimal parts of y what is expected?
 template <class D>
-bool parts_agree(const D& y, double expected) {
+[[gnu::noinline]] bool parts_agree(const D& y, double expected) {
   const auto part_agrees = [&](const auto& part) {
     if constexpr (duet::Infinitesimal<std::remove_cvref_t<decltype(part)>>) {
       return agrees(part.value(), expected) && parts_agree(part, expected);
@@ -84,6 +84,31 @@ bool parts_agree(const D& y, double expected) {
   return result;
 }
 
+// The checks are functions of their own: within `row` they would be compiled for every line.
+
+template <class T>
+[[gnu::noinline]] void check_identical(const char* what, T a, T b) {
+  CAPTURE(what);
+  CAPTURE(a);
+  CAPTURE(b);
+  CHECK(identical(a, b));
+}
+
+template <class T>
+[[gnu::noinline]] void check_agrees(const char* what, T x, double expected) {
+  CAPTURE(what);
+  CAPTURE(x);
+  CAPTURE(expected);
+  CHECK(agrees(x, expected));
+}
+
+template <class D>
+[[gnu::noinline]] void check_parts(const char* what, const D& y, double expected) {
+  CAPTURE(what);
+  CAPTURE(expected);
+  CHECK(parts_agree(y, expected));
+}
+
 /// f(argument(0), …, argument(M − 1)), the indices as types.
 template <std::size_t M, class F, class Argument>
 auto call(F f, Argument argument) {
@@ -97,17 +122,17 @@ template <std::size_t M>
 using numbers = std::array<double, M>;
 
 template <class D, std::size_t M, class F>
-void check_constants(F f, const numbers<M>& x, double constant) {
+[[gnu::noinline]] void check_constants(F f, const numbers<M>& x, double constant) {
   using real = duet::real_type_t<D>;
   const auto value = real(call<M>(f, [&](auto i) { return real(x[i]); }));
   const D y = call<M>(f, [&](auto i) { return D(real(x[i])); });
-  CHECK(identical(duet::innermost(y), value));
-  CHECK(parts_agree(y, constant));
+  check_identical("duet::innermost(y)", duet::innermost(y), value);
+  check_parts("y", y, constant);
 }
 
 /// The derivative by argument I.
 template <std::size_t I, std::size_t M, class F>
-void check_variable(F f, const numbers<M>& x, double slope, double constant) {
+[[gnu::noinline]] void check_variable(F f, const numbers<M>& x, double slope, double constant) {
   // Argument I is `moving`, the others are constants of type U.
   const auto at = [&]<class D, class U>(std::type_identity<U>, const D& moving) {
     return call<M>(f, [&]<class J>(J) {
@@ -122,43 +147,44 @@ void check_variable(F f, const numbers<M>& x, double slope, double constant) {
   const double value = call<M>(f, [&](auto i) { return x[i]; });
 
   const auto y = same(inner::variable(x[I]));
-  CHECK(identical(y.value(), value));
-  CHECK(agrees(y.epsilon(), slope));
-  CHECK(agrees(at(std::type_identity<double>(), inner::variable(x[I])).epsilon(), slope));
+  check_identical("y.value()", y.value(), value);
+  check_agrees("y.epsilon()", y.epsilon(), slope);
+  check_agrees("at(std::type_identity<double>(), inner::variable(x[I])).epsilon()",
+               at(std::type_identity<double>(), inner::variable(x[I])).epsilon(), slope);
 
   const auto all = call<M>(f, [&](auto i) { return dual<double, 3>::variable(x[i], int(i())); });
-  CHECK(identical(all.value(), value));
-  CHECK(agrees(all.partial(I), slope));
-  CHECK(agrees(all.partial(2), constant));
+  check_identical("all.value()", all.value(), value);
+  check_agrees("all.partial(I)", all.partial(I), slope);
+  check_agrees("all.partial(2)", all.partial(2), constant);
 
   const auto series = same(taylor<double, 2>::variable(x[I]));
-  CHECK(identical(series.value(), value));
-  CHECK(agrees(series.coefficient(1), slope));
+  check_identical("series.value()", series.value(), value);
+  check_agrees("series.coefficient(1)", series.coefficient(1), slope);
 
   const auto outer = same(nested::variable(inner(x[I])));
-  CHECK(identical(outer.value().value(), value));
-  CHECK(agrees(outer.epsilon().value(), slope));
-  CHECK(parts_agree(outer.value(), constant));
+  check_identical("outer.value().value()", outer.value().value(), value);
+  check_agrees("outer.epsilon().value()", outer.epsilon().value(), slope);
+  check_parts("outer.value()", outer.value(), constant);
   const auto within = same(nested(inner::variable(x[I])));
-  CHECK(agrees(within.value().epsilon(), slope));
-  CHECK(agrees(within.epsilon().value(), constant));
-  CHECK(parts_agree(within.epsilon(), constant));
+  check_agrees("within.value().epsilon()", within.value().epsilon(), slope);
+  check_agrees("within.epsilon().value()", within.epsilon().value(), constant);
+  check_parts("within.epsilon()", within.epsilon(), constant);
   const auto both = same(nested::variable(inner::variable(x[I])));
-  CHECK(agrees(both.value().epsilon(), slope));
-  CHECK(agrees(both.epsilon().value(), slope));
+  check_agrees("both.value().epsilon()", both.value().epsilon(), slope);
+  check_agrees("both.epsilon().value()", both.epsilon().value(), slope);
 
   const auto single = same(dual<float>::variable(float(x[I])));
-  CHECK(agrees(single.epsilon(), slope));
+  check_agrees("single.epsilon()", single.epsilon(), slope);
 }
 
 /// One line of a table: the value at x, the derivatives by every argument, and those of constants.
 template <std::size_t M, class F>
-void row(const std::string& name, F f, const numbers<M>& x, double value, const numbers<M>& slopes,
-         double constant = 0) {
+[[gnu::noinline]] void row(const std::string& name, F f, const numbers<M>& x, double value,
+                           const numbers<M>& slopes, double constant = 0) {
   CAPTURE(name);
   CAPTURE(x[0]);
   CAPTURE(x[M - 1]);
-  CHECK(agrees(call<M>(f, [&](auto i) { return x[i]; }), value));
+  check_agrees("value", call<M>(f, [&](auto i) { return x[i]; }), value);
   check_constants<inner, M>(f, x, constant);
   check_constants<dual<double, 3>, M>(f, x, constant);
   check_constants<taylor<double, 2>, M>(f, x, constant);

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -69,13 +70,23 @@ struct errors {
   }
 };
 
-/// t ↦ f(q + t d) at t = 0. `reach` is how far it is smooth, `moved` how much the rounding of q
+/// The derivatives of t ↦ f(q + t d) at t = 0.
+struct computed {
+  std::array<quaternion<double>, 5> by_taylor;
+  quaternion<nested> by_nesting;
+
+  template <class F>
+  computed(const F& f, const quaternion<double>& q, const quaternion<double>& d)
+      : by_taylor(duet::derivatives<4>([&](const auto& t) { return f(q + t * d); }, 0.0)),
+        by_nesting(f(q + nested_variable(0) * d)) {}
+};
+
+/// `reach` is how far it is smooth, `moved` how much the rounding of q
 /// moves it, in units: |q|, or the distance to a singularity where that is less.
-template <class F, class G>
-void measure(errors& e, const F& f, const G& exact_f, const quaternion<double>& q,
+void measure(errors& e, const computed& both,
+             const std::function<truth::four(truth::four)>& exact_f, const quaternion<double>& q,
              const quaternion<double>& d, const truth::real& reach, const truth::real& moved) {
-  const auto by_taylor = duet::derivatives<4>([&](const auto& t) { return f(q + t * d); }, 0.0);
-  const auto by_nesting = f(q + nested_variable(0) * d);
+  const auto& [by_taylor, by_nesting] = both;
   const truth::four x = truth::wide(q);
   const truth::four dx = truth::wide(d);
   std::array<truth::four, 6> exact;
@@ -121,9 +132,10 @@ TEST_CASE("derivatives of exp to fourth order") {
       const auto a = random.direction<3>();
       const auto d = random.direction<3>();
       const auto scalar = i == 0 ? 0.0 : random.uniform(-1, 1);
-      measure(
-          e, [](const auto& q) { return exp(q); }, truth::exp,
-          {0, angle * a[0], angle * a[1], angle * a[2]}, {scalar, d[0], d[1], d[2]}, 1, angle);
+      const quaternion<double> at(0, angle * a[0], angle * a[1], angle * a[2]);
+      const quaternion<double> along(scalar, d[0], d[1], d[2]);
+      const computed both([](const auto& q) { return exp(q); }, at, along);
+      measure(e, both, truth::exp, at, along, 1, angle);
     }
   }
   e.check({16, 16, 16, 16, 16});
@@ -138,9 +150,10 @@ TEST_CASE("derivatives of log to fourth order") {
       const auto d = random.direction<4>();
       const double s = std::sin(angle);
       const truth::real reach = angle > 1.6 ? truth::real(s) : truth::real(1);
-      measure(
-          e, [](const auto& q) { return log(q); }, truth::log,
-          {std::cos(angle), s * a[0], s * a[1], s * a[2]}, {d[0], d[1], d[2], d[3]}, reach, reach);
+      const quaternion<double> at(std::cos(angle), s * a[0], s * a[1], s * a[2]);
+      const quaternion<double> along(d[0], d[1], d[2], d[3]);
+      const computed both([](const auto& q) { return log(q); }, at, along);
+      measure(e, both, truth::log, at, along, reach, reach);
     }
   }
   e.check({16, 16, 16, 16, 16});
@@ -155,10 +168,12 @@ TEST_CASE("derivatives of pow to fourth order") {
     const double s = std::sin(angle);
     const truth::real reach = angle > 1.6 ? truth::real(s) : truth::real(1);
     for (const double rho : {0.5, -1.3}) {
+      const quaternion<double> at(std::cos(angle), s * a[0], s * a[1], s * a[2]);
+      const quaternion<double> along(d[0], d[1], d[2], d[3]);
+      const computed both([=](const auto& q) { return pow(q, rho); }, at, along);
       measure(
-          e, [=](const auto& q) { return pow(q, rho); },
-          [=](const truth::four& q) { return truth::pow(q, rho); },
-          {std::cos(angle), s * a[0], s * a[1], s * a[2]}, {d[0], d[1], d[2], d[3]}, reach, reach);
+          e, both, [=](const truth::four& q) { return truth::pow(q, rho); }, at, along, reach,
+          reach);
     }
   }
   e.check({16, 16, 16, 16, 16});
