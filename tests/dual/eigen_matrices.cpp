@@ -148,6 +148,10 @@ TEST_CASE("reductions, norms and coefficient-wise functions") {
   CHECK(x.array().pow(2)(0).partial(0) == 6);
   CHECK(x.array().inverse()(1).partial(1) == -1.0 / 16);
   CHECK((x.array() > 3).count() == 1);
+  const auto larger = (x.array() > 3).select(x.array() * 2, -x.array()).eval();
+  CHECK(larger(0).partial(0) == -1);
+  CHECK(larger(1).partial(1) == 2);
+  CHECK((x.array() > 3).select(x, D(7)).eval()(0) == 7);
   CHECK(x.cwiseMin(matrix<D, 2, 1>::Constant(3.5))(1).partial(1) == 0);
   CHECK(x.allFinite());
   CHECK(x.isApprox(x));
