@@ -11,5 +11,5 @@ int main() {
     return duet::column(x[0] * x[1] - p, x[0] - x[1]);
   };
 #endif
-  return duet::implicit_function<1>(f, Eigen::Vector2d(1, 1), 4.0)[0][0] > 1.5 ? 0 : 1;
+  return duet::implicit_solution(f, Eigen::Vector2d(1, 1), 4.0)[0] > 1.5 ? 0 : 1;
 }
