@@ -41,7 +41,7 @@ public:
   }
 
   void print() const {
-    std::cout << std::left << std::setw(14) << "workload" << std::right << std::setw(10)
+    std::cout << std::left << std::setw(16) << "workload" << std::right << std::setw(10)
               << "duet/best" << std::setw(10) << "duet/hand"
               << "  nanoseconds, fastest of the repetitions\n"
               << std::fixed;
@@ -96,7 +96,7 @@ private:
         best = t;
       }
     }
-    std::cout << std::left << std::setw(14) << workload << std::right << std::setprecision(2);
+    std::cout << std::left << std::setw(16) << workload << std::right << std::setprecision(2);
     print_ratio(duet, best);
     print_ratio(duet, hand);
     std::cout << ' ' << std::setprecision(1);

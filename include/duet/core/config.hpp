@@ -29,8 +29,17 @@
 #define DUET_ABI_END }
 
 /// The arithmetic of small numbers must be inlined whatever the compiler's size heuristics think:
-/// a call spills every partial to memory.
+/// a call spills every partial to memory. Where nothing is optimised, it would only make compilation
+/// slower and the steps of a debugger longer.
+#ifdef __OPTIMIZE__
 #define DUET_ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define DUET_ALWAYS_INLINE inline
+#endif
 
 /// The same for a lambda, between its parameters and its body.
+#ifdef __OPTIMIZE__
 #define DUET_INLINE_LAMBDA __attribute__((always_inline))
+#else
+#define DUET_INLINE_LAMBDA
+#endif
