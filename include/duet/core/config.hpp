@@ -29,8 +29,8 @@
 #define DUET_ABI_END }
 
 /// The arithmetic of small numbers must be inlined whatever the compiler's size heuristics think:
-/// a call spills every partial to memory. Where nothing is optimised, it would only make compilation
-/// slower and the steps of a debugger longer.
+/// a call spills every partial to memory. Where nothing is optimised, it would only make
+/// compilation slower and the steps of a debugger longer.
 #ifdef __OPTIMIZE__
 #define DUET_ALWAYS_INLINE inline __attribute__((always_inline))
 #else
