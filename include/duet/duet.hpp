@@ -25,6 +25,7 @@
 #include <duet/dual_quaternion/distance.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
+#include <duet/dual_quaternion/nearest.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/screw.hpp>

@@ -10,7 +10,7 @@
 
 #include <doctest/doctest.h>
 
-#include <string>
+#include <array>
 #include <vector>
 
 // Squad and Bézier curves, of poses and so of rotations; the long way round.
@@ -85,6 +85,8 @@ TEST_CASE("Bézier curves start and end along the control polygon, n times as fa
     CHECK(gap(body_twist(end), duet::twist_of(last)) < 4e-14);
   }
   CHECK(gap(bezier(std::vector<dual_quaternion>{p[0]}, 0.4), p[0]) == 0);
+  CHECK(gap(bezier(std::array{p[0], p[1], p[2], p[3]}, 0.4),
+            bezier(std::vector<dual_quaternion>(p.begin(), p.begin() + 4), 0.4)) == 0);
   CHECK(gap(bezier(std::vector<dual_quaternion>{p[0], p[1]}, 0.4), sclerp(p[0], p[1], 0.4)) == 0);
   CHECK_THROWS_WITH_AS(static_cast<void>(bezier(std::vector<dual_quaternion>(), 0.4)),
                        "duet: bezier: there are no control points", duet::invalid_input);

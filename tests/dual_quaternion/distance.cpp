@@ -4,6 +4,7 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/distance.hpp>
+#include <duet/dual_quaternion/nearest.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 
 #include <doctest/doctest.h>
@@ -75,6 +76,16 @@ TEST_CASE("outside, an end is nearest") {
   CHECK(at(-1) == 0);
   CHECK(at(0.5) == doctest::Approx(0.25).epsilon(1e-14));
   CHECK(at(3) == 1);
+  // Turning about the origin, from where all poses of the motion are equally far without angles.
+  const duet::screw_motion<double> turn = {vector(0, 0, 1), vector(0, 0, 0), 1, 0,
+                                           duet::screw_kind::rotation};
+  const auto beside = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 2));
+  const auto any = nearest_on_screw(start, turn, beside, 0.0);
+  CHECK(any.squared_distance == 4);
+  CHECK((any.tau >= 0 && any.tau <= 1));
+  // Beyond half a turn the distance is not convex: an end may still be nearest.
+  const auto beyond = duet::pose(duet::from_axis_angle(vector(0, 0, 1), -2.0), vector(0, 0, 0));
+  CHECK(nearest_on_screw(start, turn, beyond, 1.0).tau == 0);
 }
 
 TEST_CASE("the nearest place is differentiated by the equation that it solves") {

@@ -38,47 +38,16 @@ void require_tall(const A& a, const B& b) {
   throw invalid_input(message.str());
 }
 
-/// A⁺b = P R⁻¹Qᵀ b for A P = Q R, as `qr.solve(b)`: for vectors, of the type X, without
-/// instantiating what applies reflectors to many columns in blocks, for most of the time that this
-/// takes to compile.
-template <class X, class QR, class B>
-[[nodiscard]] X solve_by_reflectors(const QR& qr, const B& b) {
-  using R = typename B::Scalar;
-  const Eigen::Index n = qr.cols();
-  const auto q = qr.householderQ();
-  typename B::PlainObject c = b;
-  R workspace;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    c.bottomRightCorner(c.rows() - k, c.cols())
-        .applyHouseholderOnTheLeft(q.essentialVector(k), qr.hCoeffs().coeff(k), &workspace);
-  }
-  qr.matrixQR().topLeftCorner(n, n).template triangularView<Eigen::Upper>().solveInPlace(
-      c.topRows(n));
-  X x(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    x[qr.colsPermutation().indices()[k]] = c[k];
-  }
-  return x;
-}
-
 /// (AᵀA)⁻¹ g = P R⁻¹R⁻ᵀPᵀ g for A P = Q R.
 template <class QR, class G>
 [[nodiscard]] G solve_normal_equations(const QR& qr, const G& g) {
   const Eigen::Index n = qr.cols();
   constexpr int size = QR::ColsAtCompileTime;
   const auto r = qr.matrixQR().template topLeftCorner<size, size>(n, n);
-  const auto& permutation = qr.colsPermutation().indices();
-  G y(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    y[k] = g[permutation[k]];
-  }
-  r.template triangularView<Eigen::Upper>().transpose().solveInPlace(y);
-  r.template triangularView<Eigen::Upper>().solveInPlace(y);
-  G x(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    x[permutation[k]] = y[k];
-  }
-  return x;
+  G x = qr.colsPermutation().transpose() * g;
+  r.template triangularView<Eigen::Upper>().transpose().solveInPlace(x);
+  r.template triangularView<Eigen::Upper>().solveInPlace(x);
+  return qr.colsPermutation() * x;
 }
 
 /// (A − A₀)ᵀ r, A₀ the values of A
@@ -135,15 +104,7 @@ template <class A, class B>
             << " columns";
     throw invalid_input(message.str());
   }
-  using column = Eigen::Matrix<R, A::ColsAtCompileTime, 1>;
-  const auto solve = [&](const auto& right) {
-    if constexpr (std::decay_t<decltype(right)>::ColsAtCompileTime == 1) {
-      return detail::solve_by_reflectors<column>(qr, right);
-    } else {
-      return qr.solve(right).eval();
-    }
-  };
-  const auto values = solve(detail::real_values<R>(b));
+  const auto values = qr.solve(detail::real_values<R>(b)).eval();
   if constexpr (scalar_traits<S>::order == 0) {
     return values;
   } else {
@@ -156,7 +117,8 @@ template <class A, class B>
     const auto right = detail::converted<S>(b);
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
       const auto r = detail::residual(coefficients, right, x);
-      detail::correct_infinitesimals(x, solve, r);
+      detail::correct_infinitesimals(
+          x, [&](const auto& column) { return qr.solve(column); }, r);
       if (!is_constant) {
         detail::correct_infinitesimals(
             x, [&](const auto& g) { return detail::solve_normal_equations(qr, g); },

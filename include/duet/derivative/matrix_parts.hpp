@@ -87,6 +87,7 @@ void correct_infinitesimals(X& x, const Map& map, const Residual& r) {
   constexpr int rows = Residual::RowsAtCompileTime;
   part_columns<R, rows, count> parts(r.rows(), count);
   part_columns<R, X::RowsAtCompileTime, count> corrections(x.rows(), count);
+  Eigen::Matrix<R, rows, 1> column(r.rows());
   for (Eigen::Index j = 0; j < x.cols(); ++j) {
     for (Eigen::Index i = 0; i < r.rows(); ++i) {
       int k = -1; // the value comes first
@@ -99,7 +100,7 @@ void correct_infinitesimals(X& x, const Map& map, const Residual& r) {
       }));
     }
     for (int k = 0; k < count; ++k) {
-      const Eigen::Matrix<R, rows, 1> column = parts.col(k);
+      column = parts.col(k);
       if (column.cwiseEqual(R(0)).all()) {
         corrections.col(k).setZero();
       } else {

@@ -11,7 +11,7 @@
 
 #include <Eigen/LU>
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <sstream>
@@ -85,11 +85,13 @@ struct rotation_mean {
   }
 
 private:
-  /// The sum of all, each with the sign nearer to the first.
+  /// The sum of all, each with the sign nearer to the one of most weight, so that it is not zero.
   static quaternion<R> start(const std::vector<quaternion<R>>& q, const std::vector<R>& weights) {
+    const auto most = std::max_element(weights.begin(), weights.end()) - weights.begin();
+    const quaternion<R>& reference = q[std::size_t(most)];
     quaternion<R> sum;
     for (std::size_t k = 0; k < q.size(); ++k) {
-      sum = sum + q[k] * (dot(q[0], q[k]) < 0 ? R(-weights[k]) : weights[k]);
+      sum = sum + q[k] * (dot(reference, q[k]) < 0 ? R(-weights[k]) : weights[k]);
     }
     return normalized(sum);
   }

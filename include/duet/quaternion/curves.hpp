@@ -5,6 +5,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace duet {
 
 /// The inner control point of `squad` at q between two neighbours:
 /// s = q exp(−¼(log(q* next) + log(q* previous))). Signs must be aligned. At an end, where there is
-/// no neighbour, q itself serves.
+/// no neighbour, q itself serves. \throws invalid_input where one is zero
 template <class T>
 [[nodiscard]] quaternion<T> squad_control(const quaternion<T>& previous, const quaternion<T>& q,
                                           const quaternion<T>& next) {
@@ -36,25 +37,44 @@ template <class T, ScalarFor<T> S>
                2 * tau * (1 - tau), way::as_given);
 }
 
-/// The Bézier curve of n + 1 control points at τ ∈ [0, 1] by de Casteljau's repeated SLERP, each
-/// along the shorter way. It starts at the first with n times the velocity of SLERP to the second,
-/// and ends alike.
-///
-/// \throws invalid_input where there are no points
-template <class T, ScalarFor<T> S>
-[[nodiscard]] quaternion<promote_t<T, S>> bezier(const std::vector<quaternion<T>>& points,
-                                                 const S& tau) {
-  using R = promote_t<T, S>;
-  if (points.empty()) {
+namespace detail {
+
+/// De Casteljau's repeated SLERP, in place.
+template <class Points, class S>
+[[nodiscard]] auto de_casteljau(Points q, const S& tau) {
+  if (q.empty()) {
     throw invalid_input("duet: bezier: there are no control points");
   }
-  std::vector<quaternion<R>> q(points.begin(), points.end());
   for (std::size_t n = q.size(); n > 1; --n) {
     for (std::size_t i = 0; i + 1 < n; ++i) {
       q[i] = slerp(q[i], q[i + 1], tau);
     }
   }
   return q[0];
+}
+
+} // namespace detail
+
+/// The Bézier curve of n + 1 control points at τ ∈ [0, 1] by de Casteljau's repeated SLERP, each
+/// along the shorter way. It starts at the first with n times the velocity of SLERP to the second,
+/// and ends alike. Evaluation does not touch the heap.
+template <class T, std::size_t N, ScalarFor<T> S>
+[[nodiscard]] quaternion<promote_t<T, S>> bezier(const std::array<quaternion<T>, N>& points,
+                                                 const S& tau) {
+  static_assert(N > 0, "duet: bezier: there are no control points");
+  std::array<quaternion<promote_t<T, S>>, N> q;
+  for (std::size_t i = 0; i < N; ++i) {
+    q[i] = quaternion<promote_t<T, S>>(points[i]);
+  }
+  return detail::de_casteljau(q, tau);
+}
+/// The same of a number of points known at run time; copies them to the heap.
+/// \throws invalid_input where there are no points
+template <class T, ScalarFor<T> S>
+[[nodiscard]] quaternion<promote_t<T, S>> bezier(const std::vector<quaternion<T>>& points,
+                                                 const S& tau) {
+  return detail::de_casteljau(
+      std::vector<quaternion<promote_t<T, S>>>(points.begin(), points.end()), tau);
 }
 
 } // namespace duet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
@@ -65,14 +66,12 @@ template <class T>
 /// that either way round is as short
 template <class T>
 [[nodiscard]] std::vector<quaternion<T>> aligned_orientations(std::vector<quaternion<T>> q) {
-  using std::abs;
   q = unit_quaternions(std::move(q));
   for (std::size_t i = 1; i < q.size(); ++i) {
-    const auto cosine = innermost(dot(q[i - 1], q[i]));
-    if (abs(cosine) < 1e-9) {
+    if (is_half_turn_apart(q[i - 1], q[i])) {
       throw invalid_row(i, "half a turn from the row before: either way round is as short");
     }
-    if (cosine < 0) {
+    if (innermost(dot(q[i - 1], q[i])) < 0) {
       q[i] = -q[i];
     }
   }
