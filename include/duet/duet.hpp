@@ -7,6 +7,7 @@
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
 #include <duet/core/number_text.hpp>
+#include <duet/core/parallel_for.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
