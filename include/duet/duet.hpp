@@ -44,6 +44,8 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
+#include <duet/spline/bspline_fit.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/fit.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/printed.hpp>
