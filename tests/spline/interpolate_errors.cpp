@@ -95,9 +95,9 @@ TEST_CASE("rates that are not finite") {
     return "nothing was thrown";
   };
   CHECK(with(vector(0, not_a_number, 0), zero) ==
-        "duet: clamped: the angular velocity at the start, (0, nan, 0), is not finite");
+        "duet: clamped: the rate at the start, (0, nan, 0), is not finite");
   CHECK(with(zero, vector(infinity, 0, 0)) ==
-        "duet: clamped: the angular velocity at the end, (inf, 0, 0), is not finite");
+        "duet: clamped: the rate at the end, (inf, 0, 0), is not finite");
 }
 
 TEST_CASE("neighbours nearly half a turn apart, on random axes: no curve, and a word why") {

@@ -41,6 +41,18 @@ void check_parameters(const std::vector<R>& u) {
   }
 }
 
+/// What a curve's end leaves unfulfilled, from its rates there: halves, in body axes.
+template <class D>
+[[nodiscard]] vector3<D> end_residual(const motion<D>& half, const natural&, bool) {
+  return half.acceleration;
+}
+template <class D, class V>
+[[nodiscard]] vector3<D> end_residual(const motion<D>& half, const clamped<V>& rates,
+                                      bool at_start) {
+  const V& omega = at_start ? rates.start : rates.end;
+  return rotate(half.value, half.velocity) - (omega / 2).template cast<D>();
+}
+
 /// The interpolation problem of the cubic: n + 1 orientations Q_0 … Q_n at u_0 … u_n, knots
 /// repeated four times at the ends. The first and last control quaternions are Q_0 and Q_n. The n +
 /// 1 others are unknown; their equations are the two end conditions and S(u_i) = Q_i inside, where
@@ -143,11 +155,8 @@ private:
       }
     }
     const auto m = product_of_exponentials<2>(c[0], increments.data(), weights);
-    if (i == 0) {
-      return ends_.start_residual(m);
-    }
-    if (at_end) {
-      return ends_.end_residual(m);
+    if (i == 0 || at_end) {
+      return end_residual(m, ends_, i == 0);
     }
     return log(conj(m.value) * quaternion<D>(data_[i])).vec();
   }
