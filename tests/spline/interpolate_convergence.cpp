@@ -95,7 +95,7 @@ double uniform(double u) { return u; }
 /// From 0 to 2 with steps that change smoothly, by a factor of 3.
 double graded(double u) { return u + 0.25 * (1 - std::cos(std::acos(-1.0) * u)) * u * (2 - u); }
 
-duet::clamped<double> exact_rates() { return {truth(0).velocity, truth(2).velocity}; }
+duet::clamped<> exact_rates() { return {truth(0).velocity, truth(2).velocity}; }
 
 } // namespace
 
