@@ -32,6 +32,14 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/dual_quaternion/wrench.hpp>
+#include <duet/mechanism/analytic_jacobian.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/jacobian_rate.hpp>
+#include <duet/mechanism/joint_efforts.hpp>
+#include <duet/mechanism/manipulability.hpp>
+#include <duet/mechanism/robots.hpp>
+#include <duet/mechanism/screw_axes.hpp>
+#include <duet/mechanism/urdf.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/domain.hpp>
