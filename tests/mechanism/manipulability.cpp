@@ -28,10 +28,10 @@ TEST_CASE("manipulability is √det(JJᵀ), and its gradient that by dual number
     for (std::size_t i = 5; i < all.size(); ++i) {
       const auto m = jacobian(arm, all[i], frame::spatial);
       const double w = manipulability(arm, all[i]);
-      CHECK(w == doctest::Approx(std::sqrt((m * m.transpose()).eval().determinant())).epsilon(1e-9));
+      CHECK(w ==
+            doctest::Approx(std::sqrt((m * m.transpose()).eval().determinant())).epsilon(1e-9));
       const auto closed = manipulability_gradient(arm, all[i]);
-      const auto by_duals =
-          gradient([&](const auto& x) { return manipulability(arm, x); }, all[i]);
+      const auto by_duals = gradient([&](const auto& x) { return manipulability(arm, x); }, all[i]);
       CHECK(closed.value == w);
       CHECK(gap(closed.gradient, by_duals.gradient) < 1e-13);
     }

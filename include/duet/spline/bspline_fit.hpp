@@ -10,6 +10,7 @@
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/basis.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -64,7 +65,13 @@ public:
     }
   }
 
-  [[nodiscard]] const std::vector<element>& controls() const { return controls_; }
+  [[nodiscard]] cumulative_bspline<T, Order> curve(const basis_type& basis) const {
+    std::vector<vector3<T>> increments{vector3<T>::Zero()};
+    for (std::size_t i = 1; i < controls_.size(); ++i) {
+      increments.push_back(log(conj(controls_[i - 1]) * controls_[i]).vec());
+    }
+    return {basis, controls_, std::move(increments)};
+  }
 
   [[nodiscard]] std::vector<R> residuals() const {
     std::vector<R> result;

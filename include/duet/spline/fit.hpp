@@ -86,13 +86,13 @@ template <class Spline, class R, class T>
             << " elements";
     throw invalid_input(message.str());
   }
+  detail::check_rows(parameters, rows.size(), 0);
   if (!(options.length > 0) || !(options.outlier > 0)) {
     message << "duet: fit: length " << options.length << " and outlier " << options.outlier
             << " must be positive";
     throw invalid_input(message.str());
   }
-  detail::check_parameters(parameters);
-  const bspline_basis<Spline::order, R> basis(knots);
+  const bspline_basis<Spline::order, R> basis(std::move(knots));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i] < basis.front() || parameters[i] > basis.back()) {
       message << "parameter " << parameters[i] << " is outside the knots' domain, " << basis.front()
@@ -107,8 +107,7 @@ template <class Spline, class R, class T>
   const std::vector<R> residuals = problem.residuals();
   using std::sqrt;
   const R squares = std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), R(0));
-  return {Spline(std::move(knots), problem.controls(), signs_as_given{}), residuals,
-          R(sqrt(squares / R(residuals.size()))), iterations};
+  return {problem.curve(basis), residuals, R(sqrt(squares / R(residuals.size()))), iterations};
 }
 
 } // namespace duet
