@@ -48,7 +48,7 @@ class bspline_fit {
   using element = quaternion<T>;
   static constexpr int dimension = manifold<element>::dimension;
   static constexpr int unknowns = Order * dimension;
-  using D = dual<R, unknowns, derivative_tag<bspline_fit>>;
+  using D = dual<R, dimension, derivative_tag<bspline_fit>>; // one control element at a time
   template <class S>
   using tangent = Eigen::Matrix<S, dimension, 1>;
   using basis_type = bspline_basis<Order, R>;
@@ -168,6 +168,34 @@ private:
     return residual<R>(i, c);
   }
 
+  struct linear_residual {
+    tangent<R> value;
+    Eigen::Matrix<R, dimension, unknowns> slope;
+  };
+
+  [[nodiscard]] linear_residual linearised(std::size_t i) const {
+    linear_residual result;
+    std::array<quaternion<promote_t<T, D>>, Order> c;
+    std::copy_n(controls_.begin() + std::ptrdiff_t(first_[i]), Order, c.begin());
+    tangent<D> delta;
+    for (int b = 0; b < dimension; ++b) {
+      delta[b] = D::variable(R(0), b);
+    }
+    for (int j = 0; j < Order; ++j) {
+      const element& control = controls_[first_[i] + std::size_t(j)];
+      c[std::size_t(j)] = manifold<element>::plus(control, delta, frame::body);
+      const tangent<D> r = residual<D>(i, c);
+      c[std::size_t(j)] = quaternion<promote_t<T, D>>(control);
+      for (int a = 0; a < dimension; ++a) {
+        result.value[a] = r[a].value();
+        for (int b = 0; b < dimension; ++b) {
+          result.slope(a, dimension * j + b) = r[a].partial(b);
+        }
+      }
+    }
+    return result;
+  }
+
   /// ½ r² up to the limit, from there on along the tangent
   [[nodiscard]] R cost_of(const std::vector<element>& controls) const {
     const R limit(options_.outlier);
@@ -186,24 +214,7 @@ private:
     std::vector<Eigen::Triplet<R>> entries;
     entries.reserve(rows_.size() * std::size_t(unknowns * (unknowns + 1) / 2));
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      std::array<quaternion<promote_t<T, D>>, Order> c;
-      for (int j = 0; j < Order; ++j) {
-        tangent<D> delta;
-        for (int b = 0; b < dimension; ++b) {
-          delta[b] = D::variable(R(0), dimension * j + b);
-        }
-        c[std::size_t(j)] =
-            manifold<element>::plus(controls_[first_[i] + std::size_t(j)], delta, frame::body);
-      }
-      const tangent<D> r = residual<D>(i, c);
-      tangent<R> value;
-      Eigen::Matrix<R, dimension, unknowns> slope;
-      for (int a = 0; a < dimension; ++a) {
-        value[a] = r[a].value();
-        for (int b = 0; b < unknowns; ++b) {
-          slope(a, b) = r[a].partial(b);
-        }
-      }
+      const auto [value, slope] = linearised(i);
       const R length = value.norm();
       const R weight = length <= R(options_.outlier) ? R(1) : R(R(options_.outlier) / length);
       const Eigen::Index at = Eigen::Index(first_[i]) * dimension;
