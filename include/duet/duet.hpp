@@ -6,6 +6,7 @@
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
+#include <duet/core/csv.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/version.hpp>
@@ -52,8 +53,10 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
+#include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/bspline_fit.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/fit.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/look_up_table.hpp>
 #include <duet/spline/printed.hpp>
