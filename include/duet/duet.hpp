@@ -45,4 +45,6 @@
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/printed.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
