@@ -28,7 +28,8 @@ template <Real R, std::size_t Count>
 } // namespace detail
 
 /// c_0(s) … c_Highest(s), s ≥ 0, by c_n = 1/n! − s c_{n+2}: downwards from the two highest where
-/// their series converge fast, upwards from cosine and sine elsewhere, so that nothing cancels.
+/// their series converge fast, upwards from cosine and sine elsewhere. Errors are relative to 1/n!
+/// below s = 4, to the larger of c_n and √s^−n above.
 template <int Highest, Scalar T>
 [[nodiscard]] DUET_ALWAYS_INLINE std::array<T, std::size_t(Highest) + 1>
 stumpff_sequence(const T& s) {

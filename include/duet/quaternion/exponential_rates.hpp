@@ -69,7 +69,7 @@ struct jacobian_coefficients {
       c[k] = 4 * e[3];
       const R factor = R(2) / R(k + 1);
       each_index<T, 2 * Count>([&](std::size_t n) DUET_INLINE_LAMBDA {
-        if (n > 0 && n + 2 * k + 3 <= 2 * Count + 1) {
+        if (n > 0 && n + 2 * k + 1 <= 2 * Count) {
           e[n] = (R(n) * e[n + 2] - e[n + 1]) * factor;
         }
       });
