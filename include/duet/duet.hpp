@@ -58,5 +58,7 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/fit.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/look_up_table.hpp>
 #include <duet/spline/printed.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>

@@ -144,16 +144,28 @@ private:
   template <int Rates, class S, class Hint>
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const S& parameter, Hint&& hint) const {
     using P = std::conditional_t<Arithmetic<S>, real_type, S>;
-    const P u(parameter);
+    P u(parameter);
     const auto value = static_cast<real_type>(innermost(u));
+    std::size_t span = 0;
+    bool is_at_rest = false;
     if (!basis_.contains(value)) [[unlikely]] {
-      return evaluate_outside<Rates>(u, value);
-    }
-    if constexpr (std::is_same_v<std::decay_t<Hint>, span_hint>) {
-      return evaluate_on<Rates>(basis_.span_of(value, hint), u);
+      span = span_beside(value);
+      is_at_rest = outside_ == outside::clamp;
+      if (is_at_rest) {
+        u = P(value < basis_.front() ? basis_.front() : basis_.back());
+      }
+    } else if constexpr (std::is_same_v<std::decay_t<Hint>, span_hint>) {
+      span = basis_.span_of(value, hint);
     } else {
-      return evaluate_on<Rates>(basis_.span_of(value), u);
+      span = basis_.span_of(value);
     }
+    auto m = evaluate_on<Rates>(span, u);
+    if (Rates > 0 && is_at_rest) [[unlikely]] {
+      m.velocity.setZero();
+      m.acceleration.setZero();
+      m.jerk.setZero();
+    }
+    return m;
   }
 
   template <int Rates, class P>
@@ -174,23 +186,14 @@ private:
     }
   }
 
-  template <int Rates, class P>
-  [[nodiscard, gnu::cold, gnu::noinline]] auto evaluate_outside(const P& u,
-                                                                const real_type& value) const {
-    const bool is_before = value < basis_.front();
-    const std::size_t span = is_before ? 0 : basis_.breaks().size() - 2;
-    const bool is_usable = outside_ == outside::extrapolate ? value - value == 0 : value == value;
+  /// The first or last span, for what is outside the domain.
+  /// \throws invalid_input where there is no going on
+  [[nodiscard, gnu::cold]] std::size_t span_beside(const real_type& u) const {
+    const bool is_usable = outside_ == outside::clamp ? u == u : u - u == 0;
     if (outside_ == outside::error || !is_usable) {
-      static_cast<void>(basis_.span_of(value));
+      return basis_.span_of(u); // throws
     }
-    if (outside_ == outside::extrapolate) {
-      return evaluate_on<Rates>(span, u);
-    }
-    auto m = evaluate_on<Rates>(span, P(is_before ? basis_.front() : basis_.back()));
-    m.velocity.setZero();
-    m.acceleration.setZero();
-    m.jerk.setZero();
-    return m;
+    return u < basis_.front() ? 0 : basis_.breaks().size() - 2;
   }
 
   basis_type basis_;

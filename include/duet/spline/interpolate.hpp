@@ -54,18 +54,20 @@ template <class V>
   return end_acceleration{real_rate(ends.start), real_rate(ends.end)};
 }
 
-/// The increments over T by those of the real parts: one step with their Jacobian for every order
-/// of infinitesimals.
-template <class T, class Ends, class Newton>
-[[nodiscard]] std::vector<vector3<T>> lift_increments(const cubic_equations<T, Ends>& equations,
-                                                      Newton& newton) {
-  std::vector<vector3<T>> x;
+/// The solution over T by that of the real parts: one step with their Jacobian for every order of
+/// infinitesimals.
+template <class Equations, class Newton>
+[[nodiscard]] typename Equations::unknowns lifted_solution(const Equations& equations,
+                                                           Newton& newton) {
+  using unknowns = typename Equations::unknowns;
+  using T = typename unknowns::value_type::Scalar;
+  unknowns x;
   x.reserve(newton.solution().size());
-  for (const auto& omega : newton.solution()) {
-    x.push_back(omega.template cast<T>());
+  for (const auto& each : newton.solution()) {
+    x.push_back(each.template cast<T>());
   }
   const auto& jacobian = newton.jacobian();
-  std::vector<vector3<T>> step;
+  unknowns step;
   for (int order = 1; order <= scalar_traits<T>::order; ++order) {
     equations.residuals(x, step);
     jacobian.solve(step);
@@ -126,7 +128,7 @@ interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<qua
     return cumulative_bspline<T, 4>(equations.basis(), std::move(controls), std::move(increments));
   };
   if constexpr (Real<T>) {
-    spline_newton<T, Ends> newton(equations);
+    spline_newton newton(equations);
     return curve(newton, newton.solution());
   } else {
     using R = real_type_t<T>;
@@ -138,8 +140,8 @@ interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<qua
     const auto rates = real_ends(ends);
     using real_ends_type = std::decay_t<decltype(rates)>;
     const cubic_equations<R, real_ends_type> real(parameters, std::move(rotations), rates);
-    spline_newton<R, real_ends_type> newton(real);
-    return curve(newton, lift_increments(equations, newton));
+    spline_newton newton(real);
+    return curve(newton, lifted_solution(equations, newton));
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/dual.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -64,6 +65,10 @@ class cubic_equations {
   static constexpr bool has_end_rates = !is_cyclic && !skips_knots;
 
 public:
+  using real_type = R;
+  using unknowns = std::vector<vector3<T>>;
+  using matrix = block_tridiagonal<R, 3>;
+
   cubic_equations(const std::vector<R>& u, std::vector<quaternion<T>> q, const Ends& ends)
       : basis_(interpolation_knots(u, ends)), data_(std::move(q)) {
     const std::size_t n = u.size() - 1;
@@ -164,6 +169,34 @@ public:
       result[row] =
           residual(row, std::array{x[unknown(row, 0)], x[unknown(row, 1)], x[unknown(row, 2)]});
     }
+  }
+
+  /// Residuals and factorised Jacobian; false where that is singular. For real T.
+  [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
+    using D = dual<R, 9, derivative_tag<cubic_equations>>;
+    r.resize(x.size());
+    std::vector<block_row<R, 3>> rows(x.size());
+    for (std::size_t row = 0; row < x.size(); ++row) {
+      std::array<vector3<D>, 3> omega;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const vector3<R>& value = x[unknown(row, j)];
+        for (int b = 0; b < 3; ++b) {
+          omega[j][b] = D::variable(value[b], int(3 * j) + b);
+        }
+      }
+      const vector3<D> left = residual(row, omega);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const int at = place(row, j);
+        auto& block = at == 0 ? rows[row].lower : at == 1 ? rows[row].diagonal : rows[row].upper;
+        for (int a = 0; a < 3; ++a) {
+          r[row][a] = left[a].value();
+          for (int b = 0; b < 3; ++b) {
+            block(a, b) = left[a].partial(int(3 * j) + b);
+          }
+        }
+      }
+    }
+    return jacobian.factorise(std::move(rows), corner_columns());
   }
 
   /// ω_0 = 0 and the increments of all controls.

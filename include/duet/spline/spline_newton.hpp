@@ -2,41 +2,35 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/scalar_traits.hpp>
-#include <duet/derivative/structure.hpp>
-#include <duet/dual/dual.hpp>
-#include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/block_tridiagonal.hpp>
-#include <duet/spline/interpolation_equations.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <sstream>
-#include <utility>
-#include <vector>
 
 /// \file
-/// The real increments of an interpolating cubic.
+/// The real solution of the equations of an interpolating curve.
 
 namespace duet::detail {
 
-/// Newton's method with AD Jacobian on the equations of real increments, from none at all. Where
+/// Newton's method with AD Jacobian on real equations, from zero. Where
 /// the turns are too large for that, by continuation from smaller ones: that also finds the curve
 /// that belongs to them, where several fulfil the equations.
-template <Real R, class Ends>
+///
+/// \tparam Equations  what is to be solved: `residuals`, `linearise`, and the same of smaller turns
+template <class Equations>
 class spline_newton {
-  using tag = derivative_tag<spline_newton>;
-  using D = dual<R, 9, tag>;
+  using R = typename Equations::real_type;
 
 public:
-  using equations = cubic_equations<R, Ends>;
-  using unknowns = std::vector<vector3<R>>;
+  using equations = Equations;
+  using unknowns = typename Equations::unknowns;
+  using unknown = typename unknowns::value_type;
+  using matrix = typename Equations::matrix;
 
-  explicit spline_newton(const equations& full) : full_(full), x_(full.size(), vector3<R>::Zero()) {
-    if (std::getenv("CONT") || !descend(full)) {
+  explicit spline_newton(const equations& full) : full_(full), x_(full.size(), unknown::Zero()) {
+    if (!descend(full)) {
       continue_from_smaller_turns();
     }
   }
@@ -51,7 +45,7 @@ public:
   }
 
   /// The Jacobian at the solution.
-  [[nodiscard]] const block_tridiagonal<R, 3>& jacobian() {
+  [[nodiscard]] const matrix& jacobian() {
     if (!linearise(full_)) {
       throw no_convergence("duet: interpolate: the equations are singular at their solution");
     }
@@ -98,7 +92,7 @@ private:
   void continue_from_smaller_turns() {
     R lambda(0);
     R h(0.25);
-    x_.assign(x_.size(), vector3<R>::Zero());
+    x_.assign(x_.size(), unknown::Zero());
     unknowns slope = x_;
     while (lambda < 1) {
       const unknowns at = x_;
@@ -133,45 +127,20 @@ private:
     throw no_convergence(message.str());
   }
 
-  [[nodiscard]] bool linearise(const equations& f) {
-    residual_.resize(x_.size());
-    std::vector<block_row<R, 3>> rows(x_.size());
-    for (std::size_t row = 0; row < x_.size(); ++row) {
-      std::array<vector3<D>, 3> omega;
-      for (std::size_t j = 0; j < 3; ++j) {
-        const vector3<R>& value = x_[f.unknown(row, j)];
-        for (int b = 0; b < 3; ++b) {
-          omega[j][b] = D::variable(value[b], int(3 * j) + b);
-        }
-      }
-      const vector3<D> r = f.residual(row, omega);
-      for (std::size_t j = 0; j < 3; ++j) {
-        const int place = f.place(row, j);
-        auto& block = place == 0   ? rows[row].lower
-                      : place == 1 ? rows[row].diagonal
-                                   : rows[row].upper;
-        for (int a = 0; a < 3; ++a) {
-          residual_[row][a] = r[a].value();
-          for (int b = 0; b < 3; ++b) {
-            block(a, b) = r[a].partial(int(3 * j) + b);
-          }
-        }
-      }
-    }
-    return matrix_.factorise(std::move(rows), f.corner_columns());
-  }
+  [[nodiscard]] bool linearise(const equations& f) { return f.linearise(x_, residual_, matrix_); }
 
   [[nodiscard]] static R largest(const unknowns& x) {
     R result(0);
-    for (const vector3<R>& v : x) {
+    for (const unknown& v : x) {
       const R size = v.norm();
       result = size <= result ? result : size; // NaN comes through
     }
     return result;
   }
+
   const equations& full_;
   unknowns x_, residual_;
-  block_tridiagonal<R, 3> matrix_;
+  matrix matrix_;
   int iterations_ = 0;
 };
 
