@@ -117,8 +117,8 @@ TEST_CASE("acceleration: p̈ is the hybrid one; the spatial and the body's diffe
     CHECK(gap(acceleration(frame::spatial).head<3>(),
               p[2] + p[1].cross(omega) + p[0].cross(alpha)) < 1e-13 * scale);
     CHECK(gap(acceleration(frame::body).head<3>(),
-              rotate(conj(rotation(arm.pose(theta))),
-                     Eigen::Vector3d(p[2] - omega.cross(p[1])))) < 1e-13 * scale);
+              rotate(conj(rotation(arm.pose(theta))), Eigen::Vector3d(p[2] - omega.cross(p[1])))) <
+          1e-13 * scale);
   }
 }
 

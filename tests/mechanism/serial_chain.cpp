@@ -64,9 +64,8 @@ TEST_CASE("the four robots stand where their makers' drawings say") {
 }
 
 TEST_CASE("both conventions of Denavit and Hartenberg against products of matrices") {
-  const std::array<dh_row<>, 3> rows{{{.3, .1, .4, .2},
-                                      {-.2, .5, -1.1, 0, {}, joint_kind::prismatic},
-                                      {.7, -.3, 2.5, -1}}};
+  const std::array<dh_row<>, 3> rows{
+      {{.3, .1, .4, .2}, {-.2, .5, -1.1, 0, {}, joint_kind::prismatic}, {.7, -.3, 2.5, -1}}};
   const auto standard = from_dh(rows);
   const auto modified = from_modified_dh(rows, {quaternion<double>(1), {0, 0, .5}});
   for (const auto& theta : duet_test::configurations(standard, 20)) {
@@ -103,10 +102,9 @@ TEST_CASE("a chain is a product of exponentials of its screws") {
         0.0);
     screws.push_back(dual_vector_of(twist(a, a_dot, frame::spatial)));
   }
-  const auto product =
-      from_screws(std::array{screws[0], screws[1], screws[2], screws[3], screws[4], screws[5],
-                             screws[6]},
-                  placement<double>(arm.pose(zero)));
+  const auto product = from_screws(
+      std::array{screws[0], screws[1], screws[2], screws[3], screws[4], screws[5], screws[6]},
+      placement<double>(arm.pose(zero)));
   CHECK(product.kind(1) == joint_kind::prismatic);
   CHECK(product.kind(2) == joint_kind::helical);
   CHECK(product.kind(6) == joint_kind::revolute);
@@ -224,7 +222,9 @@ TEST_CASE("what is wrong with a chain is said in one line") {
         "duet: a chain of 7 moving joints, but 6 coordinates");
   CHECK(message([&] { (void)arm.pose(coordinates<7>(coordinates<7>::Zero()), 8); }) ==
         "duet: serial_chain: no link 8 in a chain of 7 joints");
-  CHECK(message([&] { (void)from_dh(std::array<dh_row<>, 1>{{{0, std::nan(""), 0}}}); }) ==
+  CHECK(message([&] {
+          (void)from_dh(std::array<dh_row<>, 1>{{{0, std::nan(""), 0}}});
+        }) ==
         "duet: serial_chain: joint 0: its row of parameters has a number beyond 1e6, or none");
 }
 

@@ -39,8 +39,8 @@ const std::string first = "<joint name=\"p\" type=\"prismatic\"><parent link=\"a
                           "<limit lower=\"-1\" upper=\"2\" velocity=\"3\"/></joint>\n";
 
 std::string joint_to_c(const std::string& inside, const std::string& type = "continuous") {
-  return "<joint name=\"q\" type=\"" + type +
-         "\"><parent link=\"b\"/><child link=\"c\"/>" + inside + "</joint>\n";
+  return "<joint name=\"q\" type=\"" + type + "\"><parent link=\"b\"/><child link=\"c\"/>" +
+         inside + "</joint>\n";
 }
 
 } // namespace
@@ -58,8 +58,9 @@ TEST_CASE("origins, axes and limits as the format says") {
   CHECK(chain.limits(1).upper == INFINITY);
   const Eigen::Vector2d theta(.5, .7);
   // Roll, pitch and yaw are turns about fixed axes.
-  const auto expected = pose(from_euler<zyx>(.3, .2, .1), Eigen::Vector3d(.1, .2, .8)) *
-                        pose(from_axis_angle(Eigen::Vector3d(0, 1, 0), .7), Eigen::Vector3d(0, 0, 0));
+  const auto expected =
+      pose(from_euler<zyx>(.3, .2, .1), Eigen::Vector3d(.1, .2, .8)) *
+      pose(from_axis_angle(Eigen::Vector3d(0, 1, 0), .7), Eigen::Vector3d(0, 0, 0));
   CHECK(gap(transform_matrix(chain.pose(theta)), transform_matrix(expected)) < 1e-15);
   CHECK(gap(translation(chain.pose(theta, chain.link("b"))), Eigen::Vector3d(0, 0, .5)) == 0);
   CHECK_THROWS_WITH_AS((void)chain.link("x"), "duet: no link \"x\" in the chain", invalid_input);
@@ -84,8 +85,10 @@ TEST_CASE("what is wrong is said with file and element") {
   says(joint_to_c("<axis xyz=\"0 0 0\"/>"), q + " <axis>: length 0, not 1");
   says(joint_to_c("<axis xyz=\"0 0 x\"/>"), q + " <axis>: xyz=\"x\" is no number up to 1e6");
   says(joint_to_c("<axis xyz=\"0 0\"/>"), q + " <axis>: xyz=\"0 0\" is not three numbers");
-  says(joint_to_c("<origin xyz=\"1 2 3 4\"/>"), q + " <origin>: xyz=\"1 2 3 4\" is not three numbers");
-  says(joint_to_c("<origin rpy=\"nan 0 0\"/>"), q + " <origin>: rpy=\"nan\" is no number up to 1e6");
+  says(joint_to_c("<origin xyz=\"1 2 3 4\"/>"),
+       q + " <origin>: xyz=\"1 2 3 4\" is not three numbers");
+  says(joint_to_c("<origin rpy=\"nan 0 0\"/>"),
+       q + " <origin>: rpy=\"nan\" is no number up to 1e6");
   says(joint_to_c("", "revolute"), q + ": no element <limit>, which a revolute joint must have");
   says(joint_to_c("<limit lower=\"2\" upper=\"1\"/>", "revolute"),
        q + " <limit>: lower is above upper");
@@ -107,7 +110,8 @@ TEST_CASE("what is wrong is said with file and element") {
   write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
   CHECK(message("a", "z") == file + "no link \"z\"");
   CHECK(message("z", "c") == file + "no link \"z\"");
-  CHECK(message("c", "a") == file + "the link \"a\" does not hang on \"c\": above \"a\" there is no joint");
+  CHECK(message("c", "a") ==
+        file + "the link \"a\" does not hang on \"c\": above \"a\" there is no joint");
   CHECK_THROWS_WITH_AS((void)read_urdf<1>(path, "a", "c"),
                        (file + "2 moving joints from \"a\" to \"c\": use read_urdf<2>").c_str(),
                        invalid_input);

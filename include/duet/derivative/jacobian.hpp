@@ -31,7 +31,8 @@ struct value_and_jacobian {
 
 /// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors or `std::array`s.
 template <class Tag = void, class F, VectorLike X>
-requires(!HasOwnJacobian<F>) [[nodiscard]] auto jacobian(F&& f, const X& x) {
+  requires(!HasOwnJacobian<F>)
+[[nodiscard]] auto jacobian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using T = typename argument::scalar;
   using tag = detail::tag_for<Tag, F>;

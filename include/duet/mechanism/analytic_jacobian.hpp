@@ -13,8 +13,8 @@
 
 namespace duet {
 
-/// ∂γ/∂θ, 7 rows, of γ = [t; α] (N20, N21): J2 times it is the spatial Jacobian. α is the quaternion
-/// of `chain.pose(theta)`, which has its own sign. Arguments as `jacobian`.
+/// ∂γ/∂θ, 7 rows, of γ = [t; α] (N20, N21): J2 times it is the spatial Jacobian. α is the
+/// quaternion of `chain.pose(theta)`, which has its own sign. Arguments as `jacobian`.
 template <SerialChain C, VectorLike X, class... At>
 [[nodiscard]] auto pose_coordinates_jacobian(const C& chain, const X& theta, const At&... at) {
   using S = detail::chain_scalar<C, X>;
@@ -27,7 +27,8 @@ template <SerialChain C, VectorLike X, class... At>
 }
 
 /// ∂[t; a, b, c]/∂θ, 6 rows, for the Euler angles of a sequence: `euler_jacobian<zyx>(chain, θ)`.
-/// Without bounds towards gimbal lock, where the angles' rates do not exist. Arguments as `jacobian`.
+/// Without bounds towards gimbal lock, where the angles' rates do not exist. Arguments as
+/// `jacobian`.
 template <euler_sequence Sequence, SerialChain C, VectorLike X, class... At>
 [[nodiscard]] auto euler_jacobian(const C& chain, const X& theta, const At&... at) {
   using S = detail::chain_scalar<C, X>;

@@ -109,10 +109,9 @@ template <class Q, class V>
 /// N1, of numbers and known constants.
 template <class P, class Q>
 [[nodiscard]] DUET_ALWAYS_INLINE auto product(const P& p, const Q& q) {
-  return partly_known_quaternion{p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z,
-                                 p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
-                                 p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x,
-                                 p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
+  return partly_known_quaternion{
+      p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
+      p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x, p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
 }
 
 /// Where a link stands, and the axis of the joint that moves it: unit vector and a point on it.

@@ -48,8 +48,7 @@ void require_size(const C& chain, const X& theta) {
 }
 
 template <class S>
-using numeric_state =
-    link_state<partly_known_quaternion<S, S, S, S>, partly_known_vector<S, S, S>>;
+using numeric_state = link_state<partly_known_quaternion<S, S, S, S>, partly_known_vector<S, S, S>>;
 
 template <class S, class State>
 [[nodiscard]] DUET_ALWAYS_INLINE numeric_state<S> as_numbers(const State& s) {
@@ -142,8 +141,8 @@ template <class C>
   return chain.link(i);
 }
 template <class C>
-[[nodiscard]] constexpr const auto&
-frame_on(const C&, const attached_frame<typename C::scalar_type>& at) {
+[[nodiscard]] constexpr const auto& frame_on(const C&,
+                                             const attached_frame<typename C::scalar_type>& at) {
   return at;
 }
 

@@ -76,8 +76,8 @@ template <class T, std::size_t N>
   return serial_chain<int(N), T>(joints, link_frames[N - 1] * tool, link_frames);
 }
 
-/// The chain of R_x(α_i) T_x(a_i) R_z(θ_i) T_z(d_i), the modified convention (Craig): frame i stands
-/// on the axis of joint i, and a and α of a row are those of the link before the joint.
+/// The chain of R_x(α_i) T_x(a_i) R_z(θ_i) T_z(d_i), the modified convention (Craig): frame i
+/// stands on the axis of joint i, and a and α of a row are those of the link before the joint.
 /// \throws invalid_input as `serial_chain`
 template <class T, std::size_t N>
 [[nodiscard]] constexpr serial_chain<int(N), T>

@@ -21,8 +21,8 @@ namespace detail {
 
 /// A matrix of one column per joint of a chain.
 template <class S, int Rows, int N>
-using joint_columns = Eigen::Matrix<S, Rows, (N > 0 ? N : Eigen::Dynamic), Eigen::ColMajor, Rows,
-                                    (N > 0 ? N : -N)>;
+using joint_columns =
+    Eigen::Matrix<S, Rows, (N > 0 ? N : Eigen::Dynamic), Eigen::ColMajor, Rows, (N > 0 ? N : -N)>;
 
 template <class C, class X>
 using chain_jacobian = joint_columns<chain_scalar<C, X>, 6, C::joints>;
@@ -34,8 +34,8 @@ template <bool WithRotation, class S, class C, class X, class J>
                                                                   int link, J& m) {
   m.resize(6, chain.size());
   const auto state = walk<WithRotation, S>(
-      chain, theta, link, [&](std::size_t column, const auto& step, const auto& z, const auto& p)
-                              DUET_INLINE_LAMBDA {
+      chain, theta, link,
+      [&](std::size_t column, const auto& step, const auto& z, const auto& p) DUET_INLINE_LAMBDA {
         const auto i = Eigen::Index(column);
         const S zero(0);
         if (step.turns()) {
@@ -91,8 +91,8 @@ DUET_ALWAYS_INLINE void turn_to_body(J& m, const quaternion<S>& rotation) {
 /// \param frame_of_result  see `jacobian`
 /// \param at               nothing for the tip, the number of a link, or an `attached_frame`
 template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
-[[nodiscard]] DUET_ALWAYS_INLINE auto pose_and_jacobian(const C& chain, const X& theta,
-                                                        Frame, const At&... at) {
+[[nodiscard]] DUET_ALWAYS_INLINE auto pose_and_jacobian(const C& chain, const X& theta, Frame,
+                                                        const At&... at) {
   using S = detail::chain_scalar<C, X>;
   const auto& on = detail::frame_on(chain, at...);
   value_and_jacobian<dual_quaternion<S>, detail::chain_jacobian<C, X>> result;
@@ -120,8 +120,7 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
 /// is none of
 template <class C, VectorLike X, FrameConstant Frame, class... At>
   requires SerialChain<std::remove_cvref_t<C>>
-[[nodiscard]] DUET_ALWAYS_INLINE auto jacobian(C&& chain, const X& theta, Frame,
-                                               const At&... at) {
+[[nodiscard]] DUET_ALWAYS_INLINE auto jacobian(C&& chain, const X& theta, Frame, const At&... at) {
   using chain_type = std::remove_cvref_t<C>;
   using S = detail::chain_scalar<chain_type, X>;
   if constexpr (std::same_as<Frame, spatial_frame>) {

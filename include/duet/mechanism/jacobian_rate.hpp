@@ -37,10 +37,10 @@ template <class S>
 
 /// ∂J_k/∂θ_j by the columns of J itself.
 ///
-/// Spatial: the screw of joint k is carried by the joints before it, ad(J_j) J_k, j < k. Body: it is
-/// carried the other way by those after it, ad(J_k) J_j, j > k. Hybrid: axes turn with the joints
-/// before, ω_j × ω_k, and the tip moves with all, u the velocity of its origin: ω_j × u_k for j ≤ k,
-/// ω_k × u_j for j > k.
+/// Spatial: the screw of joint k is carried by the joints before it, ad(J_j) J_k, j < k. Body: it
+/// is carried the other way by those after it, ad(J_k) J_j, j > k. Hybrid: axes turn with the
+/// joints before, ω_j × ω_k, and the tip moves with all, u the velocity of its origin: ω_j × u_k
+/// for j ≤ k, ω_k × u_j for j > k.
 template <class Frame, class S>
 [[nodiscard]] vector6<S> column_by_joint(const velocity_pair<S>& k, const velocity_pair<S>& j,
                                          bool j_is_before_k) {
@@ -65,7 +65,7 @@ template <class Frame, class S>
 /// side in one matrix.
 template <class S, int N>
 class chain_hessian {
-  static constexpr int columns = N > 0 ? N * N : Eigen::Dynamic;
+  static constexpr int columns = N > 0 ? N* N : Eigen::Dynamic;
 
 public:
   explicit chain_hessian(Eigen::Index n) : size_(n), values_(6, n * n) {}
@@ -101,8 +101,7 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
     auto by_j = h[j];
     const auto column_j = detail::velocity_column(m, j);
     for (Eigen::Index k = 0; k < n; ++k) {
-      by_j.col(k) =
-          detail::column_by_joint<Frame>(detail::velocity_column(m, k), column_j, j <= k);
+      by_j.col(k) = detail::column_by_joint<Frame>(detail::velocity_column(m, k), column_j, j <= k);
     }
   }
   return h;

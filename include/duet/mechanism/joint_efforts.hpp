@@ -9,10 +9,11 @@
 
 namespace duet {
 
-/// τ = Jᵀ F: the torques, or forces where joints slide, of a wrench F = [f; m] that the chain exerts
-/// at a frame, with the same power: τ·θ̇ = F·V.
+/// τ = Jᵀ F: the torques, or forces where joints slide, of a wrench F = [f; m] that the chain
+/// exerts at a frame, with the same power: τ·θ̇ = F·V.
 ///
-/// \param frame_of_wrench  `frame::spatial`: fixed axes, m about the fixed origin; `frame::body`: axes
+/// \param frame_of_wrench  `frame::spatial`: fixed axes, m about the fixed origin; `frame::body`:
+/// axes
 ///                         and origin of the frame; `frame::hybrid`: fixed axes, m about its origin
 /// Other arguments as `jacobian`.
 template <SerialChain C, VectorLike X, class W, FrameConstant Frame, class... At>

@@ -24,7 +24,8 @@ inline constexpr int sign_if_unit<known_unit<Sign>> = Sign;
 template <class X>
 inline constexpr bool is_known_zero = std::is_same_v<X, known_zero>;
 template <class X>
-concept Known = is_known_zero<X> || sign_if_unit<X> != 0;
+concept Known = is_known_zero<X> || sign_if_unit<X>
+!= 0;
 
 template <class A, class B>
   requires(Known<A> || Known<B>)

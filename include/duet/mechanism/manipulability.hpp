@@ -74,9 +74,9 @@ template <SerialChain C, VectorLike X, class... At>
   if (innermost(result.value) == 0) {
     throw invalid_input("duet: manipulability_gradient: the Jacobian loses rank here");
   }
-  using square = Eigen::Matrix<S, matrix::RowsAtCompileTime, matrix::RowsAtCompileTime,
-                               Eigen::ColMajor, matrix::MaxRowsAtCompileTime,
-                               matrix::MaxRowsAtCompileTime>;
+  using square =
+      Eigen::Matrix<S, matrix::RowsAtCompileTime, matrix::RowsAtCompileTime, Eigen::ColMajor,
+                    matrix::MaxRowsAtCompileTime, matrix::MaxRowsAtCompileTime>;
   const auto inverse = qr.solve(square::Identity(m.rows(), m.rows())).eval(); // M⁺
   const auto h = kinematic_hessian(chain, theta, frame::hybrid, at...);
   for (Eigen::Index j = 0; j < chain.size(); ++j) {

@@ -69,8 +69,8 @@ struct ur5e_arm {
   }();
 };
 
-/// The table of the left arm of Rethink's Baxter, in the standard convention, from the origin of the
-/// joint left_s0 to left_hand.
+/// The table of the left arm of Rethink's Baxter, in the standard convention, from the origin of
+/// the joint left_s0 to left_hand.
 struct baxter_left_arm {
   static constexpr auto chain = [] {
     using detail::quarter;

@@ -26,8 +26,9 @@ struct joint_screw {
                         const joint_limits<T>& given_limits = {})
       : direction(l), moment(m), limits(given_limits) {}
   joint_screw(const dual_vector<T>& s, const joint_limits<T>& given_limits = {})
-      : direction{s[0].value(), s[1].value(), s[2].value()},
-        moment{s[0].epsilon(), s[1].epsilon(), s[2].epsilon()}, limits(given_limits) {}
+      : direction{s[0].value(), s[1].value(), s[2].value()}, moment{s[0].epsilon(), s[1].epsilon(),
+                                                                    s[2].epsilon()},
+        limits(given_limits) {}
 };
 
 /// The chain with the pose exp(½θ_1 S_1) … exp(½θ_n S_n) M, S_i the joints' screws and M the tip at

@@ -79,8 +79,7 @@ struct poses_of {
     using S = chain_scalar<C, X>;
     const C& chain = static_cast<const C&>(*this);
     const auto& frame = frame_on(chain, at...);
-    const auto state =
-        attach(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
+    const auto state = attach(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
     return duet::pose(state.rotation, state.position);
   }
 };
@@ -162,8 +161,8 @@ private:
     const auto i = std::size_t(size_);
     const T to_unit = detail::inverse_root_near_one(norm2(origin.rotation));
     const quaternion<T> a = origin.rotation * to_unit;
-    const auto n = detail::scaled(given.axis,
-                                  detail::inverse_root_near_one(detail::dot(given.axis, given.axis)));
+    const auto n = detail::scaled(
+        given.axis, detail::inverse_root_near_one(detail::dot(given.axis, given.axis)));
     detail::chain_step<T>& s = steps_[i];
     s.a = a;
     s.an = a * quaternion<T>(T(0), n[0], n[1], n[2]);
