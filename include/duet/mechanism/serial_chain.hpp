@@ -136,6 +136,19 @@ public:
                                   const placement<T>& tool = {})
       : serial_chain(std::span<const joint<T>>(given), tool) {}
 
+  /// The same chain with its number of joints no more in the type, so that code for it is compiled
+  /// once for all of up to −N.
+  template <int M>
+    requires(M != N && N < 0 && (M > 0 ? M : -M) <= -N)
+  constexpr serial_chain(const serial_chain<M, T>& other) : tip_(other.tip()), size_(other.size()) {
+    for (std::size_t i = 0; i < std::size_t(size_); ++i) {
+      steps_[i] = other.steps()[i];
+      frames_[i] = other.link(int(i) + 1).offset;
+      kinds_[i] = other.kind(int(i));
+      limits_[i] = other.limits(int(i));
+    }
+  }
+
   /// Number of joints that move.
   [[nodiscard]] constexpr int size() const { return size_; }
   /// The frame of the tip.
