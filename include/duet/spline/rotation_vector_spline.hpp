@@ -45,6 +45,8 @@ public:
   using scalar_type = T;
   using real_type = real_type_t<T>;
   static constexpr int order = Order;
+  /// Against smooth motion, interpolation misses by as much as this power of the step.
+  static constexpr int convergence = Order;
 
   /// The Hermite curve: halved rates at the knots in body axes, element [i][0] is w with Q′ = Q w,
   /// [i][1] its derivative (order 6 only). Elements are normalised and their signs aligned.
