@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace test_spline_interpolate_errors {
+
 using spline = duet::cumulative_bspline<double>;
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
@@ -125,3 +127,5 @@ TEST_CASE("neighbours nearly half a turn apart, on random axes: no curve, and a 
   }
   CHECK(failures > 5);
 }
+
+} // namespace test_spline_interpolate_errors
