@@ -16,6 +16,8 @@
 
 // The other ways to a derivative, against dual numbers.
 
+namespace test_comparison_numeric_derivative {
+
 using duet::central_difference_derivative;
 using duet::complex_step_derivative;
 using duet::derivative;
@@ -82,3 +84,5 @@ TEST_CASE(
       central_difference_derivative([](double x) { return 1 / (x * x - x * x); }, 1.0);
   CHECK(std::isinf(at_pole.error));
 }
+
+} // namespace test_comparison_numeric_derivative

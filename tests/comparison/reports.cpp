@@ -15,6 +15,8 @@
 
 // How a comparison is printed, for people and for programs.
 
+namespace test_comparison_reports {
+
 using duet::comparison;
 using duet::verdict;
 
@@ -94,3 +96,5 @@ TEST_CASE("a long run says how far it is, a short one nothing") {
   CHECK(caught.str().starts_with("\rduet: compare \"slow\": "));
   CHECK(caught.str().ends_with(" of 40\n"));
 }
+
+} // namespace test_comparison_reports

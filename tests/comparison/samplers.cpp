@@ -15,6 +15,8 @@
 
 // Where compared functions are evaluated.
 
+namespace test_comparison_samplers {
+
 using duet::arrays;
 using duet::coordinates;
 using duet::quaternions;
@@ -125,3 +127,5 @@ TEST_CASE("descriptions") {
   CHECK(sampler(quaternions{}).named("q").describe(coordinates{1, 0, 0, 0.5}) ==
         "q = (1, 0, 0, 0.5)");
 }
+
+} // namespace test_comparison_samplers

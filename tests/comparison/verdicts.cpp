@@ -19,6 +19,8 @@
 
 // What `compare` says of formulas that are right, wrong, wrong in one place only, or badly rounded.
 
+namespace test_comparison_verdicts {
+
 using duet::compare;
 using duet::comparison;
 using duet::comparison_options;
@@ -213,3 +215,5 @@ TEST_CASE("results of different sizes") {
       "duet: compare \"sizes\": the automatic result has 2 components, the closed form 3",
       duet::invalid_input);
 }
+
+} // namespace test_comparison_verdicts

@@ -15,6 +15,8 @@
 #include <sstream>
 #include <string>
 
+namespace test_core_number_text {
+
 using duet::parse_number;
 using duet::to_text;
 
@@ -96,3 +98,5 @@ TEST_CASE("a decimal comma in the global locale changes nothing") {
   CHECK(parse_number("1234.5") == 1234.5);
   CHECK_FALSE(parse_number("1234,5").has_value());
 }
+
+} // namespace test_core_number_text

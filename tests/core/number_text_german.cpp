@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <string>
 
+namespace test_core_number_text_german {
+
 TEST_CASE("the German C locale changes nothing") {
   bool found = false;
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
@@ -27,3 +29,5 @@ TEST_CASE("the German C locale changes nothing") {
   CHECK_FALSE(duet::parse_number("1234,5").has_value());
   std::setlocale(LC_ALL, "C");
 }
+
+} // namespace test_core_number_text_german

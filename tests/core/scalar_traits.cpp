@@ -13,6 +13,8 @@
 #include <string>
 #include <type_traits>
 
+namespace test_core_scalar_traits {
+
 using duet_test::real_100;
 using duet_test::real_50;
 using duet_test::real_50_et;
@@ -57,3 +59,5 @@ TEST_CASE_TEMPLATE("constants in every precision", T, float, double, long double
   worst.add(duet_test::ulps(constant::two_over_sqrt_pi<T>(), erf_slope, erf_slope), "2/sqrt pi");
   CHECK_MESSAGE(worst <= (std::floating_point<T> ? 1 : 4), worst); // Boost's log is within 4
 }
+
+} // namespace test_core_scalar_traits

@@ -7,6 +7,8 @@
 
 #include <type_traits>
 
+namespace test_core_select {
+
 using duet::dual;
 using duet::select;
 
@@ -53,3 +55,5 @@ concept Selects = requires(Condition c) {
       c, [] { return 1; }, [] { return 2; });
 };
 static_assert(Selects<bool> && !Selects<mask> && !Selects<int> && !Selects<dual<double>>);
+
+} // namespace test_core_select

@@ -14,6 +14,8 @@
 
 // Gradients and Jacobians by many inputs, into memory of the caller.
 
+namespace test_derivative_chunked {
+
 using duet::gradient_into;
 using duet::jacobian_into;
 
@@ -125,3 +127,5 @@ TEST_CASE("sizes that do not match") {
   const Eigen::VectorXd nothing;
   CHECK_THROWS_AS(static_cast<void>(gradient_into(chain, nothing, g)), duet::invalid_input);
 }
+
+} // namespace test_derivative_chunked

@@ -17,6 +17,8 @@
 // x(p) with F(x, p) = 0: values and derivatives of scalars, vectors and tuples, against closed
 // forms and wide arithmetic.
 
+namespace test_derivative_implicit_function {
+
 using duet::implicit_function;
 using duet_test::real_100;
 
@@ -200,3 +202,5 @@ TEST_CASE("what has no solution, or a singular one, is refused") {
   CHECK_THROWS_AS(static_cast<void>(implicit_function<1>(slow, 1e9, 1.0, {.max_iterations = 5})),
                   duet::no_convergence);
 }
+
+} // namespace test_derivative_implicit_function

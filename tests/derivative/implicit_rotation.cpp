@@ -17,6 +17,8 @@
 // Implicit functions whose unknown is, or contains, a rotation: three coordinates, no constraint on
 // the norm, derivatives of the quaternion itself.
 
+namespace test_derivative_implicit_rotation {
+
 using duet::implicit_function;
 using duet::quaternion;
 using duet::vector3;
@@ -154,3 +156,5 @@ TEST_CASE("an orientation that cannot be reached") {
       static_cast<void>(implicit_function<1>(f, quaternion<double>(0.9, 0.1, 0.3, 0.3), 2.0)),
       duet::no_convergence);
 }
+
+} // namespace test_derivative_implicit_rotation

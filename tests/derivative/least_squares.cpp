@@ -16,6 +16,8 @@
 // x that minimises ‖A x − b‖: values to the last bit, derivatives against the normal equations and
 // QR over duals.
 
+namespace test_derivative_least_squares {
+
 using duet::dual;
 using duet::least_squares;
 using duet::taylor;
@@ -221,3 +223,5 @@ TEST_CASE("what has no unique solution is refused") {
   a(1, 0) = std::numeric_limits<double>::infinity();
   CHECK(message(a, b) == "duet: least_squares: entry (1, 0) of A is not finite");
 }
+
+} // namespace test_derivative_least_squares

@@ -18,6 +18,8 @@
 // Systems, least squares and eigenvectors in 50 digits, and how far doubles are from that where the
 // matrix is ill-conditioned.
 
+namespace test_derivative_linear_algebra_wide {
+
 using duet::dual;
 using duet::taylor;
 using Eigen::Dynamic;
@@ -270,3 +272,5 @@ TEST_CASE("messages with numbers of 50 digits") {
   b(1, 1) += real_50(1e-30);
   CHECK(duet::solve(b, right).rows() == 2);
 }
+
+} // namespace test_derivative_linear_algebra_wide

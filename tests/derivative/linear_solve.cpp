@@ -15,6 +15,8 @@
 // x with A x = b: values to the last bit, derivatives against closed forms and elimination over
 // duals.
 
+namespace test_derivative_linear_solve {
+
 using duet::dual;
 using duet::solve;
 using duet::taylor;
@@ -257,3 +259,5 @@ TEST_CASE("what cannot be solved is refused") {
   // Nearly singular is another thing.
   CHECK(message(hilbert(12), VectorXd::Ones(12).eval()) == "");
 }
+
+} // namespace test_derivative_linear_solve

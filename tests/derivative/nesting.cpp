@@ -13,6 +13,8 @@
 // Differentiation inside differentiated functions: no level may take another's infinitesimal for
 // its own.
 
+namespace test_derivative_nesting {
+
 using duet::derivative;
 using duet::derivatives;
 
@@ -156,3 +158,5 @@ TEST_CASE("a tag of one's own tells two differentiations of one function apart")
   const auto g = [&](const auto& x) { return derivative(cube, x).derivative; };
   CHECK(derivative(g, 2.0).derivative == 12);
 }
+
+} // namespace test_derivative_nesting

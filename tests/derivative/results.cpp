@@ -16,6 +16,8 @@
 
 // derivative, derivatives and directional_derivative of functions with results of every shape.
 
+namespace test_derivative_results {
+
 using duet::derivative;
 using duet::derivatives;
 using duet::directional_derivative;
@@ -185,3 +187,5 @@ TEST_CASE("scalars are visited from the first to the last") {
                                            std::array{7.0, 8.0}, Eigen::Vector2d(9, 0))));
   CHECK(order == "1234567890");
 }
+
+} // namespace test_derivative_results

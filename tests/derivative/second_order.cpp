@@ -14,6 +14,8 @@
 
 // Parts of Hessians, against all of it and closed forms.
 
+namespace test_derivative_second_order {
+
 using duet::hessian;
 using duet::hessian_vector_product;
 using duet::mixed_hessian;
@@ -105,3 +107,5 @@ TEST_CASE("sizes that differ") {
                        "duet: hessian_vector_product: the point has 3 components, the vector 2",
                        duet::invalid_input);
 }
+
+} // namespace test_derivative_second_order

@@ -17,6 +17,8 @@
 // A v = λ v: values to the last bit, derivatives against perturbation theory and against the
 // equations themselves.
 
+namespace test_derivative_symmetric_eigen {
+
 using duet::dual;
 using duet::symmetric_eigen;
 using duet::taylor;
@@ -310,3 +312,5 @@ TEST_CASE("float, long double and integers") {
   const auto e = symmetric_eigen(a);
   CHECK(std::abs(e.vectors(0, 0).value() * e.vectors(1, 0).epsilon() + 0.5L) <= 1e-18L);
 }
+
+} // namespace test_derivative_symmetric_eigen

@@ -16,6 +16,8 @@
 
 // Jacobians, gradients and Hessians of functions of rotations, against closed forms.
 
+namespace test_derivative_tangent_coordinates {
+
 using duet::gradient;
 using duet::hessian;
 using duet::jacobian;
@@ -185,3 +187,5 @@ TEST_CASE("inside another differentiation") {
   CHECK(duet::derivative(trace, 2.0).value == doctest::Approx(2).epsilon(1e-15));
   CHECK(duet::derivative(trace, 2.0).derivative == doctest::Approx(1).epsilon(1e-15));
 }
+
+} // namespace test_derivative_tangent_coordinates

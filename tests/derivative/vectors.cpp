@@ -11,6 +11,8 @@
 
 // gradient, jacobian and hessian: vectors of every kind and size.
 
+namespace test_derivative_vectors {
+
 using duet::gradient;
 using duet::hessian;
 using duet::jacobian;
@@ -190,3 +192,5 @@ TEST_CASE("gradients in single precision") {
   static_assert(std::is_same_v<decltype(g), const Eigen::Vector2f>);
   CHECK(g == Eigen::Vector2f(3, 2));
 }
+
+} // namespace test_derivative_vectors

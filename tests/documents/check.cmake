@@ -7,7 +7,7 @@
 # A program that begins with duet/duet.hpp, as all do that can, is given it precompiled: nothing else
 # is, so that it must still include what else it needs.
 #
-# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dcommon=<header, compiled beside it>
+# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dprecompiled=<header>
 #   -Dfolder=<for programs> -P check.cmake
 
 cmake_minimum_required(VERSION 3.22)
@@ -44,12 +44,12 @@ while(TRUE)
   math(EXPR count "${count} + 1")
   set(program ${folder}/snippet_${count})
   file(WRITE ${program}.cpp "${code}")
-  set(precompiled "")
+  set(include "")
   if(code MATCHES "^\n*#include <duet/duet.hpp>\n")
-    set(precompiled -include ${common})
+    set(include -include ${precompiled})
   endif()
   execute_process(
-    COMMAND ${compile} -Wall -Wextra -Werror ${precompiled} ${program}.cpp -o ${program}
+    COMMAND ${compile} -Wall -Wextra -Werror ${include} ${program}.cpp -o ${program}
     RESULT_VARIABLE result ERROR_VARIABLE log)
   if(NOT result EQUAL 0)
     message("${code}\n${log}")

@@ -8,6 +8,8 @@
 
 // N10, N11 at compile time. Whatever is asserted here holds for constants, so it is exact.
 
+namespace test_dual_algebra {
+
 using duet::dual;
 using duet::taylor;
 
@@ -189,3 +191,5 @@ TEST_CASE("packed partials at run time") {
   check_packed_of_all_sizes<double>();
   check_packed_of_all_sizes<long double>();
 }
+
+} // namespace test_dual_algebra

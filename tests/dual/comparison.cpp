@@ -15,6 +15,8 @@
 
 // Numbers are compared, classified and limited by their values.
 
+namespace test_dual_comparison {
+
 using duet::dual;
 using duet::taylor;
 
@@ -132,3 +134,5 @@ TEST_CASE("complex numbers over duals multiply and divide") {
   CHECK(one.imag().epsilon() == 0);
   CHECK(norm(z).epsilon() == 2);
 }
+
+} // namespace test_dual_comparison

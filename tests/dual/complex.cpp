@@ -16,6 +16,8 @@
 
 // Dual and Taylor numbers over the complex numbers: analytic functions and their derivatives.
 
+namespace test_dual_complex {
+
 using duet::dual;
 using duet::promote_t;
 using duet::taylor;
@@ -284,3 +286,5 @@ TEST_CASE_TEMPLATE("in every built-in precision", T, float, double, long double)
   const number exact = exp(z) * (z + T(1)) / T(2) + T(2) * z;
   CHECK(std::abs(y.epsilon() - exact) <= 8 * std::numeric_limits<T>::epsilon() * std::abs(exact));
 }
+
+} // namespace test_dual_complex

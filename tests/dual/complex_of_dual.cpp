@@ -17,6 +17,8 @@
 // The standard leaves std::complex of other than built-in types unspecified; these tests pin what
 // its templates do.
 
+namespace test_dual_complex_of_dual {
+
 using duet::dual;
 using duet::taylor;
 using duet_test::random_source;
@@ -187,3 +189,5 @@ TEST_CASE("Taylor numbers: e^{it} has the derivatives i^k e^{it}") {
   }
   CHECK(std::abs(abs(z).derivative(1)) <= 4 * epsilon); // it stays on the unit circle
 }
+
+} // namespace test_dual_complex_of_dual

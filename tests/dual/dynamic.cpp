@@ -19,6 +19,8 @@
 
 // A run-time number of partials: the same numbers as with a fixed one.
 
+namespace test_dual_dynamic {
+
 using duet::dual;
 using duet::dynamic_dual;
 
@@ -151,3 +153,5 @@ TEST_CASE("nested, in Eigen and in streams") {
   text << number::variable(1.5, 1, 2) << " " << number(2);
   CHECK(text.str() == "1.5[0, 1] 2[]");
 }
+
+} // namespace test_dual_dynamic

@@ -11,6 +11,8 @@
 
 // Nothing is lazy: what lazy libraries make dangle or refuse to compile just works.
 
+namespace test_dual_eager {
+
 using duet::dual;
 using duet::taylor;
 
@@ -86,3 +88,5 @@ TEST_CASE("operands may be the result") {
   t /= same_t;
   CHECK(t.coefficient(1) == 0);
 }
+
+} // namespace test_dual_eager

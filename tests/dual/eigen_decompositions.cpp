@@ -15,6 +15,8 @@
 // of their derivatives. (Where off-diagonal entries vanish they lose derivatives, see
 // dual/eigen_solvers.hpp; duet::symmetric_eigen does not.)
 
+namespace test_dual_eigen_decompositions {
+
 using duet::dual;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -153,3 +155,5 @@ TEST_CASE("sparse Cholesky") {
     }
   }
 }
+
+} // namespace test_dual_eigen_decompositions

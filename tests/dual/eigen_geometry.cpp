@@ -9,6 +9,8 @@
 
 // Eigen's Geometry module over duals: a frame that turns about n at unit rate has Ṙ = [n]× R.
 
+namespace test_dual_eigen_geometry {
+
 using D = duet::dual<double>;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -100,3 +102,5 @@ TEST_CASE("products of vectors") {
   const DMatrix r = Eigen::Quaternion<D>::FromTwoVectors(a, b).toRotationMatrix();
   CHECK(slopes((r * a.normalized() - b.normalized()).eval()).norm() <= 1e-13);
 }
+
+} // namespace test_dual_eigen_geometry

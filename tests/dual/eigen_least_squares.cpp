@@ -4,6 +4,8 @@
 
 #include <Eigen/QR>
 
+namespace test_dual_eigen_least_squares {
+
 using duet::dual;
 using duet_test::check_solution;
 using duet_test::linear_problem;
@@ -35,3 +37,5 @@ TEST_CASE("least squares: AᵀA x = Aᵀb, with derivatives") {
     check_solution(dual_a.colPivHouseholderQr().solve(dual_b).eval(), normal);
   }
 }
+
+} // namespace test_dual_eigen_least_squares

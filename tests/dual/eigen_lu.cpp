@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+namespace test_dual_eigen_lu {
+
 using duet::dual;
 using duet_test::check_solution;
 using duet_test::linear_problem;
@@ -69,3 +71,5 @@ TEST_CASE("several right-hand sides, systems larger than Eigen's blocks") {
     }
   }
 }
+
+} // namespace test_dual_eigen_lu

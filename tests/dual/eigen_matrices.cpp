@@ -9,6 +9,8 @@
 #include <sstream>
 #include <type_traits>
 
+namespace test_dual_eigen_matrices {
+
 using duet::dual;
 using duet::screw_tag;
 using duet::taylor;
@@ -172,3 +174,5 @@ TEST_CASE("matrices print in columns") {
   series << Eigen::Matrix<taylor<double, 2>, 1, 2>(taylor<double, 2>::variable(1), 2);
   CHECK(series.str() == "(1 + 1 e + 0 e^2) (2 + 0 e + 0 e^2)");
 }
+
+} // namespace test_dual_eigen_matrices

@@ -4,6 +4,8 @@
 
 #include <Eigen/QR>
 
+namespace test_dual_eigen_qr {
+
 using duet::dual;
 using duet_test::check_solution;
 using duet_test::linear_problem;
@@ -35,3 +37,5 @@ TEST_CASE_TEMPLATE("QR of dynamic size", Decomposition, Eigen::HouseholderQR<mat
     }
   }
 }
+
+} // namespace test_dual_eigen_qr

@@ -4,6 +4,8 @@
 
 #include <Eigen/QR>
 
+namespace test_dual_eigen_reflectors {
+
 using duet::dual;
 using duet_test::check_solution;
 using duet_test::problems;
@@ -65,3 +67,5 @@ TEST_CASE("fixed sizes, several partials and right-hand sides") {
     check_solution(a.householderQr().solve(columns).col(1).eval(), p, 3);
   }
 }
+
+} // namespace test_dual_eigen_reflectors

@@ -7,6 +7,8 @@
 // Second derivatives of solutions, by Taylor numbers and by nested duals:
 // A x″ = b″ − 2A′x′ − A″x.
 
+namespace test_dual_eigen_second_order {
+
 using duet::dual;
 using duet::taylor;
 using duet_test::problems;
@@ -61,3 +63,5 @@ TEST_CASE("second derivatives of solutions") {
     }
   }
 }
+
+} // namespace test_dual_eigen_second_order

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_dual_function_gamma {
+
 using duet::dual;
 using duet_test::central_difference;
 using duet_test::real_100;
@@ -50,3 +52,5 @@ TEST_CASE("derivatives of gamma functions") {
   CHECK_MESSAGE(worst_lgamma <= 16, worst_lgamma);
   CHECK_MESSAGE(worst_tgamma <= 16, worst_tgamma);
 }
+
+} // namespace test_dual_function_gamma

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+namespace test_dual_function_partials {
+
 using duet::dual;
 using duet_test::domain;
 using duet_test::for_each_function;
@@ -51,3 +53,5 @@ TEST_CASE("every number of partials gives the same slope") {
     }
   });
 }
+
+} // namespace test_dual_function_partials

@@ -10,6 +10,8 @@
 #include <limits>
 #include <string>
 
+namespace test_dual_function_precision {
+
 using duet::dual;
 using duet_test::domain;
 using duet_test::for_each_function;
@@ -41,3 +43,5 @@ TEST_CASE_TEMPLATE("first derivatives in every built-in precision", T, float, lo
     CHECK_MESSAGE(worst <= 4, worst);
   });
 }
+
+} // namespace test_dual_function_precision

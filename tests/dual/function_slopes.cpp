@@ -8,6 +8,8 @@
 
 #include <string>
 
+namespace test_dual_function_slopes {
+
 using duet::dual;
 using duet_test::central_difference;
 using duet_test::domain;
@@ -30,3 +32,5 @@ TEST_CASE("first derivatives against 100 digits") {
     CHECK_MESSAGE(worst <= 4, worst);
   });
 }
+
+} // namespace test_dual_function_slopes

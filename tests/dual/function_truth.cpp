@@ -7,6 +7,8 @@
 
 #include <string>
 
+namespace test_dual_function_truth {
+
 using duet_test::central_difference;
 using duet_test::domain;
 using duet_test::real_100;
@@ -34,3 +36,5 @@ TEST_CASE("the derivatives by hand are derivatives") {
     CHECK(count >= 4);
   });
 }
+
+} // namespace test_dual_function_truth

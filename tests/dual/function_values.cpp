@@ -10,6 +10,8 @@
 #include <limits>
 #include <string>
 
+namespace test_dual_function_values {
+
 using duet::dual;
 using duet::taylor;
 using duet_test::domain;
@@ -71,3 +73,5 @@ TEST_CASE("a constant has no derivative, wherever it is") {
     }
   });
 }
+
+} // namespace test_dual_function_values

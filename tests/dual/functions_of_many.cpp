@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_dual_functions_of_many {
+
 using duet::dual;
 using duet_test::real_100;
 using duet_test::ulps;
@@ -220,3 +222,5 @@ TEST_CASE("remainders") {
     CHECK(r.epsilon() == 1);
   }
 }
+
+} // namespace test_dual_functions_of_many

@@ -11,6 +11,8 @@
 #include <limits>
 #include <string>
 
+namespace test_dual_higher_derivatives {
+
 using duet::dual;
 using duet::taylor;
 using duet_test::central_difference;
@@ -102,3 +104,5 @@ TEST_CASE("even derivatives of odd functions near 0 vanish with x") {
     });
   }
 }
+
+} // namespace test_dual_higher_derivatives

@@ -2,6 +2,8 @@
 
 #include "dual/multiprecision_cases.hpp"
 
+namespace test_dual_multiprecision_et {
+
 TEST_CASE("50 digits with expression templates: functions") {
   duet_test::check_functions_over<duet_test::real_50_et>();
 }
@@ -9,3 +11,5 @@ TEST_CASE("50 digits with expression templates: functions") {
 TEST_CASE("50 digits with expression templates: algebra") {
   duet_test::check_algebra_over<duet_test::real_50_et>();
 }
+
+} // namespace test_dual_multiprecision_et

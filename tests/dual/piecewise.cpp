@@ -10,6 +10,8 @@
 #include <limits>
 #include <vector>
 
+namespace test_dual_piecewise {
+
 using duet::dual;
 using duet::taylor;
 
@@ -157,3 +159,5 @@ TEST_CASE("neighbours") {
   CHECK(nexttoward(x, 2.0L).value() == std::nexttoward(1.0, 2.0L));
   CHECK(nexttoward(taylor<double, 2>::variable(1), 2.0L).coefficient(1) == 1);
 }
+
+} // namespace test_dual_piecewise

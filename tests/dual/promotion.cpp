@@ -11,6 +11,8 @@
 
 // Which scalars meet in which nesting, and which must not meet at all.
 
+namespace test_dual_promotion {
+
 using duet::dual;
 using duet::Promotable;
 using duet::promote_t;
@@ -181,3 +183,5 @@ TEST_CASE("widening keeps every part, narrowing rounds it") {
   CHECK(mixed.value() == real_50(0.1) * 3);
   CHECK(static_cast<int>(dual<double>(2.7, 1)) == 2);
 }
+
+} // namespace test_dual_promotion

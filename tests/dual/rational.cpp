@@ -12,6 +12,8 @@
 
 // Dual and Taylor numbers over the rational numbers: N10, N11 without any rounding.
 
+namespace test_dual_rational {
+
 using duet::dual;
 using duet::promote_t;
 using duet::taylor;
@@ -143,3 +145,5 @@ TEST_CASE("derivatives of rational functions of every order, exactly") {
   CHECK((u / v).partial(0) == Q(1, 5));
   CHECK((u / v).partial(1) == -x / 25);
 }
+
+} // namespace test_dual_rational

@@ -22,6 +22,8 @@
 
 // Numbers with second derivatives, against duals over duals.
 
+namespace test_dual_second_dual {
+
 using duet::dual;
 using duet::second_dual;
 
@@ -169,3 +171,5 @@ TEST_CASE("in Eigen, Stumpff functions and streams") {
   text << second_dual<double, 2>::variable(3, 1) * second_dual<double, 2>::variable(3, 1);
   CHECK(text.str() == "9[0, 6; 0; 0, 2]");
 }
+
+} // namespace test_dual_second_dual

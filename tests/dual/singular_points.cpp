@@ -19,6 +19,8 @@
 // is checked in several numbers: values bit by bit against plain numbers, the derivative by each
 // argument where the others are arithmetic constants, constants and variables.
 
+namespace test_dual_singular_points {
+
 using duet::dual;
 using duet::taylor;
 
@@ -292,3 +294,5 @@ TEST_CASE("std::max and std::min take the first of equal numbers") {
   CHECK(std::min(y, x).partial(1) == 1);
   CHECK(max(x, x).partial(0) == 1);
 }
+
+} // namespace test_dual_singular_points

@@ -26,6 +26,8 @@
 // What is written for double works with dual and Taylor numbers: literals of every arithmetic type,
 // the conditional operator, algorithms and containers. (std::complex: complex_of_dual.cpp.)
 
+namespace test_dual_standard_library {
+
 using duet::dual;
 using duet::taylor;
 
@@ -337,3 +339,5 @@ TEST_CASE_TEMPLATE("valarrays", D, DUET_EVERY_NUMBER) {
   CHECK(is(a.apply([](const D& b) { return b * b; })[2], 0.25, -0.25));
   CHECK(is(std::valarray<D>(a[std::slice(0, 2, 2)])[1], 0.5, -0.25));
 }
+
+} // namespace test_dual_standard_library

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+namespace test_dual_stream {
+
 using duet::dual;
 using duet::taylor;
 
@@ -78,3 +80,5 @@ TEST_CASE("what is read is a constant") {
   nested_in >> nested;
   CHECK(nested == 4);
 }
+
+} // namespace test_dual_stream

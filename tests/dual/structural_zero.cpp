@@ -10,6 +10,8 @@
 // Singular points: values are never damaged, constants never poison gradients, and a genuine
 // singularity gives the IEEE answer.
 
+namespace test_dual_structural_zero {
+
 using duet::dual;
 using duet::taylor;
 
@@ -226,3 +228,5 @@ TEST_CASE("arithmetic constants leave infinite values alone at every level") {
   CHECK((nested(infinity) * 2).value().epsilon() == 0);
   CHECK((taylor<D, 2, outer_tag>(infinity) * 2).value().epsilon() == 0);
 }
+
+} // namespace test_dual_structural_zero

@@ -8,6 +8,8 @@
 
 // Tags keep the infinitesimals of nested differentiations apart.
 
+namespace test_dual_tags {
+
 using duet::derivative_tag;
 using duet::dual;
 using duet::screw_tag;
@@ -71,3 +73,5 @@ TEST_CASE("the screw's infinitesimal is outermost") {
   static_assert(duet::detail::tags_can_be_told_apart<my_tag, other_tag>());
   static_assert(is_outside<my_tag, other_tag>() != is_outside<other_tag, my_tag>());
 }
+
+} // namespace test_dual_tags

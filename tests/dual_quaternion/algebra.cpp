@@ -13,6 +13,8 @@
 
 // N10–N16: dual numbers, vectors and quaternions.
 
+namespace test_dual_quaternion_algebra {
+
 using duet::conj;
 using duet::dual_conj;
 using duet::dual_part;
@@ -116,3 +118,5 @@ TEST_CASE("zero divisors have no inverse and no direction") {
                        "duet: inverse of the zero quaternion", duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(duet::normalized(divisor)), duet::invalid_input);
 }
+
+} // namespace test_dual_quaternion_algebra

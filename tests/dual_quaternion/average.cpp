@@ -15,6 +15,8 @@
 
 // Means of rotations and poses, and their derivatives.
 
+namespace test_dual_quaternion_average {
+
 using duet::average;
 using duet::conj;
 using duet_test::gap;
@@ -145,3 +147,5 @@ TEST_CASE("what has no mean") {
   CHECK(message(q, {1, NAN}) == "duet: average: weight 1 is nan, not a number from 0 up");
   CHECK(message(q, {0, 0}) == "duet: average: all weights are 0");
 }
+
+} // namespace test_dual_quaternion_average

@@ -15,6 +15,8 @@
 
 // Squad and Bézier curves, of poses and so of rotations; the long way round.
 
+namespace test_dual_quaternion_curves {
+
 using duet::bezier;
 using duet::squad;
 using duet::squad_control;
@@ -122,3 +124,5 @@ TEST_CASE("the long way round, the short one, and the one the signs say") {
   CHECK_FALSE(is_half_turn_apart(
       a, duet::pose(duet::from_axis_angle(vector(1, 0, 0), 3.1415926), vector(1, 2, 3))));
 }
+
+} // namespace test_dual_quaternion_curves

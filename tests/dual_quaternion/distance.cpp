@@ -14,6 +14,8 @@
 
 // Distances of poses and of screw motions; poses as seven coordinates (N20, N21).
 
+namespace test_dual_quaternion_distance {
+
 using duet::screw_parameters;
 using duet_test::gap;
 using duet_test::poses;
@@ -125,3 +127,5 @@ TEST_CASE("N21: J2 takes the rate of [t; α] to the spatial twist, and back") {
     CHECK(gap(by_ad.derivative, rate) < 1e-14);
   }
 }
+
+} // namespace test_dual_quaternion_distance

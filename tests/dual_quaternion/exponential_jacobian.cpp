@@ -17,6 +17,8 @@
 // The Jacobians of the exponential in closed form, against AD, the matrix exponential and 50
 // digits.
 
+namespace test_dual_quaternion_exponential_jacobian {
+
 using duet::vector6;
 using duet_test::gap;
 using duet_test::vector;
@@ -142,3 +144,5 @@ TEST_CASE("wrenches: power does not depend on the frame, and coad is the rate of
       0.0);
   CHECK(gap(rate.derivative, duet::coad(v)) < 1e-15);
 }
+
+} // namespace test_dual_quaternion_exponential_jacobian

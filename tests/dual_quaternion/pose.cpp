@@ -13,6 +13,8 @@
 
 // N17: rigid displacements of points, directions, lines and planes, against Eigen's isometries.
 
+namespace test_dual_quaternion_pose {
+
 using duet::conj;
 using duet::real_part;
 using duet_test::gap;
@@ -101,3 +103,5 @@ TEST_CASE("matrices that are no poses") {
   m(0, 0) = 2;
   CHECK_THROWS_AS(static_cast<void>(duet::from_transform_matrix(m)), duet::invalid_input);
 }
+
+} // namespace test_dual_quaternion_pose

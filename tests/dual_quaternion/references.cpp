@@ -20,6 +20,8 @@
 // Rigid motion against others: matrix exponential and logarithm, numerical integration, long
 // products.
 
+namespace test_dual_quaternion_references {
+
 using duet_test::gap;
 using duet_test::poses;
 using duet_test::vector;
@@ -121,3 +123,5 @@ TEST_CASE("a million products: the drift from a unit is small, and normalising r
   CHECK(std::abs(restored.value() - 1) <= 4 * 0x1p-53);
   CHECK(std::abs(restored.epsilon()) <= 8 * 0x1p-53 * (1 + distance));
 }
+
+} // namespace test_dual_quaternion_references

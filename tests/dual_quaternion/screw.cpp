@@ -16,6 +16,8 @@
 
 // Exponential, logarithm, ScLERP (N19) and screw parameters, with no special case for translations.
 
+namespace test_dual_quaternion_screw {
+
 using duet::conj;
 using duet::exp;
 using duet::sclerp;
@@ -146,3 +148,5 @@ TEST_CASE("the derivative of ScLERP is a constant twist, judged in fifty digits"
       {.samples = 200});
   CHECK_MESSAGE(c.outcome == duet::verdict::agrees, to_text(c));
 }
+
+} // namespace test_dual_quaternion_screw

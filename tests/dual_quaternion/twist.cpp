@@ -13,6 +13,8 @@
 
 // N18: twists in three frames, Ad and ad, and Jacobians of and into poses.
 
+namespace test_dual_quaternion_twist {
+
 using duet::Ad;
 using duet::ad;
 using duet::twist;
@@ -115,3 +117,5 @@ TEST_CASE("accelerations: the classical one is not the derivative of the spatial
   const auto classical = duet::derivative(twists(frame::hybrid), t).derivative;
   CHECK(gap(classical.head<3>(), vector(-2 * std::cos(t), -2 * std::sin(t), 0)) < 1e-15);
 }
+
+} // namespace test_dual_quaternion_twist

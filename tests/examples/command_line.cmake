@@ -7,27 +7,7 @@
 
 cmake_minimum_required(VERSION 3.22)
 
-file(REMOVE_RECURSE ${folder})
-file(MAKE_DIRECTORY ${folder})
-
-function(run expected_result expected_text)
-  file(REMOVE_RECURSE ${folder}/out)
-  execute_process(COMMAND ${program} --out out ${ARGN} WORKING_DIRECTORY ${folder}
-    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
-  if(NOT result EQUAL expected_result)
-    message(FATAL_ERROR "${ARGN}: status ${result}, expected ${expected_result}\n${output}${error}")
-  endif()
-  if(expected_result EQUAL 1)
-    if(NOT error MATCHES "^wheel_carrier: [^\n]*${expected_text}[^\n]*\n$")
-      message(FATAL_ERROR "${ARGN}: says\n${error}instead of one line with: ${expected_text}")
-    endif()
-    if(EXISTS ${folder}/out)
-      message(FATAL_ERROR "${ARGN}: bad input, yet something was written")
-    endif()
-  elseif(NOT output MATCHES "${expected_text}")
-    message(FATAL_ERROR "${ARGN}: prints\n${output}without: ${expected_text}")
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 function(bad_table text expected_text)
   file(WRITE ${folder}/bad.csv "${text}")

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_examples_wheel_carrier {
+
 using namespace wheel_carrier;
 
 namespace {
@@ -120,3 +122,5 @@ TEST_CASE("rods that cannot close are reported") {
   points.rods[2].chassis[1] = 0.8;
   CHECK_THROWS_AS(static_cast<void>(carrier(points).at(-0.19)), duet::no_convergence);
 }
+
+} // namespace test_examples_wheel_carrier

@@ -11,6 +11,8 @@
 
 // boost::math::quaternion is the same algebra, over any real number.
 
+namespace test_interop_boost {
+
 using duet::quaternion;
 using duet_test::random_source;
 
@@ -42,3 +44,5 @@ TEST_CASE("products, quotients, conjugates, norms, exponentials and powers agree
     CHECK(norm(duet::from_boost(boost::math::pow(bp, 3)) - pow(p, 3)) <= 1e-14 * norm(pow(p, 3)));
   }
 }
+
+} // namespace test_interop_boost

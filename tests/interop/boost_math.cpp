@@ -28,6 +28,8 @@
 
 // The special functions of Boost.Math called with dual and Taylor numbers.
 
+namespace test_interop_boost_math {
+
 namespace {
 
 using D = duet::dual<double>;
@@ -228,3 +230,5 @@ TEST_CASE("known faults: arguments that Boost compares with a constant") {
   CHECK(std::abs(bm::ellint_1(zero).derivative(2) - double(pi) / 2) <= tolerance);
   CHECK(std::abs(bm::ellint_2(zero).derivative(2) + double(pi) / 2) <= tolerance);
 }
+
+} // namespace test_interop_boost_math

@@ -21,6 +21,8 @@
 
 // Root finders and quadrature of Boost.Math, with dual numbers as parameters.
 
+namespace test_interop_boost_numerics {
+
 using duet::innermost;
 
 namespace {
@@ -176,3 +178,5 @@ TEST_CASE("trapezoidal: exact for periodic functions") {
   CHECK(near(y.value(), 2 * pi * std::cyl_bessel_i(0, 1.0)));
   CHECK(near(y.epsilon(), 2 * pi * std::cyl_bessel_i(1, 1.0)));
 }
+
+} // namespace test_interop_boost_numerics

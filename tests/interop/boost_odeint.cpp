@@ -19,6 +19,8 @@
 // Sensitivities of a pendulum's motion, ẍ = −p sin x, to p and to where it starts: by states of
 // dual numbers, against the variational equations.
 
+namespace test_interop_boost_odeint {
+
 namespace {
 
 namespace odeint = boost::numeric::odeint;
@@ -167,3 +169,5 @@ TEST_CASE("Taylor numbers: second sensitivities of an oscillator in closed form"
   CHECK(std::abs(x[0].derivative(1) + end * s / (2 * w)) <= 1e-11);
   CHECK(std::abs(x[0].derivative(2) - (end * s - w * end * end * c) / (4 * w * w * w)) <= 1e-11);
 }
+
+} // namespace test_interop_boost_odeint

@@ -14,6 +14,8 @@
 
 // Eigen's rotations and duet's are the same: Hamilton product, active.
 
+namespace test_interop_eigen {
+
 using duet::dual;
 using duet::quaternion;
 using duet_test::random_source;
@@ -90,3 +92,5 @@ TEST_CASE("poses and isometries act alike and convert without a change") {
   mirror.linear()(0, 0) = -1;
   CHECK_THROWS_AS(static_cast<void>(duet::from_eigen(mirror)), duet::invalid_input);
 }
+
+} // namespace test_interop_eigen

@@ -6,7 +6,9 @@
 #   // flags: <flags for both compilations, optional>
 # The right way, the control, must compile: else the mistake may fail for the wrong reason.
 #
-# cmake -Dcompile=<compiler and flags> -Dsnippet=<file> -P check.cmake
+# A snippet without flags of its own is given duet/duet.hpp precompiled, where that is named.
+#
+# cmake -Dcompile=<compiler and flags> -Dsnippet=<file> [-Dprecompiled=<header>] -P check.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -26,6 +28,9 @@ endif()
 read_comment(flags flags)
 separate_arguments(flags UNIX_COMMAND "${flags}")
 list(APPEND compile ${flags} -fsyntax-only)
+if(precompiled AND NOT flags)
+  list(APPEND compile -include ${precompiled})
+endif()
 
 execute_process(COMMAND ${compile} ${snippet} RESULT_VARIABLE result ERROR_VARIABLE log)
 if(NOT result EQUAL 0)

@@ -15,6 +15,8 @@
 
 // N1, N2, N3 and N6 over every kind of scalar.
 
+namespace test_quaternion_algebra {
+
 using duet::dual;
 using duet::quaternion;
 using duet_test::random_source;
@@ -189,3 +191,5 @@ TEST_CASE("components and text") {
   out << q;
   CHECK(out.str() == "(1, 2, 3, 4)");
 }
+
+} // namespace test_quaternion_algebra

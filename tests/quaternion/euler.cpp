@@ -18,6 +18,8 @@
 
 // All twelve sequences of Euler angles.
 
+namespace test_quaternion_euler {
+
 using duet::euler_sequence;
 using duet::quaternion;
 using duet_test::random_source;
@@ -186,3 +188,5 @@ TEST_CASE("in gimbal lock the angles give the rotation, without derivatives") {
   CHECK(value[1] == 0);
   CHECK(std::isnan(slope[0]));
 }
+
+} // namespace test_quaternion_euler

@@ -17,6 +17,8 @@
 
 // P5: angular velocity from the rates of yaw ψ, pitch θ and roll φ, R = Rz(ψ) Ry(θ) Rx(φ).
 
+namespace test_quaternion_euler_rate {
+
 using duet_test::random_source;
 using duet_test::real_50;
 using duet_test::worst_error;
@@ -122,3 +124,5 @@ TEST_CASE("P5: the derivative of delta, A'{...} + A{...}'', is AD's second deriv
   CHECK((a * y[1] - angular_velocity(q[0], q[1], duet::frame::spatial)).norm() <= 1e-14);
   CHECK((by_formula - by_quaternion).norm() <= 1e-14);
 }
+
+} // namespace test_quaternion_euler_rate

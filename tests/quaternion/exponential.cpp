@@ -15,6 +15,8 @@
 
 // N4: exp(w + v) = e^w (cos |v| + v sin |v|/|v|), against 100 digits.
 
+namespace test_quaternion_exponential {
+
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
@@ -90,3 +92,5 @@ TEST_CASE("N4: exp of a vector is exp of the quaternion without scalar part") {
   CHECK(duet::exp(v) == exp(quaternion<double>(0, v)));
   CHECK(norm(duet::exp(v)) == doctest::Approx(1).epsilon(1e-15));
 }
+
+} // namespace test_quaternion_exponential

@@ -19,6 +19,8 @@
 // Derivatives of exp, log and pow along a line, first to fourth, at and near the identity, half and
 // full turns: Taylor numbers and nested duals against 100 digits.
 
+namespace test_quaternion_higher_derivatives {
+
 using duet::dual;
 using duet::quaternion;
 using duet_test::random_source;
@@ -178,3 +180,5 @@ TEST_CASE("derivatives of pow to fourth order") {
   }
   e.check({16, 16, 16, 16, 16});
 }
+
+} // namespace test_quaternion_higher_derivatives

@@ -15,6 +15,8 @@
 
 // N4: log q = log |q| + û atan2(|q⃗|, q₀), against 100 digits.
 
+namespace test_quaternion_logarithm {
+
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
@@ -139,3 +141,5 @@ TEST_CASE("the zero quaternion has no logarithm, no power, no direction and no i
   CHECK(std::isnan(normalized(nan).x()));
   CHECK(std::isnan(inverse(nan).x()));
 }
+
+} // namespace test_quaternion_logarithm

@@ -18,6 +18,8 @@
 // N3: |q|, q/|q| and q⁻¹, for |q| from 1e-140 to 1e140, with first and second derivatives, against
 // 100 digits.
 
+namespace test_quaternion_norm {
+
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
@@ -114,3 +116,5 @@ TEST_CASE("N3: q times its inverse is 1; the inverse of a unit is its conjugate"
     CHECK(norm(inverse(unit) - conj(unit)) <= 1e-15);
   }
 }
+
+} // namespace test_quaternion_norm

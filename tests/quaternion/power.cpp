@@ -15,6 +15,8 @@
 
 // N5: q^ρ = |q|^ρ (cos ρφ + û sin ρφ), against 100 digits.
 
+namespace test_quaternion_power {
+
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
@@ -132,3 +134,5 @@ TEST_CASE("the power of -|q| turns about the chosen axis x") {
   const auto root = pow(quaternion<double>(-4, 0, 0, 0), 0.5);
   CHECK(norm(root - quaternion<double>(0, 2, 0, 0)) <= 1e-15);
 }
+
+} // namespace test_quaternion_power

@@ -16,6 +16,8 @@
 
 // N7 and N8: rates of unit quaternions and angular velocities, in both frames.
 
+namespace test_quaternion_rate {
+
 using duet::quaternion;
 using duet::vector3;
 using duet_test::random_source;
@@ -166,3 +168,5 @@ TEST_CASE("N7: angular velocity of a Taylor number carries the angular accelerat
   CHECK((by_ad.value - angular_velocity(ys[0], ys[1], frame::spatial)).norm() <= 1e-14);
   CHECK((by_ad.derivative - alpha).norm() <= 5e-14);
 }
+
+} // namespace test_quaternion_rate

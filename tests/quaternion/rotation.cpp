@@ -14,6 +14,8 @@
 
 // Unit quaternions as rotations of vectors; axis and angle, rotation vectors, pairs of vectors.
 
+namespace test_quaternion_rotation {
+
 using duet::quaternion;
 using duet::vector3;
 using duet_test::random_source;
@@ -194,3 +196,5 @@ TEST_CASE("derivatives through from_two_vectors") {
     CHECK(norm(q_dot - expected) <= 5e-15 + 1e-15 / (distance * distance));
   }
 }
+
+} // namespace test_quaternion_rotation

@@ -13,6 +13,8 @@
 
 // Rotation matrices: there and back through every branch of Shepperd's method.
 
+namespace test_quaternion_rotation_matrix {
+
 using duet::from_rotation_matrix;
 using duet::matrix3;
 using duet::quaternion;
@@ -112,3 +114,5 @@ TEST_CASE("what is not a rotation is refused, and the message says why") {
   m(0, 1) = 1e-7;
   CHECK(message(m) == "");
 }
+
+} // namespace test_quaternion_rotation_matrix

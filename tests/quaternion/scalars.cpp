@@ -13,6 +13,8 @@
 
 // N3, N4, N5, N9 over every kind of scalar, each at its own precision.
 
+namespace test_quaternion_scalars {
+
 using duet::dual;
 using duet::quaternion;
 using duet_test::random_source;
@@ -102,3 +104,5 @@ TEST_CASE("mixed scalars") {
   CHECK(slerp(a, quaternion<D>(b), 0.3) == slerp(a, b, 0.3));
   CHECK(pow(quaternion<float>(0.6F, 0.8F, 0, 0), 2).w() == doctest::Approx(-0.28).epsilon(1e-6));
 }
+
+} // namespace test_quaternion_scalars

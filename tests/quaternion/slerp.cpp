@@ -18,6 +18,8 @@
 
 // N9: A(τ) = A₁ (A₁* A₂)^τ, against 100 digits.
 
+namespace test_quaternion_slerp {
+
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
@@ -149,3 +151,5 @@ TEST_CASE("the angular velocity of slerp is constant") {
     CHECK((omega(tau) - omega(0.5)).norm() <= 3e-15);
   }
 }
+
+} // namespace test_quaternion_slerp

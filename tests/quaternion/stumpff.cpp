@@ -14,6 +14,8 @@
 // Stumpff functions and their derivatives against 100 digits: errors at most 6e-16 on the scale
 // 1/(m+1), the bound of the m-th derivative of sin(x)/x; absolutely for derivatives by √s.
 
+namespace test_quaternion_stumpff {
+
 using duet::stumpff;
 using duet_test::real_100;
 using duet_test::worst_error;
@@ -107,3 +109,5 @@ TEST_CASE("derivatives of c0 to fourth order") { check_derivatives<0>(); }
 TEST_CASE("derivatives of c1 to fourth order") { check_derivatives<1>(); }
 TEST_CASE("derivatives of c2 to fourth order") { check_derivatives<2>(); }
 TEST_CASE("derivatives of c3 to fourth order") { check_derivatives<3>(); }
+
+} // namespace test_quaternion_stumpff

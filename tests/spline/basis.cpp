@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+namespace test_spline_basis {
+
 using duet_test::cumulative_definition;
 using duet_test::knot_vectors;
 using duet_test::parameters_on;
@@ -167,3 +169,5 @@ TEST_CASE("a basis over other real numbers") {
     }
   }
 }
+
+} // namespace test_spline_basis

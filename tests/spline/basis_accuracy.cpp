@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+namespace test_spline_basis_accuracy {
+
 using duet_test::cast;
 using duet_test::real_50;
 using duet_test::ulps_of_range;
@@ -115,3 +117,5 @@ TEST_CASE("P1, P3, P4: the cumulative basis and its derivatives against 50 digit
   check_order<6>();
   check_order<7>();
 }
+
+} // namespace test_spline_basis_accuracy

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace test_spline_basis_domain {
+
 using duet::bspline_basis;
 using duet::invalid_input;
 
@@ -173,3 +175,5 @@ TEST_CASE("outside the domain") {
   CHECK_THROWS_AS(static_cast<void>(s.motion(not_a_number, duet::frame::body)), invalid_input);
   CHECK_THROWS_AS(static_cast<void>(s.derivatives(5.0)), invalid_input);
 }
+
+} // namespace test_spline_basis_domain

@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_spline_continuity {
+
 using duet::cumulative_bspline;
 using duet_test::distance;
 using duet_test::random_orientations;
@@ -92,3 +94,5 @@ TEST_CASE("P3, P4: what the cubic's rates do at a knot") {
   frames(duet::frame::body);
   frames(duet::frame::spatial);
 }
+
+} // namespace test_spline_continuity

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+namespace test_spline_curve {
+
 using duet::cumulative_bspline;
 using duet_test::distance;
 using duet_test::knot_vectors;
@@ -190,3 +192,5 @@ TEST_CASE("control quaternions that are not there, not one, or a half turn apart
   const spline s(knots, {one * 1.0004, one, one, one});
   CHECK(s.controls()[0] == one);
 }
+
+} // namespace test_spline_curve

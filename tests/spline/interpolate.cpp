@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_spline_interpolate {
+
 using duet::clamped;
 using duet::interpolate;
 using duet::natural;
@@ -195,3 +197,5 @@ TEST_CASE("signs and norms of the data do not matter") {
     CHECK(distance(s(u), r(u)) < 1e-14);
   }
 }
+
+} // namespace test_spline_interpolate

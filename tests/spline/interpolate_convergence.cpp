@@ -17,6 +17,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_spline_interpolate_convergence {
+
 using duet_test::distance;
 
 using spline = duet::cumulative_bspline<double>;
@@ -174,3 +176,5 @@ TEST_CASE(
   CHECK(order[3] == doctest::Approx(1).epsilon(0.1));
   CHECK(order[4] == doctest::Approx(1).epsilon(0.1));
 }
+
+} // namespace test_spline_interpolate_convergence

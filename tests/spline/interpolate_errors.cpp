@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace test_spline_interpolate_errors {
+
 using spline = duet::cumulative_bspline<double>;
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
@@ -153,3 +155,5 @@ TEST_CASE("neighbours far apart at uneven parameters: a curve, or a word why not
   CHECK(failures > 0);
   CHECK(failures <= 4);
 }
+
+} // namespace test_spline_interpolate_errors

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_spline_interpolate_scalars {
+
 using duet_test::cast;
 using duet_test::distance;
 
@@ -33,3 +35,5 @@ TEST_CASE("interpolation in single and extended precision") {
     CHECK(distance(in_long_double(u[i]), exact) < 1e-18);
   }
 }
+
+} // namespace test_spline_interpolate_scalars

@@ -17,6 +17,8 @@
 #include <type_traits>
 #include <vector>
 
+namespace test_spline_motion {
+
 using duet::cumulative_bspline;
 using duet_test::distance;
 using duet_test::knot_vectors;
@@ -156,3 +158,5 @@ TEST_CASE("a curve of order 2 turns at constant rate") {
     CHECK(m.jerk.isZero(0));
   }
 }
+
+} // namespace test_spline_motion

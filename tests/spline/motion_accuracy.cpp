@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+namespace test_spline_motion_accuracy {
+
 using duet_test::real_100;
 using duet_test::ulps_of_range;
 using duet_test::worst_error;
@@ -137,3 +139,5 @@ TEST_CASE("P2, P3, P4: value and rates against 100 digits") {
   CHECK_MESSAGE(worst.acceleration <= 16, worst.acceleration);
   CHECK_MESSAGE(worst.jerk <= 16, worst.jerk);
 }
+
+} // namespace test_spline_motion_accuracy

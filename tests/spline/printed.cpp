@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+namespace test_spline_printed {
+
 using duet::cumulative_bspline;
 using duet::printed_derivative;
 using duet_test::b_definition;
@@ -188,3 +190,5 @@ TEST_CASE("printed formulas outside the domain") {
                                      duet_test::random_orientations(4, 1));
   CHECK_THROWS_AS(static_cast<void>(printed_derivative(s, 1.5)), duet::invalid_input);
 }
+
+} // namespace test_spline_printed

@@ -15,6 +15,8 @@
 #include <type_traits>
 #include <vector>
 
+namespace test_spline_scalars {
+
 using duet::cumulative_bspline;
 using duet::dual;
 using duet::quaternion;
@@ -117,3 +119,5 @@ TEST_CASE("dual control quaternions: how the curve and its rates depend on one o
     }
   }
 }
+
+} // namespace test_spline_scalars
