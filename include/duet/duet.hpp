@@ -6,7 +6,9 @@
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
+#include <duet/core/csv.hpp>
 #include <duet/core/number_text.hpp>
+#include <duet/core/parallel_for.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -31,6 +33,14 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/dual_quaternion/wrench.hpp>
+#include <duet/mechanism/analytic_jacobian.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/jacobian_rate.hpp>
+#include <duet/mechanism/joint_efforts.hpp>
+#include <duet/mechanism/manipulability.hpp>
+#include <duet/mechanism/robots.hpp>
+#include <duet/mechanism/screw_axes.hpp>
+#include <duet/mechanism/urdf.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/domain.hpp>
@@ -43,8 +53,12 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
+#include <duet/spline/adaptive_table.hpp>
+#include <duet/spline/bspline_fit.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/fit.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/look_up_table.hpp>
 #include <duet/spline/printed.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>

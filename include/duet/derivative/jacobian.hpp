@@ -16,6 +16,13 @@
 
 namespace duet {
 
+/// What has a function `jacobian` of its own, as a mechanism, and is not differentiated as a
+/// callable.
+template <class F>
+concept HasOwnJacobian = requires {
+  typename std::remove_cvref_t<F>::own_jacobian;
+};
+
 template <class Y, class J>
 struct value_and_jacobian {
   Y value;
@@ -24,6 +31,7 @@ struct value_and_jacobian {
 
 /// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors or `std::array`s.
 template <class Tag = void, class F, VectorLike X>
+  requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using T = typename argument::scalar;

@@ -87,6 +87,7 @@ concept NeedsFrame = ManifoldPoint<X> && !VectorLike<X> && !Scalar<X> && !Arithm
 ///
 /// Example: `jacobian([](const auto& q) { return conj(q); }, q, frame::body)` is −R(q).
 template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
+  requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x, Frame frame) {
   using tag = detail::tag_for<Tag, F>;
   constexpr int n = detail::tangents_per_pass<X>;

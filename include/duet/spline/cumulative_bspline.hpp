@@ -42,6 +42,8 @@ public:
   using real_type = real_type_t<T>;
   using basis_type = bspline_basis<Order, real_type>;
   static constexpr int order = Order;
+  /// Against smooth motion, interpolation misses by as much as this power of the step.
+  static constexpr int convergence = 3;
 
   /// As many control elements as the basis, or what its knots make, has functions. They are
   /// normalised, and their signs aligned from the first to the last, so that the curve takes the

@@ -1,0 +1,95 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/mechanism/table_arithmetic.hpp>
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+
+/// \file
+/// Chains from the parameters of Denavit and Hartenberg, in both conventions.
+
+namespace duet {
+
+/// One row; lengths in units of length, angles in radians. The coordinate is added to θ, or to d
+/// where the joint is prismatic.
+template <class T = double>
+struct dh_row {
+  T a;            ///< length of the link
+  T d;            ///< offset along the joint's axis
+  T alpha;        ///< twist of the link
+  T theta = T(0); ///< angle at which the coordinate is zero
+  joint_limits<T> limits = {};
+  joint_kind kind = joint_kind::revolute;
+};
+
+namespace detail {
+
+/// T_x(a) R_x(α)
+template <class T>
+[[nodiscard]] constexpr placement<T> along_link(const dh_row<T>& row) {
+  return {turn_about(0, row.alpha), {row.a, T(0), T(0)}};
+}
+
+/// T_x(a) R_x(α) T_z(d) R_z(θ), with the products of a right angle's sine and cosine exact.
+template <class T>
+[[nodiscard]] constexpr placement<T> between_axes(const dh_row<T>& link, const dh_row<T>& joint) {
+  const auto [sine, cosine] = sine_and_cosine_of_constant(link.alpha);
+  return {turn_about(0, link.alpha) * turn_about(2, joint.theta),
+          {link.a, -sine * joint.d, cosine * joint.d}};
+}
+
+template <class T>
+constexpr void require_row(const dh_row<T>& row, std::size_t i) {
+  const T largest(1e6);
+  for (const T& x : {row.a, row.d, row.alpha, row.theta}) {
+    if (!(x <= largest && -x <= largest)) {
+      bad_joint(i, "its row of parameters has a number beyond 1e6, or none");
+    }
+  }
+}
+
+} // namespace detail
+
+/// The chain of A_i = R_z(θ_i) T_z(d_i) T_x(a_i) R_x(α_i), the standard convention: joint i turns
+/// about the z axis of the frame before, and link i ends with frame i.
+/// \throws invalid_input as `serial_chain`
+template <class T, std::size_t N>
+[[nodiscard]] constexpr serial_chain<int(N), T> from_dh(const std::array<dh_row<T>, N>& rows,
+                                                        const placement<T>& tool = {}) {
+  std::array<joint<T>, N> joints{};
+  std::array<placement<T>, N> link_frames{};
+  dh_row<T> before{T(0), T(0), T(0)};
+  for (std::size_t i = 0; i < N; ++i) {
+    detail::require_row(rows[i], i);
+    joints[i].kind = rows[i].kind;
+    joints[i].origin = detail::between_axes(before, rows[i]);
+    joints[i].limits = rows[i].limits;
+    link_frames[i] = detail::along_link(rows[i]);
+    before = rows[i];
+  }
+  return serial_chain<int(N), T>(joints, link_frames[N - 1] * tool, link_frames);
+}
+
+/// The chain of R_x(α_i) T_x(a_i) R_z(θ_i) T_z(d_i), the modified convention (Craig): frame i
+/// stands on the axis of joint i, and a and α of a row are those of the link before the joint.
+/// \throws invalid_input as `serial_chain`
+template <class T, std::size_t N>
+[[nodiscard]] constexpr serial_chain<int(N), T>
+from_modified_dh(const std::array<dh_row<T>, N>& rows, const placement<T>& tool = {}) {
+  std::array<joint<T>, N> joints{};
+  for (std::size_t i = 0; i < N; ++i) {
+    detail::require_row(rows[i], i);
+    joints[i].kind = rows[i].kind;
+    joints[i].origin = detail::between_axes(rows[i], rows[i]);
+    joints[i].limits = rows[i].limits;
+  }
+  return serial_chain<int(N), T>(joints, tool);
+}
+
+} // namespace duet

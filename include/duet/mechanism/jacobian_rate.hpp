@@ -1,0 +1,175 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/mechanism/jacobian.hpp>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <type_traits>
+
+/// \file
+/// How the Jacobians of a chain change: along a motion, and with each coordinate.
+
+namespace duet {
+
+namespace detail {
+
+template <class S>
+struct velocity_pair {
+  vector3<S> v, w;
+};
+
+template <class J>
+[[nodiscard]] auto velocity_column(const J& m, Eigen::Index i) {
+  using S = typename J::Scalar;
+  return velocity_pair<S>{vector3<S>(m(0, i), m(1, i), m(2, i)),
+                          vector3<S>(m(3, i), m(4, i), m(5, i))};
+}
+
+/// ad(a) b = [ω_a × v_b + v_a × ω_b; ω_a × ω_b], the Lie bracket.
+template <class S>
+[[nodiscard]] vector6<S> bracket(const velocity_pair<S>& a, const velocity_pair<S>& b) {
+  vector6<S> result;
+  result << a.w.cross(b.v) + a.v.cross(b.w), a.w.cross(b.w);
+  return result;
+}
+
+/// ∂J_k/∂θ_j by the columns of J itself.
+///
+/// Spatial: the screw of joint k is carried by the joints before it, ad(J_j) J_k, j < k. Body: it
+/// is carried the other way by those after it, ad(J_k) J_j, j > k. Hybrid: axes turn with the
+/// joints before, ω_j × ω_k, and the tip moves with all, u the velocity of its origin: ω_j × u_k
+/// for j ≤ k, ω_k × u_j for j > k.
+template <class Frame, class S>
+[[nodiscard]] vector6<S> column_by_joint(const velocity_pair<S>& k, const velocity_pair<S>& j,
+                                         bool j_is_before_k) {
+  if constexpr (std::same_as<Frame, spatial_frame>) {
+    return j_is_before_k ? bracket(j, k) : vector6<S>(vector6<S>::Zero());
+  } else if constexpr (std::same_as<Frame, body_frame>) {
+    return j_is_before_k ? vector6<S>(vector6<S>::Zero()) : bracket(k, j);
+  } else {
+    vector6<S> result = vector6<S>::Zero();
+    if (j_is_before_k) {
+      result << j.w.cross(k.v), j.w.cross(k.w);
+    } else {
+      result.template head<3>() = k.w.cross(j.v);
+    }
+    return result;
+  }
+}
+
+} // namespace detail
+
+/// The second derivatives of the pose of a frame on a chain: n matrices ∂J/∂θ_j of 6 rows, side by
+/// side in one matrix.
+template <class S, int N>
+class chain_hessian {
+  static constexpr int columns = N > 0 ? N* N : Eigen::Dynamic;
+
+public:
+  explicit chain_hessian(Eigen::Index n) : size_(n), values_(6, n * n) {}
+
+  /// n
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+  /// ∂J/∂θ_j
+  [[nodiscard]] auto operator[](Eigen::Index j) const {
+    return values_.template middleCols<(N > 0 ? N : Eigen::Dynamic)>(j * size_, size_);
+  }
+  [[nodiscard]] auto operator[](Eigen::Index j) {
+    return values_.template middleCols<(N > 0 ? N : Eigen::Dynamic)>(j * size_, size_);
+  }
+
+private:
+  Eigen::Index size_;
+  Eigen::Matrix<S, 6, columns, Eigen::ColMajor, 6, N * N> values_;
+};
+
+/// ∂J/∂θ_j for all j: `h[j]` has 6 rows and one column per joint, and the column k of it is
+/// ∂²/∂θ_j∂θ_k as a twist.
+///
+/// Only in `frame::hybrid` is its linear part ∂²p/∂θ_j∂θ_k of the frame's origin p, symmetric in j
+/// and k. Arguments as `jacobian`.
+template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
+[[nodiscard]] auto kinematic_hessian(const C& chain, const X& theta, Frame frame_of_result,
+                                     const At&... at) {
+  const auto m = jacobian(chain, theta, frame_of_result, at...);
+  using S = detail::chain_scalar<C, X>;
+  const Eigen::Index n = chain.size();
+  chain_hessian<S, C::joints> h(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    auto by_j = h[j];
+    const auto column_j = detail::velocity_column(m, j);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      by_j.col(k) = detail::column_by_joint<Frame>(detail::velocity_column(m, k), column_j, j <= k);
+    }
+  }
+  return h;
+}
+
+/// J and its rate J̇ = Σ_j ∂J/∂θ_j θ̇_j.
+template <class J>
+struct jacobian_and_rate {
+  J jacobian;
+  J rate;
+};
+
+/// J and J̇ along θ̇, so that J θ̈ + J̇ θ̇ is the derivative of the twist J θ̇. In `frame::hybrid` its
+/// linear part is the classical acceleration of the frame's origin, p̈; in the others it is not (see
+/// docs/mechanisms.md). Arguments as `jacobian`.
+template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame, class... At>
+[[nodiscard]] auto jacobian_with_rate(const C& chain, const X& theta, const V& theta_dot,
+                                      Frame frame_of_result, const At&... at) {
+  detail::require_size(chain, theta_dot);
+  using velocities = detail::vector_argument<V>;
+  using S = promote_t<detail::chain_scalar<C, X>, typename velocities::scalar>;
+  using matrix = detail::joint_columns<S, 6, C::joints>;
+  jacobian_and_rate<matrix> result{
+      jacobian(chain, theta, frame_of_result, at...).template cast<S>(), {}};
+  const matrix& m = result.jacobian;
+  const Eigen::Index n = chain.size();
+  result.rate.resize(6, n);
+  // Twists of the joints on the side that counts, summed up on the way.
+  const vector3<S> zero = vector3<S>::Zero();
+  const auto add = [&](detail::velocity_pair<S>& sum, Eigen::Index i) {
+    const auto column = detail::velocity_column(m, i);
+    const S rate(velocities::get(theta_dot, i));
+    sum.v += column.v * rate;
+    sum.w += column.w * rate;
+  };
+  if constexpr (!std::same_as<Frame, body_frame>) {
+    detail::velocity_pair<S> before{zero, zero};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto column = detail::velocity_column(m, k);
+      if constexpr (std::same_as<Frame, spatial_frame>) {
+        result.rate.col(k) = detail::bracket(before, column);
+        add(before, k);
+      } else {
+        add(before, k);
+        result.rate.col(k) << before.w.cross(column.v), before.w.cross(column.w);
+      }
+    }
+  }
+  if constexpr (!std::same_as<Frame, spatial_frame>) {
+    detail::velocity_pair<S> after{zero, zero};
+    for (Eigen::Index k = n - 1; k >= 0; --k) {
+      const auto column = detail::velocity_column(m, k);
+      if constexpr (std::same_as<Frame, body_frame>) {
+        result.rate.col(k) = detail::bracket(column, after);
+      } else {
+        result.rate.col(k).template head<3>() += column.w.cross(after.v);
+      }
+      add(after, k);
+    }
+  }
+  return result;
+}
+
+/// J̇ of `jacobian_with_rate`.
+template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame, class... At>
+[[nodiscard]] auto jacobian_rate(const C& chain, const X& theta, const V& theta_dot,
+                                 Frame frame_of_result, const At&... at) {
+  return jacobian_with_rate(chain, theta, theta_dot, frame_of_result, at...).rate;
+}
+
+} // namespace duet

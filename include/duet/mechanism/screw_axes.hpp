@@ -1,0 +1,70 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+/// \file
+/// Chains as products of exponentials: from the screws of their joints.
+
+namespace duet {
+
+/// The axis of a joint as a screw l + ε(m + pitch l) in the base's frame, at θ = 0: unit direction
+/// l, moment m = point × l. A joint that slides along n has l = 0 and n in place of m.
+template <class T = double>
+struct joint_screw {
+  std::array<T, 3> direction;
+  std::array<T, 3> moment;
+  joint_limits<T> limits = {};
+
+  constexpr joint_screw(const std::array<T, 3>& l, const std::array<T, 3>& m,
+                        const joint_limits<T>& given_limits = {})
+      : direction(l), moment(m), limits(given_limits) {}
+  joint_screw(const dual_vector<T>& s, const joint_limits<T>& given_limits = {})
+      : direction{s[0].value(), s[1].value(), s[2].value()}, moment{s[0].epsilon(), s[1].epsilon(),
+                                                                    s[2].epsilon()},
+        limits(given_limits) {}
+};
+
+/// The chain with the pose exp(½θ_1 S_1) … exp(½θ_n S_n) M, S_i the joints' screws and M the tip at
+/// θ = 0. Link frames are those that coincide with the base's at θ = 0.
+/// \throws invalid_input as `serial_chain`
+template <class T, std::size_t N>
+[[nodiscard]] constexpr serial_chain<int(N), T>
+from_screws(const std::array<joint_screw<T>, N>& screws, const placement<T>& tip = {}) {
+  std::array<joint<T>, N> joints{};
+  std::array<placement<T>, N> link_frames{};
+  std::array<T, 3> before{};
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto& l = screws[i].direction;
+    const auto& m = screws[i].moment;
+    // The joint's frame: the base's axes, at the point l × m of the axis that is nearest to the
+    // base's origin.
+    std::array<T, 3> here{};
+    if (detail::dot(l, l) == 0) {
+      joints[i].kind = joint_kind::prismatic;
+      joints[i].axis = m;
+    } else {
+      joints[i].axis = l;
+      here = detail::cross(l, m);
+      joints[i].pitch = detail::dot(l, m);
+      // Rounding of a moment is no pitch.
+      const T noise = 64 * std::numeric_limits<T>::epsilon();
+      if (joints[i].pitch * joints[i].pitch > noise * noise * (1 + detail::dot(m, m))) {
+        joints[i].kind = joint_kind::helical;
+      }
+    }
+    joints[i].origin.translation = detail::sum(here, detail::scaled(before, T(-1)));
+    joints[i].limits = screws[i].limits;
+    link_frames[i].translation = detail::scaled(here, T(-1));
+    before = here;
+  }
+  return serial_chain<int(N), T>(joints, link_frames[N - 1] * tip, link_frames);
+}
+
+} // namespace duet

@@ -1,0 +1,258 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/seed.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/mechanism/chain_step.hpp>
+#include <duet/mechanism/chain_walk.hpp>
+#include <duet/mechanism/joint.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <sstream>
+#include <string>
+#include <type_traits>
+
+/// \file
+/// Serial chains of joints, and where their links stand.
+
+namespace duet {
+
+namespace detail {
+
+/// How many coordinates results have: N, or up to −N.
+template <class S, int N>
+using joint_vector =
+    Eigen::Matrix<S, (N > 0 ? N : Eigen::Dynamic), 1, Eigen::ColMajor, (N > 0 ? N : -N), 1>;
+
+[[noreturn]] inline void bad_joint(std::size_t i, const std::string& reason) {
+  throw invalid_input("duet: serial_chain: joint " + std::to_string(i) + ": " + reason);
+}
+
+template <class T>
+[[noreturn]] void bad_axis(std::size_t i, const triple<T>& n) {
+  std::ostringstream reason;
+  reason << "the axis (" << n[0] << ", " << n[1] << ", " << n[2] << ") is no unit vector";
+  bad_joint(i, reason.str());
+}
+
+/// How far from 1 the squared norm of an axis or of a constant rotation may be, as they are written
+/// with few digits.
+template <class T>
+[[nodiscard]] constexpr bool is_nearly_one(const T& square) {
+  return square - 1 <= 2e-3 && 1 - square <= 2e-3;
+}
+
+template <class T>
+constexpr void require_joint(const joint<T>& given, std::size_t i) {
+  if (!is_finite(given.origin.translation)) {
+    bad_joint(i, "its origin is not finite");
+  }
+  if (!is_nearly_one(norm2(given.origin.rotation))) {
+    bad_joint(i, "the rotation of its origin is no unit quaternion");
+  }
+  const auto& n = given.axis;
+  if (given.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
+    bad_axis(i, n);
+  }
+  if (!(given.pitch - given.pitch == 0)) {
+    bad_joint(i, "its pitch is not finite");
+  }
+  if (!(given.limits.lower <= given.limits.upper && given.limits.velocity >= 0)) {
+    bad_joint(i, "no motion is within its limits");
+  }
+}
+
+/// Poses of the links of a chain.
+template <class C>
+struct poses_of {
+  /// The pose of the tip at coordinates θ, or of what a second argument says: the number of a link,
+  /// or an `attached_frame`.
+  /// \throws invalid_input for another number of coordinates than `size()`, and for a link that
+  /// there is none of
+  template <VectorLike X, class... At>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto pose(const X& theta, const At&... at) const {
+    using S = chain_scalar<C, X>;
+    const C& chain = static_cast<const C&>(*this);
+    const auto& frame = frame_on(chain, at...);
+    const auto state = attach(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
+    return duet::pose(state.rotation, state.position);
+  }
+};
+
+} // namespace detail
+
+/// Links joined one after the other, each turning about or sliding along the axis of a joint.
+///
+/// \tparam N  number of joints that move; negative: up to −N, their number known at run time
+/// \tparam T  scalar of the table
+///
+/// Joints are numbered from 0, links from 0, the base: joint i moves link i + 1. Coordinates θ are
+/// Eigen vectors or `std::array`s over any scalar, radians, or units of length where joints slide.
+/// Limits are kept as given and not enforced. No heap is used.
+template <int N, class T = double>
+class serial_chain : public detail::poses_of<serial_chain<N, T>> {
+  static_assert(N != 0, "duet: serial_chain<N> needs its number of joints, or -capacity");
+
+public:
+  using scalar_type = T;
+  using own_jacobian = void;
+  static constexpr int joints = N;
+  static constexpr std::size_t capacity = std::size_t(N > 0 ? N : -N);
+
+  /// \param given        the joints from the base on; fixed ones are merged with what they carry
+  /// \param tool         the tip in the frame of the last joint
+  /// \param link_frames  for each given joint, the frame of the link that it moves, in that of the
+  ///                     joint; nothing: they are the same
+  /// \throws invalid_input for another number of moving joints than N (more than −N), an axis or a
+  /// rotation that is no unit, numbers that are not finite, a lower limit above the upper one
+  constexpr explicit serial_chain(std::span<const joint<T>> given, const placement<T>& tool = {},
+                                  std::span<const placement<T>> link_frames = {}) {
+    placement<T> carried{};
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      detail::require_joint(given[i], i);
+      carried = carried * given[i].origin;
+      if (given[i].kind != joint_kind::fixed) {
+        if (size_ == int(capacity)) {
+          detail::bad_joint(i, "the chain has room for " + std::to_string(capacity));
+        }
+        frames_[std::size_t(size_)] = link_frames.empty() ? placement<T>{} : link_frames[i];
+        add(given[i], carried);
+        carried = {};
+      }
+    }
+    if (N > 0 && size_ != N) {
+      throw invalid_input("duet: serial_chain<" + std::to_string(N) + ">: only " +
+                          std::to_string(size_) + " joints move");
+    }
+    tip_ = {size_, carried * tool};
+  }
+  template <std::size_t M>
+  constexpr explicit serial_chain(const std::array<joint<T>, M>& given,
+                                  const placement<T>& tool = {})
+      : serial_chain(std::span<const joint<T>>(given), tool) {}
+
+  /// The same chain with its number of joints no more in the type, so that code for it is compiled
+  /// once for all of up to −N.
+  template <int M>
+    requires(M != N && N < 0 && (M > 0 ? M : -M) <= -N)
+  constexpr serial_chain(const serial_chain<M, T>& other) : tip_(other.tip()), size_(other.size()) {
+    for (std::size_t i = 0; i < std::size_t(size_); ++i) {
+      steps_[i] = other.steps()[i];
+      frames_[i] = other.link(int(i) + 1).offset;
+      kinds_[i] = other.kind(int(i));
+      limits_[i] = other.limits(int(i));
+    }
+  }
+
+  /// Number of joints that move.
+  [[nodiscard]] constexpr int size() const { return size_; }
+  /// The frame of the tip.
+  [[nodiscard]] constexpr const attached_frame<T>& tip() const { return tip_; }
+  /// The frame of link i.
+  /// \throws invalid_input for i outside 0 … size()
+  [[nodiscard]] constexpr attached_frame<T> link(int i) const {
+    if (i < 0 || i > size_) {
+      throw invalid_input("duet: serial_chain: no link " + std::to_string(i) + " in a chain of " +
+                          std::to_string(size_) + " joints");
+    }
+    return {i, i == 0 ? placement<T>{} : frames_[std::size_t(i - 1)]};
+  }
+  [[nodiscard]] constexpr joint_kind kind(int i) const { return kinds_[std::size_t(i)]; }
+  [[nodiscard]] constexpr const joint_limits<T>& limits(int i) const {
+    return limits_[std::size_t(i)];
+  }
+  /// The table that evaluation reads.
+  [[nodiscard]] constexpr const auto& steps() const { return steps_; }
+
+private:
+  constexpr void add(const joint<T>& given, const placement<T>& origin) {
+    const auto i = std::size_t(size_);
+    const T to_unit = detail::inverse_root_near_one(norm2(origin.rotation));
+    const quaternion<T> a = origin.rotation * to_unit;
+    const auto n = detail::scaled(
+        given.axis, detail::inverse_root_near_one(detail::dot(given.axis, given.axis)));
+    detail::chain_step<T>& s = steps_[i];
+    s.a = a;
+    s.an = a * quaternion<T>(T(0), n[0], n[1], n[2]);
+    s.offset = origin.translation;
+    s.axis = detail::cleaned_direction(detail::rotated(a, n));
+    s.turns = given.turns();
+    s.slides = given.slides();
+    s.pitch = given.kind == joint_kind::helical ? given.pitch : T(s.slides ? 1 : 0);
+    kinds_[i] = given.kind;
+    limits_[i] = given.kind == joint_kind::continuous
+                     ? joint_limits<T>{.velocity = given.limits.velocity}
+                     : given.limits;
+    ++size_;
+  }
+
+  std::array<detail::chain_step<T>, capacity> steps_{};
+  std::array<placement<T>, capacity> frames_{};
+  std::array<joint_kind, capacity> kinds_{};
+  std::array<joint_limits<T>, capacity> limits_{};
+  attached_frame<T> tip_{};
+  int size_ = 0;
+};
+
+template <class T, std::size_t M, class... Tool>
+serial_chain(const std::array<joint<T>, M>&, Tool...) -> serial_chain<int(M), T>;
+
+/// A chain that the compiler knows, and of which it leaves out all products with the table's zeros:
+/// as fast as code written for this arm. An empty object.
+///
+/// \tparam Arm  a type with a `static constexpr` `serial_chain` named `chain`
+///
+/// Example: `struct planar { static constexpr auto chain = from_dh(rows); };
+/// constexpr compiled_chain<planar> arm;`
+template <class Arm>
+class compiled_chain : public detail::poses_of<compiled_chain<Arm>> {
+  using chain_type = std::remove_cvref_t<decltype(Arm::chain)>;
+  static_assert(chain_type::joints > 0,
+                "duet: compiled_chain needs a chain whose number of joints is in its type");
+
+public:
+  using arm = Arm;
+  using scalar_type = typename chain_type::scalar_type;
+  using own_jacobian = void;
+  static constexpr int joints = chain_type::joints;
+
+  [[nodiscard]] static constexpr int size() { return joints; }
+  [[nodiscard]] static constexpr const attached_frame<scalar_type>& tip() {
+    return Arm::chain.tip();
+  }
+  [[nodiscard]] static constexpr attached_frame<scalar_type> link(int i) {
+    return Arm::chain.link(i);
+  }
+  [[nodiscard]] static constexpr joint_kind kind(int i) { return Arm::chain.kind(i); }
+  [[nodiscard]] static constexpr const joint_limits<scalar_type>& limits(int i) {
+    return Arm::chain.limits(i);
+  }
+  [[nodiscard]] static constexpr const auto& steps() { return Arm::chain.steps(); }
+  /// The same chain as a table in memory, whose type does not tell the arm.
+  [[nodiscard]] static constexpr const chain_type& table() { return Arm::chain; }
+};
+
+/// The lower and upper limits of all coordinates.
+template <SerialChain C>
+[[nodiscard]] auto lower_limits(const C& chain) {
+  detail::joint_vector<typename C::scalar_type, C::joints> result(chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    result[i] = chain.limits(i).lower;
+  }
+  return result;
+}
+template <SerialChain C>
+[[nodiscard]] auto upper_limits(const C& chain) {
+  detail::joint_vector<typename C::scalar_type, C::joints> result(chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    result[i] = chain.limits(i).upper;
+  }
+  return result;
+}
+
+} // namespace duet

@@ -1,0 +1,228 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/number_text.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/mechanism/table_arithmetic.hpp>
+
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The elements of a robot description in URDF, and what may be wrong with them.
+
+namespace duet::detail {
+
+using xml = boost::property_tree::ptree;
+
+/// Tells file and element of what is wrong.
+class urdf_reader {
+public:
+  explicit urdf_reader(std::string path) : path_(std::move(path)) {
+    xml document;
+    try {
+      boost::property_tree::read_xml(path_, document);
+    } catch (const boost::property_tree::xml_parser_error& e) {
+      fail(e.line() > 0 ? "line " + std::to_string(e.line()) : "", e.message());
+    }
+    const auto robot = document.get_child_optional("robot");
+    if (!robot) {
+      fail("", "no element <robot>");
+    }
+    for (const auto& [tag, element] : *robot) {
+      if (tag == "link") {
+        links_.push_back(attribute(element, "<link>", "name"));
+      } else if (tag == "joint") {
+        add_joint(element);
+      }
+    }
+  }
+
+  /// The joints from the link `base` to the link `tip`, in that order.
+  [[nodiscard]] std::vector<const xml*> path(const std::string& base, const std::string& tip) {
+    require_link("", base);
+    require_link("", tip);
+    std::vector<const xml*> result;
+    std::vector<std::string> seen{tip};
+    for (std::string link = tip; link != base;) {
+      const auto above = joint_above_.find(link);
+      if (above == joint_above_.end()) {
+        fail("", "the link \"" + tip + "\" does not hang on \"" + base + "\": above \"" + link +
+                     "\" there is no joint");
+      }
+      result.push_back(&above->second);
+      link = attribute(above->second.get_child("parent"), where(above->second), "link");
+      require_link(where(above->second) + " <parent>", link);
+      if (std::find(seen.begin(), seen.end(), link) != seen.end()) {
+        fail(where(above->second), "closes a cycle at the link \"" + link + "\"");
+      }
+      seen.push_back(link);
+    }
+    std::reverse(result.begin(), result.end());
+    return result;
+  }
+
+  [[nodiscard]] joint<double> read(const xml& element) const {
+    const std::string here = where(element);
+    if (element.get_child_optional("mimic")) {
+      fail(here + " <mimic>", "joints that follow others are not supported in a chain");
+    }
+    joint<double> result;
+    const std::string type = attribute(element, here, "type");
+    if (type == "revolute") {
+      result.kind = joint_kind::revolute;
+    } else if (type == "continuous") {
+      result.kind = joint_kind::continuous;
+    } else if (type == "prismatic") {
+      result.kind = joint_kind::prismatic;
+    } else if (type == "fixed") {
+      result.kind = joint_kind::fixed;
+    } else {
+      fail(here, "type \"" + type + "\" is none of revolute, continuous, prismatic and fixed");
+    }
+    if (const auto origin = element.get_child_optional("origin")) {
+      const auto rpy = numbers(*origin, here + " <origin>", "rpy", {0, 0, 0});
+      result.origin = {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]),
+                       numbers(*origin, here + " <origin>", "xyz", {0, 0, 0})};
+    }
+    if (result.kind != joint_kind::fixed) {
+      result.axis = {1, 0, 0}; // where nothing is said
+      if (const auto axis = element.get_child_optional("axis")) {
+        result.axis = numbers(*axis, here + " <axis>", "xyz", result.axis);
+      }
+      const double length = std::sqrt(dot(result.axis, result.axis));
+      if (!is_nearly_one(length * length)) {
+        fail(here + " <axis>", "length " + to_text(length) + ", not 1");
+      }
+      read_limits(element, here, result);
+    }
+    return result;
+  }
+
+  [[nodiscard]] static std::string name(const xml& element) {
+    return element.get<std::string>("<xmlattr>.name", "");
+  }
+  [[nodiscard]] std::string child(const xml& element) const {
+    return attribute(element.get_child("child"), where(element), "link");
+  }
+  [[noreturn]] void fail(const std::string& where, const std::string& what) const {
+    throw invalid_input("duet: read_urdf: " + path_ + ": " + (where.empty() ? "" : where + ": ") +
+                        what);
+  }
+
+private:
+  [[nodiscard]] static std::string where(const xml& joint) {
+    return "<joint name=\"" + name(joint) + "\">";
+  }
+
+  void require_attribute(const xml& element, const std::string& where,
+                         const std::string& key) const {
+    if (!element.get_child_optional("<xmlattr>." + key)) {
+      fail(where, "no attribute \"" + key + "\"");
+    }
+  }
+  [[nodiscard]] std::string attribute(const xml& element, const std::string& where,
+                                      const std::string& key) const {
+    require_attribute(element, where, key);
+    return element.get<std::string>("<xmlattr>." + key);
+  }
+
+  [[nodiscard]] double number(const std::string& text, const std::string& where,
+                              const std::string& key) const {
+    const auto value = parse_number(text);
+    if (!value || !(*value - *value == 0) || std::abs(*value) > 1e6) {
+      fail(where, key + "=\"" + text + "\" is no number up to 1e6");
+    }
+    return *value;
+  }
+
+  /// The three numbers of an attribute.
+  [[nodiscard]] std::array<double, 3> numbers(const xml& element, const std::string& where,
+                                              const std::string& key,
+                                              const std::array<double, 3>& otherwise) const {
+    const auto text = element.get_optional<std::string>("<xmlattr>." + key);
+    if (!text) {
+      return otherwise;
+    }
+    constexpr std::string_view blanks = " \t\r\n";
+    std::array<double, 3> result{};
+    std::size_t count = 0, end = 0;
+    for (std::size_t first; (first = text->find_first_not_of(blanks, end)) != std::string::npos;) {
+      end = std::min(text->find_first_of(blanks, first), text->size());
+      if (count == 3) {
+        ++count;
+        break;
+      }
+      result[count++] = number(text->substr(first, end - first), where, key);
+    }
+    if (count != 3) {
+      fail(where, key + "=\"" + *text + "\" is not three numbers");
+    }
+    return result;
+  }
+
+  void read_limits(const xml& element, const std::string& here, joint<double>& result) const {
+    const auto limit = element.get_child_optional("limit");
+    const std::string place = here + " <limit>";
+    const bool is_bounded = result.kind != joint_kind::continuous;
+    if (!limit) {
+      if (is_bounded) {
+        fail(here, "no element <limit>, which a " + attribute(element, here, "type") +
+                       " joint must have");
+      }
+      return;
+    }
+    const auto value = [&](const std::string& key, double otherwise) {
+      const auto text = limit->get_optional<std::string>("<xmlattr>." + key);
+      return text ? number(*text, place, key) : otherwise;
+    };
+    if (is_bounded) {
+      result.limits.lower = value("lower", 0); // as the format says
+      result.limits.upper = value("upper", 0);
+      if (result.limits.lower > result.limits.upper) {
+        fail(place, "lower is above upper");
+      }
+    }
+    result.limits.velocity = value("velocity", result.limits.velocity);
+    if (result.limits.velocity < 0) {
+      fail(place, "velocity is negative");
+    }
+  }
+
+  void require_link(const std::string& where, const std::string& link) const {
+    if (std::find(links_.begin(), links_.end(), link) == links_.end()) {
+      fail(where, "no link \"" + link + "\"");
+    }
+  }
+
+  void add_joint(const xml& element) {
+    require_attribute(element, "<joint>", "name");
+    for (const char* key : {"parent", "child"}) {
+      if (!element.get_child_optional(key)) {
+        fail(where(element), std::string("no element <") + key + ">");
+      }
+      require_attribute(element.get_child(key), where(element) + " <" + key + ">", "link");
+    }
+    if (!joint_above_.emplace(child(element), element).second) {
+      fail(where(element), "the link \"" + child(element) + "\" has a joint above it already");
+    }
+  }
+
+  std::string path_;
+  std::vector<std::string> links_;
+  std::map<std::string, xml> joint_above_; ///< by the link that it moves
+};
+
+} // namespace duet::detail

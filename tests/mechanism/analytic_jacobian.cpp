@@ -1,0 +1,77 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+
+#include <duet/derivative/jacobian.hpp>
+#include <duet/mechanism/analytic_jacobian.hpp>
+
+#include <algorithm>
+
+namespace test_mechanism_analytic_jacobian {
+namespace {
+
+using namespace duet;
+using duet_test::gap;
+
+template <euler_sequence Sequence, class Chain, class X>
+void check_euler(const Chain& arm, const X& theta) {
+  const auto coordinates_of = [](const auto& a) {
+    const auto t = translation(a);
+    const auto angles = euler<Sequence>(rotation(a));
+    return std::array{t[0], t[1], t[2], angles[0], angles[1], angles[2]};
+  };
+  const auto by_duals =
+      jacobian([&](const auto& x) { return coordinates_of(arm.pose(x)); }, theta).jacobian;
+  const auto closed = euler_jacobian<Sequence>(arm, theta);
+  // Towards gimbal lock both grow, and so do their errors.
+  const double size = std::max(1.0, by_duals.cwiseAbs().maxCoeff());
+  CAPTURE(size);
+  CHECK(gap(closed, by_duals) < 1e-13 * size * size);
+}
+
+template <class Chain>
+void check_sequences(const Chain& arm, int count) {
+  const auto all = duet_test::configurations(arm, count);
+  for (std::size_t i = 5; i < all.size(); ++i) { // not the ones that are in gimbal lock
+    const auto& theta = all[i];
+    check_euler<xyz>(arm, theta);
+    check_euler<yzx>(arm, theta);
+    check_euler<zxy>(arm, theta);
+    check_euler<xzy>(arm, theta);
+    check_euler<yxz>(arm, theta);
+    check_euler<zyx>(arm, theta);
+    check_euler<xyx>(arm, theta);
+    check_euler<yzy>(arm, theta);
+    check_euler<zxz>(arm, theta);
+    check_euler<xzx>(arm, theta);
+    check_euler<yxy>(arm, theta);
+    check_euler<zyz>(arm, theta);
+  }
+}
+
+} // namespace
+
+TEST_CASE("N20, N21: ∂γ/∂θ against dual numbers, and J2 of it is the spatial Jacobian") {
+  duet_test::for_each_arm([](const auto& arm) {
+    const auto point = arm.link(4).at_point({.3, -.2, .5});
+    for (const auto& theta : duet_test::configurations(arm, 20)) {
+      const auto check = [&](const auto&... at) {
+        const auto closed = pose_coordinates_jacobian(arm, theta, at...);
+        const auto by_duals =
+            jacobian([&](const auto& x) { return pose_coordinates(arm.pose(x, at...)); }, theta)
+                .jacobian;
+        CHECK(gap(closed, by_duals) < 1e-13);
+        CHECK(gap(pose_rate_matrix(arm.pose(theta, at...)) * closed,
+                  jacobian(arm, theta, frame::spatial, at...)) < 1e-13);
+      };
+      check();
+      check(point);
+    }
+  });
+}
+
+TEST_CASE("rates of Euler angles in all twelve sequences against dual numbers") {
+  check_sequences(duet_test::every_joint(), 8);
+}
+
+} // namespace test_mechanism_analytic_jacobian

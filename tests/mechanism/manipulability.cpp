@@ -1,0 +1,118 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/gradient.hpp>
+#include <duet/interop/multiprecision.hpp>
+#include <duet/mechanism/manipulability.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace test_mechanism_manipulability {
+namespace {
+
+using namespace duet;
+using duet_test::coordinates;
+using duet_test::gap;
+
+/// √det(JJᵀ) by elimination.
+template <class M>
+auto volume_by_elimination(const M& m) {
+  using S = typename M::Scalar;
+  std::array<std::array<S, 6>, 6> g;
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      g[i][k] = S(0);
+      for (Eigen::Index j = 0; j < m.cols(); ++j) {
+        g[i][k] += m(Eigen::Index(i), j) * m(Eigen::Index(k), j);
+      }
+    }
+  }
+  S product(1);
+  for (std::size_t i = 0; i < 6; ++i) {
+    product *= g[i][i];
+    for (std::size_t k = i + 1; k < 6; ++k) {
+      const S factor = g[k][i] / g[i][i];
+      for (std::size_t j = i; j < 6; ++j) {
+        g[k][j] -= factor * g[i][j];
+      }
+    }
+  }
+  using std::sqrt;
+  return S(sqrt(product));
+}
+
+} // namespace
+
+TEST_CASE("manipulability is √det(JJᵀ), and its gradient that by dual numbers of 50 digits") {
+  for (const auto& arm : {robots::panda().table(), robots::baxter_left().table(),
+                          robots::iiwa14().table(), duet_test::every_joint()}) {
+    const auto all = duet_test::configurations(arm, 10);
+    for (std::size_t i = 5; i < all.size(); ++i) {
+      const auto closed = manipulability_gradient(arm, all[i]);
+      const Eigen::Matrix<real_50, 7, 1> exact = all[i].cast<real_50>();
+      const auto by_duals = gradient(
+          [&](const auto& x) { return volume_by_elimination(jacobian(arm, x, frame::spatial)); },
+          exact);
+      CHECK(closed.value == manipulability(arm, all[i]));
+      CHECK(std::abs(closed.value - double(by_duals.value)) < 1e-14);
+      CHECK(gap(closed.gradient, by_duals.gradient.template cast<double>()) < 1e-13);
+    }
+  }
+}
+
+TEST_CASE("a planar arm of two links: w = a b |sin θ₂|") {
+  const double a = .7, b = .4;
+  const auto arm = from_dh(std::array<dh_row<>, 2>{{{a, 0, 0}, {b, 0, 0}}});
+  const auto upper = [&](const auto& theta) { // its tip's two coordinates alone
+    return jacobian(arm, theta, frame::hybrid).template topRows<2>().determinant();
+  };
+  for (const double bend : {1e-6, .3, -1.2, 3.1}) {
+    const Eigen::Vector2d theta(.4, bend);
+    CHECK(upper(theta) == doctest::Approx(a * b * std::sin(bend)).epsilon(1e-12));
+    // With the angular rows: det JᵀJ = (|u₁|² + 1)(|u₂|² + 1) − (u₁·u₂ + 1)².
+    const auto [w, slope] = derivative(
+        [&](const auto& x) {
+          const auto u1 = a * a + b * b + 2 * a * b * cos(x) + 1;
+          const auto both = b * (a * cos(x) + b) + 1;
+          return sqrt(u1 * (b * b + 1) - both * both);
+        },
+        bend);
+    const auto closed = manipulability_gradient(arm, theta);
+    CHECK(closed.value == doctest::Approx(w).epsilon(1e-12));
+    CHECK(gap(closed.gradient, Eigen::Vector2d(0, slope)) < 1e-13);
+  }
+}
+
+TEST_CASE("singular configurations") {
+  const auto arm = robots::iiwa14().table();
+  coordinates<7> theta = coordinates<7>::Zero(); // stretched
+  CHECK(manipulability(arm, theta) < 1e-16);
+  // Near the singularity of the elbow alone w is linear, without loss of digits.
+  theta << .3, -1, 1.5, 1e-9, .4, .9, .7;
+  const double w = manipulability(arm, theta);
+  theta[3] = 2e-9;
+  CHECK(manipulability(arm, theta) == doctest::Approx(2 * w).epsilon(1e-6));
+  CHECK(w > 1e-12);
+
+  // Two axes in one line, exactly.
+  const std::array<joint<>, 2> joints{};
+  const serial_chain<2> twice(joints);
+  const Eigen::Vector2d zero(0, 0);
+  CHECK(manipulability(twice, zero) == 0);
+  CHECK_THROWS_AS((void)manipulability_gradient(twice, zero), invalid_input);
+}
+
+TEST_CASE("as many joints as there turn out to be") {
+  const auto panda = robots::panda().table();
+  const serial_chain<-9> chain = panda;
+  for (const auto& theta : duet_test::configurations(panda, 3)) {
+    const Eigen::VectorXd x = theta;
+    CHECK(manipulability(chain, x) == doctest::Approx(manipulability(panda, theta)).epsilon(1e-10));
+  }
+}
+
+} // namespace test_mechanism_manipulability

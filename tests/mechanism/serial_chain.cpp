@@ -1,0 +1,243 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/interop/multiprecision.hpp>
+#include <duet/mechanism/screw_axes.hpp>
+
+#include <Eigen/Geometry>
+
+#include <numbers>
+#include <vector>
+
+namespace test_mechanism_serial_chain {
+namespace {
+
+using namespace duet;
+using duet_test::coordinates;
+using duet_test::gap;
+
+constexpr double pi = std::numbers::pi;
+
+double gap_of_poses(const dual_quaternion<double>& a, const dual_quaternion<double>& b) {
+  return gap(transform_matrix(a), transform_matrix(b));
+}
+
+/// The transform of a chain by matrices: products of Eigen's own.
+struct by_matrices {
+  Eigen::Isometry3d value = Eigen::Isometry3d::Identity();
+
+  by_matrices& turn(const Eigen::Vector3d& axis, double angle) {
+    value = value * Eigen::AngleAxisd(angle, axis);
+    return *this;
+  }
+  by_matrices& shift(double x, double y, double z) {
+    value = value * Eigen::Translation3d(x, y, z);
+    return *this;
+  }
+};
+
+const Eigen::Vector3d x_axis = Eigen::Vector3d::UnitX();
+const Eigen::Vector3d z_axis = Eigen::Vector3d::UnitZ();
+
+} // namespace
+
+static_assert(robots::panda().size() == 7);
+static_assert(robots::ur5e().size() == 6);
+static_assert(robots::panda().limits(3).upper == -.0698);
+static_assert(robots::iiwa14().tip().link == 7);
+static_assert(std::is_empty_v<decltype(robots::panda())>);
+
+TEST_CASE("the four robots stand where their makers' drawings say") {
+  coordinates<7> theta = coordinates<7>::Zero();
+  CHECK(gap(translation(robots::iiwa14().pose(theta)), Eigen::Vector3d(0, 0, 1.306)) < 4e-15);
+  CHECK(gap(translation(robots::baxter_left().pose(theta)),
+            Eigen::Vector3d(.069 + .36442 + .37429 + .229525, 0, .27035 - .069 - .01)) < 4e-15);
+  theta[3] = -pi / 2;
+  const auto a = robots::panda().pose(theta);
+  CHECK(gap(translation(a), Eigen::Vector3d(.3595, 0, .6435)) < 1e-15);
+  CHECK(gap(transform_direction(a, z_axis), -x_axis) < 4e-15);
+  CHECK(gap(translation(robots::ur5e().pose(coordinates<6>(coordinates<6>::Zero()))),
+            Eigen::Vector3d(-.8172, -.2329, .0628)) < 1e-15);
+}
+
+TEST_CASE("both conventions of Denavit and Hartenberg against products of matrices") {
+  const std::array<dh_row<>, 3> rows{
+      {{.3, .1, .4, .2}, {-.2, .5, -1.1, 0, {}, joint_kind::prismatic}, {.7, -.3, 2.5, -1}}};
+  const auto standard = from_dh(rows);
+  const auto modified = from_modified_dh(rows, {quaternion<double>(1), {0, 0, .5}});
+  for (const auto& theta : duet_test::configurations(standard, 20)) {
+    by_matrices a, b;
+    for (int i = 0; i < 3; ++i) {
+      const dh_row<>& row = rows[std::size_t(i)];
+      const bool slides = row.kind == joint_kind::prismatic;
+      const double angle = row.theta + (slides ? 0 : theta[i]);
+      const double d = row.d + (slides ? theta[i] : 0);
+      a.turn(z_axis, angle).shift(0, 0, d).shift(row.a, 0, 0).turn(x_axis, row.alpha);
+      b.turn(x_axis, row.alpha).shift(row.a, 0, 0).turn(z_axis, angle).shift(0, 0, d);
+      CHECK(gap(transform_matrix(standard.pose(theta, i + 1)), a.value.matrix()) < 1e-14);
+      CHECK(gap(transform_matrix(modified.pose(theta, i + 1)), b.value.matrix()) < 1e-14);
+    }
+    b.shift(0, 0, .5);
+    CHECK(gap(transform_matrix(standard.pose(theta)), a.value.matrix()) < 1e-14);
+    CHECK(gap(transform_matrix(modified.pose(theta)), b.value.matrix()) < 1e-14);
+  }
+}
+
+TEST_CASE("a chain is a product of exponentials of its screws") {
+  // Screws at zero configuration: the spatial twists of the links, by the poses' own derivatives.
+  const auto arm = duet_test::every_joint();
+  const coordinates<7> zero = coordinates<7>::Zero();
+  std::vector<joint_screw<>> screws;
+  for (int i = 0; i < 7; ++i) {
+    const auto [a, a_dot] = derivative(
+        [&](const auto& t) {
+          Eigen::Matrix<std::decay_t<decltype(t)>, 7, 1> theta;
+          theta.setZero();
+          theta[i] = t;
+          return arm.pose(theta);
+        },
+        0.0);
+    screws.push_back(dual_vector_of(twist(a, a_dot, frame::spatial)));
+  }
+  const auto product = from_screws(
+      std::array{screws[0], screws[1], screws[2], screws[3], screws[4], screws[5], screws[6]},
+      placement<double>(arm.pose(zero)));
+  CHECK(product.kind(1) == joint_kind::prismatic);
+  CHECK(product.kind(2) == joint_kind::helical);
+  CHECK(product.kind(6) == joint_kind::revolute);
+  for (const auto& theta : duet_test::configurations(arm, 20)) {
+    dual_quaternion<double> expected(1);
+    for (int i = 0; i < 7; ++i) {
+      const auto& s = screws[std::size_t(i)];
+      vector6<double> twist;
+      twist << s.moment[0], s.moment[1], s.moment[2], s.direction[0], s.direction[1],
+          s.direction[2];
+      expected = expected * exp(dual_vector<double>(dual_vector_of(twist) * (theta[i] / 2)));
+      CHECK(gap_of_poses(product.pose(theta, i + 1), expected) < 1e-14);
+    }
+    CHECK(gap_of_poses(product.pose(theta), arm.pose(theta)) < 1e-14);
+    CHECK(gap_of_poses(product.pose(theta), expected * arm.pose(zero)) < 1e-14);
+  }
+}
+
+TEST_CASE("an arm known to the compiler is the arm of its table") {
+  duet_test::for_each_known_arm([](const auto& arm) {
+    for (const auto& theta : duet_test::configurations(arm, 20)) {
+      CHECK(gap_of_poses(arm.pose(theta), arm.table().pose(theta)) < 1e-15);
+      for (int i = 0; i <= arm.size(); ++i) {
+        CHECK(gap_of_poses(arm.pose(theta, i), arm.table().pose(theta, i)) < 1e-15);
+      }
+    }
+  });
+}
+
+TEST_CASE("poses in double precision against 50 digits, and unit") {
+  using wide = real_50;
+  duet_test::for_each_arm([](const auto& arm) {
+    constexpr int n = std::decay_t<decltype(arm)>::joints;
+    for (const auto& theta : duet_test::configurations(arm, 20)) {
+      const auto a = arm.pose(theta);
+      const Eigen::Matrix<wide, n, 1> exact = theta.template cast<wide>();
+      const auto b = arm.pose(exact);
+      CHECK(gap(transform_matrix(a), transform_matrix(b).template cast<double>()) < 1e-14);
+      CHECK(is_unit(a, 1e-14));
+    }
+  });
+}
+
+TEST_CASE("a table in 50 digits has exact right angles") {
+  using wide = real_50;
+  const wide quarter = constant::pi<wide>() / 2;
+  const std::array<dh_row<wide>, 2> rows{{{0, 0, quarter}, {0, wide(1) / 10, -3 * quarter}}};
+  const auto chain = from_dh(rows);
+  const auto m = transform_matrix(chain.pose(Eigen::Matrix<wide, 2, 1>::Zero().eval()));
+  CHECK(abs(m(1, 3) + wide(1) / 10) < 1e-49);
+  CHECK(abs(m(0, 0) - 1) < 1e-49);
+  CHECK(abs(m(1, 1) + 1) < 1e-49);
+}
+
+TEST_CASE("frames on links and points of them") {
+  const auto arm = robots::panda().table();
+  for (const auto& theta : duet_test::configurations(arm, 5)) {
+    const auto at = arm.link(4).at_point({.1, -.2, .3});
+    CHECK(gap(translation(arm.pose(theta, at)),
+              transform_point(arm.pose(theta, 4), Eigen::Vector3d(.1, -.2, .3))) < 1e-15);
+    CHECK(gap_of_poses(arm.pose(theta, 0), dual_quaternion<double>(1)) == 0);
+  }
+}
+
+TEST_CASE("fixed joints are merged; the number of joints may be known at run time") {
+  using wide_chain = serial_chain<-4>;
+  std::vector<joint<>> joints(3);
+  joints[0].origin.translation = {1, 0, 0};
+  joints[1].kind = joint_kind::fixed;
+  joints[1].origin.translation = {0, 2, 0};
+  joints[2].origin.translation = {0, 0, 3};
+  const wide_chain chain{std::span<const joint<>>(joints)};
+  CHECK(chain.size() == 2);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(2);
+  CHECK(gap(translation(chain.pose(zero)), Eigen::Vector3d(1, 2, 3)) == 0);
+  const std::array<double, 2> quarter{pi / 2, 0};
+  CHECK(gap(translation(chain.pose(quarter)), Eigen::Vector3d(-1, 0, 3)) < 1e-15);
+}
+
+TEST_CASE("a chain whose number of joints is no more in its type is the same chain") {
+  const auto given = robots::baxter_left().table(); // its link frames are not those of its joints
+  const serial_chain<-16> chain = given;
+  static_assert(!std::is_convertible_v<serial_chain<7>, serial_chain<-6>>);
+  for (const auto& theta : duet_test::configurations(given, 3)) {
+    CHECK(gap_of_poses(chain.pose(theta), given.pose(theta)) == 0);
+    CHECK(gap_of_poses(chain.pose(theta, 4), given.pose(theta, 4)) == 0);
+  }
+  CHECK(chain.limits(3).upper == given.limits(3).upper);
+  CHECK(chain.kind(6) == joint_kind::revolute);
+}
+
+TEST_CASE("what is wrong with a chain is said in one line") {
+  const auto message = [](const auto& make) -> std::string {
+    try {
+      make();
+    } catch (const invalid_input& e) {
+      return e.what();
+    }
+    return "nothing thrown";
+  };
+  std::array<joint<>, 2> joints;
+  joints[1].axis = {0, 0, 2};
+  CHECK(message([&] { serial_chain chain(joints); }) ==
+        "duet: serial_chain: joint 1: the axis (0, 0, 2) is no unit vector");
+  joints[1].axis = {0, 0, std::nan("")};
+  CHECK(message([&] { serial_chain chain(joints); }).find("joint 1: the axis") !=
+        std::string::npos);
+  joints[1] = {};
+  joints[0].limits = {1, -1};
+  CHECK(message([&] { serial_chain chain(joints); }) ==
+        "duet: serial_chain: joint 0: no motion is within its limits");
+  joints[0] = {};
+  joints[1].kind = joint_kind::fixed;
+  CHECK(message([&] { serial_chain chain(joints); }) ==
+        "duet: serial_chain<2>: only 1 joints move");
+  joints[1] = {};
+  CHECK(message([&] { serial_chain<-1> chain(joints); }) ==
+        "duet: serial_chain: joint 1: the chain has room for 1");
+  joints[1].origin.translation[2] = INFINITY;
+  CHECK(message([&] { serial_chain chain(joints); }) ==
+        "duet: serial_chain: joint 1: its origin is not finite");
+  joints[1].origin = {quaternion<double>(2), {0, 0, 0}};
+  CHECK(message([&] { serial_chain chain(joints); }) ==
+        "duet: serial_chain: joint 1: the rotation of its origin is no unit quaternion");
+  const auto arm = robots::panda();
+  CHECK(message([&] { (void)arm.pose(Eigen::VectorXd::Zero(6).eval()); }) ==
+        "duet: a chain of 7 moving joints, but 6 coordinates");
+  CHECK(message([&] { (void)arm.pose(coordinates<7>(coordinates<7>::Zero()), 8); }) ==
+        "duet: serial_chain: no link 8 in a chain of 7 joints");
+  CHECK(message([&] {
+          (void)from_dh(std::array<dh_row<>, 1>{{{0, std::nan(""), 0}}});
+        }) ==
+        "duet: serial_chain: joint 0: its row of parameters has a number beyond 1e6, or none");
+}
+
+} // namespace test_mechanism_serial_chain

@@ -1,0 +1,163 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+#include "support/skip.hpp"
+
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/urdf.hpp>
+#include <duet/quaternion/euler.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+
+namespace test_mechanism_urdf {
+namespace {
+
+using namespace duet;
+using duet_test::gap;
+
+const std::string path = "test_mechanism_urdf.urdf";
+
+void write(const std::string& inside) {
+  std::ofstream(path) << "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n" << inside << "</robot>\n";
+}
+
+std::string message(const std::string& base = "a", const std::string& tip = "c") {
+  try {
+    (void)read_urdf(path, base, tip);
+  } catch (const invalid_input& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n";
+const std::string first = "<joint name=\"p\" type=\"prismatic\"><parent link=\"a\"/>"
+                          "<child link=\"b\"/><axis xyz=\"0 0 1\"/>"
+                          "<limit lower=\"-1\" upper=\"2\" velocity=\"3\"/></joint>\n";
+
+std::string joint_to_c(const std::string& inside, const std::string& type = "continuous") {
+  return "<joint name=\"q\" type=\"" + type + "\"><parent link=\"b\"/><child link=\"c\"/>" +
+         inside + "</joint>\n";
+}
+
+} // namespace
+
+TEST_CASE("origins, axes and limits as the format says") {
+  write(links + first +
+        joint_to_c("<origin xyz=\" .1 2e-1\t+0.3 \" rpy=\"0.1 0.2 0.3\"/><axis xyz=\"0 1 0\"/>"));
+  const auto chain = read_urdf(path, "a", "c");
+  CHECK(chain.size() == 2);
+  CHECK(chain.joint_names() == std::vector<std::string>{"p", "q"});
+  CHECK(chain.limits(0).lower == -1);
+  CHECK(chain.limits(0).upper == 2);
+  CHECK(chain.limits(0).velocity == 3);
+  CHECK(chain.kind(1) == joint_kind::continuous);
+  CHECK(chain.limits(1).upper == INFINITY);
+  const Eigen::Vector2d theta(.5, .7);
+  // Roll, pitch and yaw are turns about fixed axes.
+  const auto expected =
+      pose(from_euler<zyx>(.3, .2, .1), Eigen::Vector3d(.1, .2, .8)) *
+      pose(from_axis_angle(Eigen::Vector3d(0, 1, 0), .7), Eigen::Vector3d(0, 0, 0));
+  CHECK(gap(transform_matrix(chain.pose(theta)), transform_matrix(expected)) < 1e-15);
+  CHECK(gap(translation(chain.pose(theta, chain.link("b"))), Eigen::Vector3d(0, 0, .5)) == 0);
+  CHECK_THROWS_WITH_AS((void)chain.link("x"), "duet: no link \"x\" in the chain", invalid_input);
+  // Where nothing is said the axis is x.
+  write(links + first + joint_to_c(""));
+  const auto along_x = read_urdf(path, "b", "c");
+  const Eigen::Matrix<double, 1, 1> angle(.4);
+  CHECK(gap(rotation_vector(rotation(along_x.pose(angle))), Eigen::Vector3d(.4, 0, 0)) < 1e-15);
+  CHECK(read_urdf(path, "c", "c").size() == 0);
+}
+
+TEST_CASE("what is wrong is said with file and element") {
+  const std::string file = "duet: read_urdf: " + path + ": ";
+  const std::string q = file + "<joint name=\"q\">";
+  const auto says = [&](const std::string& joint, const std::string& expected) {
+    write(links + first + joint);
+    CHECK(message() == expected);
+  };
+  says(joint_to_c("<mimic joint=\"p\"/>"),
+       q + " <mimic>: joints that follow others are not supported in a chain");
+  says(joint_to_c("<axis xyz=\"0 0 2\"/>"), q + " <axis>: length 2, not 1");
+  says(joint_to_c("<axis xyz=\"0 0 0\"/>"), q + " <axis>: length 0, not 1");
+  says(joint_to_c("<axis xyz=\"0 0 x\"/>"), q + " <axis>: xyz=\"x\" is no number up to 1e6");
+  says(joint_to_c("<axis xyz=\"0 0\"/>"), q + " <axis>: xyz=\"0 0\" is not three numbers");
+  says(joint_to_c("<origin xyz=\"1 2 3 4\"/>"),
+       q + " <origin>: xyz=\"1 2 3 4\" is not three numbers");
+  says(joint_to_c("<origin rpy=\"nan 0 0\"/>"),
+       q + " <origin>: rpy=\"nan\" is no number up to 1e6");
+  says(joint_to_c("", "revolute"), q + ": no element <limit>, which a revolute joint must have");
+  says(joint_to_c("<limit lower=\"2\" upper=\"1\"/>", "revolute"),
+       q + " <limit>: lower is above upper");
+  says(joint_to_c("<limit velocity=\"-1\"/>", "revolute"), q + " <limit>: velocity is negative");
+  says(joint_to_c("<limit upper=\"1,5\"/>", "revolute"),
+       q + " <limit>: upper=\"1,5\" is no number up to 1e6");
+  says(joint_to_c("", "floating"),
+       q + ": type \"floating\" is none of revolute, continuous, prismatic and fixed");
+  says("<joint name=\"q\" type=\"fixed\"><child link=\"c\"/></joint>", q + ": no element <parent>");
+  says("<joint name=\"q\" type=\"fixed\"><parent link=\"b\"/><child/></joint>",
+       q + " <child>: no attribute \"link\"");
+  says("<joint type=\"fixed\"/>", file + "<joint>: no attribute \"name\"");
+  says("<joint name=\"q\"><parent link=\"b\"/><child link=\"c\"/></joint>",
+       q + ": no attribute \"type\"");
+  says("", file + "the link \"c\" does not hang on \"a\": above \"c\" there is no joint");
+  says("<joint name=\"q\" type=\"fixed\"><parent link=\"z\"/><child link=\"c\"/></joint>",
+       q + " <parent>: no link \"z\"");
+  says(joint_to_c("") + joint_to_c(""), q + ": the link \"c\" has a joint above it already");
+  write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
+  CHECK(message("a", "z") == file + "no link \"z\"");
+  CHECK(message("z", "c") == file + "no link \"z\"");
+  CHECK(message("c", "a") ==
+        file + "the link \"a\" does not hang on \"c\": above \"a\" there is no joint");
+  CHECK_THROWS_WITH_AS((void)read_urdf<1>(path, "a", "c"),
+                       (file + "2 moving joints from \"a\" to \"c\": use read_urdf<2>").c_str(),
+                       invalid_input);
+}
+
+TEST_CASE("cycles, broken and missing files") {
+  const std::string file = "duet: read_urdf: " + path + ": ";
+  write(links + "<joint name=\"q\" type=\"fixed\"><parent link=\"b\"/><child link=\"c\"/></joint>"
+                "<joint name=\"r\" type=\"fixed\"><parent link=\"c\"/><child link=\"b\"/></joint>");
+  CHECK(message() == file + "<joint name=\"r\">: closes a cycle at the link \"c\"");
+  std::ofstream(path) << "<robot>\n<link name=\"a\">\n</robot>\n";
+  CHECK(message().find(file + "line ") == 0);
+  std::ofstream(path) << "<sdf/>\n";
+  CHECK(message() == file + "no element <robot>");
+  std::filesystem::remove(path);
+  CHECK(message() == file + "cannot open file");
+}
+
+TEST_CASE("real robots") {
+  const auto data = duet_test::outside_data("urdf");
+  if (!data) {
+    return;
+  }
+  const std::string folder = data->string() + "/";
+  const auto panda = read_urdf(folder + "panda.urdf", "panda_link0", "panda_link8");
+  const auto known = robots::panda();
+  CHECK(panda.size() == 7);
+  for (int i = 0; i < 7; ++i) {
+    CHECK(panda.limits(i).lower == known.limits(i).lower);
+    CHECK(panda.limits(i).upper == known.limits(i).upper);
+  }
+  for (const auto& theta : duet_test::configurations(known.table(), 20)) {
+    CHECK(gap(transform_matrix(panda.pose(theta)), transform_matrix(known.pose(theta))) < 4e-15);
+    CHECK(gap(jacobian(panda, theta, frame::body), jacobian(known, theta, frame::body)) < 4e-15);
+    CHECK(gap(transform_matrix(panda.pose(theta, panda.link("panda_link4"))),
+              transform_matrix(known.pose(theta, 4))) < 4e-15);
+  }
+  // Fingers: the second one follows the first.
+  CHECK(read_urdf(folder + "panda.urdf", "panda_link0", "panda_leftfinger").size() == 8);
+  CHECK_THROWS_AS((void)read_urdf(folder + "panda.urdf", "panda_link0", "panda_rightfinger"),
+                  invalid_input);
+  const auto tiago = read_urdf(folder + "tiago_no_hand.urdf", "base_link", "arm_7_link");
+  CHECK(tiago.size() == 8);
+  CHECK(tiago.kind(0) == joint_kind::prismatic);
+  CHECK(read_urdf(folder + "double_pendulum.urdf", "base_link", "link2").size() == 2);
+  CHECK(read_urdf(folder + "ur5_robot.urdf", "base_link", "tool0").size() == 6);
+}
+
+} // namespace test_mechanism_urdf
