@@ -122,7 +122,7 @@ inline std::string splines_script(const std::vector<named_curve>& curves) {
       "set key outside right center reverse Left samplen 4\n"
       "set multiplot layout 2,1\nunset logscale x\nset xtics autofreq\n"
       "set ylabel 'd{/Symbol d}_E [%]'\n"
-      "set xlabel 'wheel height u [m]'\nset xrange [:] noextend\n"
+      "set xlabel 'wheel height u [m]'\nset xrange [*:*] noextend\n"
       "set yrange [1e-9:1e3]\nplot ";
   for (std::size_t i = 0; i < curves.size(); ++i) {
     text += (i > 0 ? ", \\\n     '" : "'") + std::string("splines.csv' using 1:") +
