@@ -149,23 +149,30 @@ inline summary summarise(const std::vector<double>& values) {
 /// Largest relative difference of δ and ∂δ/∂u between automatic differentiation and the closed
 /// form. Where a rate vanishes, as at natural ends, it is taken relative to a thousandth of its
 /// maximum.
-inline double automatic_against_closed_form(const spline& s, const std::vector<double>& samples) {
+template <class ClosedForm, class Automatic>
+double automatic_against_closed_form(const ClosedForm& closed_form, const Automatic& automatic,
+                                     const std::vector<double>& samples) {
   double delta_floor = 0;
   double delta_first_floor = 0;
   for (const double u : samples) {
-    const rates c = closed_form(s, u);
+    const rates c = closed_form(u);
     delta_floor = std::max(delta_floor, c.delta.norm() / 1000);
     delta_first_floor = std::max(delta_first_floor, c.delta_first.norm() / 1000);
   }
   double worst = 0;
   for (const double u : samples) {
-    const rates a = automatic(s, u);
-    const rates c = closed_form(s, u);
+    const rates a = automatic(u);
+    const rates c = closed_form(u);
     worst = std::max({worst, (a.delta - c.delta).norm() / std::max(c.delta.norm(), delta_floor),
                       (a.delta_first - c.delta_first).norm() /
                           std::max(c.delta_first.norm(), delta_first_floor)});
   }
   return worst;
+}
+
+inline double automatic_against_closed_form(const spline& s, const std::vector<double>& samples) {
+  return automatic_against_closed_form([&](double u) { return closed_form(s, u); },
+                                       [&](double u) { return automatic(s, u); }, samples);
 }
 
 /// Largest ‖Q″ printed − Q″‖/‖Q″‖ on the curve, Q″ printed being the commuting sum.

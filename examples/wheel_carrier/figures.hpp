@@ -3,6 +3,7 @@
 
 #include "carrier.hpp"
 #include "comparison.hpp"
+#include "splines.hpp"
 #include "table.hpp"
 
 #include "../support/csv.hpp"
@@ -46,10 +47,10 @@ inline std::string table_csv(const table& t) {
 }
 
 /// u, then δ and ∂δ/∂u of the spline.
-inline std::string rates_csv(const spline& s, const std::vector<double>& samples) {
+inline std::string rates_csv(const curve& c, const std::vector<double>& samples) {
   std::string text = "u,delta_x,delta_y,delta_z,ddelta_x,ddelta_y,ddelta_z\n";
   for (const double u : samples) {
-    const rates r = closed_form(s, u);
+    const rates r = c.at(u);
     text += csv_line({u, r.delta[0], r.delta[1], r.delta[2], r.delta_first[0], r.delta_first[1],
                       r.delta_first[2]});
   }
@@ -96,6 +97,47 @@ inline std::string errors_script(const std::vector<named_curve>& curves) {
     }
   }
   return text + "unset multiplot\n";
+}
+
+/// dδ_E of every spline with every end: over u, and its maximum over the rows of the table.
+/// Colours tell the splines apart, dashes the ends.
+inline std::string splines_script(const std::vector<named_curve>& curves) {
+  const auto style = [](const std::string& name) {
+    const auto starts = [&](const char* text) { return name.rfind(text, 0) == 0; };
+    const auto ends = [&](const std::string& text) {
+      return name.size() > text.size() && name.substr(name.size() - text.size()) == text;
+    };
+    const std::string colour = starts("cumulative")        ? "#d62728"
+                               : starts("rotation-vector") ? "#1f77b4"
+                                                           : "#2ca02c";
+    const int dash = ends("natural")        ? 3
+                     : ends("not-a-knot")   ? 2
+                     : ends("clamped")      ? 1
+                     : ends("acceleration") ? 4
+                                            : 5;
+    return " lw 1.5 lc rgb '" + colour + "' dt " + std::to_string(dash);
+  };
+  std::string text =
+      "set datafile separator ','\nset logscale y\nset format y '10^{%T}'\nset grid\n"
+      "set key outside right center reverse Left samplen 4\n"
+      "set multiplot layout 2,1\nunset logscale x\nset xtics autofreq\n"
+      "set ylabel 'd{/Symbol d}_E [%]'\n"
+      "set xlabel 'wheel height u [m]'\nset xrange [*:*] noextend\n"
+      "set yrange [1e-9:1e3]\nplot ";
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    text += (i > 0 ? ", \\\n     '" : "'") + std::string("splines.csv' using 1:") +
+            std::to_string(3 + 2 * i) + " skip 1 with lines" + style(curves[i].first) + " title '" +
+            curves[i].first + "'";
+  }
+  text += "\nset ylabel 'maximum of d{/Symbol d}_E [%]'\nset xlabel 'rows of the table'\n"
+          "set logscale x\nset xrange [22:450]\nset yrange [1e-8:1e3]\n"
+          "set xtics (25, 50, 100, 200, 400)\nplot ";
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    text += (i > 0 ? ", \\\n     '" : "'") + std::string("spline_convergence.csv' using 1:") +
+            std::to_string(2 + i) + " skip 1 with linespoints pt 7 ps 0.5" +
+            style(curves[i].first) + " title '" + curves[i].first + "'";
+  }
+  return text + "\nunset multiplot\n";
 }
 
 /// Where the wheel centre goes from the design position, and how the wheel turns.

@@ -8,6 +8,7 @@
 #include "comparison.hpp"
 #include "figures.hpp"
 #include "options.hpp"
+#include "splines.hpp"
 #include "table.hpp"
 
 #include "../support/csv.hpp"
@@ -127,6 +128,55 @@ std::string convergence(const carrier& mechanism, const arc_length& arcs,
   return csv;
 }
 
+/// δ_E and dδ_E of every spline with every end. What the table has too few rows for is left out.
+std::vector<named_curve> compare_splines(const std::vector<state>& states, const table& t) {
+  std::printf("\nEvery spline, every end, as above\n");
+  const known_ends known = ends_of(states.front(), states.back());
+  std::vector<named_curve> curves;
+  for (const auto& [spline_name, ends] : all_curves) {
+    try {
+      const curve c = make_curve(spline_name, t, ends, known);
+      curves.emplace_back(c.name(), errors(states, c));
+      print_error_row(c.name(), curves.back().second);
+    } catch (const duet::invalid_input&) {
+      std::printf("  %s, %s: too few rows\n", spline_name, ends);
+    }
+  }
+  return curves;
+}
+
+/// Maximal dδ_E of every spline with every end for tables of 25 … 400 rows.
+std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
+                               const std::vector<state>& states) {
+  constexpr int tables[] = {25, 50, 100, 200, 400};
+  const known_ends known = ends_of(states.front(), states.back());
+  std::printf("\nEvery spline, every end: maximal ddelta_E in percent for so many rows\n  %-34s",
+              "");
+  std::vector<std::vector<double>> columns;
+  std::vector<table> made;
+  for (const int rows : tables) {
+    std::printf(" %9d", rows);
+    made.push_back(equal_arc_table(mechanism, arcs, rows));
+    columns.push_back({double(rows)});
+  }
+  std::string csv = "rows";
+  for (const auto& [spline_name, ends] : all_curves) {
+    std::printf("\n  %-34s", (std::string(spline_name) + ", " + ends).c_str());
+    csv += std::string(",") + spline_name + " " + ends;
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const error_curve e = errors(states, make_curve(spline_name, made[i], ends, known));
+      columns[i].push_back(summarise(e.delta_first).maximum);
+      std::printf(" %9.2g", columns[i].back());
+    }
+  }
+  std::printf("\n");
+  csv += "\n";
+  for (const auto& column : columns) {
+    csv += csv_line(column);
+  }
+  return csv;
+}
+
 void run(const options& given) {
   const bool has_reference = !given.table || given.hardpoints;
   const carrier mechanism(given.hardpoints ? read_hardpoints(*given.hardpoints)
@@ -151,27 +201,33 @@ void run(const options& given) {
   if (!rates && has_reference) {
     rates = rates_at(states.front(), states.back());
   }
-  if (given.ends == "clamped" && !rates) {
-    throw std::runtime_error(
-        "--ends clamped: a bare table has no end rates; give --end-rates or --hardpoints");
+  known_ends known;
+  if (has_reference) {
+    known = ends_of(states.front(), states.back());
   }
-  const bool is_natural = !rates || given.ends == "natural";
-  const spline chosen = through(t, is_natural ? std::nullopt : rates);
+  known.velocity = rates;
+  const std::string ends = given.ends.value_or(rates ? "clamped" : "natural");
+  const curve chosen = make_curve(given.spline, t, ends, known);
+  // The formulas of the paper are those of the cumulative spline.
+  const std::string paper_ends = ends == "both" ? "clamped" : ends;
+  const spline paper = cumulative_curve(t, paper_ends, known);
 
   std::printf("%zu rows over u = %g ... %g m, %s ends\n\n", t.u.size(), t.u.front(), t.u.back(),
-              is_natural ? "natural" : "clamped");
+              ends.c_str());
   std::vector<std::pair<std::string, std::string>> files{{"table.csv", table_csv(t)},
                                                          {"rates.csv", rates_csv(chosen, samples)}};
-  std::vector<named_curve> curves;
+  std::vector<named_curve> curves, splines;
   if (has_reference) {
-    const spline other = through(t, is_natural ? rates : std::nullopt);
-    const std::string names[] = {"clamped", "natural"};
-    curves = compare_ways(states, chosen, names[is_natural], other, names[!is_natural]);
+    const std::string others = paper_ends == "natural" ? "clamped" : "natural";
+    curves = compare_ways(states, paper, paper_ends, cumulative_curve(t, others, known), others);
+    splines = compare_splines(states, t);
     files.emplace_back("errors.csv", errors_csv(samples, curves));
+    files.emplace_back("splines.csv", errors_csv(samples, splines));
     files.emplace_back("path.csv", path_csv(states, mechanism.points().wheel_centre));
   }
   if (arcs) {
     files.emplace_back("convergence.csv", convergence(mechanism, *arcs, states));
+    files.emplace_back("spline_convergence.csv", spline_convergence(mechanism, *arcs, states));
   }
 
   std::filesystem::create_directories(given.out);
@@ -181,7 +237,9 @@ void run(const options& given) {
   bool drawn = true;
   if (has_reference) {
     drawn = example::draw(given.out, "errors", "1000,720", errors_script(curves)) &&
-            example::draw(given.out, "path", "1000,420", path_script());
+            example::draw(given.out, "path", "1000,420", path_script()) &&
+            (!arcs || splines.size() < std::size(all_curves) ||
+             example::draw(given.out, "splines", "1000,900", splines_script(splines)));
   }
   std::printf("\nTables%s are in %s\n", has_reference && drawn ? " and pictures (SVG, PNG)" : "",
               given.out.c_str());
@@ -191,12 +249,13 @@ void run(const options& given) {
 
   std::printf("wheel carrier: rows=%zu", t.u.size());
   if (has_reference) {
-    std::printf(" delta_E_max=%.3g ddelta_E_max=%.3g", summarise(curves[0].second.delta).maximum,
-                summarise(curves[0].second.delta_first).maximum);
+    const error_curve e = errors(states, chosen);
+    std::printf(" delta_E_max=%.3g ddelta_E_max=%.3g", summarise(e.delta).maximum,
+                summarise(e.delta_first).maximum);
   }
   std::printf(" ad_vs_closed_form=%.2g printed_formula_error=%.3g\n",
-              automatic_against_closed_form(chosen, samples),
-              printed_formula_error(chosen, samples));
+              automatic_against_closed_form(chosen.at, chosen.automatic, samples),
+              printed_formula_error(paper, samples));
 }
 
 } // namespace

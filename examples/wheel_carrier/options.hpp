@@ -7,7 +7,10 @@
 
 #include <boost/program_options.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -27,6 +30,7 @@ struct options {
   std::optional<std::string> table, hardpoints, ends;
   std::optional<int> rows;
   std::optional<end_rates> rates;
+  std::string spline = "cumulative";
   std::string out = "wheel_carrier_out";
 };
 
@@ -70,8 +74,12 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       "carrier only where --hardpoints is given too")(
       "rows", po::value<int>()->value_name("N"),
       "rows of the table made from the carrier, at equal arcs (default: 0.003 rad apart)")(
-      "ends", po::value<std::string>()->value_name("natural|clamped"),
-      "end conditions (default: clamped where end rates are known, else natural)")(
+      "spline", po::value<std::string>()->value_name("cumulative|rotation-vector|quintic"),
+      "the curve: the paper's, or one of piecewise polynomial rotation vectors (default: "
+      "cumulative)")(
+      "ends", po::value<std::string>()->value_name("natural|clamped|acceleration|not-a-knot|both"),
+      "end conditions (default: clamped where end rates are known, else natural); both velocity "
+      "and acceleration are for the quintic")(
       "end-rates", po::value<std::string>()->value_name("X,Y,Z,X,Y,Z"),
       "angular velocity per unit of u at the first and the last row (default: the carrier's)")(
       "out", po::value<std::string>()->value_name("DIR"),
@@ -103,8 +111,21 @@ inline std::optional<options> parse_options(int argc, char** argv) {
   if (const auto rates = text("end-rates")) {
     result.rates = parse_end_rates(*rates);
   }
-  if (result.ends && *result.ends != "natural" && *result.ends != "clamped") {
-    throw std::runtime_error("--ends: '" + *result.ends + "' is neither natural nor clamped");
+  result.spline = text("spline").value_or(result.spline);
+  const auto is_one_of = [](const std::string& name, std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (result.ends &&
+      !is_one_of(*result.ends, {"natural", "clamped", "acceleration", "not-a-knot", "both"})) {
+    throw std::runtime_error("--ends: '" + *result.ends +
+                             "' is neither natural nor clamped, acceleration, not-a-knot, both");
+  }
+  if (!is_one_of(result.spline, {"cumulative", "rotation-vector", "quintic"})) {
+    throw std::runtime_error("--spline: '" + result.spline +
+                             "' is neither cumulative nor rotation-vector, quintic");
+  }
+  if (result.ends == "both" && result.spline != "quintic") {
+    throw std::runtime_error("--ends both is for --spline quintic");
   }
   if (result.rows && *result.rows < 3) {
     throw std::runtime_error("--rows: 3 or more");
@@ -112,8 +133,8 @@ inline std::optional<options> parse_options(int argc, char** argv) {
   if (result.rows && result.table) {
     throw std::runtime_error("--rows and --table exclude each other");
   }
-  if (result.rates && result.ends == "natural") {
-    throw std::runtime_error("--end-rates and --ends natural exclude each other");
+  if (result.rates && result.ends && *result.ends != "clamped" && *result.ends != "both") {
+    throw std::runtime_error("--end-rates and --ends " + *result.ends + " exclude each other");
   }
   return result;
 }

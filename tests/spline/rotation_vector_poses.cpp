@@ -13,8 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-// Infinitesimal parts through the solve: poses against 50 digits, derivatives with respect to the
-// data against differences.
+// Infinitesimal parts through the solve: poses against 50 digits.
 
 namespace test_spline_rotation_vector_poses {
 
@@ -121,29 +120,6 @@ TEST_CASE("poses: through the data, twists at the ends, smooth inside") {
   CHECK((end.velocity - velocity.end).norm() < 1e-11);
   CHECK((start.acceleration - acceleration.start).norm() < 1e-10);
   CHECK((end.acceleration - acceleration.end).norm() < 1e-10);
-}
-
-TEST_CASE_TEMPLATE("derivatives with respect to the data", order, std::integral_constant<int, 4>,
-                   std::integral_constant<int, 6>) {
-  // Row 3 is turned by t about (1, −2, 2)/3: derivative duals through the solve against central
-  // differences.
-  const auto data = duet_test::random_orientations(knots.size(), 1.4, 6);
-  const auto value = [&](const auto& t) {
-    using S = std::decay_t<decltype(t)>;
-    std::vector<duet::quaternion<S>> q = duet_test::cast<S>(data);
-    const S sixth = t / 6;
-    q[3] = q[3] * duet::exp(duet::vector3<S>(sixth, S(-2 * sixth), S(2 * sixth)));
-    using spline = duet::rotation_vector_spline<S, order::value>;
-    return interpolate<spline>(knots, q, duet::not_a_knot{})(0.4);
-  };
-  const auto automatic = value(duet::dual<double>::variable(0.0));
-  const double h = 1e-5;
-  const auto difference = (value(h) - value(-h)) / (2 * h);
-  CHECK(norm(difference) > 1e-3);
-  CHECK(std::abs(automatic.w().epsilon() - difference.w()) < 1e-9);
-  CHECK(std::abs(automatic.x().epsilon() - difference.x()) < 1e-9);
-  CHECK(std::abs(automatic.y().epsilon() - difference.y()) < 1e-9);
-  CHECK(std::abs(automatic.z().epsilon() - difference.z()) < 1e-9);
 }
 
 } // namespace test_spline_rotation_vector_poses

@@ -1,0 +1,53 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// How near rotation-vector splines through the wheel carrier's table come to the mechanism.
+
+#include "../../examples/wheel_carrier/carrier.hpp"
+#include "../../examples/wheel_carrier/table.hpp"
+
+#include <duet/spline/interpolate_rotation_vectors.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace test_examples_wheel_carrier_splines {
+
+using namespace wheel_carrier;
+
+namespace {
+
+/// The largest dδ_E over the travel, percent.
+template <class Spline>
+double worst_acceleration(const std::vector<state>& states, const Spline& s) {
+  double worst = 0;
+  for (const state& exact : states) {
+    const vector3 error =
+        s.motion(exact.u, duet::frame::spatial).acceleration - exact.omega_first();
+    worst = std::max(worst, 100 * error.norm() / exact.omega_first().norm());
+  }
+  return worst;
+}
+
+} // namespace
+
+TEST_CASE("P7: dδ_E of rotation-vector splines through the 0.003-rad table") {
+  const carrier mechanism(published_hardpoints());
+  const table t = equal_arc_table(mechanism, arc_length(mechanism), 105);
+  std::vector<state> states;
+  for (int i = 0; i <= 800; ++i) {
+    states.push_back(mechanism.at(i == 800 ? highest : lowest + (highest - lowest) * i / 800));
+  }
+  const duet::clamped rates{states.front().omega(), states.back().omega()};
+  using cubic = duet::rotation_vector_spline<double>;
+  using quintic = duet::rotation_vector_spline<double, 6>;
+  CHECK(worst_acceleration(states, duet::interpolate<cubic>(t.u, t.q, rates)) < 0.05);
+  CHECK(worst_acceleration(states, duet::interpolate<quintic>(t.u, t.q, rates)) < 0.005);
+  // Nothing known beyond the table.
+  CHECK(worst_acceleration(states, duet::interpolate<cubic>(t.u, t.q, duet::not_a_knot{})) < 0.4);
+  CHECK(worst_acceleration(states, duet::interpolate<quintic>(t.u, t.q, duet::not_a_knot{})) <
+        0.005);
+}
+
+} // namespace test_examples_wheel_carrier_splines

@@ -1,0 +1,48 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+
+#include <duet/spline/interpolate_rotation_vectors.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <type_traits>
+#include <vector>
+
+// Infinitesimal parts through the solve: derivatives of a curve with respect to its data.
+
+namespace test_spline_rotation_vector_data {
+
+using duet::interpolate;
+
+namespace {
+
+const std::vector<double> knots{0, 0.3, 0.5, 1.1, 1.3, 1.9, 2, 2.4};
+
+} // namespace
+
+TEST_CASE_TEMPLATE("derivatives with respect to the data", order, std::integral_constant<int, 4>,
+                   std::integral_constant<int, 6>) {
+  // Row 3 is turned by t about (1, −2, 2)/3: derivative duals through the solve against central
+  // differences.
+  const auto data = duet_test::random_orientations(knots.size(), 1.4, 6);
+  const auto value = [&](const auto& t) {
+    using S = std::decay_t<decltype(t)>;
+    std::vector<duet::quaternion<S>> q = duet_test::cast<S>(data);
+    const S sixth = t / 6;
+    q[3] = q[3] * duet::exp(duet::vector3<S>(sixth, S(-2 * sixth), S(2 * sixth)));
+    using spline = duet::rotation_vector_spline<S, order::value>;
+    return interpolate<spline>(knots, q, duet::not_a_knot{})(0.4);
+  };
+  const auto automatic = value(duet::dual<double>::variable(0.0));
+  const double h = 1e-5;
+  const auto difference = (value(h) - value(-h)) / (2 * h);
+  CHECK(norm(difference) > 1e-3);
+  CHECK(std::abs(automatic.w().epsilon() - difference.w()) < 1e-9);
+  CHECK(std::abs(automatic.x().epsilon() - difference.x()) < 1e-9);
+  CHECK(std::abs(automatic.y().epsilon() - difference.y()) < 1e-9);
+  CHECK(std::abs(automatic.z().epsilon() - difference.z()) < 1e-9);
+}
+
+} // namespace test_spline_rotation_vector_data
