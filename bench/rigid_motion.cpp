@@ -97,12 +97,30 @@ inline six logarithm(const eight& a) {
           f * a[7] + e * a[3]};
 }
 
-/// log|A| + ½(φ + εd)(n + εm), as duet's logarithm of any dual quaternion
+/// log|A| + ½(φ + εd)(n + εm), as duet's logarithm of any dual quaternion, unit or not
 inline eight general_logarithm(const eight& a) {
-  const double square = a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + a[3] * a[3];
-  const double product = a[0] * a[4] + a[1] * a[5] + a[2] * a[6] + a[3] * a[7];
-  const six v = logarithm(a);
-  return {std::log(square) / 2, v[0], v[1], v[2], product / square, v[3], v[4], v[5]};
+  const double s = a[1] * a[1] + a[2] * a[2] + a[3] * a[3];
+  const double d = a[1] * a[5] + a[2] * a[6] + a[3] * a[7];
+  const double square = s + a[0] * a[0];
+  double f, e; // θ/(|A| sin θ), and what it changes by
+  if (s < 1e-4 * square && a[0] > 0) {
+    const double w = 1 / a[0];
+    const double x = s * w * w;
+    f = w * (1 - x / 3 + x * x / 5);
+    e = w * w * w * (-2.0 / 3 + x * 4 / 5) * d - w * w * (1 - x + x * x) * a[4];
+  } else {
+    const double root = std::sqrt(s);
+    f = std::atan2(root, a[0]) / root;
+    e = (a[0] / square - f) / s * d - a[4] / square;
+  }
+  return {std::log(square) / 2,
+          f * a[1],
+          f * a[2],
+          f * a[3],
+          (d + a[0] * a[4]) / square,
+          f * a[5] + e * a[1],
+          f * a[6] + e * a[2],
+          f * a[7] + e * a[3]};
 }
 
 inline eight interpolation(const eight& a, const eight& b, double tau) {

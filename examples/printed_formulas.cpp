@@ -59,10 +59,12 @@ using increments = std::array<vector3<T>, controls - 1>;
 template <class T>
 [[nodiscard]] cumulative_bspline<T> make_curve(const increments<T>& omega) {
   std::vector<quaternion<T>> q = {from_rotation_vector(vector3<T>(T(1), T(0), T(0)))};
+  std::vector<vector3<T>> increments_of_all = {vector3<T>::Zero()};
   for (const vector3<T>& w : omega) {
     q.push_back(q.back() * exp(w));
+    increments_of_all.push_back(w);
   }
-  return {std::vector<T>(knots.begin(), knots.end()), q, signs_as_given{}};
+  return {std::vector<T>(knots.begin(), knots.end()), q, increments_of_all};
 }
 
 /// B_i^k by de Boor and Cox's recurrence (P1); `closed` takes the print at its word, that spans

@@ -81,6 +81,7 @@ struct sample {
   double tau;
   pose_type pose;
   vector6<double> twist; ///< spatial, [v; ω] per unit of τ, by automatic differentiation
+  vector6<double> rates; ///< the same, hybrid: of the pose's own origin, in fixed axes
 };
 
 inline std::vector<sample> samples(const pose_type& from, const pose_type& to, duet::way round,
@@ -90,7 +91,8 @@ inline std::vector<sample> samples(const pose_type& from, const pose_type& to, d
     const double tau = double(i) / steps;
     const auto [a, a_dot] =
         duet::derivative([&](auto t) { return duet::sclerp(from, to, t, round); }, tau);
-    result.push_back({tau, a, duet::twist(a, a_dot, duet::frame::spatial)});
+    result.push_back({tau, a, duet::twist(a, a_dot, duet::frame::spatial),
+                      duet::twist(a, a_dot, duet::frame::hybrid)});
   }
   return result;
 }
@@ -117,10 +119,9 @@ inline std::string path_csv(const std::vector<sample>& path) {
   std::string text = "tau,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
   for (const sample& p : path) {
     const auto gamma = duet::pose_coordinates(p.pose);
-    const vector3<double> omega = p.twist.tail<3>();
-    const vector3<double> v = p.twist.head<3>() + omega.cross(duet::translation(p.pose));
+    const auto& v = p.rates;
     text += example::csv_line({p.tau, gamma[0], gamma[1], gamma[2], gamma[3], gamma[4], gamma[5],
-                               gamma[6], v[0], v[1], v[2], omega[0], omega[1], omega[2]});
+                               gamma[6], v[0], v[1], v[2], v[3], v[4], v[5]});
   }
   return text;
 }

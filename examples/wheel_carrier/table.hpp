@@ -105,7 +105,7 @@ inline table read_table(const std::string& path) {
     throw file_error(path, "needs two rows or more");
   }
   try {
-    duet::detail::check_parameters(result.u);
+    duet::detail::check_rows(result.u, result.q.size(), 2);
     result.q = duet::aligned_orientations(result.q);
   } catch (const duet::invalid_row& error) {
     throw file_error(path, file.rows()[error.row()].line, error.reason());

@@ -6,7 +6,9 @@
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
+#include <duet/core/csv.hpp>
 #include <duet/core/number_text.hpp>
+#include <duet/core/parallel_for.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -53,6 +55,12 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
+#include <duet/spline/adaptive_table.hpp>
+#include <duet/spline/bspline_fit.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/fit.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/look_up_table.hpp>
 #include <duet/spline/printed.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>

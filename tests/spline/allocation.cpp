@@ -3,6 +3,7 @@
 #include "spline/curves.hpp"
 
 #include <duet/derivative/derivative.hpp>
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/printed.hpp>
@@ -33,13 +34,21 @@ TEST_CASE("evaluation allocates nothing") {
   const duet::cumulative_bspline<double> s(knots,
                                            duet_test::random_orientations(knots.size() - 4, 1));
   const auto parameters = duet_test::parameters_on(knots, 4);
+  std::vector<duet::dual_quaternion<double>> poses;
+  for (const auto& q : s.controls()) {
+    poses.push_back(duet::pose(q, duet::vector3<double>(1, 2, 3)));
+  }
+  const duet::cumulative_bspline<duet::screw_dual<double>> p(knots, poses);
+  duet::span_hint hint;
   double sum = 0;
   const std::size_t before = allocations;
   for (const double u : parameters) {
     sum += s(u).w();
     sum += s.motion(u, duet::frame::body).jerk[0];
     sum += s.motion(u, duet::frame::spatial).acceleration[1];
-    sum += s.derivatives(u)[2].z();
+    sum += s.derivatives(u)[3].z();
+    sum += s.motion(u, duet::frame::body, hint).jerk[0];
+    sum += p.motion(u, duet::frame::hybrid).acceleration[0];
     sum += duet::printed_derivative(s, u).literal_second.x();
     sum += s(duet::dual<double>::variable(u)).w().epsilon();
     sum += duet::derivatives<2>([&](const auto& x) { return s(x); }, u)[2].y();

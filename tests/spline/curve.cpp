@@ -175,9 +175,9 @@ TEST_CASE("control quaternions that are not there, not one, or a half turn apart
   const quaternion one(1);
   const double not_a_number = std::numeric_limits<double>::quiet_NaN();
   CHECK(message_of<duet::invalid_input>(make({one, one, one})) ==
-        "duet: cumulative_bspline: 7 knots of order 3 take 4 control quaternions, got 3");
+        "duet: cumulative_bspline: 7 knots of order 3 take 4 control elements, got 3");
   CHECK(message_of<duet::invalid_input>(make({})) ==
-        "duet: cumulative_bspline: 7 knots of order 3 take 4 control quaternions, got 0");
+        "duet: cumulative_bspline: 7 knots of order 3 take 4 control elements, got 0");
   CHECK(message_of<duet::invalid_row>(make({one, one * 1.1, one, one})) ==
         "duet: row 1: quaternion (1.1, 0, 0, 0) has norm 1.1, not 1");
   CHECK(message_of<duet::invalid_row>(make({one, one, quaternion(), one})) ==

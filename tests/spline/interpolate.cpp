@@ -93,19 +93,21 @@ TEST_CASE("the curve passes through the data and meets its end conditions") {
   }
 }
 
-TEST_CASE("steps of 2.5 rad between rows, on random axes") {
-  int found = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+TEST_CASE("steps of 2.8 rad between rows, on random axes") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
-    const table q = duet_test::turned_by(2.5, 20, seed);
-    try {
-      check_natural(uniform(20), q);
-      check_clamped(uniform(20), q, vector(1, 0, 0), vector(0, -2, 0));
-      ++found;
-    } catch (const duet::no_convergence&) { // now and then; never a curve that misses the data
-    }
+    const table q = duet_test::turned_by(2.8, 20, seed);
+    const parameters u = seed % 2 == 0 ? uniform(20) : [&] {
+      duet_test::random_source random(seed);
+      parameters result = {0};
+      while (result.size() < 20) {
+        result.push_back(result.back() + random.uniform(0.5, 1.5));
+      }
+      return result;
+    }();
+    check_natural(u, q);
+    check_clamped(u, q, vector(1, 0, 0), vector(0, -2, 0));
   }
-  CHECK(found >= 38);
 }
 
 TEST_CASE("steps of 2.9 rad between rows, on slowly turning axes") {
@@ -117,10 +119,10 @@ TEST_CASE("steps of 2.9 rad between rows, on slowly turning axes") {
   check_natural(uniform(20), q);
 }
 
-TEST_CASE("a curve is copied by its knots and its control quaternions as they are") {
+TEST_CASE("a curve is copied by its knots, control quaternions and increments") {
   const table q = duet_test::turned_by(2, 20, 1);
   const spline s = interpolate<spline>(uniform(20), q);
-  const spline copy(s.basis().knots(), s.controls(), duet::signs_as_given{});
+  const spline copy(s.basis().knots(), s.controls(), s.increments());
   bool beyond_half_a_turn = false;
   for (std::size_t i = 1; i < s.controls().size(); ++i) {
     beyond_half_a_turn = beyond_half_a_turn || dot(s.controls()[i - 1], s.controls()[i]) < 0;

@@ -25,19 +25,32 @@ using vector = duet::vector3<double>;
 
 namespace {
 
-/// A smooth motion whose rotations do not commute, u in [0, 2], and its derivatives.
-template <class S>
-duet::quaternion<S> motion(const S& u) {
-  using std::cos;
-  using std::exp;
-  using std::sin;
-  return duet::from_euler<duet::zyx>(S(1.3 * sin(1.1 * u + 0.2)), S(0.9 * cos(1.7 * u)),
-                                     S(0.8 * u * exp(-0.3 * u)));
-}
+/// A smooth motion whose rotations do not commute, u in [0, 2].
+struct passing {
+  template <class S>
+  duet::quaternion<S> operator()(const S& u) const {
+    using std::cos;
+    using std::exp;
+    using std::sin;
+    return duet::from_euler<duet::zyx>(S(1.3 * sin(1.1 * u + 0.2)), S(0.9 * cos(1.7 * u)),
+                                       S(0.8 * u * exp(-0.3 * u)));
+  }
+};
+/// One that turns right round and returns, of period 2.
+struct returning {
+  template <class S>
+  duet::quaternion<S> operator()(const S& u) const {
+    using std::cos;
+    const double pi = std::acos(-1.0);
+    return duet::from_euler<duet::zyx>(S(pi * u), S(0.9 * cos(pi * u)), S(0.3 * cos(pi * u)));
+  }
+};
 
+/// Such a motion and its derivatives.
 struct truth {
-  explicit truth(double u) {
-    const auto q = duet::derivatives<2>([](const auto& x) { return motion(x); }, u);
+  template <class Path = passing>
+  explicit truth(double u, const Path& path = {}) {
+    const auto q = duet::derivatives<2>([&](const auto& x) { return path(x); }, u);
     value = q[0];
     second = q[2];
     velocity = duet::angular_velocity(q[0], q[1], duet::frame::spatial);
@@ -51,20 +64,21 @@ struct truth {
 using errors = std::array<double, 5>;
 
 /// Errors between the parameters a and b of a table with so many steps.
-template <class Place, class Ends>
-errors measure(int steps, Place place, const Ends& ends, double a, double b) {
+template <class Place, class Ends, class Path = passing>
+errors measure(int steps, Place place, const Ends& ends, double a, double b,
+               const Path& path = {}) {
   std::vector<double> u;
   std::vector<quaternion> q;
   for (int i = 0; i <= steps; ++i) {
     u.push_back(place(2.0 * i / steps));
-    q.push_back(motion(u.back()));
+    q.push_back(path(u.back()));
   }
   const spline s = duet::interpolate<spline>(u, q, ends);
   errors worst{};
   constexpr int samples = 4001;
   for (int i = 0; i < samples; ++i) {
     const double at = a + (b - a) * i / (samples - 1);
-    const truth exact(at);
+    const truth exact(at, path);
     const auto m = s.motion(at, duet::frame::spatial);
     const double sign = dot(exact.value, m.value) < 0 ? -1 : 1;
     const errors here = {
@@ -80,10 +94,10 @@ errors measure(int steps, Place place, const Ends& ends, double a, double b) {
 }
 
 /// Observed orders from 80 steps to 160.
-template <class Place, class Ends>
-errors orders(Place place, const Ends& ends, double a, double b) {
-  const errors coarse = measure(80, place, ends, a, b);
-  const errors fine = measure(160, place, ends, a, b);
+template <class Place, class Ends, class Path = passing>
+errors orders(Place place, const Ends& ends, double a, double b, const Path& path = {}) {
+  const errors coarse = measure(80, place, ends, a, b, path);
+  const errors fine = measure(160, place, ends, a, b, path);
   errors result;
   for (std::size_t k = 0; k < result.size(); ++k) {
     result[k] = std::log2(coarse[k] / fine[k]);
@@ -95,13 +109,35 @@ double uniform(double u) { return u; }
 /// From 0 to 2 with steps that change smoothly, by a factor of 3.
 double graded(double u) { return u + 0.25 * (1 - std::cos(std::acos(-1.0) * u)) * u * (2 - u); }
 
-duet::clamped<double> exact_rates() { return {truth(0).velocity, truth(2).velocity}; }
+duet::clamped<> exact_rates() { return {truth(0).velocity, truth(2).velocity}; }
 
 } // namespace
 
 TEST_CASE("exact end rates: value h³, ω h², angular acceleration h") {
   for (const auto place : {uniform, graded}) {
     const errors order = orders(place, exact_rates(), 0, 2);
+    CHECK(order[0] == doctest::Approx(3).epsilon(0.1));
+    CHECK(order[1] == doctest::Approx(2).epsilon(0.1));
+    CHECK(order[2] == doctest::Approx(1).epsilon(0.1));
+  }
+}
+
+TEST_CASE("exact end accelerations, and not-a-knot ends: the same orders, up to the ends") {
+  const duet::end_acceleration<> exact = {truth(0).acceleration, truth(2).acceleration};
+  for (const auto place : {uniform, graded}) {
+    const auto check = [](const errors& order) {
+      CHECK(order[0] == doctest::Approx(3).epsilon(0.1));
+      CHECK(order[1] == doctest::Approx(2).epsilon(0.1));
+      CHECK(order[2] == doctest::Approx(1).epsilon(0.1));
+    };
+    check(orders(place, exact, 0, 2));
+    check(orders(place, duet::not_a_knot{}, 0, 2));
+  }
+}
+
+TEST_CASE("periodic ends: the same orders all round") {
+  for (const auto place : {uniform, graded}) {
+    const errors order = orders(place, duet::periodic{}, 0, 2, returning{});
     CHECK(order[0] == doctest::Approx(3).epsilon(0.1));
     CHECK(order[1] == doctest::Approx(2).epsilon(0.1));
     CHECK(order[2] == doctest::Approx(1).epsilon(0.1));

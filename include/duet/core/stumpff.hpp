@@ -33,15 +33,24 @@ template <class T, int N, int Terms>
   return result;
 }
 
-/// Horner's rule from the K-th term on, unrolled.
-template <int N, int Terms, int K = 0, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_polynomial(const T& s) {
+/// Every other term from the K-th on by Horner's rule, unrolled.
+template <int N, int Terms, int K, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_half_polynomial(const T& square) {
   constexpr T coefficient = stumpff_coefficients<T, N, Terms>()[K];
-  if constexpr (K + 1 == Terms) {
+  if constexpr (K + 2 >= Terms) {
     return coefficient;
   } else {
-    return coefficient - s * stumpff_polynomial<N, Terms, K + 1>(s);
+    return coefficient + square * stumpff_half_polynomial<N, Terms, K + 2>(square);
   }
+}
+
+/// The first terms of the series. Even and odd ones apart take half as long, as neither sum waits
+/// for the other.
+template <int N, int Terms, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_polynomial(const T& s) {
+  const T square = s * s;
+  return stumpff_half_polynomial<N, Terms, 0>(square) -
+         s * stumpff_half_polynomial<N, Terms, 1>(square);
 }
 
 /// The series, summed until its terms vanish, for types without a fixed number of digits.

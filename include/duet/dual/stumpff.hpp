@@ -72,7 +72,8 @@ struct arc_ratio {
     const T argument = 4 * squared * s;
     const T reciprocal = 1 / (s + w * w);
     return {select(
-                innermost(argument) > 1, [&] { return T((w * reciprocal - ratio) / (2 * s)); },
+                innermost(argument) > 1,
+                [&] { return T((w * reciprocal - ratio) * (real_type_t<T>(0.5) / s)); },
                 [&] { return T(-2 * squared * ratio * duet::stumpff<3>(argument)); }),
             -reciprocal};
   }

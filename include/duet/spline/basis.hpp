@@ -5,6 +5,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/spline/knots.hpp>
+#include <duet/spline/location.hpp>
 
 #include <algorithm>
 #include <array>
@@ -41,7 +42,7 @@ public:
 
   /// \throws invalid_input for knots that decrease, are not finite, leave no domain, or are
   /// repeated more than k times
-  explicit bspline_basis(std::vector<R> knots) : knots_(std::move(knots)) {
+  bspline_basis(std::vector<R> knots) : knots_(std::move(knots)) {
     detail::check_knots(knots_, Order);
     for (std::size_t i = std::size_t(Order) - 1; i + std::size_t(Order) < knots_.size(); ++i) {
       if (knots_[i] < knots_[i + 1]) {
@@ -61,10 +62,15 @@ public:
   /// The distinct knots of the domain.
   [[nodiscard]] const std::vector<R>& breaks() const { return breaks_; }
 
+  /// Is u in the domain? NaN is not.
+  [[nodiscard]] DUET_ALWAYS_INLINE bool contains(const R& u) const {
+    return u >= breaks_.front() && u <= breaks_.back();
+  }
+
   /// Number of the non-empty span that holds u: half-open, the last one closed.
   /// \throws invalid_input outside the domain
   [[nodiscard]] DUET_ALWAYS_INLINE std::size_t span_of(const R& u) const {
-    if (!(u >= breaks_.front() && u <= breaks_.back())) {
+    if (!contains(u)) {
       throw_outside(u);
     }
     // Where knots are about uniform the guess is right; otherwise a binary search finds the span.
@@ -75,6 +81,15 @@ public:
     }
     const auto above = std::upper_bound(breaks_.begin(), breaks_.end(), u) - breaks_.begin();
     return std::min(static_cast<std::size_t>(above), spans_.size()) - 1;
+  }
+  /// The same, looked for in the span of the hint and the next one first; the hint is updated.
+  [[nodiscard]] std::size_t span_of(const R& u, span_hint& hint) const {
+    for (std::size_t i = hint.span; i < spans_.size() && i - hint.span < 2; ++i) {
+      if (breaks_[i] <= u && u < breaks_[i + 1]) {
+        return hint.span = i;
+      }
+    }
+    return hint.span = span_of(u);
   }
 
   /// Index of the first of the k functions that do not vanish on a span.

@@ -1,9 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/LU>
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -11,34 +13,119 @@
 
 namespace duet::detail {
 
-/// Row i of the system: lower x_{i−1} + diagonal x_i + upper x_{i+1} = right.
+/// Row i of the system: lower x_{i−1} + diagonal x_i + upper x_{i+1}. The block that would stand
+/// outside has a place of its own: see `corners`.
 template <class R, int N>
 struct block_row {
   Eigen::Matrix<R, N, N> lower, diagonal, upper;
-  Eigen::Matrix<R, N, 1> right;
 };
 
-/// Solves in place by block elimination with pivoting inside the blocks; each row's `right` becomes
-/// x_i. Returns false where a pivot block is singular.
+/// Columns of the first row's `lower` and the last row's `upper`.
+struct corners {
+  std::size_t first, last;
+};
+
+/// Block elimination without exchanges between rows, as matrices of spline interpolation allow.
+///
+/// The first row's corner fills its column up to the diagonal, the last row's corner its row: with
+/// corners n − 1 and 0 the system is cyclic, the border's elimination included; with 2 and n − 3
+/// its band is wider at both ends.
 template <class R, int N>
-[[nodiscard]] bool solve_block_tridiagonal(std::vector<block_row<R, N>>& rows) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    auto& row = rows[i];
-    if (i > 0) {
-      row.diagonal -= row.lower * rows[i - 1].upper;
-      row.right -= row.lower * rows[i - 1].right;
+class block_tridiagonal {
+public:
+  using matrix = Eigen::Matrix<R, N, N>;
+
+  /// Two rows or more. True where no pivot is singular.
+  [[nodiscard]] bool factorise(std::vector<block_row<R, N>> rows, const corners& at) {
+    rows_ = std::move(rows);
+    at_ = at;
+    column_.clear();
+    bottom_.clear();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      auto& row = rows_[i];
+      const bool is_last = i + 1 == rows_.size();
+      matrix fill = matrix::Zero();
+      if (i == 0) {
+        fill = row.lower;
+      } else if (i <= column_.size()) {
+        fill.noalias() = -row.lower * column_[i - 1];
+      }
+      if (is_last) {
+        eliminate_bottom(row);
+      }
+      if (i > 0) {
+        row.diagonal.noalias() -= row.lower * rows_[i - 1].upper;
+      }
+      if (i + 1 == at.first) {
+        row.upper += fill;
+      }
+      const matrix inverse = row.diagonal.inverse();
+      if (!inverse.allFinite()) {
+        return false;
+      }
+      row.diagonal = inverse;
+      if (!is_last) {
+        row.upper = (inverse * row.upper).eval();
+      }
+      if (i + 1 < at.first) {
+        column_.push_back(inverse * fill);
+      }
     }
-    const Eigen::FullPivLU<Eigen::Matrix<R, N, N>> lu(row.diagonal);
-    if (!lu.isInvertible()) {
-      return false;
+    return true;
+  }
+
+  /// Solves in place, over any scalar above R.
+  template <class V>
+  void solve(std::vector<V>& x) const {
+    const std::size_t last = x.size() - 1;
+    for (std::size_t i = 0; i <= last; ++i) {
+      if (i > 0) {
+        subtract(x[i], rows_[i].lower, x[i - 1]);
+      }
+      if (i == last) {
+        for (std::size_t j = 0; j < bottom_.size(); ++j) {
+          subtract(x[i], bottom_[j], x[at_.last + j]);
+        }
+      }
+      V solved = V::Zero();
+      subtract(solved, rows_[i].diagonal, x[i]);
+      x[i] = -solved;
     }
-    row.upper = lu.solve(row.upper).eval();
-    row.right = lu.solve(row.right).eval();
+    for (std::size_t i = last; i-- > 0;) {
+      subtract(x[i], rows_[i].upper, x[i + 1]);
+      if (i < column_.size()) {
+        subtract(x[i], column_[i], x[at_.first]);
+      }
+    }
   }
-  for (std::size_t i = rows.size() - 1; i-- > 0;) {
-    rows[i].right -= rows[i].upper * rows[i + 1].right;
+
+private:
+  /// The last row's corner, moved to the right column by column until it meets `lower`.
+  void eliminate_bottom(block_row<R, N>& row) {
+    matrix corner = row.upper;
+    for (std::size_t j = at_.last; j + 2 < rows_.size(); ++j) {
+      bottom_.push_back(corner);
+      if (j < column_.size()) {
+        row.diagonal.noalias() -= corner * column_[j];
+      }
+      corner = (-corner * rows_[j].upper).eval();
+    }
+    row.lower += corner;
   }
-  return true;
-}
+
+  /// y ← y − a x
+  template <class V>
+  static void subtract(V& y, const matrix& a, const V& x) {
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < N; ++j) {
+        y[i] -= a(i, j) * x[j];
+      }
+    }
+  }
+
+  std::vector<block_row<R, N>> rows_;
+  std::vector<matrix> column_, bottom_;
+  corners at_{};
+};
 
 } // namespace duet::detail

@@ -2,68 +2,84 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/spline/motion.hpp>
+#include <duet/core/scalar_traits.hpp>
+
+#include <Eigen/Core>
 
 #include <sstream>
 
 /// \file
 /// What an interpolating curve does at its ends.
+///
+/// Rates are per unit of the parameter, in spatial axes: angular velocities and accelerations as
+/// 3-vectors for rotations, twists [v; ω] and their derivatives as 6-vectors for poses.
 
 namespace duet {
+namespace detail {
 
-/// No angular acceleration at either end: what to assume when nothing is known. The assumption is
-/// wrong for most motions and costs accuracy near the ends.
+/// \throws invalid_input for a rate that is not finite
+template <class V>
+void check_end_rates(const char* condition, const V& start, const V& end) {
+  static_assert(V::SizeAtCompileTime == 3 || V::SizeAtCompileTime == 6,
+                "duet: end rates are angular, 3-vectors, or twists [v; ω], 6-vectors");
+  const auto check = [&](const char* which, const V& rate) {
+    for (int i = 0; i < V::SizeAtCompileTime; ++i) {
+      if (!(innermost(rate[i]) - innermost(rate[i]) == 0)) {
+        std::ostringstream message;
+        message << "duet: " << condition << ": the rate at the " << which << ", ("
+                << rate.transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "})
+                << "), is not finite";
+        throw invalid_input(message.str());
+      }
+    }
+  };
+  check("start", start);
+  check("end", end);
+}
+
+} // namespace detail
+
+/// No angular or twist acceleration at either end: what to assume when a motion starts and ends
+/// evenly. The assumption is wrong for most motions and costs accuracy near the ends.
 struct natural {
   void check() const {}
-
-  template <class D>
-  [[nodiscard]] vector3<D> start_residual(const motion<D>& half) const {
-    return half.acceleration;
-  }
-  template <class D>
-  [[nodiscard]] vector3<D> end_residual(const motion<D>& half) const {
-    return half.acceleration;
-  }
 };
 
-/// Given angular velocities at the ends: spatial axes, rad per unit of the parameter.
-template <class R = double>
+/// Given angular velocities, or twists.
+template <class V = Eigen::Matrix<double, 3, 1>>
 struct clamped {
-  vector3<R> start, end;
+  V start, end;
 
   /// \throws invalid_input for a rate that is not finite
-  void check() const {
-    check("start", start);
-    check("end", end);
-  }
+  void check() const { detail::check_end_rates("clamped", start, end); }
+};
 
-  template <class D>
-  [[nodiscard]] vector3<D> start_residual(const motion<D>& half) const {
-    return residual(half, start);
-  }
-  template <class D>
-  [[nodiscard]] vector3<D> end_residual(const motion<D>& half) const {
-    return residual(half, end);
-  }
+/// Given angular accelerations, or derivatives of twists.
+template <class V = Eigen::Matrix<double, 3, 1>>
+struct end_acceleration {
+  V start, end;
 
-private:
-  static void check(const char* which, const vector3<R>& omega) {
-    if (!omega.allFinite()) {
-      std::ostringstream message;
-      message << "duet: clamped: the angular velocity at the " << which << ", (" << omega[0] << ", "
-              << omega[1] << ", " << omega[2] << "), is not finite";
-      throw invalid_input(message.str());
-    }
-  }
+  /// \throws invalid_input for a rate that is not finite
+  void check() const { detail::check_end_rates("end_acceleration", start, end); }
+};
 
-  /// The curve's rates are halves, in body axes.
-  template <class D>
-  [[nodiscard]] static vector3<D> residual(const motion<D>& half, const vector3<R>& omega) {
-    return rotate(half.value, half.velocity) - (omega / 2).template cast<D>();
-  }
+/// The first two pieces are one, and so are the last two: what to assume when nothing is known.
+struct not_a_knot {
+  void check() const {}
+};
+
+/// The motion closes on itself, with its rates; the last row repeats the first.
+struct periodic {
+  void check() const {}
 };
 
 template <class V>
-clamped(V, V) -> clamped<typename V::Scalar>;
+clamped(V, V) -> clamped<typename V::PlainObject>;
+template <class A, class B>
+clamped(A, B) -> clamped<typename A::PlainObject>;
+template <class V>
+end_acceleration(V, V) -> end_acceleration<typename V::PlainObject>;
+template <class A, class B>
+end_acceleration(A, B) -> end_acceleration<typename A::PlainObject>;
 
 } // namespace duet

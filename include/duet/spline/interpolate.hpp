@@ -2,16 +2,16 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/derivative/manifold.hpp>
-#include <duet/derivative/structure.hpp>
-#include <duet/spline/block_tridiagonal.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
+#include <duet/spline/interpolation_equations.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/spline_newton.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <sstream>
@@ -20,185 +20,163 @@
 #include <vector>
 
 /// \file
-/// Curves through given orientations: the control quaternions of P2 are solved for.
+/// Curves through given rotations or poses: the control elements of P2 are solved for.
 
 namespace duet {
+
+/// How an interpolation went.
+struct fit_report {
+  int iterations = 0;      ///< of Newton's method
+  double residual = 0;     ///< by how much the curve misses a turn from one row to the next, rad
+  double largest_step = 0; ///< the largest turn from one row to the next, rad
+};
+
 namespace detail {
 
-/// \throws invalid_row unless the parameters are finite and increase
-template <Real R>
-void check_parameters(const std::vector<R>& u) {
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    std::ostringstream reason;
-    if (!(u[i] - u[i] == 0)) {
-      reason << "parameter " << u[i] << " is not finite";
-    } else if (i > 0 && !(u[i] > u[i - 1])) {
-      reason << "parameter " << u[i] << " does not increase, the row before has " << u[i - 1];
-    } else {
-      continue;
+/// The end conditions of the rotations' real parts.
+template <class Ends>
+[[nodiscard]] const Ends& real_ends(const Ends& ends) {
+  return ends;
+}
+template <class V>
+[[nodiscard]] auto real_rate(const V& rate) {
+  using R = real_type_t<typename V::Scalar>;
+  constexpr int angular = V::SizeAtCompileTime - 3;
+  return vector3<R>(innermost(rate[angular]), innermost(rate[angular + 1]),
+                    innermost(rate[angular + 2]));
+}
+template <class V>
+[[nodiscard]] auto real_ends(const clamped<V>& ends) {
+  return clamped{real_rate(ends.start), real_rate(ends.end)};
+}
+template <class V>
+[[nodiscard]] auto real_ends(const end_acceleration<V>& ends) {
+  return end_acceleration{real_rate(ends.start), real_rate(ends.end)};
+}
+
+/// The solution over T by that of the real parts: one step with their Jacobian for every order of
+/// infinitesimals.
+template <class Equations, class Newton>
+[[nodiscard]] typename Equations::unknowns lifted_solution(const Equations& equations,
+                                                           Newton& newton) {
+  using unknowns = typename Equations::unknowns;
+  using T = typename unknowns::value_type::Scalar;
+  unknowns x;
+  x.reserve(newton.solution().size());
+  for (const auto& each : newton.solution()) {
+    x.push_back(each.template cast<T>());
+  }
+  const auto& jacobian = newton.jacobian();
+  unknowns step;
+  for (int order = 1; order <= scalar_traits<T>::order; ++order) {
+    equations.residuals(x, step);
+    jacobian.solve(step);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      x[k] -= step[k];
     }
-    throw invalid_row(i, reason.str());
+  }
+  return x;
+}
+
+/// The last row as the first one again.
+/// \throws invalid_row where it is another
+template <class T>
+[[nodiscard]] std::vector<quaternion<T>> closed(std::vector<quaternion<T>> q) {
+  using std::sqrt;
+  const bool is_opposite = innermost(dot(q.front(), q.back())) < 0;
+  const quaternion<T> again = is_opposite ? -q.front() : q.front();
+  const vector3<T> half = log_vector(quaternion<T>(conj(again) * q.back()), "interpolate");
+  const auto tolerance = sqrt(std::numeric_limits<real_type_t<T>>::epsilon());
+  const auto check = [&](const auto& x, const char* unit) {
+    if (!(2 * real_type_t<T>(real_rate(x).norm()) <= tolerance)) {
+      std::ostringstream reason;
+      reason << "periodic ends: differs from row 0 by " << 2 * real_rate(x).norm() << unit
+             << ", but must repeat it";
+      throw invalid_row(q.size() - 1, reason.str());
+    }
+  };
+  if constexpr (contains_tag<T, screw_tag>()) {
+    check(real_part(half), " rad");
+    check(dual_part(half), " in translation");
+  } else {
+    check(half, " rad");
+  }
+  q.back() = again;
+  return q;
+}
+
+template <class T, class Ends>
+[[nodiscard]] cumulative_bspline<T, 4>
+interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<quaternion<T>> q,
+                  const Ends& ends, fit_report* report) {
+  constexpr bool is_periodic = std::is_same_v<Ends, periodic>;
+  constexpr bool is_not_a_knot = std::is_same_v<Ends, not_a_knot>;
+  check_rows(parameters, q.size(), is_not_a_knot ? 4 : is_periodic ? 3 : 2);
+  ends.check();
+  q = aligned_orientations(std::move(q));
+  if constexpr (is_periodic) {
+    q = closed(std::move(q));
+  }
+  const cubic_equations<T, Ends> equations(parameters, q, ends);
+  const auto curve = [&](auto&& newton, const auto& solution) {
+    if (report != nullptr) {
+      *report = {newton.iterations(), 2 * double(newton.residual()),
+                 double(equations.largest_turn().first)};
+    }
+    std::vector<vector3<T>> increments = equations.increments(solution);
+    std::vector<quaternion<T>> controls = equations.controls(increments);
+    return cumulative_bspline<T, 4>(equations.basis(), std::move(controls), std::move(increments));
+  };
+  if constexpr (Real<T>) {
+    spline_newton newton(equations);
+    return curve(newton, newton.solution());
+  } else {
+    using R = real_type_t<T>;
+    std::vector<quaternion<R>> rotations;
+    rotations.reserve(q.size());
+    for (const quaternion<T>& each : q) {
+      rotations.push_back(innermost_of(each));
+    }
+    const auto rates = real_ends(ends);
+    using real_ends_type = std::decay_t<decltype(rates)>;
+    const cubic_equations<R, real_ends_type> real(parameters, std::move(rotations), rates);
+    spline_newton newton(real);
+    return curve(newton, lifted_solution(equations, newton));
   }
 }
 
-/// The interpolation problem of the cubic: n + 1 orientations Q_0 … Q_n at u_0 … u_n, knots
-/// repeated four times at the ends. The first and last control quaternions are Q_0 and Q_n. The n +
-/// 1 others are unknown; their equations are the two end conditions and S(u_i) = Q_i inside, where
-/// three of them meet, so the Jacobian is tridiagonal in blocks of 3 × 3.
-template <class R, class Ends>
-class cubic_interpolation {
-  using tag = derivative_tag<cubic_interpolation>;
-  using D = dual<R, 9, tag>;
-  using row = block_row<R, 3>;
-
-public:
-  cubic_interpolation(const std::vector<R>& u, std::vector<quaternion<R>> q, const Ends& ends)
-      : basis_(clamped_knots(u, 4)), data_(std::move(q)), ends_(ends) {
-    controls_.push_back(data_.front());
-    controls_.insert(controls_.end(), data_.begin(), data_.end());
-    controls_.push_back(data_.back());
-  }
-
-  [[nodiscard]] cumulative_bspline<R, 4> solve() {
-    using std::sqrt;
-    const R small = sqrt(std::numeric_limits<R>::epsilon());
-    R last = std::numeric_limits<R>::infinity();
-    std::vector<row> rows(data_.size());
-    for (int iteration = 1; iteration <= max_iterations; ++iteration) {
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        rows[i] = equation(i);
-      }
-      if (!solve_block_tridiagonal(rows)) {
-        fail("meets a singular Jacobian", iteration, last);
-      }
-      R step(0);
-      for (const row& r : rows) {
-        if (!r.right.allFinite()) {
-          fail("diverges", iteration, last);
-        }
-        step = std::max(step, R(r.right.norm()));
-      }
-      // Far from the solution full steps overshoot.
-      const R fraction = step > longest_step ? longest_step / step : R(1);
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        const vector3<R> delta = fraction * rows[i].right;
-        controls_[i + 1] = normalized(manifold<quaternion<R>>::plus(controls_[i + 1], delta));
-      }
-      // Once in the quadratic range, the next step ends at rounding.
-      if (last <= small) {
-        return cumulative_bspline<R, 4>(basis_.knots(), std::move(controls_), signs_as_given{});
-      }
-      last = step;
-    }
-    fail("does not converge", max_iterations, last);
-  }
-
-private:
-  static constexpr int max_iterations = 50;
-  static constexpr R longest_step = R(0.5); // rad
-
-  /// Equation i involves controls i, i + 1, i + 2, moved by δ; row i of the Newton system.
-  [[nodiscard]] row equation(std::size_t i) const {
-    std::array<quaternion<D>, 3> c;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t k = i + j;
-      const bool known = k == 0 || k + 1 == controls_.size();
-      c[j] = known ? quaternion<D>(controls_[k]) : moved(controls_[k], int(j));
-    }
-    const vector3<D> r = residual(i, c);
-    row result;
-    for (int a = 0; a < 3; ++a) {
-      result.right[a] = -r[a].value();
-      for (int b = 0; b < 3; ++b) {
-        result.lower(a, b) = r[a].partial(b);
-        result.diagonal(a, b) = r[a].partial(3 + b);
-        result.upper(a, b) = r[a].partial(6 + b);
-      }
-    }
-    return result;
-  }
-
-  [[nodiscard]] static quaternion<D> moved(const quaternion<R>& q, int slot) {
-    vector3<D> delta;
-    for (int b = 0; b < 3; ++b) {
-      delta[b] = D::variable(R(0), 3 * slot + b);
-    }
-    return manifold<quaternion<R>>::plus(q, delta);
-  }
-
-  /// log(S(u_i)⁻¹ Q_i) inside, the end conditions outside. At the start the curve begins with the
-  /// controls i, i + 1, i + 2, at the end it ends with them, at an inner knot the fourth has no
-  /// weight.
-  [[nodiscard]] vector3<D> residual(std::size_t i, const std::array<quaternion<D>, 3>& c) const {
-    const std::size_t last = data_.size() - 1;
-    const std::array<vector3<D>, 2> increments{log(conj(c[0]) * c[1]).vec(),
-                                               log(conj(c[1]) * c[2]).vec()};
-    const bool at_end = i == last;
-    const std::size_t span = at_end ? i - 1 : i;
-    const auto all = basis_.template weights<2>(span, at_end ? basis_.back() : basis_.breaks()[i]);
-    std::array<std::array<R, 2>, 3> weights;
-    for (std::size_t j = 0; j < 2; ++j) {
-      for (std::size_t d = 0; d < 3; ++d) {
-        weights[d][j] = all[d][at_end ? j + 1 : j];
-      }
-    }
-    const auto m = product_of_exponentials<2>(c[0], increments.data(), weights);
-    if (i == 0) {
-      return ends_.start_residual(m);
-    }
-    if (at_end) {
-      return ends_.end_residual(m);
-    }
-    return log(conj(m.value) * quaternion<D>(data_[i])).vec();
-  }
-
-  [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
-    std::ostringstream message;
-    message << "duet: interpolate: Newton's method " << what << " after " << iterations
-            << " iterations, last step " << step
-            << " rad; neighbouring orientations may be too far apart";
-    throw no_convergence(message.str());
-  }
-
-  bspline_basis<4, R> basis_;
-  std::vector<quaternion<R>> data_;
-  std::vector<quaternion<R>> controls_;
-  Ends ends_;
-};
-
 } // namespace detail
 
-/// The curve of type `Spline` with S(u_i) = Q_i.
+/// The cubic curve with S(u_i) = Q_i, C² at all u_i.
 ///
 /// \param parameters    u_0 < u_1 < …, uniform or not
-/// \param orientations  unit quaternions; signs are aligned first
-/// \param ends          `natural{}` or `clamped{…}`
+/// \param orientations  unit quaternions, or poses; signs are aligned first
+/// \param ends          `natural{}`, `clamped{…}`, `end_acceleration{…}`, `not_a_knot{}` (four rows
+///                      or more) or `periodic{}` (three or more, the last one the first again)
 ///
-/// Spline is `cumulative_bspline<T, 4>`: the control quaternions are found by Newton's method with
-/// AD Jacobian, O(n) a step (P2). Where neighbouring orientations are far apart or unevenly spaced,
-/// neighbouring controls may come to lie more than half a turn apart: copy such a curve with
-/// `signs_as_given`. Measured against smooth motion the cubic is third-order accurate in value,
-/// second in angular velocity, first in angular acceleration. \throws invalid_row for a row that no
-/// curve can go through, invalid_input where there are fewer than two rows, the counts differ or an
-/// end rate is not finite, no_convergence where neighbours are too far apart (on randomly turning
-/// axes from about 2.5 rad, less where parameters are uneven)
-template <class Spline, class R, class T, class Ends = natural>
-[[nodiscard]] Spline interpolate(const std::vector<R>& parameters,
+/// Spline is `cumulative_bspline<T, 4>`, T any scalar. The real increments of the rotations are
+/// found by Newton's method with AD Jacobian, O(n) a step; where neighbouring rows are far apart,
+/// by continuation from smaller turns. Infinitesimal parts, those of poses and those of derivatives
+/// with respect to the data among them, follow from the equations by one linear solve each, to
+/// rounding. Against smooth motion the cubic is third-order accurate in value, second in velocity,
+/// first in acceleration.
+/// \throws invalid_row for a row that no curve can go through; invalid_input where there are too
+/// few rows, the counts differ or an end rate is not finite; no_convergence where neighbours are so
+/// far apart that there is no curve any more
+template <class Spline, class T, class Ends = natural>
+  requires std::same_as<Spline, cumulative_bspline<T, 4>>
+[[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
                                  const std::vector<quaternion<T>>& orientations,
                                  const Ends& ends = {}) {
-  static_assert(std::is_same_v<Spline, cumulative_bspline<T, 4>> && Real<T>,
-                "duet: interpolate makes cumulative_bspline<T, 4> over real numbers");
-  if (parameters.size() != orientations.size() || parameters.size() < 2) {
-    std::ostringstream message;
-    message
-        << "duet: interpolate: needs two rows or more, each a parameter and an orientation, got "
-        << parameters.size() << " and " << orientations.size();
-    throw invalid_input(message.str());
-  }
-  detail::check_parameters(parameters);
-  ends.check();
-  return detail::cubic_interpolation<T, Ends>(parameters, aligned_orientations(orientations), ends)
-      .solve();
+  return detail::interpolate_cubic(parameters, orientations, ends, nullptr);
+}
+/// The same, and how it went.
+template <class Spline, class T, class Ends>
+  requires std::same_as<Spline, cumulative_bspline<T, 4>>
+[[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
+                                 const std::vector<quaternion<T>>& orientations, const Ends& ends,
+                                 fit_report& report) {
+  return detail::interpolate_cubic(parameters, orientations, ends, &report);
 }
 
 } // namespace duet

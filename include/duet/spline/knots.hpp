@@ -61,6 +61,25 @@ template <Real R>
   return knots;
 }
 
+/// The knots of a periodic spline of this order through data at the given parameters, the last of
+/// which is one period after the first: each once, and continued round on both sides.
+template <Real R>
+[[nodiscard]] std::vector<R> periodic_knots(const std::vector<R>& parameters, int order) {
+  const std::size_t n = parameters.size() - 1;
+  const R period = parameters.back() - parameters.front();
+  std::vector<R> knots;
+  knots.reserve(n + 2 * std::size_t(order) - 1);
+  for (std::size_t before = std::size_t(order) - 1; before > 0; --before) {
+    const std::size_t rounds = (before + n - 1) / n;
+    knots.push_back(parameters[rounds * n - before] - R(rounds) * period);
+  }
+  knots.insert(knots.end(), parameters.begin(), parameters.end());
+  for (std::size_t after = 1; after < std::size_t(order); ++after) {
+    knots.push_back(parameters[after % n] + R(after / n + 1) * period);
+  }
+  return knots;
+}
+
 namespace detail {
 
 /// `bspline_value` where the domain is known to end at `end`: functions of lower order, as in

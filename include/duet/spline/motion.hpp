@@ -3,10 +3,19 @@
 
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
+#include <duet/derivative/manifold.hpp>
+#include <duet/dual/promotion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include <Eigen/Core>
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 
 /// \file
@@ -14,17 +23,45 @@
 
 namespace duet {
 
-/// An orientation and its rates with respect to the parameter: angular velocity (rad per unit),
-/// angular acceleration, angular jerk.
+/// A rotation or pose and its rates with respect to the parameter: angular velocity (rad per unit),
+/// acceleration and jerk; of poses the twist [v; ω], its derivative and its second derivative.
 template <class T>
 struct motion {
+  using rate_type = Eigen::Matrix<typename manifold<quaternion<T>>::scalar,
+                                  manifold<quaternion<T>>::dimension, 1>;
+  quaternion<T> value;
+  rate_type velocity;
+  rate_type acceleration;
+  rate_type jerk;
+};
+
+/// The motion in time of a curve whose parameter u is driven by u(t): ω = δ u̇, ω̇ = δ′u̇² + δ ü,
+/// ω̈ = δ″u̇³ + 3 δ′u̇ü + δ u⃛, with the rates δ, δ′, δ″ of m by u in any one frame.
+template <class T, ScalarFor<T> S>
+[[nodiscard]] motion<promote_t<T, S>> chain_rule(const motion<T>& m, const S& u_dot,
+                                                 const S& u_ddot, const S& u_dddot) {
+  using result = motion<promote_t<T, S>>;
+  using rate = typename result::rate_type;
+  using scalar = typename rate::Scalar;
+  const rate v = m.velocity.template cast<scalar>();
+  const rate a = m.acceleration.template cast<scalar>();
+  const rate j = m.jerk.template cast<scalar>();
+  const scalar first(u_dot), second(u_ddot), third(u_dddot);
+  const scalar square = first * first;
+  return {quaternion<promote_t<T, S>>(m.value), rate(v * first), rate(a * square + v * second),
+          rate(j * (square * first) + a * (3 * first * second) + v * third)};
+}
+
+namespace detail {
+
+/// The same as dual vectors, halved, in body axes.
+template <class T>
+struct half_motion {
   quaternion<T> value;
   vector3<T> velocity;
   vector3<T> acceleration;
   vector3<T> jerk;
 };
-
-namespace detail {
 
 // Coefficient by coefficient: Eigen's expressions would load two coefficients at once just after
 // they were stored one by one, and the processor waits for that.
@@ -49,7 +86,7 @@ template <int N = 1, class T>
 
 /// One step of the recursion below, with the i-th factor e.
 template <int Rates, class T, class Weights>
-DUET_ALWAYS_INLINE void take_in_factor(motion<T>& m, std::size_t i, const quaternion<T>& e,
+DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const quaternion<T>& e,
                                        const vector3<T>& omega, const Weights& b) {
   m.value = m.value * e;
   if constexpr (Rates >= 1) {
@@ -92,10 +129,10 @@ DUET_ALWAYS_INLINE void take_in_factor(motion<T>& m, std::size_t i, const quater
 /// \tparam Rates  how many of w, a, j are wanted
 /// \param weights  element [d][i] is the d-th derivative of b_{i+1}
 template <int Rates, class T, class W, std::size_t Factors>
-[[nodiscard]] DUET_ALWAYS_INLINE motion<T>
+[[nodiscard]] DUET_ALWAYS_INLINE half_motion<T>
 product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments,
                         const std::array<std::array<W, Factors>, std::size_t(Rates) + 1>& weights) {
-  motion<T> m{start, {}, {}, {}};
+  half_motion<T> m{start, {}, {}, {}};
   const auto factor = [&](std::size_t i) DUET_INLINE_LAMBDA {
     return duet::exp(product(weights[0][i], increments[i]));
   };
@@ -112,6 +149,56 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
     }
   }
   return m;
+}
+
+/// From spatial twists to the motion of the body's origin: ṫ = v + ω × t, and its derivatives.
+template <class T>
+void follow_origin(motion<T>& m) {
+  using vector = vector3<typename motion<T>::rate_type::Scalar>;
+  const vector t = translation(m.value);
+  const vector omega = m.velocity.template tail<3>();
+  const vector alpha = m.acceleration.template tail<3>();
+  const vector jerk = m.jerk.template tail<3>();
+  const vector first = vector(m.velocity.template head<3>()) + omega.cross(t);
+  const vector second =
+      vector(m.acceleration.template head<3>()) + alpha.cross(t) + omega.cross(first);
+  m.jerk.template head<3>() += jerk.cross(t) + 2 * alpha.cross(first) + omega.cross(second);
+  m.velocity.template head<3>() = first;
+  m.acceleration.template head<3>() = second;
+}
+
+/// Full rates. Axes that turn along change the second derivative of V^s = A V^b A* only:
+/// V̇^s = A V̇^b A*, V̈^s = A (V̈^b + V^b × V̇^b) A*.
+template <class T, class Frame>
+[[nodiscard]] DUET_ALWAYS_INLINE motion<T> motion_of(half_motion<T> m, Frame) {
+  constexpr bool is_pose = contains_tag<T, screw_tag>();
+  constexpr bool is_hybrid = is_pose && std::is_same_v<Frame, hybrid_frame>;
+  constexpr bool is_turned = [] {
+    if constexpr (is_hybrid) {
+      return true;
+    } else {
+      return is_spatial(Frame{});
+    }
+  }();
+  if constexpr (is_turned) {
+    m.jerk = sum<2>(m.jerk, cross(m.velocity, m.acceleration));
+    m.velocity = rotate(m.value, m.velocity);
+    m.acceleration = rotate(m.value, m.acceleration);
+    m.jerk = rotate(m.value, m.jerk);
+  }
+  const real_type_t<T> two(2);
+  m.velocity = product(two, m.velocity);
+  m.acceleration = product(two, m.acceleration);
+  m.jerk = product(two, m.jerk);
+  if constexpr (!is_pose) {
+    return {m.value, m.velocity, m.acceleration, m.jerk};
+  } else {
+    motion<T> result{m.value, twist_of(m.velocity), twist_of(m.acceleration), twist_of(m.jerk)};
+    if constexpr (is_hybrid) {
+      follow_origin(result);
+    }
+    return result;
+  }
 }
 
 } // namespace detail

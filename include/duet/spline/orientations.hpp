@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -14,7 +15,7 @@
 #include <vector>
 
 /// \file
-/// Sequences of orientations, as read from a table.
+/// Sequences of orientations or poses, as read from a table.
 
 namespace duet {
 
@@ -33,6 +34,37 @@ private:
   std::size_t row_;
   std::string reason_;
 };
+
+namespace detail {
+
+/// \throws invalid_input unless there are as many parameters as elements, and enough; invalid_row
+/// unless the parameters are finite and increase
+template <Real R>
+void check_rows(const std::vector<R>& parameters, std::size_t elements, std::size_t minimum) {
+  if (parameters.size() != elements || elements < minimum) {
+    std::ostringstream message;
+    message << "duet: interpolate: needs " << minimum
+            << " rows or more with these ends, each a parameter and an orientation, got "
+            << parameters.size() << " and " << elements;
+    throw invalid_input(message.str());
+  }
+  const auto fail = [](std::size_t row, const auto&... what) {
+    std::ostringstream reason;
+    (reason << ... << what);
+    throw invalid_row(row, reason.str());
+  };
+  for (std::size_t i = 0; i < elements; ++i) {
+    const R& u = parameters[i];
+    if (!(u - u == 0)) {
+      fail(i, "parameter ", u, " is not finite");
+    }
+    if (i > 0 && !(u > parameters[i - 1])) {
+      fail(i, "parameter ", u, " does not increase, the row before has ", parameters[i - 1]);
+    }
+  }
+}
+
+} // namespace detail
 
 /// How far from 1 the norm of a given unit quaternion may be: tables are printed with few digits.
 inline constexpr double unit_norm_tolerance = 1e-3;

@@ -1,0 +1,79 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// Recorded motion, smoothed: a cumulative B-spline of poses near the rows of a file, by robust
+// least squares. Velocities and accelerations are the curve's own, exact derivatives, not
+// differences.
+
+#include "options.hpp"
+#include "smoothing.hpp"
+#include "trajectory.hpp"
+
+#include "../support/csv.hpp"
+#include "../support/gnuplot.hpp"
+
+#include <cstddef>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+namespace fit_trajectory {
+namespace {
+
+void print_faults(const recording& r, const std::string& path) {
+  constexpr std::size_t most = 20;
+  for (std::size_t i = 0; i < r.faults.size() && i < most; ++i) {
+    std::cerr << path << ":" << r.faults[i].line << ": " << r.faults[i].reason << "\n";
+  }
+  if (r.faults.size() > most) {
+    std::cerr << path << ": and " << r.faults.size() - most << " more\n";
+  }
+}
+
+void run(const options& given) {
+  const recording r = given.file ? read_recording(*given.file) : made_up_recording();
+  if (given.file) {
+    print_faults(r, *given.file);
+  }
+  const auto rows_per_knot = std::size_t(given.rows_per_knot);
+  if (r.rows.size() < rows_per_knot + 4) {
+    throw std::runtime_error(
+        given.file.value_or("the made-up recording") + ": " + std::to_string(r.rows.size()) +
+        " usable rows are too few for one knot in " + std::to_string(rows_per_knot));
+  }
+  const double duration = r.rows.back().time - r.rows.front().time;
+  std::cout << r.rows.size() << " rows over " << duration << " s: fitting\n" << std::flush;
+  const smoothed s = smooth(r, rows_per_knot, given.length, given.outlier);
+
+  std::filesystem::create_directories(given.out);
+  example::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, given.rate));
+  example::write_file(given.out + "/rows.csv", rows_csv(r, s));
+  const bool drawn = example::draw(given.out, "fit", "1000,900",
+                                   picture_script(r.rows.front().time, duration, s.outlier));
+  std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
+            << "\n";
+  if (!drawn) {
+    std::cout << "No picture: gnuplot is not installed or failed\n";
+  }
+  std::printf("fit trajectory: rows=%zu left_out=%zu controls=%zu outliers=%zu "
+              "median_residual=%.3g rms=%.3g\n",
+              r.rows.size(), r.left_out, s.fit.curve.controls().size(), outliers(s),
+              median(s.fit.residuals), s.fit.rms);
+}
+
+} // namespace
+} // namespace fit_trajectory
+
+int main(int argc, char** argv) {
+  try {
+    if (const auto given = fit_trajectory::parse_options(argc, argv)) {
+      fit_trajectory::run(*given);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "fit_trajectory: " << error.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,74 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "../support/command_line.hpp"
+
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+/// \file
+/// The command line.
+
+namespace fit_trajectory {
+
+struct options {
+  std::optional<std::string> file;
+  int rows_per_knot = 10;
+  double rate = 100;
+  double length = 1;
+  double outlier = 0; ///< 0: from the data
+  std::string out = "fit_trajectory_out";
+};
+
+/// Nothing where only help was asked for.
+/// \throws std::exception with a one-line message
+inline std::optional<options> parse_options(int argc, char** argv) {
+  namespace po = example::po;
+  po::options_description description(
+      "A smooth curve near recorded motion, by least squares over a cumulative cubic B-spline of\n"
+      "poses, with velocities and accelerations (trajectory.csv), residuals (rows.csv) and "
+      "pictures.\n\n  fit_trajectory [FILE] [options]\n\n"
+      "FILE has rows `timestamp tx ty tz qx qy qz qw` (seconds, metres, # starts a comment); "
+      "without\none, a made-up recording is taken. Rows that are no poses or repeat a timestamp "
+      "are named and\nleft out. Velocities and accelerations are in fixed axes, those of the "
+      "origin and angular ones.\nOptions");
+  description.add_options()("help", "print this and stop")(
+      "file", po::value<std::string>()->value_name("FILE"),
+      "the recording")("rows-per-knot", po::value<int>()->value_name("N"),
+                       "rows from one knot to the next; more are smoother (default: 10)")(
+      "rate", po::value<double>()->value_name("HZ"),
+      "poses per second of trajectory.csv (default: 100)")(
+      "length", po::value<double>()->value_name("M"),
+      "metres that count as much as a turn by one radian (default: 1)")(
+      "outlier", po::value<double>()->value_name("R"),
+      "residual beyond which a row counts less (default: three times the median of a plain "
+      "fit)")("out", po::value<std::string>()->value_name("DIR"),
+              "folder for tables and pictures (default: fit_trajectory_out)");
+  const auto given = example::command_line::parse(argc, argv, description, "file");
+  if (!given) {
+    return std::nullopt;
+  }
+  options result;
+  result.file = given->text("file");
+  result.rows_per_knot = given->get<int>("rows-per-knot").value_or(result.rows_per_knot);
+  result.out = given->text("out").value_or(result.out);
+  if (result.rows_per_knot < 1) {
+    throw std::runtime_error("--rows-per-knot: 1 or more");
+  }
+  const auto positive = [&](const char* name, double& value) {
+    if (const auto number = given->get<double>(name)) {
+      if (!(*number > 0) || !std::isfinite(*number)) {
+        throw std::runtime_error(std::string("--") + name + ": a positive number expected");
+      }
+      value = *number;
+    }
+  };
+  positive("rate", result.rate);
+  positive("length", result.length);
+  positive("outlier", result.outlier);
+  return result;
+}
+
+} // namespace fit_trajectory

@@ -1,0 +1,151 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "trajectory.hpp"
+
+#include <duet/derivative/frame.hpp>
+#include <duet/dual/dual.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/fit.hpp>
+#include <duet/spline/knots.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The curve near recorded rows, and the tables made of it.
+
+namespace fit_trajectory {
+
+using curve = duet::cumulative_bspline<duet::dual<double, 1, duet::screw_tag>, 4>;
+using fitted = duet::fit_result<curve>;
+
+/// Seconds since the first row: timestamps of the epoch leave few digits for them.
+inline std::vector<double> times_of(const recording& r) {
+  std::vector<double> times;
+  for (const row& each : r.rows) {
+    times.push_back(each.time - r.rows.front().time);
+  }
+  return times;
+}
+
+/// A knot at every n-th row, so that gaps have few and dense parts many.
+inline std::vector<double> knots_at_rows(const std::vector<double>& times, std::size_t n) {
+  std::vector<double> breaks;
+  for (std::size_t i = 0; i + n <= times.size() - 1; i += n) {
+    breaks.push_back(times[i]);
+  }
+  breaks.push_back(times.back());
+  return duet::clamped_knots(breaks, 4);
+}
+
+inline double median(std::vector<double> x) {
+  const auto middle = x.begin() + std::ptrdiff_t(x.size() / 2);
+  std::nth_element(x.begin(), middle, x.end());
+  return *middle;
+}
+
+struct smoothed {
+  fitted fit;
+  double outlier; ///< residuals beyond this count as outliers
+};
+
+/// Least squares; once more with three times the median of the residuals as the limit of outliers,
+/// unless one is given.
+inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double length,
+                       double outlier) {
+  const std::vector<double> times = times_of(r);
+  std::vector<pose_type> poses;
+  for (const row& each : r.rows) {
+    poses.push_back(each.pose);
+  }
+  const std::vector<double> knots = knots_at_rows(times, rows_per_knot);
+  if (!(outlier > 0)) {
+    duet::fit_options gentle{.length = length, .outlier = std::numeric_limits<double>::infinity()};
+    outlier = 3 * median(duet::fit<curve>(times, poses, knots, gentle).residuals);
+  }
+  // Rows that fit to rounding have no outliers.
+  outlier = std::max(outlier, 1e-9);
+  return {duet::fit<curve>(times, poses, knots, {.length = length, .outlier = outlier}), outlier};
+}
+
+inline std::size_t outliers(const smoothed& s) {
+  const auto is_far = [&](double residual) { return residual > s.outlier; };
+  return std::size_t(std::count_if(s.fit.residuals.begin(), s.fit.residuals.end(), is_far));
+}
+
+/// Poses and their rates at even times, in fixed axes: velocity and acceleration of the origin,
+/// angular velocity and acceleration.
+inline std::string trajectory_csv(const recording& r, const curve& s, double rate) {
+  std::string text = "timestamp,tx,ty,tz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,ax,ay,az,"
+                     "alphax,alphay,alphaz\n";
+  const double end = s.basis().back();
+  duet::span_hint hint;
+  for (std::size_t i = 0; double(i) / rate <= end; ++i) {
+    const double t = double(i) / rate;
+    const auto m = s.motion(t, duet::frame::hybrid, hint);
+    const auto x = duet::pose_coordinates(m.value);
+    std::vector<double> numbers{r.rows.front().time + t, x[0], x[1], x[2], x[4], x[5], x[6], x[3]};
+    numbers.insert(numbers.end(), m.velocity.begin(), m.velocity.end());
+    numbers.insert(numbers.end(), m.acceleration.begin(), m.acceleration.end());
+    text += example::csv_line(numbers);
+  }
+  return text;
+}
+
+/// Row by row what was measured and how far the curve is from it.
+inline std::string rows_csv(const recording& r, const smoothed& s) {
+  std::string text = "line,timestamp,tx,ty,tz,residual,is_outlier\n";
+  for (std::size_t i = 0; i < r.rows.size(); ++i) {
+    const vector3<double> t = duet::translation(r.rows[i].pose);
+    const double residual = s.fit.residuals[i];
+    text += example::csv_line({double(r.rows[i].line), r.rows[i].time, t[0], t[1], t[2], residual,
+                               residual > s.outlier ? 1.0 : 0.0});
+  }
+  return text;
+}
+
+inline std::string picture_script(double start, double duration, double outlier) {
+  const std::string t = "($1-(" + duet::to_text(start) + "))";
+  const std::string rows_t = "($2-(" + duet::to_text(start) + "))";
+  std::string text =
+      "set datafile separator ','\nset grid\nunset logscale\nset format y\nunset xlabel\n"
+      "set multiplot layout 4,1\n"
+      "set lmargin 11\nset rmargin 14\nset key outside right\nset xrange [0:" +
+      duet::to_text(duration) + "]\nset ylabel 'position / m'\nplot ";
+  const char* const colours[] = {"#d62728", "#2ca02c", "#1f77b4"};
+  const char* const axes[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    const std::string column = std::to_string(3 + k);
+    text +=
+        "'rows.csv' using " + rows_t + ":" + column +
+        " skip 1 with points pt 7 ps 0.3 lc rgb '#999999' notitle, \\\n'trajectory.csv' using " +
+        t + ":" + std::to_string(2 + k) + " skip 1 with lines lw 1.5 lc rgb '" + colours[k] +
+        "' title '" + axes[k] + "'" + (k < 2 ? ", \\\n" : "\n");
+  }
+  const auto panel = [&](const char* label, int column) {
+    text += std::string("set ylabel '") + label + "'\nplot ";
+    for (int k = 0; k < 3; ++k) {
+      text += "'trajectory.csv' using " + t + ":" + std::to_string(column + k) +
+              " skip 1 with lines lw 1.5 lc rgb '" + colours[k] + "' title '" + axes[k] + "'" +
+              (k < 2 ? ", \\\n" : "\n");
+    }
+  };
+  panel("velocity / (m/s)", 9);
+  panel("angular velocity / (rad/s)", 12);
+  text += "set ylabel 'residual'\nset xlabel 'time / s'\nset logscale y\nset format y '10^{%T}'\n"
+          "plot 'rows.csv' using " +
+          rows_t + ":6 skip 1 with points pt 7 ps 0.25 lc rgb '#444444' title 'rows', \\\n" +
+          duet::to_text(outlier) +
+          " with lines lw 1.5 lc rgb '#d62728' title 'outliers'\nunset multiplot\n";
+  return text;
+}
+
+} // namespace fit_trajectory

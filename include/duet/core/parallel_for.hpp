@@ -1,0 +1,120 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Many independent calls on several cores.
+
+namespace duet {
+
+/// How many threads work on a range.
+struct execution {
+  unsigned threads = 1; ///< 0: as many as the machine has cores
+};
+
+inline constexpr execution one_core{1};
+inline constexpr execution all_cores{0};
+
+namespace detail {
+
+/// Blocks are handed out from the first to the last, so that when one throws all before it are
+/// finished or in work: the exception that is kept, the first block's, does not depend on timing.
+class block_queue {
+public:
+  block_queue(std::size_t count, std::size_t block) : count_(count), block_(block) {}
+
+  template <class Body>
+  void work(const Body& body) {
+    while (!has_failed_) {
+      const std::size_t first = next_.fetch_add(block_);
+      if (first >= count_) {
+        return;
+      }
+      try {
+        body(first, std::min(first + block_, count_));
+      } catch (...) {
+        keep(first, std::current_exception());
+        return;
+      }
+    }
+  }
+
+  void rethrow() const {
+    if (error_) {
+      std::rethrow_exception(error_);
+    }
+  }
+
+private:
+  void keep(std::size_t first, std::exception_ptr error) {
+    has_failed_ = true;
+    const std::lock_guard lock(mutex_);
+    if (!error_ || first < failed_) {
+      error_ = std::move(error);
+      failed_ = first;
+    }
+  }
+
+  std::size_t count_;
+  std::size_t block_;
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> has_failed_ = false;
+  std::mutex mutex_;
+  std::exception_ptr error_;
+  std::size_t failed_ = 0;
+};
+
+} // namespace detail
+
+/// Calls `body(first, last)` for blocks [first, last) that make up [0, count), on as many threads
+/// as asked for; one runs everything where the caller is. The threads live as long as the call.
+///
+/// What the blocks write must not overlap. Results then do not depend on the number of threads. Of
+/// exceptions, the one of the first block that throws is rethrown once all threads have ended;
+/// blocks behind it may not have been called.
+/// \param block  the most elements a block has; 0: an eighth of a thread's share
+template <class Body>
+void parallel_for_blocks(std::size_t count, const Body& body, execution how = all_cores,
+                         std::size_t block = 0) {
+  const std::size_t wanted =
+      how.threads > 0 ? how.threads : std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t size = block > 0 ? block : std::max<std::size_t>(1, count / (8 * wanted));
+  detail::block_queue queue(count, size);
+  std::vector<std::thread> helpers;
+  const std::size_t blocks = count / size + (count % size > 0 ? 1 : 0);
+  try {
+    while (helpers.size() + 1 < std::min(wanted, blocks)) {
+      helpers.emplace_back([&] { queue.work(body); });
+    }
+  } catch (const std::system_error&) { // no more threads to be had: those there are do it all
+  }
+  queue.work(body);
+  for (std::thread& helper : helpers) {
+    helper.join();
+  }
+  queue.rethrow();
+}
+
+/// Calls `body(i)` for i = 0 … count − 1, as `parallel_for_blocks`.
+template <class Body>
+void parallel_for(std::size_t count, const Body& body, execution how = all_cores) {
+  parallel_for_blocks(
+      count,
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+          body(i);
+        }
+      },
+      how);
+}
+
+} // namespace duet

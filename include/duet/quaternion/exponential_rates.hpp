@@ -1,0 +1,159 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/dual/stumpff_sequence.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <array>
+#include <cstddef>
+#include <utility>
+
+/// \file
+/// Rates of exp(x(t)) along a curve x(t) of half-angle vectors: the exponential's Jacobian and its
+/// derivatives along the curve, to any order.
+
+namespace duet::detail {
+
+// Coefficient by coefficient, for the same reason as in spline/motion.hpp, and of two scalars.
+
+/// a b
+template <class A, class B>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>> scaled(const A& a, const vector3<B>& b) {
+  return {a * b[0], a * b[1], a * b[2]};
+}
+template <class A, class B>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>> sum_of(const vector3<A>& a,
+                                                                 const vector3<B>& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+template <class A, class B>
+[[nodiscard]] DUET_ALWAYS_INLINE promote_t<A, B> inner_product(const vector3<A>& a,
+                                                               const vector3<B>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class A, class B>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>> cross_product(const vector3<A>& a,
+                                                                        const vector3<B>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// f(0), f(1) … f(Count−1): unrolled for plain numbers, so that indices are constants; unrolled,
+/// dual numbers would take the compiler too long.
+template <class T, std::size_t Count, class F>
+DUET_ALWAYS_INLINE void each_index(F&& f) {
+  if constexpr (Real<T>) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA { (f(I), ...); }
+    (std::make_index_sequence<Count>{});
+  } else {
+    for (std::size_t i = 0; i < Count; ++i) {
+      f(i);
+    }
+  }
+}
+
+/// In half angles the right Jacobian of the exponential is J(x) = a I − b x̂ + c x xᵀ with functions
+/// of s = x·x: a = c₁(4s), b = 2c₂(4s), c = 4c₃(4s). Here are their Taylor coefficients at one s,
+/// element k the k-th derivative by s, divided by k!.
+template <std::size_t Count, class T>
+struct jacobian_coefficients {
+  std::array<T, Count> a, b, c;
+
+  /// From (cₙ)′ = (n c_{n+2} − c_{n+1})/2, so that no more is needed than one sequence of them.
+  DUET_ALWAYS_INLINE explicit jacobian_coefficients(const T& s) {
+    using R = real_type_t<T>;
+    auto e = stumpff_sequence<2 * int(Count) + 1>(T(4 * s));
+    each_index<T, Count>([&](std::size_t k) DUET_INLINE_LAMBDA {
+      a[k] = e[1];
+      b[k] = 2 * e[2];
+      c[k] = 4 * e[3];
+      const R factor = R(2) / R(k + 1);
+      each_index<T, 2 * Count>([&](std::size_t n) DUET_INLINE_LAMBDA {
+        if (n > 0 && n + 2 * k + 1 <= 2 * Count) {
+          e[n] = (R(n) * e[n + 2] - e[n + 1]) * factor;
+        }
+      });
+    });
+  }
+};
+
+/// f(s(t)), truncated, from f's Taylor coefficients at s(0) and s's for t, of which the first is
+/// not looked at.
+template <std::size_t Count, class T, std::size_t Given, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<S, Count> composed(const std::array<T, Given>& f,
+                                                               const std::array<S, Count>& s) {
+  std::array<S, Count> result;
+  result[0] = S(f[Count - 1]);
+  each_index<S, Count - 1>([&](std::size_t done) DUET_INLINE_LAMBDA {
+    const std::size_t i = Count - 2 - done; // result ← f_i + (s − s_0) result, from its end
+    each_index<S, Count - 1>([&](std::size_t before) DUET_INLINE_LAMBDA {
+      if (before <= done) {
+        const std::size_t m = done + 1 - before;
+        S sum = s[m] * result[0];
+        each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
+          if (j > 0 && j < m) {
+            sum = sum + s[m - j] * result[j];
+          }
+        });
+        result[m] = sum;
+      }
+    });
+    result[0] = S(f[i]);
+  });
+  return result;
+}
+
+/// w with Q′ = Q w, the halved angular velocity in body axes, of Q = exp(x(t)): w = J(x) ẋ. In and
+/// out go Taylor coefficients for t: x_1 … x_Count in, w_0 … w_{Count−1} out; x = x_0 is what the
+/// coefficients of the Jacobian were made for.
+///
+/// \tparam S  scalar of the rates: T or above
+template <std::size_t Count, std::size_t Given, class T, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<vector3<S>, Count>
+half_body_rates(const jacobian_coefficients<Given, T>& jacobian, const vector3<T>& x,
+                const std::array<vector3<S>, Count>& rates) {
+  static_assert(Count <= Given);
+  using R = real_type_t<S>;
+  // With dx = ẋ: p = x·ẋ; s = x·x, ṡ = 2p; y = x × ẋ.
+  std::array<vector3<S>, Count> dx, y;
+  std::array<S, Count> p, s;
+  each_index<S, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
+    dx[m] = m == 0 ? rates[0] : scaled(S(R(m + 1)), rates[m]);
+    p[m] = inner_product(x, dx[m]);
+    y[m] = cross_product(x, dx[m]);
+    each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
+      if (j < m) {
+        const std::size_t k = m - 1 - j; // x_{j+1} and ẋ_k = (k+1) x_{k+1}
+        p[m] = p[m] + inner_product(rates[j], dx[k]);
+        if (j != k) {
+          y[m] = sum_of(y[m], cross_product(rates[j], dx[k]));
+        }
+      }
+    });
+    if (m + 1 < Count) {
+      s[m + 1] = p[m] * (R(2) / R(m + 1));
+    }
+  });
+  const auto a = composed(jacobian.a, s);
+  const auto b = composed(jacobian.b, s);
+  const auto c = composed(jacobian.c, s);
+  std::array<S, Count> k; // c p
+  std::array<vector3<S>, Count> w;
+  each_index<S, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
+    k[m] = c[0] * p[m];
+    w[m] = scaled(a[0], dx[m]);
+    w[m] = sum_of(w[m], scaled(S(-b[0]), y[m]));
+    each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
+      if (j > 0 && j <= m) {
+        k[m] = k[m] + c[j] * p[m - j];
+        w[m] = sum_of(w[m], scaled(a[j], dx[m - j]));
+        w[m] = sum_of(w[m], scaled(S(-b[j]), y[m - j]));
+        w[m] = sum_of(w[m], scaled(k[m - j], rates[j - 1]));
+      }
+    });
+    w[m] = sum_of(w[m], scaled(k[m], x));
+  });
+  return w;
+}
+
+} // namespace duet::detail

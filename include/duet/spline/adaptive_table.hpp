@@ -1,0 +1,163 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/tag.hpp>
+#include <duet/dual_quaternion/distance.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/end_conditions.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/look_up_table.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <vector>
+
+/// \file
+/// Look-up tables as dense as an error bound asks for, and the error of tables there are.
+
+namespace duet {
+
+struct table_options {
+  double length = 1; ///< of poses: the distance that counts as much as a turn by one radian
+  std::size_t first_rows = 9;
+  std::size_t most_rows = 100'000;
+};
+
+/// A table, the curve through it, and the largest distance of the curve from what it stands for
+/// that was seen: radians, of poses as `distance`.
+template <class Spline>
+struct table_result {
+  look_up_table<typename Spline::scalar_type> table;
+  Spline curve;
+  double error;
+};
+
+namespace detail {
+
+/// The angle between rotations, the distance between poses.
+template <class T>
+[[nodiscard]] real_type_t<T> miss(const quaternion<T>& a, const quaternion<T>& b, double length) {
+  if constexpr (contains_tag<T, screw_tag>()) {
+    return innermost(distance(a, b, length));
+  } else {
+    return innermost(rotation_vector(quaternion<T>(conj(a) * b)).norm());
+  }
+}
+
+/// The largest distance from f at the quarters of an interval.
+template <class Spline, class F, class R>
+[[nodiscard]] double miss_between(const Spline& s, const F& f, const R& low, const R& high,
+                                  double length) {
+  double largest = 0;
+  for (const int quarter : {1, 2, 3}) {
+    const R u = low + (high - low) * R(quarter) / R(4);
+    largest = std::max(largest, double(miss(s(u), f(u), length)));
+  }
+  return largest;
+}
+
+} // namespace detail
+
+/// The table of f over [first, last] through which the curve of type `Spline` is no farther from f
+/// than the tolerance: intervals are halved where it is.
+///
+/// The distance is looked at in the quarters of each interval, so f must not have detail that nine
+/// rows (`options.first_rows`) never meet.
+/// \param f          the rotation or pose at a parameter
+/// \param tolerance  radians, of poses as `distance` with `options.length`
+/// \throws invalid_input for a tolerance that is not positive or a range that is empty;
+///         no_convergence where `options.most_rows` do not reach the tolerance; as `interpolate`
+template <class Spline, class F, class Ends = not_a_knot>
+[[nodiscard]] table_result<Spline>
+adaptive_table(const F& f, typename Spline::real_type first, typename Spline::real_type last,
+               double tolerance, const Ends& ends = {}, const table_options& options = {}) {
+  using T = typename Spline::scalar_type;
+  using R = typename Spline::real_type;
+  std::ostringstream message;
+  if (!(first < last) || !(tolerance > 0)) {
+    message << "duet: adaptive_table: from " << first << " to " << last << " with tolerance "
+            << tolerance << ": the range must not be empty, the tolerance positive";
+    throw invalid_input(message.str());
+  }
+  look_up_table<T> table;
+  const std::size_t rows = std::max<std::size_t>(4, options.first_rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const R u = i + 1 < rows ? R(first + (last - first) * R(i) / R(rows - 1)) : last;
+    table.parameters.push_back(u);
+    table.elements.push_back(f(u));
+  }
+  for (;;) {
+    Spline s = interpolate<Spline>(table.parameters, table.elements, ends);
+    look_up_table<T> finer;
+    double worst = 0;
+    for (std::size_t i = 0; i + 1 < table.parameters.size(); ++i) {
+      const R& low = table.parameters[i];
+      const R& high = table.parameters[i + 1];
+      finer.parameters.push_back(low);
+      finer.elements.push_back(table.elements[i]);
+      const double error = detail::miss_between(s, f, low, high, options.length);
+      worst = std::max(worst, error);
+      if (!(error <= tolerance)) {
+        const R middle = low + (high - low) / R(2);
+        finer.parameters.push_back(middle);
+        finer.elements.push_back(f(middle));
+      }
+    }
+    if (worst <= tolerance) {
+      return {std::move(table), std::move(s), worst};
+    }
+    finer.parameters.push_back(table.parameters.back());
+    finer.elements.push_back(table.elements.back());
+    if (finer.parameters.size() > options.most_rows) {
+      message << "duet: adaptive_table: " << table.parameters.size() << " rows reach an error of "
+              << worst << ", not " << tolerance << ", and more than " << options.most_rows
+              << " are not allowed";
+      throw no_convergence(message.str());
+    }
+    table = std::move(finer);
+  }
+}
+
+/// An estimate of the error of the curve through a table about which nothing else is known: element
+/// i − 1 is the error near row i.
+///
+/// The curve through every other row misses the rows between by 2^p times what the whole table's
+/// curve misses between its rows, p = `Spline::convergence`; measured, the estimate is
+/// one to three times the error where the table resolves the motion.
+/// \throws invalid_input for fewer than nine rows; as `interpolate`
+template <class Spline, class Ends = not_a_knot>
+[[nodiscard]] std::vector<double>
+estimated_errors(const look_up_table<typename Spline::scalar_type>& table, const Ends& ends = {},
+                 double length = 1) {
+  const std::size_t rows = table.parameters.size();
+  if (rows < 9 || rows != table.elements.size()) {
+    std::ostringstream message;
+    message << "duet: estimated_errors: needs nine rows or more, got " << rows << " parameters and "
+            << table.elements.size() << " elements";
+    throw invalid_input(message.str());
+  }
+  look_up_table<typename Spline::scalar_type> half;
+  for (std::size_t i = 0; i < rows; ++i) {
+    if (i % 2 == 0 || i + 1 == rows) {
+      half.parameters.push_back(table.parameters[i]);
+      half.elements.push_back(table.elements[i]);
+    }
+  }
+  const auto s = interpolate<Spline>(half.parameters, half.elements, ends);
+  constexpr double factor = 1.0 / double(1 << Spline::convergence);
+  const auto elements = unit_quaternions(table.elements);
+  std::vector<double> errors(rows - 2);
+  for (std::size_t i = 1; i + 1 < rows; i += 2) {
+    errors[i - 1] = factor * double(detail::miss(s(table.parameters[i]), elements[i], length));
+  }
+  for (std::size_t i = 2; i + 1 < rows; i += 2) {
+    errors[i - 1] = i < errors.size() ? std::max(errors[i - 2], errors[i]) : errors[i - 2];
+  }
+  return errors;
+}
+
+} // namespace duet

@@ -1,0 +1,113 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/basis.hpp>
+#include <duet/spline/bspline_fit.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/orientations.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <sstream>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Curves near given rotations or poses: fewer control elements than rows, noise smoothed out.
+
+namespace duet {
+
+/// A fitted curve, and how far the rows are from it.
+template <class Spline>
+struct fit_result {
+  using real_type = typename Spline::real_type;
+  Spline curve;
+  /// Row by row |2 log(S(uᵢ)* Qᵢ)|: radians, of poses together with (distance/length) as a root of
+  /// the sum of squares.
+  std::vector<real_type> residuals;
+  real_type rms; ///< root of the mean of their squares
+  int iterations;
+};
+
+namespace detail {
+
+/// Schoenberg's and Whitney's condition: every control element needs a row of its own where its
+/// basis function is not zero, or it would be arbitrary.
+/// \throws invalid_input
+template <int Order, Real R>
+void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u) {
+  const std::vector<R>& knots = basis.knots();
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    const R low = knots[i];
+    const R high = knots[i + std::size_t(Order)];
+    const auto is_inside = [&](const R& x) {
+      return (x > low && x < high) || (x == low && i == 0) || (x == high && i + 1 == basis.size());
+    };
+    while (row < u.size() && u[row] < high && !is_inside(u[row])) {
+      ++row;
+    }
+    if (row == u.size() || !is_inside(u[row])) {
+      std::ostringstream message;
+      message << "duet: fit: too few rows for control element " << i
+              << ", which acts on parameters from " << low << " to " << high
+              << ": use fewer knots there";
+      throw invalid_input(message.str());
+    }
+    ++row;
+  }
+}
+
+} // namespace detail
+
+/// The curve of type `Spline` with these knots that is nearest to given rotations or poses: Σ
+/// ρ(|2 log(S(uᵢ)* Qᵢ)|) is least, ρ(r) = ½ r² up to `options.outlier`.
+///
+/// Time and memory are linear in the number of rows. The signs of the rows do not matter.
+/// \param knots  of the curve, `clamped_knots(few_parameters, Order)` say; more smoothing by fewer
+/// \throws invalid_row for a row that is not finite, not a unit, outside the knots' domain or does
+///         not follow the row before; invalid_input for counts that differ, too few rows somewhere,
+///         a length or limit that is not positive; no_convergence
+template <class Spline, class R, class T>
+[[nodiscard]] fit_result<Spline> fit(const std::vector<R>& parameters,
+                                     std::vector<quaternion<T>> rows, std::vector<R> knots,
+                                     const fit_options& options = {}) {
+  static_assert(std::is_same_v<Spline, cumulative_bspline<T, Spline::order>> &&
+                    std::is_same_v<R, real_type_t<T>>,
+                "duet: fit makes cumulative_bspline<T, Order> from quaternion<T>");
+  std::ostringstream message;
+  if (parameters.size() != rows.size()) {
+    message << "duet: fit: " << parameters.size() << " parameters and " << rows.size()
+            << " elements";
+    throw invalid_input(message.str());
+  }
+  detail::check_rows(parameters, rows.size(), 0);
+  if (!(options.length > 0) || !(options.outlier > 0)) {
+    message << "duet: fit: length " << options.length << " and outlier " << options.outlier
+            << " must be positive";
+    throw invalid_input(message.str());
+  }
+  const bspline_basis<Spline::order, R> basis(std::move(knots));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i] < basis.front() || parameters[i] > basis.back()) {
+      message << "parameter " << parameters[i] << " is outside the knots' domain, " << basis.front()
+              << " to " << basis.back();
+      throw invalid_row(i, message.str());
+    }
+  }
+  detail::require_rows_for_controls(basis, parameters);
+  detail::bspline_fit<T, Spline::order> problem(basis, parameters,
+                                                unit_quaternions(std::move(rows)), options);
+  const int iterations = problem.solve();
+  const std::vector<R> residuals = problem.residuals();
+  using std::sqrt;
+  const R squares = std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), R(0));
+  return {problem.curve(basis), residuals, R(sqrt(squares / R(residuals.size()))), iterations};
+}
+
+} // namespace duet

@@ -1,0 +1,267 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/dual.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/basis.hpp>
+#include <duet/spline/block_tridiagonal.hpp>
+#include <duet/spline/end_conditions.hpp>
+#include <duet/spline/knots.hpp>
+#include <duet/spline/motion.hpp>
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// What the increments of an interpolating cubic have to fulfil.
+
+namespace duet::detail {
+
+/// The knots of the cubic through data at u_0 … u_n.
+template <class Ends, class R>
+[[nodiscard]] std::vector<R> interpolation_knots(const std::vector<R>& u, const Ends&) {
+  if constexpr (std::is_same_v<Ends, periodic>) {
+    return periodic_knots(u, 4);
+  } else if constexpr (std::is_same_v<Ends, not_a_knot>) {
+    std::vector<R> distinct = u;
+    distinct.erase(distinct.end() - 2);
+    distinct.erase(distinct.begin() + 1);
+    return clamped_knots(distinct, 4);
+  } else {
+    return clamped_knots(u, 4);
+  }
+}
+
+/// A rate as half a vector, or half a dual vector.
+template <class T, class V>
+[[nodiscard]] vector3<T> half_rate(const V& rate) {
+  const real_type_t<T> half(0.5);
+  if constexpr (V::SizeAtCompileTime == 6) {
+    using S = typename scalar_traits<T>::value_type;
+    return dual_vector_of(vector6<S>(rate.template cast<S>())) * half;
+  } else {
+    return rate.template cast<T>() * half;
+  }
+}
+
+/// Equations for the half-angle vectors ω_1, ω_2 … of the cubic through Q_0 … Q_n: with the piece
+/// S of its span,
+///   S(u_i)⁻¹ S(u_{i+1}) = Q_i⁻¹ Q_{i+1},   i = 0 … n − 1,
+/// and, where the ends ask for it, one for the rates at either end. Three increments meet in every
+/// equation, not as logarithms of controls but as vectors of any length. Unknown k is ω_{k+1}; of
+/// a periodic curve ω_{k+2}, counted round.
+template <class T, class Ends>
+class cubic_equations {
+  using R = real_type_t<T>;
+  static constexpr bool is_cyclic = std::is_same_v<Ends, periodic>;
+  static constexpr bool skips_knots = std::is_same_v<Ends, not_a_knot>;
+  static constexpr bool has_end_rates = !is_cyclic && !skips_knots;
+
+public:
+  using real_type = R;
+  using unknowns = std::vector<vector3<T>>;
+  using matrix = block_tridiagonal<R, 3>;
+
+  cubic_equations(const std::vector<R>& u, std::vector<quaternion<T>> q, const Ends& ends)
+      : basis_(interpolation_knots(u, ends)), data_(std::move(q)) {
+    const std::size_t n = u.size() - 1;
+    turns_.reserve(n);
+    arcs_.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      turns_.push_back(conj(data_[i]) * data_[i + 1]);
+      std::size_t span = i;
+      if constexpr (skips_knots) {
+        span = i == 0 ? 0 : i == n - 1 ? n - 3 : i - 1;
+      }
+      arc a{span, basis_.template weights<0>(span, u[i])[0],
+            basis_.template weights<0>(span, u[i + 1])[0]};
+      if (u[i] == basis_.breaks()[span]) {
+        a.from[2] = R(0);
+      }
+      arcs_.push_back(a);
+    }
+    if constexpr (!std::is_same_v<Ends, natural> && has_end_rates) {
+      end_rates_ = {rotate(conj(data_.front()), half_rate<T>(ends.start)),
+                    rotate(conj(data_.back()), half_rate<T>(ends.end))};
+    }
+  }
+
+  /// Number of equations, which is that of the unknowns.
+  [[nodiscard]] std::size_t size() const { return arcs_.size() + (has_end_rates ? 2 : 0); }
+  [[nodiscard]] corners corner_columns() const {
+    return is_cyclic ? corners{size() - 1, 0} : corners{2, size() - 3};
+  }
+  [[nodiscard]] const bspline_basis<4, R>& basis() const { return basis_; }
+
+  /// The largest angle from one row to the next, and the row before it.
+  [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
+    std::pair<R, std::size_t> result{R(0), 0};
+    for (std::size_t i = 0; i < turns_.size(); ++i) {
+      const R angle = 2 * log_vector(innermost_of(turns_[i]), "interpolate").norm();
+      if (angle > result.first) {
+        result = {angle, i};
+      }
+    }
+    return result;
+  }
+
+  /// The same for a motion that turns less: Q_i⁻¹ Q_{i+1} to the power λ, end rates by the factor
+  /// λ.
+  [[nodiscard]] cubic_equations scaled(const R& lambda) const {
+    cubic_equations result = *this;
+    for (quaternion<T>& turn : result.turns_) {
+      turn = duet::exp(product(lambda, log_vector(turn, "interpolate")));
+    }
+    for (vector3<T>& rate : result.end_rates_) {
+      rate = product(lambda, rate);
+    }
+    return result;
+  }
+
+  /// The j-th of the three unknowns in an equation.
+  [[nodiscard]] std::size_t unknown(std::size_t row, std::size_t j) const {
+    const std::size_t n = size();
+    if constexpr (is_cyclic) {
+      return (row + n - 1 + j) % n;
+    } else {
+      return (row == 0 ? 0 : row == n - 1 ? n - 3 : row - 1) + j;
+    }
+  }
+  /// Its block's place: 0 lower, 1 diagonal, 2 upper, corners included.
+  [[nodiscard]] int place(std::size_t row, std::size_t j) const {
+    const int shift = is_cyclic ? 0 : row == 0 ? 1 : row == size() - 1 ? 2 : 0;
+    return (int(j) + shift) % 3;
+  }
+
+  /// What an equation leaves, a half-angle vector; end rates are brought to the size of an
+  /// increment.
+  template <class D>
+  [[nodiscard]] vector3<D> residual(std::size_t row, const std::array<vector3<D>, 3>& omega) const {
+    if constexpr (has_end_rates) {
+      if (row == 0 || row + 1 == size()) {
+        return end_residual(row == 0, omega);
+      }
+      --row;
+    }
+    const arc& a = arcs_[row];
+    const auto factor = [&](std::size_t j, const R& weight) {
+      return duet::exp(product(weight, omega[j]));
+    };
+    quaternion<D> turn = factor(1, -a.from[1]) * factor(0, a.to[0] - a.from[0]) *
+                         factor(1, a.to[1]) * factor(2, a.to[2]);
+    if (a.from[2] != 0) {
+      turn = factor(2, -a.from[2]) * turn;
+    }
+    return log_vector(quaternion<D>(conj(turn) * quaternion<D>(turns_[row])), "interpolate");
+  }
+
+  /// All of them.
+  void residuals(const std::vector<vector3<T>>& x, std::vector<vector3<T>>& result) const {
+    result.resize(size());
+    for (std::size_t row = 0; row < size(); ++row) {
+      result[row] =
+          residual(row, std::array{x[unknown(row, 0)], x[unknown(row, 1)], x[unknown(row, 2)]});
+    }
+  }
+
+  /// Residuals and factorised Jacobian; false where that is singular. For real T.
+  [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
+    using D = dual<R, 9, derivative_tag<cubic_equations>>;
+    r.resize(x.size());
+    std::vector<block_row<R, 3>> rows(x.size());
+    for (std::size_t row = 0; row < x.size(); ++row) {
+      std::array<vector3<D>, 3> omega;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const vector3<R>& value = x[unknown(row, j)];
+        for (int b = 0; b < 3; ++b) {
+          omega[j][b] = D::variable(value[b], int(3 * j) + b);
+        }
+      }
+      const vector3<D> left = residual(row, omega);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const int at = place(row, j);
+        auto& block = at == 0 ? rows[row].lower : at == 1 ? rows[row].diagonal : rows[row].upper;
+        for (int a = 0; a < 3; ++a) {
+          r[row][a] = left[a].value();
+          for (int b = 0; b < 3; ++b) {
+            block(a, b) = left[a].partial(int(3 * j) + b);
+          }
+        }
+      }
+    }
+    return jacobian.factorise(std::move(rows), corner_columns());
+  }
+
+  /// ω_0 = 0 and the increments of all controls.
+  [[nodiscard]] std::vector<vector3<T>> increments(const std::vector<vector3<T>>& x) const {
+    std::vector<vector3<T>> omega{vector3<T>::Zero()};
+    omega.reserve(basis_.size());
+    for (std::size_t i = 1; i < basis_.size(); ++i) {
+      omega.push_back(x[is_cyclic ? (i + 2 * size() - 2) % size() : i - 1]);
+    }
+    return omega;
+  }
+
+  /// Each control from the data at the start of its span, so that no error grows along the curve.
+  [[nodiscard]] std::vector<quaternion<T>>
+  controls(const std::vector<vector3<T>>& increments) const {
+    std::vector<quaternion<T>> result;
+    result.reserve(basis_.size());
+    for (std::size_t i = 0; i < arcs_.size(); ++i) {
+      const arc& a = arcs_[i];
+      if (a.span == result.size()) {
+        const auto back = [&](std::size_t j) {
+          return duet::exp(product(R(-a.from[j]), increments[a.span + 1 + j]));
+        };
+        result.push_back(normalized(data_[i] * back(1) * back(0)));
+      }
+    }
+    while (result.size() < basis_.size()) {
+      result.push_back(normalized(result.back() * duet::exp(increments[result.size()])));
+    }
+    return result;
+  }
+
+private:
+  /// From row i to row i + 1: the span, and the weights of its three increments at both.
+  struct arc {
+    std::size_t span;
+    std::array<R, 3> from, to;
+  };
+
+  template <class D>
+  [[nodiscard]] vector3<D> end_residual(bool at_start,
+                                        const std::array<vector3<D>, 3>& omega) const {
+    const std::size_t span = at_start ? 0 : basis_.breaks().size() - 2;
+    const R& u = at_start ? basis_.front() : basis_.back();
+    const auto m = product_of_exponentials<2>(quaternion<D>(D(1)), omega.data(),
+                                              basis_.template weights<2>(span, u));
+    const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
+    const vector3<D> rate = end_rates_[at_start ? 0 : 1].template cast<D>();
+    if constexpr (gives_velocity(static_cast<const Ends*>(nullptr))) {
+      return product(R(h / 3), vector3<D>(m.velocity - rate));
+    } else {
+      return product(R(h * h / 6), vector3<D>(m.acceleration - rate));
+    }
+  }
+  template <class V>
+  static constexpr bool gives_velocity(const clamped<V>*) {
+    return true;
+  }
+  static constexpr bool gives_velocity(const void*) { return false; }
+
+  bspline_basis<4, R> basis_;
+  std::vector<quaternion<T>> data_;
+  std::vector<quaternion<T>> turns_;
+  std::vector<arc> arcs_;
+  std::array<vector3<T>, 2> end_rates_{vector3<T>::Zero(), vector3<T>::Zero()};
+};
+
+} // namespace duet::detail

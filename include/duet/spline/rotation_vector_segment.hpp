@@ -1,0 +1,143 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
+#include <duet/quaternion/exponential_rates.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+
+/// \file
+/// One piece of a rotation-vector spline: exp(x(t)) with a polynomial x of half-angle vectors that
+/// goes from zero to a given one, and what its rates at both ends have to do with each other.
+
+namespace duet::detail {
+
+/// A polynomial's Taylor coefficients about t, the first `Count` of them, from those about zero.
+/// Constant term first.
+template <std::size_t Count, class T, std::size_t Size, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE auto taylor_shift(const std::array<vector3<T>, Size>& c,
+                                                   const S& t) {
+  static_assert(Count <= Size);
+  using D = promote_t<T, S>;
+  using R = real_type_t<D>;
+  std::array<vector3<D>, Count> result;
+  each_index<D, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
+    // Σ_k binomial(k, m) c_k t^{k−m}, binomials as products of the quotients of neighbours
+    if constexpr (std::is_same_v<D, T>) {
+      result[m] = c[Size - 1];
+    } else {
+      result[m] = c[Size - 1].template cast<D>();
+    }
+    each_index<D, Size - 1>([&](std::size_t done) DUET_INLINE_LAMBDA {
+      const std::size_t k = Size - 1 - done;
+      if (k > m) {
+        result[m] = sum_of(scaled(D(t * (R(k) / R(k - m))), result[m]), c[k - 1]);
+      }
+    });
+  });
+  return result;
+}
+
+/// The part of a piece that does not change while its rates are sought: it takes the parameter h
+/// and ends at exp(d), d of the scalar T.
+///
+/// A knot's rates are Taylor coefficients of w, Q′ = Q w: the halved angular velocity in body axes,
+/// its derivative, half its second derivative … The polynomial of order k (degree k − 1) has room
+/// for k/2 − 1 of them at each end.
+template <class T, int Order>
+class rotation_vector_segment {
+  static_assert(Order == 4 || Order == 6,
+                "duet: a rotation_vector_spline is of order 4, the cubic, or 6, the quintic");
+
+public:
+  using real = real_type_t<T>;
+  /// How many rates a knot has of its own.
+  static constexpr std::size_t own = std::size_t(Order) / 2 - 1;
+  template <class S>
+  using knot_rates = std::array<vector3<S>, own>;
+
+  rotation_vector_segment(const real& h, const vector3<T>& d)
+      : h_(h), d_(d), jacobian_(inner_product(d, d)),
+        inverse_(right_jacobian_inverse(vector3<T>(scaled(real(2), d)))) {}
+
+  /// x_0 … x_{k−1} about the start, where x_0 = 0, over the scalar S of the rates, T or above.
+  template <class S>
+  [[nodiscard]] std::array<vector3<S>, std::size_t(Order)>
+  polynomial(const knot_rates<S>& start, const knot_rates<S>& end) const {
+    std::array<vector3<S>, std::size_t(Order)> x;
+    x[0] = vector3<S>::Constant(S(real(0)));
+    x[1] = start[0];
+    const real per_h = 1 / h_;
+    const vector3<S> v = times_inverse(end[0]); // ẋ at the end
+    const vector3<T> mean = scaled(per_h, d_);
+    // What is missing to go straight on at the start's rates, in powers of h.
+    if constexpr (Order == 4) {
+      for (int i = 0; i < 3; ++i) {
+        const S a = mean[i] - start[0][i];
+        const S b = v[i] - start[0][i];
+        x[2][i] = (3 * a - b) * per_h;
+        x[3][i] = (b - 2 * a) * (per_h * per_h);
+      }
+    } else {
+      const vector3<S> zero = x[0];
+      const auto without = half_body_rates(jacobian_, d_, std::array<vector3<S>, 2>{v, zero});
+      const vector3<S> twice = times_inverse(vector3<S>(end[1] - without[1])); // ẍ at the end
+      for (int i = 0; i < 3; ++i) {
+        const S& second = start[1][i];
+        x[2][i] = second / 2;
+        const S a = (mean[i] - start[0][i]) * per_h - x[2][i];
+        const S b = (v[i] - start[0][i]) * per_h - second;
+        const S c = (twice[i] - second) / 2;
+        x[3][i] = (10 * a - 4 * b + c) * per_h;
+        x[4][i] = (7 * b - 15 * a - 2 * c) * (per_h * per_h);
+        x[5][i] = (6 * a - 3 * b + c) * (per_h * per_h * per_h);
+      }
+    }
+    return x;
+  }
+
+  template <std::size_t Count, class S>
+  struct end_rates {
+    std::array<vector3<S>, Count> start, end;
+  };
+
+  /// What x = 0 has in the place of d.
+  using identity_coefficients = jacobian_coefficients<std::size_t(Order) - 1, real>;
+
+  /// w_0 … w_{Count−1} at both ends of the piece.
+  template <std::size_t Count, class S>
+  [[nodiscard]] end_rates<Count, S> rates(const identity_coefficients& at_identity,
+                                          const knot_rates<S>& start,
+                                          const knot_rates<S>& end) const {
+    const auto x = polynomial(start, end);
+    const auto shifted = taylor_shift<Count + 1>(x, h_);
+    std::array<vector3<S>, Count> before, after;
+    for (std::size_t k = 0; k < Count; ++k) {
+      before[k] = x[k + 1];
+      after[k] = shifted[k + 1];
+    }
+    return {half_body_rates(at_identity, vector3<real>(vector3<real>::Zero()), before),
+            half_body_rates(jacobian_, d_, after)};
+  }
+
+private:
+  template <class S>
+  [[nodiscard]] vector3<S> times_inverse(const vector3<S>& w) const {
+    vector3<S> v;
+    for (int i = 0; i < 3; ++i) {
+      v[i] = inverse_(i, 0) * w[0] + inverse_(i, 1) * w[1] + inverse_(i, 2) * w[2];
+    }
+    return v;
+  }
+
+  real h_;
+  vector3<T> d_;
+  jacobian_coefficients<std::size_t(Order) - 1, T> jacobian_;
+  matrix3<T> inverse_; ///< J(d)⁻¹
+};
+
+} // namespace duet::detail

@@ -1,0 +1,147 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+
+/// \file
+/// The real solution of the equations of an interpolating curve.
+
+namespace duet::detail {
+
+/// Newton's method with AD Jacobian on real equations, from zero. Where
+/// the turns are too large for that, by continuation from smaller ones: that also finds the curve
+/// that belongs to them, where several fulfil the equations.
+///
+/// \tparam Equations  what is to be solved: `residuals`, `linearise`, and the same of smaller turns
+template <class Equations>
+class spline_newton {
+  using R = typename Equations::real_type;
+
+public:
+  using equations = Equations;
+  using unknowns = typename Equations::unknowns;
+  using unknown = typename unknowns::value_type;
+  using matrix = typename Equations::matrix;
+
+  explicit spline_newton(const equations& full) : full_(full), x_(full.size(), unknown::Zero()) {
+    if (!descend(full)) {
+      continue_from_smaller_turns();
+    }
+  }
+
+  [[nodiscard]] const unknowns& solution() const { return x_; }
+  [[nodiscard]] int iterations() const { return iterations_; }
+
+  /// The largest residual at the solution.
+  [[nodiscard]] R residual() {
+    full_.residuals(x_, residual_);
+    return largest(residual_);
+  }
+
+  /// The Jacobian at the solution.
+  [[nodiscard]] const matrix& jacobian() {
+    if (!linearise(full_)) {
+      throw no_convergence("duet: interpolate: the equations are singular at their solution");
+    }
+    return matrix_;
+  }
+
+private:
+  /// From x_ to the solution near it: steps with the last Jacobian while they gain much, with a new
+  /// one otherwise. False where a step does not halve the residual.
+  [[nodiscard]] bool descend(const equations& f) {
+    using std::sqrt;
+    const R epsilon = std::numeric_limits<R>::epsilon();
+    R before = std::numeric_limits<R>::infinity();
+    R step = before;
+    R moved(0); // since the Jacobian was new
+    for (bool is_first = true;; is_first = false) {
+      f.residuals(x_, residual_);
+      const R left = largest(residual_);
+      if (!(left <= before / 2)) {
+        return step <= sqrt(epsilon); // nothing but rounding is left
+      }
+      if (is_first || left > before / 32) {
+        if (!linearise(f)) {
+          return false;
+        }
+        moved = R(0);
+      }
+      matrix_.solve(residual_);
+      for (std::size_t k = 0; k < x_.size(); ++k) {
+        x_[k] -= residual_[k];
+      }
+      ++iterations_;
+      step = largest(residual_);
+      moved += step;
+      // The Jacobian is about as far off as x has moved: the next step would be less than rounding.
+      if (4 * moved * step <= epsilon) {
+        return true;
+      }
+      before = left;
+    }
+  }
+
+  /// λ from 0 to 1: turns to the power λ, where each solution is the start for the next.
+  void continue_from_smaller_turns() {
+    R lambda(0);
+    R h(0.25);
+    x_.assign(x_.size(), unknown::Zero());
+    unknowns slope = x_;
+    while (lambda < 1) {
+      const unknowns at = x_;
+      h = std::min(h, R(1 - lambda));
+      for (std::size_t k = 0; k < x_.size(); ++k) {
+        x_[k] += h * slope[k];
+      }
+      const int before = iterations_;
+      if (lambda + h < 1 ? descend(full_.scaled(lambda + h)) : descend(full_)) {
+        for (std::size_t k = 0; k < x_.size(); ++k) {
+          slope[k] = (x_[k] - at[k]) / h;
+        }
+        lambda += h;
+        h *= iterations_ - before <= 8 ? 2 : 1;
+      } else {
+        x_ = at;
+        h /= 2;
+        if (h < R(1e-4)) {
+          fail(lambda);
+        }
+      }
+    }
+  }
+
+  [[noreturn]] void fail(const R& lambda) const {
+    const auto [angle, row] = full_.largest_turn();
+    std::ostringstream message;
+    message << "duet: interpolate: with all steps between rows turning by no more than " << lambda
+            << " of their angles there is a curve, but it ends there; after " << iterations_
+            << " iterations. The largest step is " << angle << " rad, from row " << row
+            << " to the next";
+    throw no_convergence(message.str());
+  }
+
+  [[nodiscard]] bool linearise(const equations& f) { return f.linearise(x_, residual_, matrix_); }
+
+  [[nodiscard]] static R largest(const unknowns& x) {
+    R result(0);
+    for (const unknown& v : x) {
+      const R size = v.norm();
+      result = size <= result ? result : size; // NaN comes through
+    }
+    return result;
+  }
+
+  const equations& full_;
+  unknowns x_, residual_;
+  matrix matrix_;
+  int iterations_ = 0;
+};
+
+} // namespace duet::detail

@@ -1,0 +1,77 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Runs the trajectory fit on good and bad recordings: what cannot be read must end with status 1, one line
+# that says what and where, and nothing written; rows that are no poses are named and left out.
+#
+# cmake -Dprogram=<fit_trajectory> -Dfolder=<for files> [-Ddata=<DUET_TEST_DATA>] -P fit_trajectory.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+function(run_rows expected_result expected_text content)
+  file(WRITE ${folder}/rows.txt "${content}")
+  run(${expected_result} "${expected_text}" rows.txt ${ARGN})
+endfunction()
+
+# The path's y is 0.1 t; x turns.
+set(rows "# timestamp tx ty tz qx qy qz qw\n")
+foreach(i RANGE 39)
+  math(EXPR tens "${i} / 10")
+  math(EXPR ones "${i} % 10")
+  string(APPEND rows "${tens}.${ones} 1 0.${tens}${ones} 0 0.6 0 0 0.8\n")
+endforeach()
+
+run(0 "rows=1201 left_out=0 controls=123 outliers=13 median_residual=0.0033")
+run(0 "rows-per-knot" --help)
+run_rows(0 "rows=40 left_out=0 controls=6 outliers=0" "${rows}")
+foreach(file IN ITEMS trajectory rows)
+  if(NOT EXISTS ${folder}/out/${file}.csv)
+    message(FATAL_ERROR "no ${file}.csv")
+  endif()
+endforeach()
+file(STRINGS ${folder}/out/trajectory.csv lines LIMIT_COUNT 102)
+list(GET lines 0 header)
+if(NOT header STREQUAL
+    "timestamp,tx,ty,tz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,ax,ay,az,alphax,alphay,alphaz")
+  message(FATAL_ERROR "header: ${header}")
+endif()
+list(GET lines 101 line)
+if(NOT line MATCHES "^1,(1|0.99999|1.00000)[0-9]*,0.(1|099999|100000)[0-9]*,")
+  message(FATAL_ERROR "the pose after a second: ${line}")
+endif()
+
+# usage: expect_fault(<text> <rows>): named on the error stream, and the fit goes on
+function(expect_fault text content)
+  file(WRITE ${folder}/rows.txt "${content}")
+  execute_process(COMMAND ${program} --out out rows.txt WORKING_DIRECTORY ${folder}
+    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  if(NOT result EQUAL 0 OR NOT error MATCHES "^${text}\n$")
+    message(FATAL_ERROR "status ${result}, says\n${error}instead of: ${text}")
+  endif()
+endfunction()
+expect_fault("rows.txt:42: timestamp 0.5 repeats line 7: left out" "${rows}0.5 1 0.05 0 0.6 0 0 0.8\n")
+expect_fault("rows.txt:42: timestamp 0.55 is out of order: sorted in"
+  "${rows}0.55 1 0.055 0 0.6 0 0 0.8\n")
+expect_fault("rows.txt:42: qw is nan: left out" "${rows}4.1 1 0.41 0 0.6 0 0 nan\n")
+expect_fault("rows.txt:42: tx is inf: left out" "${rows}4.1 inf 0.41 0 0.6 0 0 0.8\n")
+expect_fault("rows.txt:42: the quaternion has norm 0, not 1: left out" "${rows}4.1 1 0.41 0 0 0 0 0\n")
+
+run(1 "nowhere.txt: cannot be read" nowhere.txt)
+run_rows(1 "rows.txt: holds no usable rows" "# nothing\n")
+run_rows(1 "rows.txt: 14 usable rows are too few for one knot in 20" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1
+2 1 2 3 0 0 0 1\n3 1 2 3 0 0 0 1\n4 1 2 3 0 0 0 1\n5 1 2 3 0 0 0 1\n6 1 2 3 0 0 0 1\n7 1 2 3 0 0 0 1
+8 1 2 3 0 0 0 1\n9 1 2 3 0 0 0 1\n10 1 2 3 0 0 0 1\n11 1 2 3 0 0 0 1\n12 1 2 3 0 0 0 1
+13 1 2 3 0 0 0 1\n" --rows-per-knot 20)
+run_rows(1 "rows.txt:2: 8 numbers expected .*, got 7" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0\n")
+run_rows(1 "rows.txt:1: 'one' is not a number" "0 one 2 3 0 0 0 1\n")
+run(1 "--rate: a positive number expected" --rate 0)
+run(1 "--rows-per-knot: 1 or more" --rows-per-knot 0)
+run(1 "unrecognised option '--bogus'" --bogus)
+
+if(data)
+  set(recorded ${data}/trajectories/freiburg1_xyz-groundtruth.txt)
+  run(0 "rows=3000 left_out=0 controls=302 .* rms=0.0032" ${recorded})
+else()
+  message("no recorded motion: DUET_TEST_DATA is not set")
+endif()

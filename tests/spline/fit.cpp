@@ -1,0 +1,231 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/random.hpp"
+
+#include <duet/dual_quaternion/distance.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/fit.hpp>
+#include <duet/spline/knots.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace test_spline_fit {
+namespace {
+
+using duet::vector3;
+using duet_test::random_source;
+using rotation = duet::quaternion<double>;
+using pose_type = duet::dual_quaternion<double>;
+template <class Q>
+using curve = duet::cumulative_bspline<typename Q::scalar_type, 4>;
+
+vector3<double> random_vector(random_source& random, double size) {
+  const auto d = random.direction<3>();
+  return vector3<double>(d[0], d[1], d[2]) * size;
+}
+
+/// q moved by random turns (and shifts) of a size
+rotation moved(const rotation& q, random_source& random, double size) {
+  return q * duet::from_rotation_vector(random_vector(random, size));
+}
+pose_type moved(const pose_type& a, random_source& random, double size) {
+  return a * duet::pose(duet::from_rotation_vector(random_vector(random, size)),
+                        random_vector(random, size));
+}
+
+template <class Q>
+double between(const Q& a, const Q& b) {
+  if constexpr (std::is_same_v<Q, rotation>) {
+    return duet::rotation_vector(conj(a) * b).norm();
+  } else {
+    return duet::distance(a, b, 1);
+  }
+}
+
+std::vector<double> steps(double end, int count) {
+  std::vector<double> u;
+  for (int i = 0; i <= count; ++i) {
+    u.push_back(end * i / count);
+  }
+  return u;
+}
+
+/// A curve that turns a few times over [0, 8].
+template <class Q>
+curve<Q> some_curve() {
+  random_source random(5);
+  std::vector<Q> controls{Q(1.0)};
+  while (controls.size() < 11) {
+    controls.push_back(moved(controls.back(), random, 0.7));
+  }
+  return curve<Q>(duet::clamped_knots(steps(8, 8), 4), controls);
+}
+
+template <class Curve>
+auto rows_of(const Curve& s, const std::vector<double>& u) {
+  std::vector<decltype(s(0.0))> rows;
+  for (const double x : u) {
+    rows.push_back(s(x));
+  }
+  return rows;
+}
+
+template <class Curve>
+double largest_distance(const Curve& a, const Curve& b) {
+  double largest = 0;
+  for (const double x : steps(8, 500)) {
+    const auto p = a(x);
+    const auto q = b(x);
+    largest = std::max(largest, between(p, q));
+  }
+  return largest;
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("a curve is found again from its points", Q, rotation, pose_type) {
+  const auto truth = some_curve<Q>();
+  const auto u = steps(8, 60);
+  auto rows = rows_of(truth, u);
+  for (std::size_t i = 0; i < rows.size(); i += 3) {
+    rows[i] = -rows[i]; // the same rotation
+  }
+  const auto result = duet::fit<curve<Q>>(u, rows, truth.basis().knots());
+  CHECK(largest_distance(result.curve, truth) <= 1e-13);
+  CHECK(result.rms <= 1e-14);
+  CHECK(result.iterations <= 8);
+  CHECK(result.residuals.size() == rows.size());
+}
+
+TEST_CASE("as many rows as controls are interpolated") {
+  const auto truth = some_curve<rotation>();
+  std::vector<double> u = steps(8, 8);
+  u.insert(u.begin() + 1, 0.4);
+  u.insert(u.end() - 1, 7.7);
+  const auto result = duet::fit<curve<rotation>>(u, rows_of(truth, u), truth.basis().knots());
+  CHECK(result.rms <= 1e-13);
+}
+
+TEST_CASE_TEMPLATE("noise is smoothed, and no nearby curve is nearer", Q, rotation, pose_type) {
+  constexpr double noise = 0.01;
+  const auto truth = some_curve<Q>();
+  const auto u = steps(8, 400);
+  random_source random(7);
+  auto rows = rows_of(truth, u);
+  for (Q& row : rows) {
+    row = moved(row, random, noise);
+  }
+  const auto result = duet::fit<curve<Q>>(u, rows, truth.basis().knots());
+  // 401 rows, 11 controls: the curve should be about √(11/401) = 0.17 of the noise away.
+  CHECK(largest_distance(result.curve, truth) <=
+        0.5 * noise * (std::is_same_v<Q, rotation> ? 1 : 2));
+  const double expected = noise * (std::is_same_v<Q, rotation> ? 1 : std::sqrt(2.0));
+  CHECK(result.rms == doctest::Approx(expected).epsilon(0.05));
+
+  const auto sum_of_squares = [&](const curve<Q>& s) {
+    double sum = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const auto d = between(s(u[i]), rows[i]);
+      sum += d * d;
+    }
+    return sum;
+  };
+  if constexpr (std::is_same_v<Q, rotation>) { // of poses the metric is another one
+    const double least = sum_of_squares(result.curve);
+    for (std::size_t k = 0; k < result.curve.controls().size(); ++k) {
+      for (const double size : {1e-4, -1e-4}) {
+        for (int axis = 0; axis < 3; ++axis) {
+          auto controls = result.curve.controls();
+          controls[k] = controls[k] * duet::from_rotation_vector(
+                                          vector3<double>(vector3<double>::Unit(axis) * size));
+          CHECK(sum_of_squares({truth.basis(), controls}) > least);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("outliers pull with a bounded force", Q, rotation, pose_type) {
+  constexpr double noise = 0.001;
+  const auto truth = some_curve<Q>();
+  const auto u = steps(8, 400);
+  random_source random(11);
+  auto rows = rows_of(truth, u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i] = moved(rows[i], random, i % 20 == 10 ? 1.5 : noise);
+  }
+  const auto plain = duet::fit<curve<Q>>(u, rows, truth.basis().knots());
+  const auto robust =
+      duet::fit<curve<Q>>(u, rows, truth.basis().knots(), {.length = 1, .outlier = 3 * noise});
+  CHECK(largest_distance(plain.curve, truth) > 0.1);
+  CHECK(largest_distance(robust.curve, truth) < 2 * noise);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    CHECK((robust.residuals[i] > 0.1) == (i % 20 == 10));
+  }
+}
+
+TEST_CASE("the length weighs shifts against turns") {
+  const auto truth = some_curve<pose_type>();
+  const auto u = steps(8, 100);
+  random_source random(13);
+  auto rows = rows_of(truth, u);
+  for (auto& row : rows) { // no noise in the turns, shifts along
+    row = row * duet::pose(rotation(1.0), random_vector(random, 0.1));
+  }
+  const auto knots = duet::clamped_knots(steps(8, 4), 4); // too few for an exact fit
+  const auto worst_turn = [&](double length) {
+    const auto s = duet::fit<curve<pose_type>>(u, rows, knots, {.length = length}).curve;
+    double worst = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      worst = std::max(
+          worst, between(rotation(duet::rotation(s(u[i]))), rotation(duet::rotation(truth(u[i])))));
+    }
+    return worst;
+  };
+  CHECK(worst_turn(100) < worst_turn(0.01));
+}
+
+TEST_CASE("bad input is named") {
+  const auto truth = some_curve<rotation>();
+  const auto knots = truth.basis().knots();
+  const auto message = [&](std::vector<double> u, std::vector<rotation> rows,
+                           const duet::fit_options& options = {}) {
+    try {
+      static_cast<void>(duet::fit<curve<rotation>>(u, rows, knots, options));
+    } catch (const duet::invalid_input& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  const auto u = steps(8, 40);
+  const auto rows = rows_of(truth, u);
+  CHECK(message(steps(8, 39), rows) == "duet: fit: 40 parameters and 41 elements");
+  CHECK(message(steps(9, 40), rows) ==
+        "duet: row 36: parameter 8.1 is outside the knots' domain, 0 to 8");
+  auto bad = rows;
+  bad[3] = rotation(0.0);
+  CHECK(message(u, bad) == "duet: row 3: quaternion (0, 0, 0, 0) has norm 0, not 1");
+  CHECK(message(steps(8, 5), std::vector<rotation>(6, rotation(1.0))) ==
+        "duet: fit: too few rows for control element 2, which acts on parameters from 0 to 3: use "
+        "fewer knots there");
+  CHECK(message(steps(1, 40), rows) ==
+        "duet: fit: too few rows for control element 4, which acts on parameters from 1 to 5: use "
+        "fewer knots there");
+  CHECK(message(u, rows, {.length = 0}) == "duet: fit: length 0 and outlier inf must be positive");
+  auto repeated = u;
+  repeated[8] = repeated[7];
+  CHECK(message(repeated, rows) ==
+        "duet: row 8: parameter 1.4 does not increase, the row before has 1.4");
+}
+
+} // namespace test_spline_fit

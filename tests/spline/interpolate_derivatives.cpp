@@ -1,0 +1,134 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+#include "support/multiprecision.hpp"
+
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/spline/interpolate.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// Derivatives through the solve against central differences of 50-digit solutions, whose error is
+/// far below double rounding.
+
+namespace test_spline_interpolate_derivatives {
+namespace {
+
+using duet::dual;
+using duet::quaternion;
+using duet_test::real_50;
+using vector = duet::vector3<double>;
+template <class T>
+using curve = duet::cumulative_bspline<T>;
+
+const std::vector<double> u = {0, 0.7, 1.1, 2, 2.6, 3.5};
+const std::vector<double> between = {0, 0.3, 0.7, 0.9, 1.7, 2.3, 3.1, 3.5};
+
+const std::vector<quaternion<double>> data = [] {
+  auto q = duet_test::random_orientations(u.size(), 1.6);
+  q.back() = q.front(); // so that they do for periodic ends too
+  return q;
+}();
+/// By how much each row is moved, as half a rotation vector. The first and the last alike.
+const std::vector<vector> directions = [] {
+  duet_test::random_source random(9);
+  std::vector<vector> result;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    result.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+  }
+  result.back() = result.front();
+  return result;
+}();
+
+/// exp(h · direction) q over the scalar of h.
+template <class T>
+std::vector<quaternion<T>> moved(const T& h) {
+  std::vector<quaternion<T>> result;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const duet::vector3<T> d(h * directions[i][0], h * directions[i][1], h * directions[i][2]);
+    const auto q = duet_test::cast<T>({data[i]})[0];
+    result.push_back(duet::exp(d) * normalized(q));
+  }
+  return result;
+}
+
+const real_50 step("1e-16");
+
+/// dS/dh at h = 0 by a central difference.
+template <class Ends>
+std::vector<quaternion<real_50>> slopes(const Ends& ahead, const Ends& behind) {
+  const std::vector<real_50> knots = duet_test::cast<real_50>(u);
+  const auto a = duet::interpolate<curve<real_50>>(knots, moved(step), ahead);
+  const auto b = duet::interpolate<curve<real_50>>(knots, moved(real_50(-step)), behind);
+  std::vector<quaternion<real_50>> result;
+  for (const double x : between) {
+    result.push_back((a(real_50(x)) - b(real_50(x))) / real_50(2 * step));
+  }
+  return result;
+}
+
+template <class T, class Part>
+void check(const curve<T>& s, const std::vector<quaternion<real_50>>& expected, Part part) {
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    const quaternion<T> q = s(between[i]);
+    CHECK(
+        duet_test::distance(quaternion<double>(part(q.w()), part(q.x()), part(q.y()), part(q.z())),
+                            expected[i]) < 1e-14);
+  }
+}
+
+template <class Ends>
+void check_both(const Ends& ends) {
+  const auto expected = slopes(ends, ends);
+  // As derivatives with respect to the data …
+  check(duet::interpolate<curve<dual<double>>>(u, moved(dual<double>::variable(0)), ends), expected,
+        [](const auto& x) { return x.epsilon(); });
+}
+
+/// The same motion of the data as the dual part of poses.
+template <class Ends>
+void check_as_poses(const Ends& ends, const std::vector<quaternion<real_50>>& expected) {
+  using number = duet::screw_dual<double>;
+  check(duet::interpolate<curve<number>>(u, moved(number(0, 1)), ends), expected,
+        [](const auto& x) { return x.epsilon(); });
+}
+
+} // namespace
+
+TEST_CASE("derivatives with respect to the data, and dual parts: natural ends") {
+  check_both(duet::natural{});
+  check_as_poses(duet::natural{}, slopes(duet::natural{}, duet::natural{}));
+}
+
+TEST_CASE("derivatives with respect to the data: not-a-knot and periodic ends") {
+  check_both(duet::not_a_knot{});
+  check_both(duet::periodic{});
+}
+
+TEST_CASE("derivatives with respect to end rates; twists at the ends of poses") {
+  using vector_50 = duet::vector3<real_50>;
+  const vector start(0.3, -0.2, 0.5), start_slope(1, 0.4, -0.3), end(-1, 0, 0.4);
+  const auto rates = [&](const real_50& h) {
+    return duet::clamped{vector_50(start.cast<real_50>() + h * start_slope.cast<real_50>()),
+                         vector_50(end.cast<real_50>())};
+  };
+  const auto expected = slopes(rates(step), rates(real_50(-step)));
+
+  using D = dual<double>;
+  const duet::vector3<D> variable = start.cast<D>() + D::variable(0) * start_slope.cast<D>();
+  check(duet::interpolate<curve<D>>(u, moved(D::variable(0)),
+                                    duet::clamped{variable, duet::vector3<D>(end.cast<D>())}),
+        expected, [](const D& x) { return x.epsilon(); });
+
+  duet::vector6<double> start_twist, end_twist;
+  start_twist << start_slope, start;
+  end_twist << vector::Zero(), end;
+  check_as_poses(duet::clamped{start_twist, end_twist}, expected);
+}
+
+} // namespace test_spline_interpolate_derivatives

@@ -1,0 +1,158 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/adaptive_table.hpp>
+#include <duet/spline/look_up_table.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace test_spline_look_up_table {
+namespace {
+
+using duet::vector3;
+using rotation = duet::quaternion<double>;
+using screw = duet::dual<double, 1, duet::screw_tag>;
+using pose_type = duet::dual_quaternion<double>;
+using rotation_curve = duet::cumulative_bspline<double>;
+using pose_curve = duet::cumulative_bspline<screw>;
+
+/// Slow turning with a fast piece around u = 1.
+rotation turning(double u) {
+  return duet::from_rotation_vector(
+      vector3<double>(0.3 * u, 0.2 * std::sin(u), 0.1 * std::tanh(20 * (u - 1))));
+}
+pose_type moving(double u) {
+  return duet::pose(turning(u), vector3<double>(std::cos(u), std::sin(2 * u), 0.1 * u));
+}
+
+template <class Spline, class F>
+double largest_error(const Spline& s, const F& f) {
+  double largest = 0;
+  for (int i = 0; i <= 20'000; ++i) {
+    const double u = 3.0 * i / 20'000;
+    largest = std::max(largest, duet::detail::miss(s(u), f(u), 1.0));
+  }
+  return largest;
+}
+
+template <class T, class F>
+duet::look_up_table<T> uniform_table(const F& f, int rows) {
+  duet::look_up_table<T> table;
+  for (int i = 0; i <= rows; ++i) {
+    table.parameters.push_back(3.0 * i / rows);
+    table.elements.push_back(f(table.parameters.back()));
+  }
+  return table;
+}
+
+} // namespace
+
+TEST_CASE("a table is as dense as its error bound asks for") {
+  for (const double tolerance : {1e-3, 1e-5, 1e-6}) {
+    const auto result = duet::adaptive_table<rotation_curve>(turning, 0.0, 3.0, tolerance);
+    CHECK(result.error <= tolerance);
+    CHECK(largest_error(result.curve, turning) <= 1.1 * tolerance);
+  }
+  const auto result = duet::adaptive_table<rotation_curve>(turning, 0.0, 3.0, 1e-6);
+  const auto rows = int(result.table.parameters.size());
+  const auto uniform = uniform_table<double>(turning, rows - 1);
+  const auto s =
+      duet::interpolate<rotation_curve>(uniform.parameters, uniform.elements, duet::not_a_knot{});
+  CHECK(largest_error(s, turning) > 20e-6); // as many rows, evenly spread
+  CHECK(result.table.parameters.front() == 0.0);
+  CHECK(result.table.parameters.back() == 3.0);
+}
+
+TEST_CASE("a table of poses weighs shifts by the length") {
+  const auto near = duet::adaptive_table<pose_curve>(moving, 0.0, 3.0, 1e-5);
+  CHECK(largest_error(near.curve, moving) <= 1.1e-5);
+  const auto coarse = duet::adaptive_table<pose_curve>(moving, 0.0, 3.0, 1e-5, duet::not_a_knot{},
+                                                       {.length = 1e-3});
+  CHECK(coarse.table.parameters.size() != near.table.parameters.size());
+}
+
+TEST_CASE("the error of a table is estimated from the table alone") {
+  for (const int rows : {400, 401, 800}) {
+    const auto table = uniform_table<double>(turning, rows);
+    const auto errors = duet::estimated_errors<rotation_curve>(table);
+    CHECK(errors.size() == table.parameters.size() - 2);
+    const auto s =
+        duet::interpolate<rotation_curve>(table.parameters, table.elements, duet::not_a_knot{});
+    const double estimate = *std::max_element(errors.begin(), errors.end());
+    const double truth = largest_error(s, turning);
+    CHECK(estimate > truth / 3);
+    CHECK(estimate < truth * 3);
+    // Largest where the motion is fast.
+    const auto worst = std::max_element(errors.begin(), errors.end()) - errors.begin() + 1;
+    CHECK(std::abs(table.parameters[std::size_t(worst)] - 1) < 0.15);
+  }
+}
+
+TEST_CASE("tables are saved and loaded with all digits") {
+  const auto path = std::string("look_up_table_test.csv");
+  const auto rotations = uniform_table<double>(turning, 50);
+  duet::save_table(path, rotations);
+  const auto same = duet::load_table<double>(path);
+  CHECK(same.parameters == rotations.parameters);
+  for (std::size_t i = 0; i < same.elements.size(); ++i) {
+    CHECK(same.elements[i] == rotations.elements[i]);
+  }
+  const auto poses = uniform_table<screw>(moving, 50);
+  duet::save_table(path, poses);
+  const auto again = duet::load_table<screw>(path);
+  CHECK(again.parameters == poses.parameters);
+  for (std::size_t i = 0; i < again.elements.size(); ++i) {
+    CHECK(duet::detail::miss(again.elements[i], poses.elements[i], 1.0) <= 1e-15);
+  }
+  std::remove(path.c_str());
+}
+
+TEST_CASE("bad tables and bounds are named") {
+  const auto path = std::string("look_up_table_bad.csv");
+  const auto loading = [&](const std::string& text) {
+    std::ofstream(path) << text;
+    try {
+      static_cast<void>(duet::load_table<double>(path));
+    } catch (const duet::file_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  CHECK(loading("u,qw,qx,qy,qz\n0,1,0,0\n") == path + ":2: 5 numbers expected, got 4");
+  CHECK(loading("0,1,0,0,0\n1,2,0,0,0\n") ==
+        path + ":2: quaternion (2, 0, 0, 0) has norm 2, not 1");
+  CHECK(loading("0,1,0,0,0\n\n0,1,0,0,0\n") ==
+        path + ":3: parameter 0 does not increase, the row before has 0");
+  CHECK(loading("0,1,0,0,nan\n") == path + ":1: column 5 is nan");
+  std::remove(path.c_str());
+
+  const auto message = [](double first, double last, double tolerance, std::size_t most) {
+    try {
+      static_cast<void>(duet::adaptive_table<rotation_curve>(
+          turning, first, last, tolerance, duet::not_a_knot{}, {.most_rows = most}));
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  CHECK(message(1, 1, 1e-3, 100) ==
+        "duet: adaptive_table: from 1 to 1 with tolerance 0.001: the range must not be empty, the "
+        "tolerance positive");
+  CHECK(message(0, 1, 0, 100).find("tolerance 0:") != std::string::npos);
+  CHECK(message(0, 3, 1e-9, 100).find("more than 100 are not allowed") != std::string::npos);
+  CHECK_THROWS_AS(
+      static_cast<void>(duet::estimated_errors<rotation_curve>(uniform_table<double>(turning, 7))),
+      duet::invalid_input);
+}
+
+} // namespace test_spline_look_up_table

@@ -1,0 +1,151 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace test_spline_poses {
+namespace {
+
+using number = duet::screw_dual<double>;
+using pose = duet::quaternion<number>;
+using vector = duet::vector3<double>;
+using twist = duet::vector6<double>;
+using curve = duet::cumulative_bspline<number>;
+
+const std::vector<double> knots = duet_test::knot_vectors(4)[1].knots;
+const std::vector<double> parameters = duet_test::parameters_on(knots, 4, 1);
+
+std::vector<pose> random_poses(std::size_t count, double step) {
+  duet_test::random_source random(count);
+  std::vector<pose> result;
+  for (const auto& q : duet_test::random_orientations(count, step)) {
+    result.push_back(
+        duet::pose(q, vector(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2))));
+  }
+  return result;
+}
+
+const curve s(knots, random_poses(knots.size() - 4, 1.2));
+
+double distance(const pose& a, const pose& b) {
+  return std::max(duet_test::distance(real_part(a), real_part(b)),
+                  duet_test::distance(dual_part(a), dual_part(b)));
+}
+/// From Q and Q′ by N18, over any scalar of the parameter.
+template <class S, class Frame>
+auto twist_of_curve(const S& u, Frame frame) {
+  const auto q = duet::derivative([](const auto& x) { return s(x); }, u);
+  return duet::twist(q.value, q.derivative, frame);
+}
+
+double difference(const twist& a, const twist& b) { return (a - b).norm() / (1 + b.norm()); }
+
+} // namespace
+
+TEST_CASE("the rotation of a pose curve is the curve of the rotations; all are units") {
+  std::vector<duet::quaternion<double>> rotations;
+  for (const pose& a : s.controls()) {
+    rotations.push_back(rotation(a));
+  }
+  const duet::cumulative_bspline<double> r(knots, rotations);
+  for (const double u : parameters) {
+    CHECK(duet_test::distance(rotation(s(u)), r(u)) < 1e-15);
+    CHECK(is_unit(s(u), 1e-14));
+  }
+}
+
+TEST_CASE("P1: of pure translations it is the B-spline of their vectors") {
+  std::vector<pose> shifts;
+  std::vector<vector> points;
+  duet_test::random_source random(3);
+  for (std::size_t i = 0; i + 4 < knots.size(); ++i) {
+    points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+    shifts.push_back(duet::pose(duet::quaternion<double>(1), points.back()));
+  }
+  const curve t(knots, shifts);
+  for (const double u : parameters) {
+    vector sum = vector::Zero();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      sum += points[i] * duet::bspline_value(knots, i, 4, u);
+    }
+    CHECK((translation(t(u)) - sum).norm() < 1e-14);
+    CHECK(duet_test::distance(rotation(t(u)), duet::quaternion<double>(1)) == 0);
+  }
+}
+
+TEST_CASE("order 2 is the screw motion between neighbours") {
+  const std::vector<double> uneven = {0, 0, 1, 3, 3.5, 3.5};
+  const duet::cumulative_bspline<number, 2> t(uneven, random_poses(4, 2));
+  for (const double x : {0.0, 0.2, 0.7, 0.99}) {
+    CHECK(distance(t(1 + 2 * x), duet::sclerp(t.controls()[1], t.controls()[2], x)) < 1e-14);
+  }
+}
+
+TEST_CASE("moving all control poses moves the curve, and leaves body twists alone") {
+  const pose p = random_poses(1, 1).front();
+  std::vector<pose> moved = s.controls();
+  for (pose& a : moved) {
+    a = p * a;
+  }
+  const curve t(knots, moved);
+  for (const double u : parameters) {
+    CHECK(distance(t(u), p * s(u)) < 1e-13);
+    const auto a = s.motion(u, duet::frame::body), b = t.motion(u, duet::frame::body);
+    CHECK(difference(a.velocity, b.velocity) < 1e-13);
+    CHECK(difference(a.jerk, b.jerk) < 1e-13);
+  }
+}
+
+TEST_CASE("P3, P4 over poses: Q′, Q″, Q‴ against Taylor numbers") {
+  for (const double u : parameters) {
+    const auto closed = s.derivatives(u);
+    const auto taylor = duet::derivatives<3>([](const auto& x) { return s(x); }, u);
+    for (std::size_t d = 0; d <= 3; ++d) {
+      const double size = 1 + norm(real_part(taylor[d])) + norm(dual_part(taylor[d]));
+      CHECK(distance(closed[d], taylor[d]) < 1e-13 * size);
+    }
+  }
+}
+
+TEST_CASE("N18: twists are those of Q′, and each rate is the derivative of the one before") {
+  const auto check = [](auto frame) {
+    for (const double u : parameters) {
+      const auto m = s.motion(u, frame);
+      const auto q = s.derivatives(u);
+      CHECK(difference(duet::twist(q[0], q[1], frame), m.velocity) < 1e-13);
+      const auto rates =
+          duet::derivatives<2>([&](const auto& x) { return twist_of_curve(x, frame); }, u);
+      CHECK(difference(rates[0], m.velocity) < 1e-13);
+      CHECK(difference(rates[1], m.acceleration) < 1e-13);
+      CHECK(difference(rates[2], m.jerk) < 1e-13);
+    }
+  };
+  check(duet::frame::body);
+  check(duet::frame::spatial);
+  check(duet::frame::hybrid);
+}
+
+TEST_CASE("hybrid rates are the derivatives of the translation") {
+  for (const double u : parameters) {
+    const auto m = s.motion(u, duet::frame::hybrid);
+    const auto t = duet::derivatives<3>([](const auto& x) { return translation(s(x)); }, u);
+    CHECK((t[1] - m.velocity.head<3>()).norm() < 1e-13 * (1 + t[1].norm()));
+    CHECK((t[2] - m.acceleration.head<3>()).norm() < 1e-13 * (1 + t[2].norm()));
+    CHECK((t[3] - m.jerk.head<3>()).norm() < 1e-13 * (1 + t[3].norm()));
+  }
+}
+
+} // namespace test_spline_poses

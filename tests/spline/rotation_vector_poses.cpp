@@ -1,0 +1,149 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+#include "support/multiprecision.hpp"
+
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/spline/interpolate_rotation_vectors.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+// Infinitesimal parts through the solve: poses against 50 digits, derivatives with respect to the
+// data against differences.
+
+namespace test_spline_rotation_vector_poses {
+
+using duet::interpolate;
+using duet_test::real_50;
+
+template <class R>
+using pose_t = duet::dual_quaternion<R>;
+template <class R>
+using screw = duet::screw_dual<R>;
+
+namespace {
+
+const std::vector<double> knots{0, 0.3, 0.5, 1.1, 1.3, 1.9, 2, 2.4};
+
+template <class R>
+std::vector<pose_t<R>> poses() {
+  duet_test::random_source random(5);
+  std::vector<pose_t<R>> result;
+  for (const auto& q : duet_test::random_orientations(knots.size(), 1.4, 6)) {
+    const auto t = random.direction<3>();
+    const duet::quaternion<R> exact(R(q.w()), R(q.x()), R(q.y()), R(q.z()));
+    result.push_back(
+        duet::pose(normalized(exact), duet::vector3<R>(R(3 * t[0]), R(3 * t[1]), R(3 * t[2]))));
+  }
+  return result;
+}
+
+template <class R>
+double difference(const pose_t<R>& a, const pose_t<real_50>& b) {
+  double worst = 0;
+  const auto take = [&](const screw<R>& x, const screw<real_50>& y) {
+    worst = std::max(worst, std::abs(double(x.value() - y.value())));
+    worst = std::max(worst, std::abs(double(x.epsilon() - y.epsilon())));
+  };
+  take(a.w(), b.w());
+  take(a.x(), b.x());
+  take(a.y(), b.y());
+  take(a.z(), b.z());
+  return worst;
+}
+
+template <class R>
+duet::vector6<R> twist(double size) {
+  duet::vector6<R> v;
+  for (int i = 0; i < 6; ++i) {
+    v[i] = R(size) * R(i % 2 == 0 ? 1 : -1) / R(i + 2);
+  }
+  return v;
+}
+
+/// The values of poses at a few parameters, for three ends one after the other.
+template <class R>
+std::vector<pose_t<R>> curves_through_poses() {
+  std::vector<pose_t<R>> result;
+  using spline = duet::rotation_vector_spline<screw<R>>;
+  const std::vector<R> u(knots.begin(), knots.end());
+  const auto add = [&](const auto& ends) {
+    const spline s = interpolate<spline>(u, poses<R>(), ends);
+    for (const double at : {0.0, 0.1, 0.4, 1.2, 1.25, 2.4}) {
+      result.push_back(s(R(at)));
+    }
+  };
+  add(duet::clamped{twist<R>(1), twist<R>(-2)});
+  add(duet::end_acceleration{twist<R>(3), twist<R>(1)});
+  add(duet::not_a_knot{});
+  return result;
+}
+
+} // namespace
+
+TEST_CASE("poses agree with 50 digits") {
+  const auto computed = curves_through_poses<double>();
+  const auto exact = curves_through_poses<real_50>();
+  CHECK(computed.size() == 18);
+  for (std::size_t i = 0; i < computed.size(); ++i) {
+    CAPTURE(i);
+    CHECK(difference(computed[i], exact[i]) < 1e-13);
+  }
+}
+
+TEST_CASE("poses: through the data, twists at the ends, smooth inside") {
+  using spline = duet::rotation_vector_spline<screw<double>, 6>;
+  const auto data = poses<double>();
+  const duet::clamped velocity{twist<double>(1), twist<double>(-2)};
+  const duet::end_acceleration acceleration{twist<double>(3), twist<double>(1)};
+  const spline s = interpolate<spline>(knots, data, duet::fully_clamped{velocity, acceleration});
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const auto at = s(knots[i]);
+    const double sign = innermost(dot(at, data[i])) < 0 ? -1 : 1;
+    CHECK(norm(real_part(at) * sign - real_part(data[i])) < 1e-14);
+    CHECK((translation(at) - translation(data[i])).norm() < 1e-13);
+    if (i > 0 && i + 1 < data.size()) {
+      const auto after = s.motion(knots[i], duet::frame::body);
+      const auto before = s.motion(std::nextafter(knots[i], -1.0), duet::frame::body);
+      CHECK((after.velocity - before.velocity).norm() < 1e-10);
+      CHECK((after.acceleration - before.acceleration).norm() < 1e-9);
+      CHECK((after.jerk - before.jerk).norm() < 1e-8);
+    }
+  }
+  const auto start = s.motion(0.0, duet::frame::spatial);
+  const auto end = s.motion(2.4, duet::frame::spatial);
+  CHECK((start.velocity - velocity.start).norm() < 1e-11);
+  CHECK((end.velocity - velocity.end).norm() < 1e-11);
+  CHECK((start.acceleration - acceleration.start).norm() < 1e-10);
+  CHECK((end.acceleration - acceleration.end).norm() < 1e-10);
+}
+
+TEST_CASE_TEMPLATE("derivatives with respect to the data", order, std::integral_constant<int, 4>,
+                   std::integral_constant<int, 6>) {
+  // Row 3 is turned by t about (1, −2, 2)/3: derivative duals through the solve against central
+  // differences.
+  const auto data = duet_test::random_orientations(knots.size(), 1.4, 6);
+  const auto value = [&](const auto& t) {
+    using S = std::decay_t<decltype(t)>;
+    std::vector<duet::quaternion<S>> q = duet_test::cast<S>(data);
+    const S sixth = t / 6;
+    q[3] = q[3] * duet::exp(duet::vector3<S>(sixth, S(-2 * sixth), S(2 * sixth)));
+    using spline = duet::rotation_vector_spline<S, order::value>;
+    return interpolate<spline>(knots, q, duet::not_a_knot{})(0.4);
+  };
+  const auto automatic = value(duet::dual<double>::variable(0.0));
+  const double h = 1e-5;
+  const auto difference = (value(h) - value(-h)) / (2 * h);
+  CHECK(norm(difference) > 1e-3);
+  CHECK(std::abs(automatic.w().epsilon() - difference.w()) < 1e-9);
+  CHECK(std::abs(automatic.x().epsilon() - difference.x()) < 1e-9);
+  CHECK(std::abs(automatic.y().epsilon() - difference.y()) < 1e-9);
+  CHECK(std::abs(automatic.z().epsilon() - difference.z()) < 1e-9);
+}
+
+} // namespace test_spline_rotation_vector_poses
