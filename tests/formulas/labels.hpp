@@ -16,12 +16,13 @@ inline constexpr const char* labels[] = {"N1",  "N2",  "N3",  "N4",  "N5",  "N6"
                                          "N25", "P1",  "P2",  "P3",  "P4",  "P5",  "P6",  "P7"};
 
 inline std::vector<reference> references() {
-  const std::string planning = "not in duet yet";
   return {
-      {"N22", "least joint rates $\\dot\\Theta = B\\dot\\gamma$", "", planning},
-      {"N23", "step of the joints", "", planning},
-      {"N24", "motion planning step by step", "", planning},
-      {"N25", "given paths, inverse kinematics", "", planning},
+      {"N22", "least joint rates $\\dot\\Theta = B\\dot\\gamma$", "`resolved_rate_matrix`",
+       "`planning/resolved_motion`"},
+      {"N23", "step of the joints", "`resolved_step`", "`planning/resolved_motion`"},
+      {"N24", "motion planning step by step", "`printed_screw_plan`, `plan_screw_motion`",
+       "`planning/plan_screw_motion`"},
+      {"N25", "given paths, inverse kinematics", "", "not in duet yet"},
       {"P1", "basis functions", "`bspline_basis`", "`examples/printed_formulas`, `spline/basis`"},
       {"P2", "cumulative curve", "`cumulative_bspline`",
        "`examples/printed_formulas`, `spline/curve`"},

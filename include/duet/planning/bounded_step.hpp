@@ -1,0 +1,97 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual_quaternion/twist.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+/// \file
+/// The least step of the joints for a small twist of the tip that keeps the joints within limits.
+
+namespace duet::detail {
+
+/// Solves J Jᵀ y = e with as much damping as a small singular value asks for.
+class damped_gram {
+public:
+  explicit damped_gram(const matrix6<double>& gram) : factors_(gram) {
+    // The smallest eigenvalue from above, by inverse iteration.
+    vector6<double> x = vector6<double>::Ones().normalized();
+    if (factors_.info() == Eigen::Success) {
+      for (int i = 0; i < 4; ++i) {
+        const vector6<double> next = factors_.solve(x);
+        const double length = next.norm();
+        smallest_ = 1 / length;
+        x = next / length;
+      }
+    }
+    smallest_ = smallest_ > 0 ? std::sqrt(smallest_) : 0;
+    if (smallest_ < threshold) {
+      const double missing = 1 - smallest_ / threshold;
+      const double damping = missing * threshold;
+      factors_.compute(gram + damping * damping * matrix6<double>::Identity());
+    }
+  }
+
+  [[nodiscard]] vector6<double> solve(const vector6<double>& e) const { return factors_.solve(e); }
+  /// The smallest singular value of J, from above.
+  [[nodiscard]] double smallest() const { return smallest_; }
+
+  /// Below this singular value steps are damped.
+  static constexpr double threshold = 1e-3;
+
+private:
+  Eigen::LLT<matrix6<double>> factors_;
+  double smallest_ = 0;
+};
+
+template <class V>
+struct bounded_step_result {
+  V step;
+  double smallest_singular_value; ///< of all joints
+  bool is_bounded;                ///< did a limit hold a joint back?
+};
+
+/// The least Δ with J Δ = e and lower ≤ Δ ≤ upper. Joints that would go beyond a bound are put onto
+/// it, the worst one first, and the others make up for them as far as they can.
+template <class J, class V>
+[[nodiscard]] bounded_step_result<V> bounded_step(const J& jacobian, const vector6<double>& e,
+                                                  const V& lower, const V& upper) {
+  const Eigen::Index n = jacobian.cols();
+  J free = jacobian;
+  V fixed = V::Zero(n);
+  std::array<bool, std::size_t(J::MaxColsAtCompileTime)> is_fixed{};
+  bounded_step_result<V> result{V::Zero(n), 0, false};
+  for (Eigen::Index round = 0; round <= n; ++round) {
+    const damped_gram gram(matrix6<double>(free * free.transpose()));
+    if (round == 0) {
+      result.smallest_singular_value = gram.smallest();
+    }
+    const vector6<double> rest = e - jacobian * fixed;
+    result.step = fixed + free.transpose() * gram.solve(rest);
+    Eigen::Index worst = -1;
+    double excess = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double beyond = std::max(result.step[i] - upper[i], lower[i] - result.step[i]);
+      if (!is_fixed[std::size_t(i)] && beyond > excess) {
+        excess = beyond;
+        worst = i;
+      }
+    }
+    if (worst < 0) {
+      break;
+    }
+    is_fixed[std::size_t(worst)] = true;
+    result.is_bounded = true;
+    fixed[worst] = std::clamp(result.step[worst], lower[worst], upper[worst]);
+    free.col(worst).setZero();
+  }
+  return result;
+}
+
+} // namespace duet::detail

@@ -1,0 +1,92 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <limits>
+#include <sstream>
+#include <vector>
+
+/// \file
+/// What a planner returns.
+
+namespace duet {
+
+/// Why a planner stopped.
+enum class stop_reason {
+  reached,        ///< the tip is at the goal
+  joint_limit,    ///< the way on leads beyond the limits of a joint
+  singular,       ///< the way on leads through a singularity
+  no_progress,    ///< steps became too small, for neither of these reasons
+  iteration_limit ///< the number of iterations that was allowed is used up
+};
+
+[[nodiscard]] inline const char* to_text(stop_reason reason) {
+  switch (reason) {
+  case stop_reason::reached:
+    return "reached";
+  case stop_reason::joint_limit:
+    return "joint_limit";
+  case stop_reason::singular:
+    return "singular";
+  case stop_reason::no_progress:
+    return "no_progress";
+  default:
+    return "iteration_limit";
+  }
+}
+
+/// How far one pose is from another: its origin in units of length, its axes in radians.
+struct pose_deviation {
+  double length = 0;
+  double angle = 0;
+};
+[[nodiscard]] inline pose_deviation deviation_between(const dual_quaternion<double>& a,
+                                                      const dual_quaternion<double>& b) {
+  return {(translation(b) - translation(a)).norm(),
+          rotation_vector(quaternion<double>(conj(rotation(a)) * rotation(b))).norm()};
+}
+
+/// A path of joint coordinates from the start on, waypoint by waypoint. Where the goal is not
+/// reached, the path ends as far as the planner came.
+///
+/// \tparam N  as of `serial_chain`
+template <int N>
+struct motion_plan {
+  std::vector<detail::joint_vector<double, N>> joints;
+  std::vector<dual_quaternion<double>> poses; ///< of the tip
+  std::vector<double> tau;                    ///< fraction of the screw motion at each waypoint
+  std::vector<pose_deviation> deviations;     ///< from the screw motion, at each waypoint
+  /// Of the Jacobian in `frame::hybrid` on the way, estimated from above.
+  double smallest_singular_value = std::numeric_limits<double>::infinity();
+  int iterations = 0;
+  stop_reason reason = stop_reason::no_progress;
+};
+
+namespace detail {
+
+/// \throws invalid_input for a start that is not finite or outside the limits, and for a goal that
+/// is no pose
+template <class C, class Start>
+void require_problem(const C& chain, const Start& start, const dual_quaternion<double>& goal) {
+  require_size(chain, start);
+  for (int i = 0; i < chain.size(); ++i) {
+    const double x = vector_argument<Start>::get(start, i);
+    if (!(x >= chain.limits(i).lower && x <= chain.limits(i).upper && x - x == 0)) {
+      std::ostringstream message;
+      message << "duet: plan: the start has " << x << " for joint " << i << ", whose limits are "
+              << chain.limits(i).lower << " and " << chain.limits(i).upper;
+      throw invalid_input(message.str());
+    }
+  }
+  if (!is_unit(goal, 1e-6)) {
+    throw invalid_input("duet: plan: the goal is no unit dual quaternion");
+  }
+}
+
+} // namespace detail
+} // namespace duet

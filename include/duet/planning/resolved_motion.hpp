@@ -1,0 +1,57 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/derivative/linear_solve.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/mechanism/jacobian.hpp>
+
+#include <Eigen/Core>
+
+/// \file
+/// The joints' rates for a given rate of the tip, of least norm (N22), and the step that follows
+/// from them (N23).
+
+namespace duet {
+
+/// N22: B = Jᵀ(J Jᵀ)⁻¹ J2 of a chain's tip, n × 7: Θ̇ = B γ̇ are the least joint rates that move the
+/// tip with the rate γ̇ of γ = [t; α]. J is the spatial Jacobian, and "least" is |Θ̇|.
+/// \throws invalid_input where J is not of full row rank, and as `jacobian`
+template <SerialChain C, VectorLike X>
+[[nodiscard]] auto resolved_rate_matrix(const C& chain, const X& theta) {
+  using S = detail::chain_scalar<C, X>;
+  const auto [a, m] = pose_and_jacobian(chain, theta, frame::spatial);
+  const matrix6<S> gram = m * m.transpose();
+  const Eigen::Matrix<S, 6, 7> y = solve(gram, pose_rate_matrix(a));
+  Eigen::Matrix<S, (C::joints > 0 ? C::joints : Eigen::Dynamic), 7, Eigen::ColMajor,
+                (C::joints > 0 ? C::joints : -C::joints), 7>
+      b = m.transpose() * y;
+  return b;
+}
+
+/// N23: Θ(t+h) = Θ(t) + β B (γ(t+h) − γ(t)) towards a pose near that of the tip, α(t+h) taken with
+/// the sign nearer to α(t).
+/// \throws invalid_input as `resolved_rate_matrix`
+template <SerialChain C, VectorLike X, class T>
+[[nodiscard]] auto resolved_step(const C& chain, const X& theta, const dual_quaternion<T>& next,
+                                 double beta) {
+  using S = promote_t<detail::chain_scalar<C, X>, T>;
+  using argument = detail::vector_argument<X>;
+  const dual_quaternion<S> here(chain.pose(theta));
+  dual_quaternion<S> aligned(next);
+  if (innermost(dot(rotation(here), rotation(aligned))) < 0) {
+    aligned = -aligned;
+  }
+  const vector7<S> difference = pose_coordinates(aligned) - pose_coordinates(here);
+  const auto b = resolved_rate_matrix(chain, theta);
+  detail::joint_vector<S, C::joints> result(chain.size());
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    S step(0);
+    for (Eigen::Index k = 0; k < 7; ++k) {
+      step += b(i, k) * difference[k];
+    }
+    result[i] = argument::get(theta, i) + beta * step;
+  }
+  return result;
+}
+
+} // namespace duet

@@ -1,0 +1,72 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+
+#include <duet/mechanism/analytic_jacobian.hpp>
+#include <duet/planning/resolved_motion.hpp>
+
+#include <Eigen/LU>
+
+namespace test_planning_resolved_motion {
+namespace {
+
+using namespace duet;
+using duet_test::gap;
+
+} // namespace
+
+TEST_CASE("N22: B γ̇ moves the tip by γ̇, with the least joint rates") {
+  const auto arm = robots::panda();
+  const auto all = duet_test::configurations(arm.table(), 20);
+  for (std::size_t i = 5; i < all.size(); ++i) { // the others are singular
+    const auto& theta = all[i];
+    const auto b = resolved_rate_matrix(arm, theta);
+    const auto m = jacobian(arm, theta, frame::spatial);
+    const auto j2 = pose_rate_matrix(arm.pose(theta));
+    CHECK(gap(m * b, j2) < 1e-10);
+    // ∂γ/∂Θ B is the projection onto the rates of unit quaternions.
+    const auto by_gamma = pose_coordinates_jacobian(arm, theta);
+    const Eigen::Matrix<double, 7, 7> projection = by_gamma * b;
+    CHECK(gap(projection * projection, projection) < 1e-10);
+    CHECK(gap(projection * by_gamma, by_gamma) < 1e-10);
+    // Least: B has nothing of the motion that leaves the tip in place, of which m knows one.
+    Eigen::Matrix<double, 7, 1> in_place;
+    for (int k = 0; k < 7; ++k) { // minors, with alternating signs
+      Eigen::Matrix<double, 6, 6> minor;
+      minor << m.leftCols(k), m.rightCols(6 - k);
+      in_place[k] = (k % 2 == 0 ? 1 : -1) * minor.determinant();
+    }
+    in_place.normalize();
+    CHECK(gap(m * in_place, vector6<double>::Zero()) < 1e-12);
+    CHECK(gap(in_place.transpose() * b, Eigen::Matrix<double, 1, 7>::Zero()) < 1e-10);
+  }
+}
+
+TEST_CASE("N23: a step towards a near pose leaves an error of second order; either sign will do") {
+  const auto arm = robots::panda();
+  const auto theta = duet_test::configurations(arm.table(), 1).back();
+  const auto here = arm.pose(theta);
+  double before = 0;
+  for (const double h : {1e-2, 1e-3, 1e-4}) {
+    const vector6<double> small = h * vector6<double>(1, -.5, .3, .8, -.2, .4);
+    const auto next = manifold<dual_quaternion<double>>::plus(here, small, frame::body);
+    const auto step = resolved_step(arm, theta, next, 1);
+    CHECK(gap(step, resolved_step(arm, theta, dual_quaternion<double>(-next), 1)) == 0);
+    const double error = gap(transform_matrix(arm.pose(step)), transform_matrix(next));
+    if (before > 0) {
+      CHECK(error / before == doctest::Approx(1e-2).epsilon(.1));
+    }
+    before = error;
+    const auto half = resolved_step(arm, theta, next, .5);
+    CHECK(gap(half - theta, (step - theta) / 2) < 1e-15);
+  }
+}
+
+TEST_CASE("where the Jacobian is not of full rank there is no B") {
+  const std::array<joint<>, 6> joints{}; // all about one axis
+  CHECK_THROWS_AS((void)resolved_rate_matrix(serial_chain<6>(joints),
+                                             Eigen::Matrix<double, 6, 1>::Zero().eval()),
+                  invalid_input);
+}
+
+} // namespace test_planning_resolved_motion
