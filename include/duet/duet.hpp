@@ -58,6 +58,7 @@
 #include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/bspline_fit.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/evaluate.hpp>
 #include <duet/spline/fit.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/interpolate_rotation_vectors.hpp>

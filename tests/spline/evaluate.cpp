@@ -1,0 +1,94 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/random.hpp"
+
+#include <duet/derivative/frame.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/evaluate.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace test_spline_evaluate {
+namespace {
+
+using screw = duet::dual<double, 1, duet::screw_tag>;
+using pose_type = duet::dual_quaternion<double>;
+using cumulative = duet::cumulative_bspline<screw>;
+using rotation_vector = duet::rotation_vector_spline<screw>;
+
+template <class Spline>
+Spline some_spline() {
+  std::vector<double> u;
+  std::vector<pose_type> rows;
+  for (int i = 0; i <= 20; ++i) {
+    u.push_back(i + 0.3 * std::sin(i));
+    const duet::vector3<double> turn(0.3 * std::sin(i), 0.1 * i, 0.4 * std::cos(2 * i));
+    rows.push_back(
+        duet::pose(duet::from_rotation_vector(turn), duet::vector3<double>(i, std::sin(i), 0)));
+  }
+  return duet::interpolate<Spline>(u, rows, duet::not_a_knot{});
+}
+
+/// Increasing, with a few jumps.
+std::vector<double> many_parameters() {
+  duet_test::random_source random(3);
+  std::vector<double> u;
+  for (int i = 0; i < 1000; ++i) {
+    u.push_back(i % 50 == 0 ? random.uniform(0, 20) : 0.02 * i);
+  }
+  return u;
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("many parameters give what each gives, on any number of threads", Spline,
+                   cumulative, rotation_vector) {
+  const auto s = some_spline<Spline>();
+  const auto u = many_parameters();
+  for (const duet::execution how : {duet::one_core, duet::execution{3}, duet::all_cores}) {
+    std::vector<pose_type> poses(u.size());
+    std::vector<duet::motion<screw>> motions(u.size());
+    duet::evaluate(s, u, poses, how);
+    duet::evaluate_motion(s, u, duet::frame::body, motions, how);
+    bool are_same = true;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const auto m = s.motion(u[i], duet::frame::body);
+      are_same = are_same && poses[i] == s(u[i]) && motions[i].value == m.value &&
+                 motions[i].velocity == m.velocity && motions[i].jerk == m.jerk;
+    }
+    CHECK(are_same);
+  }
+}
+
+TEST_CASE("bad sizes and parameters are named") {
+  const auto s = some_spline<cumulative>();
+  const auto message = [&](std::vector<double> u, std::size_t room, duet::execution how) {
+    std::vector<pose_type> out(room);
+    try {
+      duet::evaluate(s, u, out, how);
+    } catch (const duet::invalid_input& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  CHECK(message({0, 1}, 3, duet::one_core) ==
+        "duet: evaluate: 2 parameters, but room for 3 results");
+  auto u = many_parameters();
+  u[700] = 99;
+  u[900] = -1;
+  for (const duet::execution how : {duet::one_core, duet::execution{4}}) {
+    CHECK(message(u, u.size(), how)
+              .starts_with("duet: row 700: spline evaluated at 99, outside its domain [0, "));
+  }
+}
+
+} // namespace test_spline_evaluate
