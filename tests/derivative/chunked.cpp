@@ -77,6 +77,24 @@ TEST_CASE("any chunk gives the same gradient, in as many passes as it takes") {
   check_gradient<64>(63);
 }
 
+TEST_CASE("a size known at compile time is divided into passes of equal size") {
+  const Eigen::Matrix<double, 100, 1> x = point(100);
+  Eigen::VectorXd g(100);
+  int evaluations = 0;
+  const auto counted = [&](const auto& v) {
+    using D = typename std::decay_t<decltype(v)>::value_type;
+    CHECK(D().size() == 34);
+    ++evaluations;
+    return chain(v);
+  };
+  CHECK(gradient_into(counted, x, g) == chain(x));
+  CHECK(evaluations == 3);
+  CHECK(g == duet::gradient(chain, Eigen::VectorXd(x)).gradient);
+  for (Eigen::Index i = 0; i < 100; ++i) {
+    CHECK(std::abs(g[i] - slope_of_chain(x, std::size_t(i))) <= 1e-15 * 8);
+  }
+}
+
 TEST_CASE("a fixed size, an array, and a part of a larger vector") {
   const Eigen::Matrix<double, 50, 1> x = point(50);
   Eigen::VectorXd results = Eigen::VectorXd::Constant(60, -1);

@@ -57,7 +57,7 @@ template <class Tag = void, class F, VectorLike X>
   static_assert(n > 0 && n <= detail::single_pass_limit,
                 "duet: hessian needs a vector of at most 32 components, known at compile time");
   using tag = detail::tag_for<Tag, F>;
-  const auto y = detail::evaluated(f(detail::seeded<second_dual<T, n, tag>, n>(x, 0)));
+  const auto y = detail::evaluated(f(detail::seeded<second_dual<T, n, tag>>(x)));
   static_assert(Scalar<std::remove_const_t<decltype(y)>>,
                 "duet: hessian needs a function that returns a scalar");
   using S = decltype(detail::part<tag>(y, 0));

@@ -1,8 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/derivative/structure.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/dual/partials.hpp>
 
 #include <Eigen/Core>
 
@@ -52,19 +54,27 @@ struct vector_argument<std::array<T, N>> {
   }
 };
 
-/// Up to this many components are differentiated in one pass; more, and vectors whose size is known
-/// at run time, in passes of `chunk` components. Measured: longer rows leave the registers.
+/// Up to this many components are differentiated in one pass.
 inline constexpr int single_pass_limit = 32;
-inline constexpr int chunk = 8;
+/// More of them in as few passes of at most this many as it takes. Measured: each pass computes all
+/// values anew, but longer rows cost more per partial.
+inline constexpr int pass_limit = 36;
+/// A pass over a vector whose size is known at run time only: a short one pays for all of it.
+inline constexpr int chunk = 16;
+
+/// Passes of equal size.
+[[nodiscard]] constexpr int balanced_chunk(int size) {
+  const int passes = std::max(1, (size + pass_limit - 1) / pass_limit);
+  return std::max(1, (size + passes - 1) / passes);
+}
 
 /// Partials per pass over the components of an X; `Chosen` by the caller, or 0.
 template <class X, int Chosen = 0>
-inline constexpr int partials_per_pass =
-    Chosen > 0 ? Chosen
-    : vector_argument<X>::size_at_compile_time > 0 &&
-            vector_argument<X>::size_at_compile_time <= single_pass_limit
-        ? vector_argument<X>::size_at_compile_time
-        : chunk;
+inline constexpr int
+    partials_per_pass = Chosen > 0 ? Chosen
+                        : vector_argument<X>::size_at_compile_time == Eigen::Dynamic
+                            ? chunk
+                            : balanced_chunk(vector_argument<X>::size_at_compile_time);
 
 /// x over D, every component a constant.
 template <class D, class X>
@@ -77,37 +87,41 @@ template <class D, class X>
   return result;
 }
 
-/// Makes the components [first, first + N) variables.
-template <class D, int N, class Seeded, class X>
-void seed(Seeded& variables, const X& x, Eigen::Index first) {
+/// x, of a size known at compile time, over D, every component a variable.
+template <class D, class X>
+[[nodiscard]] auto seeded(const X& x) {
   using argument = vector_argument<X>;
-  for (Eigen::Index i = first; i < std::min<Eigen::Index>(first + N, argument::size(x)); ++i) {
-    variables[std::size_t(i)] = D::variable(argument::get(x, i), int(i - first));
-  }
-}
-
-/// x with the components [first, first + N) as variables.
-template <class D, int N, class X>
-[[nodiscard]] auto seeded(const X& x, Eigen::Index first) {
-  auto result = constants<D>(x);
-  seed<D, N>(result, x, first);
+  auto result = argument::template make<D>(x);
+  unrolled<argument::size_at_compile_time>([&](int i) DUET_INLINE_LAMBDA {
+    result[std::size_t(i)] = D::variable(argument::get(x, i), i);
+  });
   return result;
 }
 
 /// Calls visit(f(x seeded from `first`), first, count) for every pass over the components of x.
+/// From one pass to the next only the partials change that are not zero.
 template <class Tag, int Chosen = 0, class F, class X, class Visit>
 void for_each_pass(F&& f, const X& x, Visit&& visit) {
   using argument = vector_argument<X>;
   constexpr int n = partials_per_pass<X, Chosen>;
-  using D = dual<typename argument::scalar, n, Tag>;
+  using T = typename argument::scalar;
+  using D = dual<T, n, Tag>;
   const Eigen::Index size = argument::size(x);
-  auto variables = constants<D>(x);
-  for (Eigen::Index first = 0; first < size; first += n) {
-    seed<D, n>(variables, x, first);
-    const Eigen::Index count = std::min<Eigen::Index>(n, size - first);
-    visit(evaluated(f(std::as_const(variables))), first, count);
-    for (Eigen::Index i = first; i < first + count; ++i) {
-      variables[std::size_t(i)] = D(argument::get(x, i));
+  if constexpr (0 < argument::size_at_compile_time && argument::size_at_compile_time <= n) {
+    const auto variables = seeded<D>(x);
+    visit(evaluated(f(variables)), 0, size);
+  } else {
+    auto variables = constants<D>(x);
+    for (Eigen::Index first = 0; first < size; first += n) {
+      const Eigen::Index count = std::min<Eigen::Index>(n, size - first);
+      const auto set_diagonal = [&](const T& slope) {
+        for (Eigen::Index i = 0; i < count; ++i) {
+          variables[std::size_t(first + i)].set_partial(int(i), slope);
+        }
+      };
+      set_diagonal(T(1));
+      visit(evaluated(f(std::as_const(variables))), first, count);
+      set_diagonal(T(0));
     }
   }
 }

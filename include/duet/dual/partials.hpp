@@ -29,8 +29,9 @@ namespace duet::detail {
   return p;
 }
 
-/// Partials are unrolled up to this many packets or elements; a longer row is a loop.
-inline constexpr int unroll_limit = 16;
+/// Partials are unrolled up to this many packets or elements; a longer row is a loop, whose every
+/// intermediate result goes through memory.
+inline constexpr int unroll_limit = 64;
 
 template <int Count, class F>
 DUET_ALWAYS_INLINE constexpr void unrolled(F&& f) {
