@@ -3,6 +3,7 @@
 #include "support/random.hpp"
 
 #include <duet/dual/dual.hpp>
+#include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/block_tridiagonal.hpp>
 
 #include <Eigen/Dense>
