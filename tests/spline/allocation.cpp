@@ -7,6 +7,7 @@
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/printed.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
 
@@ -39,6 +40,15 @@ TEST_CASE("evaluation allocates nothing") {
     poses.push_back(duet::pose(q, duet::vector3<double>(1, 2, 3)));
   }
   const duet::cumulative_bspline<duet::screw_dual<double>> p(knots, poses);
+  // Curves of rotation vectors over the same domain.
+  const std::vector<double> ends{parameters.front(), parameters.back()};
+  const duet::vector3<double> w(0.1, 0.2, -0.3);
+  const duet::rotation_vector_spline<double, 6> r(ends, {s.controls()[0], s.controls()[1]},
+                                                  {{w, w}, {w, w}});
+  using dual_vector = duet::dual_vector<double>;
+  const dual_vector v = duet::make_dual_vector(w, w);
+  const duet::rotation_vector_spline<duet::screw_dual<double>> rp(ends, {poses[0], poses[1]},
+                                                                  {{v}, {v}});
   duet::span_hint hint;
   double sum = 0;
   const std::size_t before = allocations;
@@ -49,6 +59,8 @@ TEST_CASE("evaluation allocates nothing") {
     sum += s.derivatives(u)[3].z();
     sum += s.motion(u, duet::frame::body, hint).jerk[0];
     sum += p.motion(u, duet::frame::hybrid).acceleration[0];
+    sum += r(u).x() + r.motion(u, duet::frame::spatial).jerk[2] + r.derivatives(u)[3].x();
+    sum += rp.motion(u, duet::frame::hybrid, hint).jerk[5];
     sum += duet::printed_derivative(s, u).literal_second.x();
     sum += s(duet::dual<double>::variable(u)).w().epsilon();
     sum += duet::derivatives<2>([&](const auto& x) { return s(x); }, u)[2].y();
