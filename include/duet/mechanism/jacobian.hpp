@@ -133,4 +133,12 @@ template <class C, VectorLike X, FrameConstant Frame, class... At>
   }
 }
 
+template <class C, VectorLike X>
+  requires SerialChain<std::remove_cvref_t<C>>
+void jacobian(C&&, const X&) {
+  static_assert(!SerialChain<std::remove_cvref_t<C>>,
+                "duet: a chain has three Jacobians, say which: jacobian(chain, theta, "
+                "frame::hybrid)");
+}
+
 } // namespace duet

@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/quaternion/quaternion.hpp>
 
 #include <type_traits>
 
