@@ -186,7 +186,7 @@ TEST_CASE("P3, P4: the commuting sums err as the steps of the controls shrink, o
 }
 
 TEST_CASE("printed formulas outside the domain") {
-  const cumulative_bspline<double> s(std::vector<double>{0, 0, 0, 0, 1, 1, 1, 1},
+  const cumulative_bspline<double> s({0, 0, 0, 0, 1, 1, 1, 1},
                                      duet_test::random_orientations(4, 1));
   CHECK_THROWS_AS(static_cast<void>(printed_derivative(s, 1.5)), duet::invalid_input);
 }

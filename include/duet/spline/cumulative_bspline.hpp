@@ -59,6 +59,9 @@ public:
     }
   }
 
+  cumulative_bspline(std::vector<real_type> knots, std::vector<quaternion<T>> controls)
+      : cumulative_bspline(basis_type(std::move(knots)), std::move(controls)) {}
+
   /// The same with signs as they are and with increments of any length: how to go the long way
   /// round, several times too, and how to make a copy from another curve's `controls()` and
   /// `increments()`. ω_0 does not count.
