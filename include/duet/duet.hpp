@@ -60,6 +60,7 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>
 #include <duet/spline/fit.hpp>
+#include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/look_up_table.hpp>

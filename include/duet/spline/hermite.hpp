@@ -1,0 +1,57 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/interpolation_equations.hpp>
+#include <duet/spline/orientations.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
+
+#include <array>
+#include <cstddef>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Curves through rows whose rates are known.
+
+namespace duet {
+
+/// The C¹ curve through rotations or poses with given velocities at each: Q(u) = Q_i exp(x_i(u −
+/// u_i)) with cubic x_i. Nothing is solved for. Against smooth motion it is fourth-order accurate
+/// in value, third in velocity.
+///
+/// \param velocities  angular velocities, of poses twists [v; ω], per unit of the parameter
+/// \param frame       theirs: `frame::spatial` or `frame::body`
+/// \throws invalid_row for a row that no curve can go through, and for a velocity that is not
+/// finite; invalid_input for fewer than two rows or counts that differ
+template <class T, class V, class Frame>
+[[nodiscard]] rotation_vector_spline<T, 4>
+hermite_spline(const std::vector<real_type_t<T>>& parameters, std::vector<quaternion<T>> elements,
+               const std::vector<V>& velocities, Frame frame) {
+  if (velocities.size() != elements.size()) {
+    std::ostringstream message;
+    message << "duet: hermite_spline: " << elements.size() << " elements and " << velocities.size()
+            << " velocities";
+    throw invalid_input(message.str());
+  }
+  elements = aligned_orientations(std::move(elements));
+  std::vector<std::array<vector3<T>, 1>> rates;
+  rates.reserve(velocities.size());
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    if (!velocities[i].allFinite()) {
+      throw invalid_row(i, "the velocity is not finite");
+    }
+    const vector3<T> half = detail::half_rate<T>(velocities[i]);
+    if constexpr (detail::is_spatial(frame)) {
+      rates.push_back({rotate(conj(elements[i]), half)});
+    } else {
+      rates.push_back({half});
+    }
+  }
+  return {parameters, std::move(elements), rates};
+}
+
+} // namespace duet
