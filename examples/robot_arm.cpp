@@ -6,8 +6,6 @@
 
 #include <duet/duet.hpp>
 
-#include <boost/program_options.hpp>
-
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -19,7 +17,7 @@
 namespace {
 
 using namespace duet;
-namespace po = boost::program_options;
+namespace po = example::po;
 
 struct options {
   std::string robot, urdf, base, tip, joints;
@@ -113,30 +111,26 @@ void report(const chain& arm, const options& given) {
 
 int main(int argc, char** argv) {
   try {
-    options given;
-    po::options_description described("A robot arm at given joint coordinates. Options");
-    const auto text = [](std::string& value) { return po::value(&value); };
-    auto add = described.add_options();
-    add("help", "print this");
-    add("robot", text(given.robot)->default_value("panda"), "panda, iiwa14, ur5e or baxter_left");
-    add("urdf", text(given.urdf), "a robot description instead, with --base and --tip");
-    add("base", text(given.base), "its link to start from");
-    add("tip", text(given.tip), "its link to end with");
-    add("joints", text(given.joints),
-        "coordinates, as 0,0.5,-1: radians or metres; nothing: the "
-        "middle of the limits");
-    po::variables_map values;
-    po::store(
-        po::command_line_parser(argc, argv)
-            .options(described)
-            .style(po::command_line_style::default_style & ~po::command_line_style::allow_guessing)
-            .run(),
-        values);
-    po::notify(values);
-    if (values.count("help") != 0) {
-      std::cout << described;
+    po::options_description description("A robot arm at given joint coordinates. Options");
+    auto add = description.add_options();
+    const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
+    add("help", "print this and stop");
+    add("robot", text("NAME"), "panda, iiwa14, ur5e or baxter_left (default: panda)");
+    add("urdf", text("FILE"), "a robot description instead, with --base and --tip");
+    add("base", text("LINK"), "its link to start from");
+    add("tip", text("LINK"), "its link to end with");
+    add("joints", text("X,X,..."),
+        "coordinates, as 0,0.5,-1: radians or metres (default: the middle of the limits)");
+    const auto line = example::command_line::parse(argc, argv, description);
+    if (!line) {
       return 0;
     }
+    options given;
+    given.robot = line->text("robot").value_or("panda");
+    given.urdf = line->text("urdf").value_or("");
+    given.base = line->text("base").value_or("");
+    given.tip = line->text("tip").value_or("");
+    given.joints = line->text("joints").value_or("");
     report(arm_of(given), given);
     return 0;
   } catch (const std::exception& error) {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "../support/command_line.hpp"
 #include "../support/csv.hpp"
 
 #include <duet/core/errors.hpp>
@@ -8,11 +9,8 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/norm.hpp>
 
-#include <boost/program_options.hpp>
-
 #include <cmath>
 #include <cstddef>
-#include <iostream>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -41,7 +39,7 @@ inline pose_type parse_pose(const std::vector<double>& x) {
   if (x.size() == 7) {
     const duet::quaternion<double> q(x[3], x[4], x[5], x[6]);
     const double length = norm(q);
-    if (!(std::abs(length - 1) <= 1e-3)) {
+    if (!(std::abs(length - 1) <= duet::unit_norm_tolerance)) {
       throw duet::invalid_input("the quaternion has norm " + duet::to_text(length) + ", not 1");
     }
     return duet::pose(normalized(q), duet::vector3<double>(x[0], x[1], x[2]));
@@ -108,7 +106,7 @@ inline std::pair<pose_type, pose_type> poses(const options& given) {
 /// Nothing where only help was asked for.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = boost::program_options;
+  namespace po = example::po;
   po::options_description description(
       "The screw motion from one pose to another, with its axis, angle and pitch in words, poses "
       "and\nvelocities along it (path.csv) and a picture of frames on the way.\n"
@@ -123,33 +121,17 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       "rows of the table less one (default: 60)")("long-way", "turn the long way round")(
       "out", po::value<std::string>()->value_name("DIR"),
       "folder for the table and the picture (default: screw_motion_out)");
-  po::variables_map given;
-  po::store(
-      po::command_line_parser(argc, argv)
-          .options(description)
-          .style(po::command_line_style::default_style & ~po::command_line_style::allow_guessing)
-          .positional(po::positional_options_description())
-          .run(),
-      given);
-  if (given.count("help") != 0) {
-    std::cout << description;
+  const auto given = example::command_line::parse(argc, argv, description);
+  if (!given) {
     return std::nullopt;
   }
   options result;
-  const auto text = [&](const char* name) -> std::optional<std::string> {
-    if (given.count(name) == 0) {
-      return std::nullopt;
-    }
-    return given[name].as<std::string>();
-  };
-  result.from = text("from");
-  result.to = text("to");
-  result.file = text("file");
-  result.out = text("out").value_or(result.out);
-  result.is_long_way = given.count("long-way") != 0;
-  if (given.count("steps") != 0) {
-    result.steps = given["steps"].as<int>();
-  }
+  result.from = given->text("from");
+  result.to = given->text("to");
+  result.file = given->text("file");
+  result.out = given->text("out").value_or(result.out);
+  result.is_long_way = given->has("long-way");
+  result.steps = given->get<int>("steps").value_or(result.steps);
   if (result.from.has_value() != result.to.has_value()) {
     throw std::runtime_error("--from and --to belong together");
   }

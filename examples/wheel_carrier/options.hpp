@@ -3,15 +3,14 @@
 
 #include "carrier.hpp"
 
-#include <duet/core/number_text.hpp>
+#include "../support/command_line.hpp"
 
-#include <boost/program_options.hpp>
+#include <duet/core/number_text.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <initializer_list>
-#include <iostream>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -58,7 +57,7 @@ inline end_rates parse_end_rates(const std::string& text) {
 /// Nothing where only help was asked for.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = boost::program_options;
+  namespace po = example::po;
   po::options_description description(
       "Interpolates the orientations of a car's wheel carrier by a cumulative B-spline and "
       "compares its\n"
@@ -84,34 +83,20 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       "angular velocity per unit of u at the first and the last row (default: the carrier's)")(
       "out", po::value<std::string>()->value_name("DIR"),
       "folder for tables and pictures (default: wheel_carrier_out)");
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv)
-                .options(description)
-                .positional(po::positional_options_description())
-                .run(),
-            given);
-  if (given.count("help") != 0) {
-    std::cout << description;
+  const auto given = example::command_line::parse(argc, argv, description);
+  if (!given) {
     return std::nullopt;
   }
   options result;
-  const auto text = [&](const char* name) -> std::optional<std::string> {
-    if (given.count(name) == 0) {
-      return std::nullopt;
-    }
-    return given[name].as<std::string>();
-  };
-  result.table = text("table");
-  result.hardpoints = text("hardpoints");
-  result.ends = text("ends");
-  result.out = text("out").value_or(result.out);
-  if (given.count("rows") != 0) {
-    result.rows = given["rows"].as<int>();
-  }
-  if (const auto rates = text("end-rates")) {
+  result.table = given->text("table");
+  result.hardpoints = given->text("hardpoints");
+  result.ends = given->text("ends");
+  result.out = given->text("out").value_or(result.out);
+  result.rows = given->get<int>("rows");
+  if (const auto rates = given->text("end-rates")) {
     result.rates = parse_end_rates(*rates);
   }
-  result.spline = text("spline").value_or(result.spline);
+  result.spline = given->text("spline").value_or(result.spline);
   const auto is_one_of = [](const std::string& name, std::initializer_list<const char*> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };

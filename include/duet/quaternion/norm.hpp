@@ -14,6 +14,10 @@
 /// Norm, normalisation and inverse (N3), safe from overflow and underflow.
 
 namespace duet {
+
+/// How far from 1 the norm of a given unit quaternion may be: tables are printed with few digits.
+inline constexpr double unit_norm_tolerance = 1e-3;
+
 namespace detail {
 
 /// The real numbers that a quaternion's components are.

@@ -66,9 +66,6 @@ void check_rows(const std::vector<R>& parameters, std::size_t elements, std::siz
 
 } // namespace detail
 
-/// How far from 1 the norm of a given unit quaternion may be: tables are printed with few digits.
-inline constexpr double unit_norm_tolerance = 1e-3;
-
 /// The same quaternions, normalised.
 ///
 /// \throws invalid_row for a quaternion that is not finite or whose norm is not 1
