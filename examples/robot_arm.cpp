@@ -4,6 +4,8 @@
 // it is from a singularity, and whether the closed form of its Jacobian agrees with automatic
 // differentiation. The arm is one of duet's or read from a URDF file.
 
+#include "support/command_line.hpp"
+
 #include <duet/duet.hpp>
 
 #include <cstdio>
