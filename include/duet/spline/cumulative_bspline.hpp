@@ -3,14 +3,13 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/derivative/frame.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/basis.hpp>
-#include <duet/spline/location.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/piecewise_curve.hpp>
 
 #include <array>
 #include <concepts>
@@ -36,7 +35,7 @@ namespace duet {
 /// computed once; evaluation uses no heap. Rates are with respect to u: rad per unit of u, of poses
 /// twists [v; ω] per unit of u.
 template <class T, int Order = 4>
-class cumulative_bspline {
+class cumulative_bspline : public piecewise_curve<cumulative_bspline<T, Order>, real_type_t<T>> {
 public:
   using scalar_type = T;
   using real_type = real_type_t<T>;
@@ -88,52 +87,8 @@ public:
   /// ω_i with exp(ω_i) = q_{i−1}⁻¹ q_i, half angles; ω_0 is zero.
   [[nodiscard]] const std::vector<vector3<T>>& increments() const { return increments_; }
 
-  /// What the curve does outside its domain: `outside::error` until told otherwise.
-  [[nodiscard]] outside outside_domain() const { return outside_; }
-  void set_outside_domain(outside way) { outside_ = way; }
-
-  /// Q(u).
-  /// \throws invalid_input outside the domain, unless told otherwise
-  template <class S>
-  [[nodiscard]] auto operator()(const S& u) const {
-    return evaluate<0>(u, no_hint{}).value;
-  }
-  template <class S>
-  [[nodiscard]] auto operator()(const S& u, span_hint& hint) const {
-    return evaluate<0>(u, hint).value;
-  }
-
-  /// Value, velocity, acceleration and jerk with respect to u, in `frame::body` or
-  /// `frame::spatial`; of poses as twists [v; ω] and their derivatives, and in `frame::hybrid` with
-  /// the derivatives of translation(Q) as linear parts.
-  /// \throws invalid_input outside the domain, unless told otherwise
-  template <class S, class Frame>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame) const {
-    return detail::motion_of(evaluate<3>(u, no_hint{}), frame);
-  }
-  template <class S, class Frame>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame, span_hint& hint) const {
-    return detail::motion_of(evaluate<3>(u, hint), frame);
-  }
-
-  /// Q, Q′ = Q w, Q″ = Q (a − |w|²) and Q‴ = Q (j − |w|² w + w × a − 3 w·a), with halved rates in
-  /// body axes (P3, P4 in their true form).
-  /// \throws invalid_input outside the domain, unless told otherwise
-  template <class S>
-  [[nodiscard]] auto derivatives(const S& u) const {
-    const auto m = evaluate<3>(u, no_hint{});
-    using Q = std::decay_t<decltype(m.value)>;
-    using D = typename Q::scalar_type;
-    const auto& w = m.velocity;
-    const auto& a = m.acceleration;
-    const D square = w.squaredNorm();
-    const vector3<D> third = m.jerk - w * square + detail::cross(w, a);
-    return std::array<Q, 4>{m.value, m.value * Q(D(0), w), m.value * Q(-square, a),
-                            m.value * Q(-3 * w.dot(a), third)};
-  }
-
 private:
-  struct no_hint {};
+  friend class piecewise_curve<cumulative_bspline, real_type_t<T>>;
 
   void check_count(const char* what, std::size_t count) const {
     if (count != basis_.size()) {
@@ -144,35 +99,10 @@ private:
     }
   }
 
-  template <int Rates, class S, class Hint>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const S& parameter, Hint&& hint) const {
-    using P = std::conditional_t<Arithmetic<S>, real_type, S>;
-    P u(parameter);
-    const auto value = static_cast<real_type>(innermost(u));
-    std::size_t span = 0;
-    bool is_at_rest = false;
-    if (!basis_.contains(value)) [[unlikely]] {
-      span = span_beside(value);
-      is_at_rest = outside_ == outside::clamp;
-      if (is_at_rest) {
-        u = P(value < basis_.front() ? basis_.front() : basis_.back());
-      }
-    } else if constexpr (std::is_same_v<std::decay_t<Hint>, span_hint>) {
-      span = basis_.span_of(value, hint);
-    } else {
-      span = basis_.span_of(value);
-    }
-    auto m = evaluate_on<Rates>(span, u);
-    if (Rates > 0 && is_at_rest) [[unlikely]] {
-      m.velocity.setZero();
-      m.acceleration.setZero();
-      m.jerk.setZero();
-    }
-    return m;
-  }
+  [[nodiscard]] const basis_type& spans() const { return basis_; }
 
   template <int Rates, class P>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate_on(std::size_t span, const P& u) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE auto on_span(std::size_t span, const P& u) const {
     using D = promote_t<T, P>;
     const std::size_t first = basis_.first_function(span);
     const auto weights = basis_.template weights<Rates>(span, u);
@@ -189,20 +119,9 @@ private:
     }
   }
 
-  /// The first or last span, for what is outside the domain.
-  /// \throws invalid_input where there is no going on
-  [[nodiscard, gnu::cold]] std::size_t span_beside(const real_type& u) const {
-    const bool is_usable = outside_ == outside::clamp ? u == u : u - u == 0;
-    if (outside_ == outside::error || !is_usable) {
-      return basis_.span_of(u); // throws
-    }
-    return u < basis_.front() ? 0 : basis_.breaks().size() - 2;
-  }
-
   basis_type basis_;
   std::vector<quaternion<T>> controls_;
   std::vector<vector3<T>> increments_;
-  outside outside_ = outside::error;
 };
 
 } // namespace duet

@@ -3,14 +3,13 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/derivative/frame.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_rates.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/knots.hpp>
-#include <duet/spline/location.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/piecewise_curve.hpp>
 #include <duet/spline/rotation_vector_segment.hpp>
 
 #include <algorithm>
@@ -38,7 +37,8 @@ namespace duet {
 /// `interpolate` finds the rates that make the curve C² or, of order 6, C⁴. Given rates make it a
 /// Hermite curve, C¹ or C². Rates are with respect to u: rad per unit of u.
 template <class T, int Order = 4>
-class rotation_vector_spline {
+class rotation_vector_spline
+    : public piecewise_curve<rotation_vector_spline<T, Order>, real_type_t<T>> {
   using segment = detail::rotation_vector_segment<T, Order>;
 
 public:
@@ -70,52 +70,9 @@ public:
   /// Q_0 … Q_n
   [[nodiscard]] const std::vector<quaternion<T>>& elements() const { return elements_; }
 
-  /// What the curve does outside its domain: `outside::error` until told otherwise.
-  [[nodiscard]] outside outside_domain() const { return outside_; }
-  void set_outside_domain(outside way) { outside_ = way; }
-
-  /// Q(u).
-  /// \throws invalid_input outside the domain, unless told otherwise
-  template <class S>
-  [[nodiscard]] auto operator()(const S& u) const {
-    return evaluate<0>(u, no_hint{}).value;
-  }
-  template <class S>
-  [[nodiscard]] auto operator()(const S& u, span_hint& hint) const {
-    return evaluate<0>(u, hint).value;
-  }
-
-  /// Value, velocity, acceleration and jerk with respect to u, in `frame::body` or
-  /// `frame::spatial`; of poses as twists [v; ω] and their derivatives, and in `frame::hybrid` with
-  /// the derivatives of translation(Q) as linear parts.
-  /// \throws invalid_input outside the domain, unless told otherwise
-  template <class S, class Frame>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame) const {
-    return detail::motion_of(evaluate<3>(u, no_hint{}), frame);
-  }
-  template <class S, class Frame>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame, span_hint& hint) const {
-    return detail::motion_of(evaluate<3>(u, hint), frame);
-  }
-
-  /// Q, Q′ = Q w, Q″ = Q (w′ − |w|²) and Q‴ = Q (w″ − |w|² w + w × w′ − 3 w·w′), Q w = Q′.
-  /// \throws invalid_input outside the domain, unless told otherwise
-  template <class S>
-  [[nodiscard]] auto derivatives(const S& u) const {
-    const auto m = evaluate<3>(u, no_hint{});
-    using Q = std::decay_t<decltype(m.value)>;
-    using D = typename Q::scalar_type;
-    const auto& w = m.velocity;
-    const auto& a = m.acceleration;
-    const D square = w.squaredNorm();
-    const vector3<D> third = m.jerk - w * square + detail::cross(w, a);
-    return std::array<Q, 4>{m.value, m.value * Q(D(0), w), m.value * Q(-square, a),
-                            m.value * Q(-3 * w.dot(a), third)};
-  }
-
 private:
   using polynomial = std::array<vector3<T>, std::size_t(Order)>;
-  struct no_hint {};
+  friend class piecewise_curve<rotation_vector_spline, real_type_t<T>>;
 
   template <class Elements, class Rates>
   static const std::vector<real_type>& checked(const std::vector<real_type>& parameters,
@@ -130,26 +87,13 @@ private:
     return parameters;
   }
 
-  template <std::size_t Rates, class S, class Hint>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const S& parameter, Hint&& hint) const {
-    using P = std::conditional_t<Arithmetic<S>, real_type, S>;
-    const P u(parameter);
-    const auto value = static_cast<real_type>(innermost(u));
-    if (!spans_.contains(value)) [[unlikely]] {
-      return evaluate_outside<Rates>(u, value);
-    }
-    if constexpr (std::is_same_v<std::decay_t<Hint>, span_hint>) {
-      return evaluate_on<Rates>(spans_.span_of(value, hint), u);
-    } else {
-      return evaluate_on<Rates>(spans_.span_of(value), u);
-    }
-  }
+  [[nodiscard]] const bspline_basis<2, real_type>& spans() const { return spans_; }
 
   /// Q, w, w′, w″.
-  template <std::size_t Rates, class P>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate_on(std::size_t i, const P& u) const {
+  template <int Rates, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto on_span(std::size_t i, const P& u) const {
     using D = promote_t<T, P>;
-    const auto x = detail::taylor_shift<Rates + 1>(pieces_[i], P(u - knots()[i]));
+    const auto x = detail::taylor_shift<std::size_t(Rates) + 1>(pieces_[i], P(u - knots()[i]));
     detail::half_motion<D> m{elements_[i] * duet::exp(x[0]), {}, {}, {}};
     if constexpr (Rates > 0) {
       const detail::jacobian_coefficients<Rates, D> jacobian(detail::inner_product(x[0], x[0]));
@@ -167,29 +111,9 @@ private:
     return m;
   }
 
-  template <std::size_t Rates, class P>
-  [[nodiscard, gnu::cold, gnu::noinline]] auto evaluate_outside(const P& u,
-                                                                const real_type& value) const {
-    const bool is_before = value < spans_.front();
-    const std::size_t i = is_before ? 0 : pieces_.size() - 1;
-    const bool is_usable = outside_ == outside::extrapolate ? value - value == 0 : value == value;
-    if (outside_ == outside::error || !is_usable) {
-      static_cast<void>(spans_.span_of(value));
-    }
-    if (outside_ == outside::extrapolate) {
-      return evaluate_on<Rates>(i, u);
-    }
-    auto m = evaluate_on<Rates>(i, P(is_before ? spans_.front() : spans_.back()));
-    m.velocity.setZero();
-    m.acceleration.setZero();
-    m.jerk.setZero();
-    return m;
-  }
-
   bspline_basis<2, real_type> spans_; ///< broken lines over the same knots: it is here to search
   std::vector<quaternion<T>> elements_;
   std::vector<polynomial> pieces_;
-  outside outside_ = outside::error;
 };
 
 } // namespace duet

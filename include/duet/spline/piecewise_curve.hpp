@@ -1,0 +1,121 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/location.hpp>
+#include <duet/spline/motion.hpp>
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+
+/// \file
+/// What curves made of pieces have in common: how they are evaluated.
+
+namespace duet {
+
+/// A curve Q(u) over the spans of a basis.
+///
+/// \tparam Curve  what derives from it, with `spans()`, the basis, and `on_span<Rates>(span, u)`,
+///                Q with so many of its rates in body axes, halved
+/// \tparam R      the parameter's real type
+template <class Curve, class R>
+class piecewise_curve {
+public:
+  /// What the curve does outside its domain: `outside::error` until told otherwise.
+  [[nodiscard]] outside outside_domain() const { return outside_; }
+  void set_outside_domain(outside way) { outside_ = way; }
+
+  /// Q(u).
+  /// \throws invalid_input outside the domain, unless told otherwise
+  template <class S>
+  [[nodiscard]] auto operator()(const S& u) const {
+    return evaluate<0>(u, no_hint{}).value;
+  }
+  template <class S>
+  [[nodiscard]] auto operator()(const S& u, span_hint& hint) const {
+    return evaluate<0>(u, hint).value;
+  }
+
+  /// Value, velocity, acceleration and jerk with respect to u, in `frame::body` or
+  /// `frame::spatial`; of poses as twists [v; ω] and their derivatives, and in `frame::hybrid` with
+  /// the derivatives of translation(Q) as linear parts.
+  /// \throws invalid_input outside the domain, unless told otherwise
+  template <class S, class Frame>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame) const {
+    return detail::motion_of(evaluate<3>(u, no_hint{}), frame);
+  }
+  template <class S, class Frame>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame, span_hint& hint) const {
+    return detail::motion_of(evaluate<3>(u, hint), frame);
+  }
+
+  /// Q, Q′ = Q w, Q″ = Q (a − |w|²) and Q‴ = Q (j − |w|² w + w × a − 3 w·a), with halved rates in
+  /// body axes (P3, P4 in their true form).
+  /// \throws invalid_input outside the domain, unless told otherwise
+  template <class S>
+  [[nodiscard]] auto derivatives(const S& u) const {
+    const auto m = evaluate<3>(u, no_hint{});
+    using Q = std::decay_t<decltype(m.value)>;
+    using D = typename Q::scalar_type;
+    const auto& w = m.velocity;
+    const auto& a = m.acceleration;
+    const D square = w.squaredNorm();
+    const vector3<D> third = m.jerk - w * square + detail::cross(w, a);
+    return std::array<Q, 4>{m.value, m.value * Q(D(0), w), m.value * Q(-square, a),
+                            m.value * Q(-3 * w.dot(a), third)};
+  }
+
+private:
+  friend Curve;
+  piecewise_curve() = default;
+
+  struct no_hint {};
+
+  [[nodiscard]] const Curve& curve() const { return static_cast<const Curve&>(*this); }
+
+  template <int Rates, class S, class Hint>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const S& parameter, Hint&& hint) const {
+    using P = std::conditional_t<Arithmetic<S>, R, S>;
+    P u(parameter);
+    const auto& spans = curve().spans();
+    const auto value = static_cast<R>(innermost(u));
+    std::size_t span = 0;
+    bool is_at_rest = false;
+    if (!spans.contains(value)) [[unlikely]] {
+      span = span_beside(value);
+      is_at_rest = outside_ == outside::clamp;
+      if (is_at_rest) {
+        u = P(value < spans.front() ? spans.front() : spans.back());
+      }
+    } else if constexpr (std::is_same_v<std::decay_t<Hint>, span_hint>) {
+      span = spans.span_of(value, hint);
+    } else {
+      span = spans.span_of(value);
+    }
+    auto m = curve().template on_span<Rates>(span, u);
+    if (Rates > 0 && is_at_rest) [[unlikely]] {
+      m.velocity.setZero();
+      m.acceleration.setZero();
+      m.jerk.setZero();
+    }
+    return m;
+  }
+
+  /// The first or last span, for what is outside the domain.
+  /// \throws invalid_input where there is no going on
+  [[nodiscard, gnu::cold]] std::size_t span_beside(const R& u) const {
+    const auto& spans = curve().spans();
+    const bool is_usable = outside_ == outside::clamp ? u == u : u - u == 0;
+    if (outside_ == outside::error || !is_usable) {
+      return spans.span_of(u); // throws
+    }
+    return u < spans.front() ? 0 : spans.breaks().size() - 2;
+  }
+
+  outside outside_ = outside::error;
+};
+
+} // namespace duet
