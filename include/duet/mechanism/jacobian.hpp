@@ -88,7 +88,7 @@ DUET_ALWAYS_INLINE void turn_to_body(J& m, const quaternion<S>& rotation) {
 
 /// The pose A of a frame on a chain, and its Jacobian there.
 ///
-/// \param frame_of_result  see `jacobian`
+/// \tparam Frame           see `jacobian`
 /// \param at               nothing for the tip, the number of a link, or an `attached_frame`
 template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
 [[nodiscard]] DUET_ALWAYS_INLINE auto pose_and_jacobian(const C& chain, const X& theta, Frame,
@@ -110,7 +110,7 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
 
 /// The matrix J of 6 rows with the twist [v; ω] = J θ̇ of a frame on a chain (N18, N20).
 ///
-/// \param frame_of_result  `frame::spatial`: fixed axes, v of the body point at the fixed origin,
+/// \tparam Frame           `frame::spatial`: fixed axes, v of the body point at the fixed origin,
 ///                         columns are the joints' screws; `frame::body`: axes and origin of the
 ///                         moving frame; `frame::hybrid`: fixed axes, v of the frame's origin
 /// \param at               nothing for the tip, the number of a link, or an `attached_frame`, as

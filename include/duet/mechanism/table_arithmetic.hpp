@@ -13,7 +13,7 @@
 
 /// \file
 /// Arithmetic of the constants in a mechanism's table, which the compiler can do: Eigen's vectors
-/// and the functions of <cmath> are not `constexpr`.
+/// and the functions of the standard library are not `constexpr`.
 
 namespace duet::detail {
 

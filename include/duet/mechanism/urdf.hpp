@@ -57,7 +57,7 @@ private:
 };
 
 /// The chain from one link of a robot description to another, both by their names; metres and
-/// radians. Joint limits are those of the elements <limit>.
+/// radians. Joint limits are those of the `limit` elements.
 ///
 /// \tparam Capacity  how many moving joints there may be; their number is known at run time
 /// \throws invalid_input with file and element for what cannot be read: XML, missing elements and
