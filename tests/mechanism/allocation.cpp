@@ -1,30 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "mechanism/arms.hpp"
+#include "support/allocations.hpp"
 
 #include <duet/mechanism/analytic_jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
 #include <duet/mechanism/joint_efforts.hpp>
 
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <thread>
 #include <vector>
-
-namespace {
-std::size_t allocations = 0;
-} // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* block = std::malloc(size)) {
-    return block;
-  }
-  throw std::bad_alloc();
-}
-void operator delete(void* block) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t) noexcept { std::free(block); }
 
 namespace test_mechanism_allocation {
 namespace {
@@ -50,17 +35,17 @@ TEST_CASE("evaluation allocates nothing") {
   const auto known = robots::panda();
   const serial_chain<-16> chain = robots::panda().table();
   const auto theta = duet_test::configurations(known.table(), 3).back();
-  const std::size_t before = allocations;
+  const std::size_t before = duet_test::allocations;
   double sum = everything(known, theta);
   sum += everything(known.table(), theta);
   sum += everything(chain, theta);
-  const std::size_t during = allocations - before;
+  const std::size_t during = duet_test::allocations - before;
   CHECK(during == 0);
   CHECK(sum == sum);
 
-  const std::size_t start = allocations; // the counter itself works
+  const std::size_t start = duet_test::allocations; // the counter itself works
   const std::vector<double> copy(3);
-  CHECK(allocations > start);
+  CHECK(duet_test::allocations > start);
 }
 
 TEST_CASE("one chain, several threads, identical results") {

@@ -3,6 +3,7 @@
 
 #include "support/random.hpp"
 
+#include <duet/derivative/frame.hpp>
 #include <duet/mechanism/denavit_hartenberg.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/serial_chain.hpp>
@@ -26,6 +27,13 @@ namespace duet_test {
 
 template <int N>
 using coordinates = Eigen::Matrix<double, N, 1>;
+
+template <class F>
+void for_each_frame(F&& f) {
+  f(duet::frame::spatial);
+  f(duet::frame::body);
+  f(duet::frame::hybrid);
+}
 
 /// Zero, stretched, folded, limits, tiny, then random: singular ones first.
 template <class Chain>

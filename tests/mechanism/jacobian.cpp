@@ -14,14 +14,8 @@ namespace {
 
 using namespace duet;
 using duet_test::coordinates;
+using duet_test::for_each_frame;
 using duet_test::gap;
-
-template <class F>
-void for_each_frame(F&& f) {
-  f(frame::spatial);
-  f(frame::body);
-  f(frame::hybrid);
-}
 
 } // namespace
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curves.hpp"
+#include "support/allocations.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/pose.hpp>
@@ -12,23 +13,7 @@
 #include <doctest/doctest.h>
 
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <vector>
-
-namespace {
-std::size_t allocations = 0;
-} // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* block = std::malloc(size)) {
-    return block;
-  }
-  throw std::bad_alloc();
-}
-void operator delete(void* block) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t) noexcept { std::free(block); }
 
 TEST_CASE("evaluation allocates nothing") {
   const auto knots = duet_test::knot_vectors(4)[1].knots;
@@ -51,7 +36,7 @@ TEST_CASE("evaluation allocates nothing") {
                                                                   {{v}, {v}});
   duet::span_hint hint;
   double sum = 0;
-  const std::size_t before = allocations;
+  const std::size_t before = duet_test::allocations;
   for (const double u : parameters) {
     sum += s(u).w();
     sum += s.motion(u, duet::frame::body).jerk[0];
@@ -65,12 +50,12 @@ TEST_CASE("evaluation allocates nothing") {
     sum += s(duet::dual<double>::variable(u)).w().epsilon();
     sum += duet::derivatives<2>([&](const auto& x) { return s(x); }, u)[2].y();
   }
-  const std::size_t during = allocations - before;
+  const std::size_t during = duet_test::allocations - before;
   CHECK(during == 0);
   CHECK(sum == sum);
 
-  const std::size_t start = allocations; // the counter itself works
+  const std::size_t start = duet_test::allocations; // the counter itself works
   const std::vector<double> copy = parameters;
-  CHECK(allocations > start);
+  CHECK(duet_test::allocations > start);
   CHECK(copy.size() == parameters.size());
 }

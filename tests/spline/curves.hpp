@@ -4,6 +4,7 @@
 #include "support/random.hpp"
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -77,6 +78,16 @@ struct named_knots {
   return result;
 }
 
+/// Increasing, neighbours by 0.4 to 1.2 apart.
+[[nodiscard]] inline std::vector<double> uneven_parameters(std::size_t rows) {
+  random_source random(rows + 5);
+  std::vector<double> result = {-2};
+  while (result.size() < rows) {
+    result.push_back(result.back() + random.uniform(0.4, 1.2));
+  }
+  return result;
+}
+
 /// Unit quaternions, each turned from the one before by up to `step` radians about any axis.
 [[nodiscard]] inline std::vector<duet::quaternion<double>>
 random_orientations(std::size_t count, double step, std::uint64_t seed = 1) {
@@ -103,6 +114,21 @@ turned_by(double angle, std::size_t count, std::uint64_t seed) {
     const duet::vector3<double> half(n[0] * angle / 2, n[1] * angle / 2, n[2] * angle / 2);
     result.push_back(normalized(result.back() * duet::exp(half)));
   }
+  return result;
+}
+
+/// Poses with rotations as `random_orientations`, up to 2 from the origin along each axis; the
+/// last with the other sign, which must not matter.
+[[nodiscard]] inline std::vector<duet::dual_quaternion<double>> random_poses(std::size_t count,
+                                                                             double step) {
+  random_source random(count);
+  std::vector<duet::dual_quaternion<double>> result;
+  for (const auto& q : random_orientations(count, step)) {
+    const duet::vector3<double> t{random.uniform(-2, 2), random.uniform(-2, 2),
+                                  random.uniform(-2, 2)};
+    result.push_back(duet::pose(q, t));
+  }
+  result.back() = -result.back();
   return result;
 }
 

@@ -21,15 +21,6 @@ using vector = duet::vector3<double>;
 using parameters = std::vector<double>;
 using table = std::vector<quaternion>;
 
-parameters uneven(std::size_t rows) {
-  duet_test::random_source random(rows + 5);
-  parameters result = {-2};
-  while (result.size() < rows) {
-    result.push_back(result.back() + random.uniform(0.4, 1.2));
-  }
-  return result;
-}
-
 table closed_table(std::size_t rows, double step) {
   table q = duet_test::random_orientations(rows, step, rows);
   q.back() = -q.front();
@@ -64,7 +55,7 @@ TEST_CASE("given accelerations at the ends") {
   const vector start(0.3, -0.2, 0.5), end(-1, 0, 0.4);
   for (const std::size_t rows : {2, 3, 4, 20}) {
     for (const double step : steps) {
-      const parameters u = uneven(rows);
+      const parameters u = duet_test::uneven_parameters(rows);
       const spline s = checked(u, duet_test::random_orientations(rows, step, rows),
                                duet::end_acceleration{start, end});
       CHECK((s.motion(u.front(), duet::frame::spatial).acceleration - start).norm() < 1e-12);
@@ -74,7 +65,7 @@ TEST_CASE("given accelerations at the ends") {
 }
 
 TEST_CASE("no accelerations given are natural ends") {
-  const parameters u = uneven(9);
+  const parameters u = duet_test::uneven_parameters(9);
   const table q = duet_test::random_orientations(9, 1);
   const spline a = checked(u, q, duet::natural{});
   const spline b =
@@ -89,7 +80,7 @@ TEST_CASE("not-a-knot: the second and last but one rows are passed with a contin
     for (const double step : steps) {
       CAPTURE(rows);
       CAPTURE(step);
-      const parameters u = uneven(rows);
+      const parameters u = duet_test::uneven_parameters(rows);
       const spline s =
           checked(u, duet_test::random_orientations(rows, step, rows), duet::not_a_knot{});
       CHECK(s.basis().breaks().size() == rows - 2);
@@ -122,7 +113,7 @@ TEST_CASE("periodic: the end goes on as the start, with all rates but the jerk")
     for (const double step : steps) {
       CAPTURE(rows);
       CAPTURE(step);
-      const parameters u = uneven(rows);
+      const parameters u = duet_test::uneven_parameters(rows);
       const spline s = checked(u, closed_table(rows, step), duet::periodic{});
       const auto start = s.motion(u.front(), duet::frame::spatial);
       const auto end = s.motion(u.back(), duet::frame::spatial);
@@ -136,7 +127,7 @@ TEST_CASE("periodic: the end goes on as the start, with all rates but the jerk")
 
 TEST_CASE("periodic: it does not matter where the round begins") {
   const std::size_t rows = 12, shift = 5;
-  const parameters u = uneven(rows);
+  const parameters u = duet_test::uneven_parameters(rows);
   const table q = closed_table(rows, 1.2);
   const double period = u.back() - u.front();
   parameters v;
@@ -175,7 +166,7 @@ TEST_CASE("periodic: turning on and on about one axis at constant rate") {
 TEST_CASE("the report: iterations, what is left, the largest step") {
   duet::fit_report report;
   const table q = duet_test::turned_by(1.25, 30, 3);
-  const parameters u = uneven(30);
+  const parameters u = duet_test::uneven_parameters(30);
   const spline s = duet::interpolate<spline>(u, q, duet::natural{}, report);
   CHECK(report.largest_step == doctest::Approx(1.25).epsilon(1e-14));
   CHECK(report.residual < 5e-15);
@@ -183,7 +174,8 @@ TEST_CASE("the report: iterations, what is left, the largest step") {
   CHECK(report.iterations < 60);
 
   table equal(5, q.front());
-  const spline still = duet::interpolate<spline>(uneven(5), equal, duet::not_a_knot{}, report);
+  const spline still =
+      duet::interpolate<spline>(duet_test::uneven_parameters(5), equal, duet::not_a_knot{}, report);
   CHECK(report.largest_step < 1e-15);
   CHECK(report.iterations == 1);
   CHECK(still.motion(0, duet::frame::body).velocity.norm() < 1e-15);
@@ -191,7 +183,7 @@ TEST_CASE("the report: iterations, what is left, the largest step") {
 
 TEST_CASE("parameters of any unit make the same curve") {
   const table q = duet_test::random_orientations(8, 1.3);
-  const parameters u = uneven(8);
+  const parameters u = duet_test::uneven_parameters(8);
   const auto check = [&](auto ends, auto scaled_ends, double unit) {
     parameters v;
     for (const double x : u) {

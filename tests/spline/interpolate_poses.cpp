@@ -25,26 +25,6 @@ using curve = duet::cumulative_bspline<number>;
 using rotation_curve = duet::cumulative_bspline<double>;
 using parameters = std::vector<double>;
 
-parameters uneven(std::size_t rows) {
-  duet_test::random_source random(rows + 5);
-  parameters result = {-2};
-  while (result.size() < rows) {
-    result.push_back(result.back() + random.uniform(0.4, 1.2));
-  }
-  return result;
-}
-
-std::vector<pose> random_poses(std::size_t rows, double step) {
-  duet_test::random_source random(rows);
-  std::vector<pose> result;
-  for (const auto& q : duet_test::random_orientations(rows, step)) {
-    result.push_back(
-        duet::pose(q, vector(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2))));
-  }
-  result.back() = -result.back(); // signs do not matter
-  return result;
-}
-
 std::vector<quaternion> rotations_of(const std::vector<pose>& poses) {
   std::vector<quaternion> result;
   for (const pose& a : poses) {
@@ -96,8 +76,8 @@ TEST_CASE("poses: natural ends, given twists, given accelerations") {
     for (const double step : {0.003, 0.7, 1.8}) {
       CAPTURE(rows);
       CAPTURE(step);
-      const parameters u = uneven(rows);
-      const auto poses = random_poses(rows, step);
+      const parameters u = duet_test::uneven_parameters(rows);
+      const auto poses = duet_test::random_poses(rows, step);
       const auto at_ends = [&](const curve& s) {
         return std::array{s.motion(u.front(), duet::frame::spatial),
                           s.motion(u.back(), duet::frame::spatial)};
@@ -119,8 +99,8 @@ TEST_CASE("poses: natural ends, given twists, given accelerations") {
 
 TEST_CASE("poses: not-a-knot and periodic ends") {
   for (const std::size_t rows : {4, 5, 9}) {
-    const parameters u = uneven(rows);
-    auto poses = random_poses(rows, 1.5);
+    const parameters u = duet_test::uneven_parameters(rows);
+    auto poses = duet_test::random_poses(rows, 1.5);
     const curve s = checked(u, poses, duet::not_a_knot{}, duet::not_a_knot{});
     const auto left = s.motion(std::nextafter(u[1], -9), duet::frame::body).jerk;
     CHECK((left - s.motion(u[1], duet::frame::body).jerk).norm() < 1e-10 * size_of(left));
@@ -137,7 +117,7 @@ TEST_CASE("poses: not-a-knot and periodic ends") {
 TEST_CASE("poses: pure translations follow the cubic spline of vectors") {
   const auto path = [](double u) { return vector(u * u * u - u, 2 * u * u, 1 - u); };
   const auto slope = [](double u) { return vector(3 * u * u - 1, 4 * u, -1); };
-  const parameters u = uneven(8);
+  const parameters u = duet_test::uneven_parameters(8);
   std::vector<pose> poses;
   for (const double x : u) {
     poses.push_back(duet::pose(quaternion(1), path(x)));
@@ -154,9 +134,9 @@ TEST_CASE("poses: pure translations follow the cubic spline of vectors") {
 }
 
 TEST_CASE("poses: moving the data moves the curve, and so does another body frame") {
-  const parameters u = uneven(9);
-  const auto poses = random_poses(9, 1.2);
-  const pose left = random_poses(3, 2)[1], right = random_poses(4, 2)[2];
+  const parameters u = duet_test::uneven_parameters(9);
+  const auto poses = duet_test::random_poses(9, 1.2);
+  const pose left = duet_test::random_poses(3, 2)[1], right = duet_test::random_poses(4, 2)[2];
   std::vector<pose> moved;
   for (const pose& a : poses) {
     moved.push_back(left * a * right);

@@ -28,17 +28,7 @@ using curve = duet::cumulative_bspline<number>;
 const std::vector<double> knots = duet_test::knot_vectors(4)[1].knots;
 const std::vector<double> parameters = duet_test::parameters_on(knots, 4, 1);
 
-std::vector<pose> random_poses(std::size_t count, double step) {
-  duet_test::random_source random(count);
-  std::vector<pose> result;
-  for (const auto& q : duet_test::random_orientations(count, step)) {
-    result.push_back(
-        duet::pose(q, vector(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2))));
-  }
-  return result;
-}
-
-const curve s(knots, random_poses(knots.size() - 4, 1.2));
+const curve s(knots, duet_test::random_poses(knots.size() - 4, 1.2));
 
 double distance(const pose& a, const pose& b) {
   return std::max(duet_test::distance(real_part(a), real_part(b)),
@@ -88,14 +78,14 @@ TEST_CASE("P1: of pure translations it is the B-spline of their vectors") {
 
 TEST_CASE("order 2 is the screw motion between neighbours") {
   const std::vector<double> uneven = {0, 0, 1, 3, 3.5, 3.5};
-  const duet::cumulative_bspline<number, 2> t(uneven, random_poses(4, 2));
+  const duet::cumulative_bspline<number, 2> t(uneven, duet_test::random_poses(4, 2));
   for (const double x : {0.0, 0.2, 0.7, 0.99}) {
     CHECK(distance(t(1 + 2 * x), duet::sclerp(t.controls()[1], t.controls()[2], x)) < 1e-14);
   }
 }
 
 TEST_CASE("moving all control poses moves the curve, and leaves body twists alone") {
-  const pose p = random_poses(1, 1).front();
+  const pose p = duet_test::random_poses(1, 1).front();
   std::vector<pose> moved = s.controls();
   for (pose& a : moved) {
     a = p * a;

@@ -4,6 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/dual/stumpff_sequence.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 
 #include <array>
 #include <cstddef>
@@ -14,29 +15,6 @@
 /// derivatives along the curve, to any order.
 
 namespace duet::detail {
-
-// Coefficient by coefficient, for the same reason as in spline/motion.hpp, and of two scalars.
-
-/// a b
-template <class A, class B>
-[[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>> scaled(const A& a, const vector3<B>& b) {
-  return {a * b[0], a * b[1], a * b[2]};
-}
-template <class A, class B>
-[[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>> sum_of(const vector3<A>& a,
-                                                                 const vector3<B>& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-template <class A, class B>
-[[nodiscard]] DUET_ALWAYS_INLINE promote_t<A, B> inner_product(const vector3<A>& a,
-                                                               const vector3<B>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <class A, class B>
-[[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>> cross_product(const vector3<A>& a,
-                                                                        const vector3<B>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// f(0), f(1) … f(Count−1): unrolled for plain numbers, so that indices are constants; unrolled,
 /// dual numbers would take the compiler too long.

@@ -7,6 +7,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/block_tridiagonal.hpp>
 #include <duet/spline/end_conditions.hpp>
@@ -117,10 +118,10 @@ public:
   [[nodiscard]] cubic_equations scaled(const R& lambda) const {
     cubic_equations result = *this;
     for (quaternion<T>& turn : result.turns_) {
-      turn = duet::exp(product(lambda, log_vector(turn, "interpolate")));
+      turn = duet::exp(detail::scaled(lambda, log_vector(turn, "interpolate")));
     }
     for (vector3<T>& rate : result.end_rates_) {
-      rate = product(lambda, rate);
+      rate = detail::scaled(lambda, rate);
     }
     return result;
   }
@@ -152,7 +153,7 @@ public:
     }
     const arc& a = arcs_[row];
     const auto factor = [&](std::size_t j, const R& weight) {
-      return duet::exp(product(weight, omega[j]));
+      return duet::exp(detail::scaled(weight, omega[j]));
     };
     quaternion<D> turn = factor(1, -a.from[1]) * factor(0, a.to[0] - a.from[0]) *
                          factor(1, a.to[1]) * factor(2, a.to[2]);
@@ -218,7 +219,7 @@ public:
       const arc& a = arcs_[i];
       if (a.span == result.size()) {
         const auto back = [&](std::size_t j) {
-          return duet::exp(product(R(-a.from[j]), increments[a.span + 1 + j]));
+          return duet::exp(detail::scaled(R(-a.from[j]), increments[a.span + 1 + j]));
         };
         result.push_back(normalized(data_[i] * back(1) * back(0)));
       }
@@ -246,9 +247,9 @@ private:
     const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
     const vector3<D> rate = end_rates_[at_start ? 0 : 1].template cast<D>();
     if constexpr (gives_velocity(static_cast<const Ends*>(nullptr))) {
-      return product(R(h / 3), vector3<D>(m.velocity - rate));
+      return detail::scaled(R(h / 3), vector3<D>(m.velocity - rate));
     } else {
-      return product(R(h * h / 6), vector3<D>(m.acceleration - rate));
+      return detail::scaled(R(h * h / 6), vector3<D>(m.acceleration - rate));
     }
   }
   template <class V>

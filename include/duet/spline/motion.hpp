@@ -10,6 +10,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 
 #include <Eigen/Core>
 
@@ -63,56 +64,35 @@ struct half_motion {
   vector3<T> jerk;
 };
 
-// Coefficient by coefficient: Eigen's expressions would load two coefficients at once just after
-// they were stored one by one, and the processor waits for that.
-
-template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> cross(const vector3<T>& a, const vector3<T>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// f a, f of T or below.
-template <class T, class F>
-[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> product(const F& f, const vector3<T>& a) {
-  return {f * a[0], f * a[1], f * a[2]};
-}
-
-/// a + b + b + …, n times b.
-template <int N = 1, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> sum(const vector3<T>& a, const vector3<T>& b) {
-  const real_type_t<T> n(N);
-  return {a[0] + n * b[0], a[1] + n * b[1], a[2] + n * b[2]};
-}
-
 /// One step of the recursion below, with the i-th factor e.
 template <int Rates, class T, class Weights>
 DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const quaternion<T>& e,
                                        const vector3<T>& omega, const Weights& b) {
   m.value = m.value * e;
   if constexpr (Rates >= 1) {
-    const vector3<T> first = product(b[1][i], omega);
+    const vector3<T> first = scaled(b[1][i], omega);
     if (i == 0) {
       m.velocity = first;
       if constexpr (Rates >= 2) {
-        m.acceleration = product(b[2][i], omega);
+        m.acceleration = scaled(b[2][i], omega);
       }
       if constexpr (Rates >= 3) {
-        m.jerk = product(b[3][i], omega);
+        m.jerk = scaled(b[3][i], omega);
       }
       return;
     }
     const quaternion<T> back = conj(e);
     const vector3<T> w_hat = rotate(back, m.velocity);
-    m.velocity = sum(w_hat, first);
+    m.velocity = sum_of(w_hat, first);
     if constexpr (Rates >= 2) {
       const vector3<T> a_hat = rotate(back, m.acceleration);
-      const vector3<T> second = product(b[2][i], omega);
-      const vector3<T> turn = cross(w_hat, first);
-      m.acceleration = sum<2>(sum(a_hat, second), turn);
+      const vector3<T> second = scaled(b[2][i], omega);
+      const vector3<T> turn = cross_product(w_hat, first);
+      m.acceleration = sum_of<2>(sum_of(a_hat, second), turn);
       if constexpr (Rates >= 3) {
-        m.jerk = sum(rotate(back, m.jerk), product(b[3][i], omega));
-        m.jerk = sum<2>(m.jerk, cross(w_hat, second));
-        m.jerk = sum<4>(m.jerk, sum(cross(a_hat, first), cross(turn, first)));
+        m.jerk = sum_of(rotate(back, m.jerk), scaled(b[3][i], omega));
+        m.jerk = sum_of<2>(m.jerk, cross_product(w_hat, second));
+        m.jerk = sum_of<4>(m.jerk, sum_of(cross_product(a_hat, first), cross_product(turn, first)));
       }
     }
   }
@@ -134,7 +114,7 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
                         const std::array<std::array<W, Factors>, std::size_t(Rates) + 1>& weights) {
   half_motion<T> m{start, {}, {}, {}};
   const auto factor = [&](std::size_t i) DUET_INLINE_LAMBDA {
-    return duet::exp(product(weights[0][i], increments[i]));
+    return duet::exp(scaled(weights[0][i], increments[i]));
   };
   if constexpr (Real<T>) {
     // All exponentials first: between them nothing else is alive that calls could force to memory.
@@ -181,15 +161,15 @@ template <class T, class Frame>
     }
   }();
   if constexpr (is_turned) {
-    m.jerk = sum<2>(m.jerk, cross(m.velocity, m.acceleration));
+    m.jerk = sum_of<2>(m.jerk, cross_product(m.velocity, m.acceleration));
     m.velocity = rotate(m.value, m.velocity);
     m.acceleration = rotate(m.value, m.acceleration);
     m.jerk = rotate(m.value, m.jerk);
   }
   const real_type_t<T> two(2);
-  m.velocity = product(two, m.velocity);
-  m.acceleration = product(two, m.acceleration);
-  m.jerk = product(two, m.jerk);
+  m.velocity = scaled(two, m.velocity);
+  m.acceleration = scaled(two, m.acceleration);
+  m.jerk = scaled(two, m.jerk);
   if constexpr (!is_pose) {
     return {m.value, m.velocity, m.acceleration, m.jerk};
   } else {

@@ -4,6 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/location.hpp>
 #include <duet/spline/motion.hpp>
 
@@ -63,7 +64,7 @@ public:
     const auto& w = m.velocity;
     const auto& a = m.acceleration;
     const D square = w.squaredNorm();
-    const vector3<D> third = m.jerk - w * square + detail::cross(w, a);
+    const vector3<D> third = m.jerk - w * square + detail::cross_product(w, a);
     return std::array<Q, 4>{m.value, m.value * Q(D(0), w), m.value * Q(-square, a),
                             m.value * Q(-3 * w.dot(a), third)};
   }

@@ -105,7 +105,7 @@ private:
         m.acceleration = w[1];
       }
       if constexpr (Rates > 2) {
-        m.jerk = detail::product(real_type_t<D>(2), w[2]);
+        m.jerk = detail::scaled(real_type_t<D>(2), w[2]);
       }
     }
     return m;
