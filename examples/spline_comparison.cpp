@@ -3,8 +3,8 @@
 // Every curve of duet through the same rows of a smooth motion: errors of orientation and angular
 // velocity against the number of rows. Writes spline_comparison.csv and, with gnuplot, a picture.
 
-#include "support/csv.hpp"
 #include "support/gnuplot.hpp"
+#include <duet/core/csv.hpp>
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/curves.hpp>
@@ -196,7 +196,7 @@ void run() {
       errors[k].push_back(largest_errors(curves()[k], count));
       numbers.insert(numbers.end(), errors[k].back().begin(), errors[k].back().end());
     }
-    csv += example::csv_line(numbers);
+    csv += duet::csv_line(numbers);
   }
   std::printf("largest errors, and the orders seen from 129 to 257 rows\n%-38s %10s %6s %10s %6s\n",
               "257 rows", "value", "order", "velocity", "order");
@@ -206,7 +206,7 @@ void run() {
     std::printf("%-38s %10.1e %6.1f %10.1e %6.1f\n", curves()[k].name, last[0],
                 std::log2(before[0] / last[0]), last[1], std::log2(before[1] / last[1]));
   }
-  example::write_file("spline_comparison.csv", csv);
+  duet::write_file("spline_comparison.csv", csv);
   if (!example::draw(".", "spline_comparison", "1200,560", picture_script())) {
     std::cout << "No picture: gnuplot is not installed or failed\n";
   }

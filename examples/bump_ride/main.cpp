@@ -8,8 +8,8 @@
 #include "ride.hpp"
 
 #include "../support/command_line.hpp"
-#include "../support/csv.hpp"
 #include "../support/gnuplot.hpp"
+#include <duet/core/csv.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -80,7 +80,7 @@ std::string ride_csv(const vehicle& v, const std::vector<result>& results) {
       const sample& s = r.samples[i];
       numbers.insert(numbers.end(), {s.height, s.toe_in, s.energy - r.samples.front().energy});
     }
-    text += example::csv_line(numbers);
+    text += duet::csv_line(numbers);
   }
   return text;
 }
@@ -132,7 +132,7 @@ void run(const options& given) {
                 height_difference(r, results.front()), energy_error(r));
   }
   std::filesystem::create_directories(given.out);
-  example::write_file(given.out + "/ride.csv", ride_csv(v, results));
+  duet::write_file(given.out + "/ride.csv", ride_csv(v, results));
   const bool drawn = example::draw(given.out, "ride", "1000,900", picture_script(results));
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
             << "\n";

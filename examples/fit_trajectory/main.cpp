@@ -8,8 +8,8 @@
 #include "smoothing.hpp"
 #include "trajectory.hpp"
 
-#include "../support/csv.hpp"
 #include "../support/gnuplot.hpp"
+#include <duet/core/csv.hpp>
 
 #include <cstddef>
 #include <cstdio>
@@ -48,8 +48,8 @@ void run(const options& given) {
   const smoothed s = smooth(r, rows_per_knot, given.length, given.outlier);
 
   std::filesystem::create_directories(given.out);
-  example::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, given.rate));
-  example::write_file(given.out + "/rows.csv", rows_csv(r, s));
+  duet::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, given.rate));
+  duet::write_file(given.out + "/rows.csv", rows_csv(r, s));
   const bool drawn = example::draw(given.out, "fit", "1000,900",
                                    picture_script(r.rows.front().time, duration, s.outlier));
   std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out

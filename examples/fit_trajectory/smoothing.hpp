@@ -95,7 +95,7 @@ inline std::string trajectory_csv(const recording& r, const curve& s, double rat
     std::vector<double> numbers{r.rows.front().time + t, x[0], x[1], x[2], x[4], x[5], x[6], x[3]};
     numbers.insert(numbers.end(), m.velocity.begin(), m.velocity.end());
     numbers.insert(numbers.end(), m.acceleration.begin(), m.acceleration.end());
-    text += example::csv_line(numbers);
+    text += duet::csv_line(numbers);
   }
   return text;
 }
@@ -106,8 +106,8 @@ inline std::string rows_csv(const recording& r, const smoothed& s) {
   for (std::size_t i = 0; i < r.rows.size(); ++i) {
     const vector3<double> t = duet::translation(r.rows[i].pose);
     const double residual = s.fit.residuals[i];
-    text += example::csv_line({double(r.rows[i].line), r.rows[i].time, t[0], t[1], t[2], residual,
-                               residual > s.outlier ? 1.0 : 0.0});
+    text += duet::csv_line({double(r.rows[i].line), r.rows[i].time, t[0], t[1], t[2], residual,
+                            residual > s.outlier ? 1.0 : 0.0});
   }
   return text;
 }

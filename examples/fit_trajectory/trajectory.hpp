@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include "../support/csv.hpp"
+#include <duet/core/csv.hpp>
 
 #include <duet/comparison/random_source.hpp>
 #include <duet/core/number_text.hpp>
@@ -49,7 +49,7 @@ struct recording {
 namespace detail {
 
 /// The eight numbers of a line, NaN among them, none for a comment.
-/// \throws example::file_error
+/// \throws duet::file_error
 inline std::vector<double> numbers_of(const std::string& path, std::size_t line, std::string text) {
   text = text.substr(0, text.find('#'));
   std::replace(text.begin(), text.end(), ',', ' ');
@@ -58,14 +58,14 @@ inline std::vector<double> numbers_of(const std::string& path, std::size_t line,
   for (std::string word; words >> word;) {
     const auto number = duet::parse_number(word);
     if (!number) {
-      throw example::file_error(path, line, "'" + word + "' is not a number");
+      throw duet::file_error(path, line, "'" + word + "' is not a number");
     }
     numbers.push_back(*number);
   }
   if (!numbers.empty() && numbers.size() != 8) {
-    throw example::file_error(path, line,
-                              "8 numbers expected (timestamp tx ty tz qx qy qz qw), got " +
-                                  std::to_string(numbers.size()));
+    throw duet::file_error(path, line,
+                           "8 numbers expected (timestamp tx ty tz qx qy qz qw), got " +
+                               std::to_string(numbers.size()));
   }
   return numbers;
 }
@@ -114,11 +114,11 @@ inline void put_in_order(recording& r) {
 
 } // namespace detail
 
-/// \throws example::file_error for a file that cannot be read and for a line of another format
+/// \throws duet::file_error for a file that cannot be read and for a line of another format
 inline recording read_recording(const std::string& path) {
   std::ifstream in(path);
   if (!in) {
-    throw example::file_error(path, "cannot be read");
+    throw duet::file_error(path, "cannot be read");
   }
   recording result;
   std::string text;
@@ -137,7 +137,7 @@ inline recording read_recording(const std::string& path) {
         {line, x[0], duet::pose(normalized(q), vector3<double>(x[1], x[2], x[3]))});
   }
   if (result.rows.empty()) {
-    throw example::file_error(path, "holds no usable rows");
+    throw duet::file_error(path, "holds no usable rows");
   }
   detail::put_in_order(result);
   return result;

@@ -7,8 +7,8 @@
 #include "options.hpp"
 #include "path.hpp"
 
-#include "../support/csv.hpp"
 #include "../support/gnuplot.hpp"
+#include <duet/core/csv.hpp>
 
 #include <cstdio>
 #include <exception>
@@ -30,8 +30,8 @@ void run(const options& given) {
   const double difference = largest_difference(path, between);
 
   std::filesystem::create_directories(given.out);
-  example::write_file(given.out + "/path.csv", path_csv(path));
-  example::write_file(given.out + "/frames.csv", frames_csv(path, between));
+  duet::write_file(given.out + "/path.csv", path_csv(path));
+  duet::write_file(given.out + "/frames.csv", frames_csv(path, between));
   const bool drawn = example::draw(given.out, "path", "900,760", path_script());
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
             << "\n";

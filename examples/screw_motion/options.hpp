@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../support/command_line.hpp"
-#include "../support/csv.hpp"
+#include <duet/core/csv.hpp>
 
 #include <duet/core/errors.hpp>
 #include <duet/core/number_text.hpp>
@@ -78,18 +78,18 @@ inline pose_type parse_pose(const std::string& option, const std::string& text) 
 /// The two poses of the command line, of the file, or of an example.
 inline std::pair<pose_type, pose_type> poses(const options& given) {
   if (given.file) {
-    const example::csv_file file(*given.file);
+    const duet::csv_file file(*given.file);
     std::vector<pose_type> result;
-    for (const example::csv_row& row : file.rows()) {
+    for (const duet::csv_row& row : file.rows()) {
       try {
         result.push_back(parse_pose(row.numbers));
       } catch (const duet::invalid_input& error) {
-        throw example::file_error(*given.file, row.line, error.what());
+        throw duet::file_error(*given.file, row.line, error.what());
       }
     }
     if (result.size() != 2) {
-      throw example::file_error(*given.file,
-                                "two poses are needed, not " + std::to_string(result.size()));
+      throw duet::file_error(*given.file,
+                             "two poses are needed, not " + std::to_string(result.size()));
     }
     return {result[0], result[1]};
   }

@@ -120,8 +120,8 @@ inline std::string path_csv(const std::vector<sample>& path) {
   for (const sample& p : path) {
     const auto gamma = duet::pose_coordinates(p.pose);
     const auto& v = p.rates;
-    text += example::csv_line({p.tau, gamma[0], gamma[1], gamma[2], gamma[3], gamma[4], gamma[5],
-                               gamma[6], v[0], v[1], v[2], v[3], v[4], v[5]});
+    text += duet::csv_line({p.tau, gamma[0], gamma[1], gamma[2], gamma[3], gamma[4], gamma[5],
+                            gamma[6], v[0], v[1], v[2], v[3], v[4], v[5]});
   }
   return text;
 }
@@ -144,7 +144,7 @@ inline std::string frames_csv(const std::vector<sample>& path, const screw& s) {
   const std::size_t stride = std::max<std::size_t>(1, (path.size() - 1) / 10);
   const auto add = [&](const vector3<double>& from, const vector3<double>& arrow, int which) {
     text +=
-        example::csv_line({from[0], from[1], from[2], arrow[0], arrow[1], arrow[2], double(which)});
+        duet::csv_line({from[0], from[1], from[2], arrow[0], arrow[1], arrow[2], double(which)});
   };
   for (std::size_t i = 0; i < path.size(); i += stride) {
     const duet::matrix3<double> r = duet::rotation_matrix(duet::rotation(path[i].pose));

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include "csv.hpp"
+#include <duet/core/csv.hpp>
 
 #include <cstdlib>
 #include <string>
@@ -14,10 +14,10 @@ namespace example {
 /// Draws folder/name.svg and folder/name.png; false where gnuplot is absent or fails.
 inline bool draw(const std::string& folder, const std::string& name, const std::string& size,
                  const std::string& script) {
-  write_file(folder + "/" + name + ".gnuplot",
-             "set terminal svg size " + size + " background rgb 'white'\nset output '" + name +
-                 ".svg'\n" + script + "set output\nset terminal pngcairo size " + size +
-                 "\nset output '" + name + ".png'\n" + script);
+  duet::write_file(folder + "/" + name + ".gnuplot",
+                   "set terminal svg size " + size + " background rgb 'white'\nset output '" +
+                       name + ".svg'\n" + script + "set output\nset terminal pngcairo size " +
+                       size + "\nset output '" + name + ".png'\n" + script);
   std::string quoted = "'";
   for (const char c : folder) {
     quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -6,7 +6,7 @@
 #include "splines.hpp"
 #include "table.hpp"
 
-#include "../support/csv.hpp"
+#include <duet/core/csv.hpp>
 
 #include <array>
 #include <cmath>
@@ -21,7 +21,7 @@
 
 namespace wheel_carrier {
 
-using example::csv_line;
+using duet::csv_line;
 
 /// u, W, q, toe-in and camber of the left wheel in degrees, W from its design position.
 inline std::string path_csv(const std::vector<state>& states, const vector3& design) {

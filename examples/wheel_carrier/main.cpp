@@ -11,8 +11,8 @@
 #include "splines.hpp"
 #include "table.hpp"
 
-#include "../support/csv.hpp"
 #include "../support/gnuplot.hpp"
+#include <duet/core/csv.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -232,7 +232,7 @@ void run(const options& given) {
 
   std::filesystem::create_directories(given.out);
   for (const auto& [name, content] : files) {
-    example::write_file(given.out + "/" + name, content);
+    duet::write_file(given.out + "/" + name, content);
   }
   bool drawn = true;
   if (has_reference) {

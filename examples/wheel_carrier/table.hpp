@@ -3,7 +3,7 @@
 
 #include "carrier.hpp"
 
-#include "../support/csv.hpp"
+#include <duet/core/csv.hpp>
 
 #include <duet/spline/interpolate.hpp>
 
@@ -21,9 +21,9 @@
 
 namespace wheel_carrier {
 
-using example::csv_file;
-using example::csv_row;
-using example::file_error;
+using duet::csv_file;
+using duet::csv_row;
+using duet::file_error;
 
 struct table {
   std::vector<double> u;
