@@ -26,12 +26,36 @@ template <class T, int W>
   return x[i];
 }
 
+/// A number of lanes as an argument.
+template <int W>
+struct lane_width {};
+
 /// One batch of W numbers, the i-th of which is get(i), with `pattern` as an example of one.
 template <int W, Arithmetic T, class Get>
-[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> joined_lanes(const T&, const Get& get) {
+[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> joined_lanes(lane_width<W>, const T&, const Get& get) {
   return batch<T, W>::from_lanes(get);
 }
 
+template <class X, std::size_t N>
+[[nodiscard]] DUET_ALWAYS_INLINE auto lane(const std::array<X, N>& x, int i) {
+  std::array<std::decay_t<decltype(lane(x[0], i))>, N> result;
+  for (std::size_t k = 0; k < N; ++k) {
+    result[k] = lane(x[k], i);
+  }
+  return result;
+}
+template <int W, class X, std::size_t N, class Get>
+[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const std::array<X, N>& pattern,
+                                                   const Get& get) {
+  const auto element = [&](std::size_t k) {
+    return joined_lanes(lane_width<W>{}, pattern[k], [&](int i) { return get(i)[k]; });
+  };
+  std::array<decltype(element(0)), N> result;
+  for (std::size_t k = 0; k < N; ++k) {
+    result[k] = element(k);
+  }
+  return result;
+}
 template <class T, int W, class X, std::size_t N>
 [[nodiscard]] DUET_ALWAYS_INLINE std::array<X, N>
 blended(const lane_mask<T, W>& m, const std::array<X, N>& a, const std::array<X, N>& b) {
@@ -58,8 +82,8 @@ template <class F, class... X>
   for (int i = 0; i < width; ++i) {
     results[std::size_t(i)] = f(lane(x, i)...);
   }
-  return joined_lanes<width>(results[0],
-                             [&](int i) -> const result& { return results[std::size_t(i)]; });
+  return joined_lanes(lane_width<width>{}, results[0],
+                      [&](int i) -> const result& { return results[std::size_t(i)]; });
 }
 
 } // namespace detail

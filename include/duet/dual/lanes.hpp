@@ -57,9 +57,13 @@ template <Infinitesimal D>
 }
 
 template <int W, Infinitesimal D, class Get>
-[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(const D& pattern, const Get& get) {
-  const auto joined = [](const auto& part_of) { return joined_lanes<W>(part_of(0), part_of); };
-  using part = decltype(joined_lanes<W>(pattern.value(), [&](int i) { return get(i).value(); }));
+[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const D& pattern,
+                                                   const Get& get) {
+  const auto joined = [](const auto& part_of) {
+    return joined_lanes(lane_width<W>{}, part_of(0), part_of);
+  };
+  using part = decltype(joined_lanes(lane_width<W>{}, pattern.value(),
+                                     [&](int i) { return get(i).value(); }));
   using R = over<D, part>;
   if constexpr (requires { pattern.partials(); }) {
     R result(joined([&](int i) { return get(i).value(); }));

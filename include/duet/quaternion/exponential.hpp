@@ -56,6 +56,9 @@ template <class T>
       [&] { return v; }));
 }
 
+template <class T>
+[[nodiscard]] vector3<T> log_vector(const quaternion<T>& q, const char* function);
+
 /// û φ where |q| is out of range or a full turn is near.
 template <class T>
 [[nodiscard, gnu::cold]] vector3<T> log_vector_of_extreme(const quaternion<T>& q,
@@ -100,6 +103,9 @@ template <class T>
   const T s = q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
   return log_vector(q, s, T(s + q.w() * q.w()), function);
 }
+
+template <class T>
+[[nodiscard]] T log_norm(const quaternion<T>& q, const T& square);
 
 template <class T>
 [[nodiscard, gnu::cold]] T log_norm_of_extreme(const quaternion<T>& q) {

@@ -173,9 +173,10 @@ template <class T>
   return quaternion<S>(lane(q.w(), i), lane(q.x(), i), lane(q.y(), i), lane(q.z(), i));
 }
 template <int W, class T, class Get>
-[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(const quaternion<T>& pattern, const Get& get) {
+[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const quaternion<T>& pattern,
+                                                   const Get& get) {
   const auto joined = [](const T& example, const auto& part_of) {
-    return joined_lanes<W>(example, part_of);
+    return joined_lanes(lane_width<W>{}, example, part_of);
   };
   using S = decltype(joined(pattern.w(), [&](int i) { return get(i).w(); }));
   return quaternion<S>(joined(pattern.w(), [&](int i) { return get(i).w(); }),
