@@ -72,12 +72,11 @@ template <class M>
 template <int W, class M, class Get>
   requires std::derived_from<M, Eigen::DenseBase<M>>
 [[nodiscard]] auto joined_lanes(lane_width<W>, const M& pattern, const Get& get) {
-  using S = std::decay_t<decltype(joined_lanes(
-      lane_width<W>{}, pattern(0, 0), [&](int k) { return get(k)(0, 0); }))>;
+  using S = std::decay_t<decltype(joined_lanes(lane_width<W>{}, pattern(0, 0),
+                                               [&](int k) { return get(k)(0, 0); }))>;
   return detail::filled_matrix<detail::matrix_over<M, S>>(
       pattern.rows(), pattern.cols(), [&](Eigen::Index i, Eigen::Index j) {
-        return joined_lanes(lane_width<W>{}, pattern(i, j),
-                            [&](int k) { return get(k)(i, j); });
+        return joined_lanes(lane_width<W>{}, pattern(i, j), [&](int k) { return get(k)(i, j); });
       });
 }
 
