@@ -72,6 +72,15 @@ inline constexpr int lane_count = lane_traits<real_type_t<X>>::lanes;
 
 namespace detail {
 
+/// Elements of a row, one for each lane.
+template <std::size_t W, class Row>
+[[nodiscard]] DUET_ALWAYS_INLINE auto gathered(const std::array<std::size_t, W>& indices,
+                                               const Row& row) {
+  return joined_lanes(
+      lane_width<int(W)>{},
+      row[0], [&](int k) -> const auto& { return row[indices[std::size_t(k)]]; });
+}
+
 /// f of the lanes of the arguments one after the other, the results put together again; each is
 /// that of plain numbers.
 template <class F, class... X>
