@@ -47,8 +47,9 @@ template <class X, std::size_t N>
 template <int W, class X, std::size_t N, class Get>
 [[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const std::array<X, N>& pattern,
                                                    const Get& get) {
-  const auto element = [&](std::size_t k) {
-    return joined_lanes(lane_width<W>{}, pattern[k], [&](int i) { return get(i)[k]; });
+  const auto element = [&](std::size_t k) DUET_INLINE_LAMBDA {
+    return joined_lanes(lane_width<W>{}, pattern[k],
+                        [&](int i) DUET_INLINE_LAMBDA { return get(i)[k]; });
   };
   std::array<decltype(element(0)), N> result;
   for (std::size_t k = 0; k < N; ++k) {
@@ -72,13 +73,25 @@ inline constexpr int lane_count = lane_traits<real_type_t<X>>::lanes;
 
 namespace detail {
 
+/// The first `count` numbers in memory, and the last of them again beyond: what lanes are left over
+/// at the end of a range must not matter.
+template <class B>
+[[nodiscard]] DUET_ALWAYS_INLINE B load_some(const typename B::value_type* from,
+                                             std::size_t count) {
+  if (count == std::size_t(B::lanes)) [[likely]] {
+    return B::load(from);
+  }
+  return B::from_lanes([&](int i) { return from[std::min(std::size_t(i), count - 1)]; });
+}
+
 /// Elements of a row, one for each lane.
 template <std::size_t W, class Row>
 [[nodiscard]] DUET_ALWAYS_INLINE auto gathered(const std::array<std::size_t, W>& indices,
                                                const Row& row) {
   return joined_lanes(
-      lane_width<int(W)>{},
-      row[0], [&](int k) -> const auto& { return row[indices[std::size_t(k)]]; });
+      lane_width<int(W)>{}, row[0], [&](int k) DUET_INLINE_LAMBDA -> const auto& {
+        return row[indices[std::size_t(k)]];
+      });
 }
 
 /// f of the lanes of the arguments one after the other, the results put together again; each is

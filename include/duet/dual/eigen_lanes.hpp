@@ -45,7 +45,7 @@ using matrix_over =
                   M::MaxRowsAtCompileTime, M::MaxColsAtCompileTime>;
 
 template <class R, class F>
-[[nodiscard]] R filled_matrix(Eigen::Index rows, Eigen::Index cols, const F& f) {
+[[nodiscard]] DUET_ALWAYS_INLINE R filled_matrix(Eigen::Index rows, Eigen::Index cols, const F& f) {
   R result(rows, cols);
   for (Eigen::Index j = 0; j < cols; ++j) {
     for (Eigen::Index i = 0; i < rows; ++i) {
@@ -63,29 +63,32 @@ inline constexpr int lane_count<M> = lane_count<typename M::Scalar>;
 
 template <class M>
   requires std::derived_from<M, Eigen::DenseBase<M>>
-[[nodiscard]] auto lane(const M& m, int k) {
+[[nodiscard]] DUET_ALWAYS_INLINE auto lane(const M& m, int k) {
   using S = std::decay_t<decltype(lane(m(0, 0), k))>;
   return detail::filled_matrix<detail::matrix_over<M, S>>(
-      m.rows(), m.cols(), [&](Eigen::Index i, Eigen::Index j) { return lane(m(i, j), k); });
+      m.rows(), m.cols(),
+      [&](Eigen::Index i, Eigen::Index j) DUET_INLINE_LAMBDA { return lane(m(i, j), k); });
 }
 
 template <int W, class M, class Get>
   requires std::derived_from<M, Eigen::DenseBase<M>>
-[[nodiscard]] auto joined_lanes(lane_width<W>, const M& pattern, const Get& get) {
-  using S = std::decay_t<decltype(joined_lanes(lane_width<W>{}, pattern(0, 0),
-                                               [&](int k) { return get(k)(0, 0); }))>;
+[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const M& pattern,
+                                                   const Get& get) {
+  using S = std::decay_t<decltype(joined_lanes(
+      lane_width<W>{}, pattern(0, 0), [&](int k) DUET_INLINE_LAMBDA { return get(k)(0, 0); }))>;
   return detail::filled_matrix<detail::matrix_over<M, S>>(
-      pattern.rows(), pattern.cols(), [&](Eigen::Index i, Eigen::Index j) {
-        return joined_lanes(lane_width<W>{}, pattern(i, j), [&](int k) { return get(k)(i, j); });
+      pattern.rows(), pattern.cols(), [&](Eigen::Index i, Eigen::Index j) DUET_INLINE_LAMBDA {
+        return joined_lanes(lane_width<W>{}, pattern(i, j),
+                            [&](int k) DUET_INLINE_LAMBDA { return get(k)(i, j); });
       });
 }
 
 template <class T, int W, class M>
   requires std::derived_from<M, Eigen::DenseBase<M>>
-[[nodiscard]] M blended(const lane_mask<T, W>& m, const M& a, const M& b) {
-  return detail::filled_matrix<M>(a.rows(), a.cols(), [&](Eigen::Index i, Eigen::Index j) {
-    return blended(m, a(i, j), b(i, j));
-  });
+[[nodiscard]] DUET_ALWAYS_INLINE M blended(const lane_mask<T, W>& m, const M& a, const M& b) {
+  return detail::filled_matrix<M>(a.rows(), a.cols(),
+                                  [&](Eigen::Index i, Eigen::Index j)
+                                      DUET_INLINE_LAMBDA { return blended(m, a(i, j), b(i, j)); });
 }
 
 } // namespace duet

@@ -50,7 +50,8 @@ template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE auto lane(const D& x, int i) {
   if constexpr (Batched<D>) {
     using part = std::decay_t<decltype(lane(x.value(), i))>;
-    return detail::combined_parts<over<D, part>>([i](const auto& p) { return lane(p, i); }, x);
+    return detail::combined_parts<over<D, part>>(
+        [i](const auto& p) DUET_INLINE_LAMBDA { return lane(p, i); }, x);
   } else {
     return x;
   }
@@ -59,33 +60,35 @@ template <Infinitesimal D>
 template <int W, Infinitesimal D, class Get>
 [[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const D& pattern,
                                                    const Get& get) {
-  const auto joined = [](const auto& part_of) {
+  const auto joined = [](const auto& part_of) DUET_INLINE_LAMBDA {
     return joined_lanes(lane_width<W>{}, part_of(0), part_of);
   };
   using part = decltype(joined_lanes(lane_width<W>{}, pattern.value(),
-                                     [&](int i) { return get(i).value(); }));
+                                     [&](int i) DUET_INLINE_LAMBDA { return get(i).value(); }));
   using R = over<D, part>;
   if constexpr (requires { pattern.partials(); }) {
-    R result(joined([&](int i) { return get(i).value(); }));
+    R result(joined([&](int i) DUET_INLINE_LAMBDA { return get(i).value(); }));
     for (int k = 0; k < pattern.size(); ++k) {
-      result.set_partial(k, joined([&](int i) { return get(i).partial(k); }));
+      result.set_partial(k, joined([&](int i) DUET_INLINE_LAMBDA { return get(i).partial(k); }));
     }
     return result;
   } else if constexpr (requires { pattern.hessian(); }) {
     typename R::gradient_type gradient;
     typename R::hessian_type hessian;
     for (int k = 0; k < D::variables; ++k) {
-      gradient.set(k, joined([&](int i) { return get(i).partial(k); }));
+      gradient.set(k, joined([&](int i) DUET_INLINE_LAMBDA { return get(i).partial(k); }));
       for (int j = 0; j <= k; ++j) {
-        hessian.set(k, j, joined([&](int i) { return get(i).second_partial(k, j); }));
+        hessian.set(k, j,
+                    joined([&](int i) DUET_INLINE_LAMBDA { return get(i).second_partial(k, j); }));
       }
     }
-    return R(joined([&](int i) { return get(i).value(); }), gradient, hessian);
+    return R(joined([&](int i) DUET_INLINE_LAMBDA { return get(i).value(); }), gradient, hessian);
   } else {
     R result;
     for (int k = 0; k <= scalar_traits<D>::order - scalar_traits<typename D::value_type>::order;
          ++k) {
-      result.set_coefficient(k, joined([&](int i) { return get(i).coefficient(k); }));
+      result.set_coefficient(
+          k, joined([&](int i) DUET_INLINE_LAMBDA { return get(i).coefficient(k); }));
     }
     return result;
   }
@@ -93,8 +96,8 @@ template <int W, Infinitesimal D, class Get>
 
 template <class T, int W, Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D blended(const lane_mask<T, W>& m, const D& a, const D& b) {
-  return detail::combined_parts<D>([&](const auto& p, const auto& q) { return blended(m, p, q); },
-                                   a, b);
+  return detail::combined_parts<D>(
+      [&](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return blended(m, p, q); }, a, b);
 }
 
 } // namespace duet

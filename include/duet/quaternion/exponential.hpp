@@ -25,6 +25,10 @@ namespace duet {
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<T> exp(const vector3<T>& v) {
   const T s = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  if constexpr (lane_traits<T>::is_batch) {
+    const auto c = detail::first_stumpff_pair(s);
+    return {c[0], v[0] * c[1], v[1] * c[1], v[2] * c[1]};
+  }
   const T ratio = stumpff<1>(s);
   return {stumpff<0>(s), v[0] * ratio, v[1] * ratio, v[2] * ratio};
 }

@@ -175,14 +175,14 @@ template <class T>
 template <int W, class T, class Get>
 [[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const quaternion<T>& pattern,
                                                    const Get& get) {
-  const auto joined = [](const T& example, const auto& part_of) {
+  const auto joined = [](const T& example, const auto& part_of) DUET_INLINE_LAMBDA {
     return joined_lanes(lane_width<W>{}, example, part_of);
   };
-  using S = decltype(joined(pattern.w(), [&](int i) { return get(i).w(); }));
-  return quaternion<S>(joined(pattern.w(), [&](int i) { return get(i).w(); }),
-                       joined(pattern.x(), [&](int i) { return get(i).x(); }),
-                       joined(pattern.y(), [&](int i) { return get(i).y(); }),
-                       joined(pattern.z(), [&](int i) { return get(i).z(); }));
+  using S = decltype(joined(pattern.w(), [&](int i) DUET_INLINE_LAMBDA { return get(i).w(); }));
+  return quaternion<S>(joined(pattern.w(), [&](int i) DUET_INLINE_LAMBDA { return get(i).w(); }),
+                       joined(pattern.x(), [&](int i) DUET_INLINE_LAMBDA { return get(i).x(); }),
+                       joined(pattern.y(), [&](int i) DUET_INLINE_LAMBDA { return get(i).y(); }),
+                       joined(pattern.z(), [&](int i) DUET_INLINE_LAMBDA { return get(i).z(); }));
 }
 template <class R, int W, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<T>

@@ -107,14 +107,17 @@ public:
   template <int Derivatives, std::size_t W, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE auto weights(const std::array<std::size_t, W>& spans,
                                                 const P& u) const {
-    const auto join = [&](const auto& get) {
-      return joined_lanes(lane_width<int(W)>{}, get(spans_[0]),
-                          [&](int k) { return get(spans_[spans[std::size_t(k)]]); });
+    const auto join = [&](const auto& get) DUET_INLINE_LAMBDA {
+      return joined_lanes(lane_width<int(W)>{}, get(spans_[0]), [&](int k) DUET_INLINE_LAMBDA {
+        return get(spans_[spans[std::size_t(k)]]);
+      });
     };
-    span_data<real_type_t<P>> data{0, join([](const auto& s) { return s.middle; }), {}};
+    span_data<real_type_t<P>> data{
+        0, join([](const auto& s) DUET_INLINE_LAMBDA { return s.middle; }), {}};
     for (std::size_t j = 0; j + 1 < std::size_t(Order); ++j) {
       for (std::size_t d = 0; d < std::size_t(Order); ++d) {
-        data.polynomials[j][d] = join([=](const auto& s) { return s.polynomials[j][d]; });
+        data.polynomials[j][d] =
+            join([=](const auto& s) DUET_INLINE_LAMBDA { return s.polynomials[j][d]; });
       }
     }
     return weights_of<Derivatives>(data, u);
