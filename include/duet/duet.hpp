@@ -34,6 +34,7 @@
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/dual_quaternion/wrench.hpp>
 #include <duet/mechanism/analytic_jacobian.hpp>
+#include <duet/mechanism/closed_loop.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
 #include <duet/mechanism/joint_efforts.hpp>
