@@ -41,11 +41,6 @@ template <class Ends, class R>
   }
 }
 
-template <class Ends>
-inline constexpr bool is_clamped = false;
-template <class V>
-inline constexpr bool is_clamped<clamped<V>> = true;
-
 /// A rate as half a vector, or half a dual vector.
 template <class T, class V>
 [[nodiscard]] vector3<T> half_rate(const V& rate) {
