@@ -4,12 +4,12 @@
 // a histogram and over the distance from the vertical axis and the height of the tip. Samples are
 // computed several at a time on all cores; the same ones whatever the machine.
 
+#include "support/arms.hpp"
 #include "support/command_line.hpp"
 #include "support/gnuplot.hpp"
 
 #include <duet/core/csv.hpp>
 #include <duet/core/parallel_for.hpp>
-#include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/sweep.hpp>
 
 #include <Eigen/Core>
@@ -33,8 +33,7 @@ namespace {
 using namespace duet;
 namespace po = example::po;
 
-/// Any of the arms, so that what follows is compiled once.
-using chain = serial_chain<-16>;
+using chain = example::arm_chain;
 using coordinates = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 16, 1>;
 using matrix = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 16>;
 using result = value_and_jacobian<dual_quaternion<double>, matrix>;
@@ -165,23 +164,6 @@ void run(const chain& arm, std::size_t count, const std::string& folder) {
   }
 }
 
-chain arm_of(const std::string& robot) {
-  if (robot == "panda") {
-    return robots::panda().table();
-  }
-  if (robot == "iiwa14") {
-    return robots::iiwa14().table();
-  }
-  if (robot == "ur5e") {
-    return robots::ur5e().table();
-  }
-  if (robot == "baxter_left") {
-    return robots::baxter_left().table();
-  }
-  throw std::runtime_error("--robot: '" + robot +
-                           "' is none of panda, iiwa14, ur5e and baxter_left");
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
@@ -189,12 +171,11 @@ int main(int argc, char** argv) {
     po::options_description description("Where a robot arm moves well. Options");
     auto add = description.add_options();
     add("help", "print this and stop");
-    add("robot", po::value<std::string>()->value_name("NAME"),
-        "panda, iiwa14, ur5e or baxter_left (default: panda)");
     add("samples", po::value<int>()->value_name("N"),
         "random configurations, 1 to 10000000 (default: 20000)");
     add("out", po::value<std::string>()->value_name("FOLDER"),
         "an existing folder for tables and picture (default: .)");
+    example::add_arm_options(description);
     const auto line = example::command_line::parse(argc, argv, description);
     if (!line) {
       return 0;
@@ -203,8 +184,7 @@ int main(int argc, char** argv) {
     if (samples < 1 || samples > 10000000) {
       throw std::runtime_error("--samples: 1 to 10000000, not " + std::to_string(samples));
     }
-    run(arm_of(line->text("robot").value_or("panda")), std::size_t(samples),
-        line->text("out").value_or("."));
+    run(example::arm_of(*line), std::size_t(samples), line->text("out").value_or("."));
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "workspace_sweep: " << error.what() << "\n";
