@@ -6,6 +6,7 @@
 #include <duet/mechanism/analytic_jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
 #include <duet/mechanism/joint_efforts.hpp>
+#include <duet/mechanism/sweep.hpp>
 
 #include <cstddef>
 #include <thread>
@@ -46,6 +47,19 @@ TEST_CASE("evaluation allocates nothing") {
   const std::size_t start = duet_test::allocations; // the counter itself works
   const std::vector<double> copy(3);
   CHECK(duet_test::allocations > start);
+}
+
+TEST_CASE("sweeps on one core allocate nothing") {
+  const serial_chain<-16> chain = robots::panda().table();
+  const auto theta = duet_test::configurations(robots::panda().table(), 9);
+  std::vector<dual_quaternion<double>> tips(theta.size());
+  std::vector<Eigen::Matrix<double, 6, 7>> columns(theta.size());
+  const std::size_t before = duet_test::allocations;
+  poses(chain, theta, tips);
+  jacobians(chain, theta, frame::body, columns);
+  const std::size_t during = duet_test::allocations - before;
+  CHECK(during == 0);
+  CHECK(columns.back().norm() > 1);
 }
 
 TEST_CASE("one chain, several threads, identical results") {
