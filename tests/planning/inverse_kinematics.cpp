@@ -252,11 +252,12 @@ TEST_CASE("many goals: as one by one, on any number of cores") {
   CHECK_THROWS_WITH_AS(
       inverse_kinematics(arm, goals, start, std::span(out).first(7), {}, all_cores),
       "duet: inverse_kinematics: 20 goals, but room for 7 results", invalid_input);
-  goals[17] = goals[17] * std::nan("");
+  goals[17] = at(0, 0, 0) * 2.0;
+  goals[18] = goals[18] * std::nan("");
   out[0].iterations = -1;
   CHECK_THROWS_WITH_AS(inverse_kinematics(arm, goals, start, out, {}, all_cores),
-                       "duet: inverse_kinematics: goal 17 is no unit dual quaternion, its norm is "
-                       "nan",
+                       "duet: inverse_kinematics: goal 17 is no unit dual quaternion: |p|^2 = 4, "
+                       "p.q = 0",
                        invalid_input);
   CHECK(out[0].iterations == -1); // nothing was begun
 }
@@ -265,10 +266,13 @@ TEST_CASE("bad problems") {
   const chain arm = robots::panda().table();
   const vector start = (lower_limits(arm) + upper_limits(arm)) / 2;
   const auto goal = arm.pose(start);
-  CHECK_THROWS_WITH_AS(
-      (void)inverse_kinematics(arm, goal * 2.0, start),
-      "duet: inverse_kinematics: the goal is no unit dual quaternion, its norm is 2",
-      invalid_input);
+  const auto half = make_dual_quaternion(quaternion<double>(1), quaternion<double>(.5));
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, half, start),
+                       "duet: inverse_kinematics: the goal is no unit dual quaternion: |p|^2 = 1, "
+                       "p.q = 0.5",
+                       invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal * std::nan(""), start), invalid_input);
+  CHECK(inverse_kinematics(arm, at(1e200, 0, 0), start).reason == stop_reason::out_of_reach);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, vector::Zero(6).eval()),
                        "duet: a chain of 7 moving joints, but 6 coordinates", invalid_input);
   vector broken = start;
