@@ -21,9 +21,9 @@ namespace duet {
 namespace detail {
 
 /// A plan along a path that is known to hold unit poses.
-template <class C, class Start, class Target, class Objective>
+template <class C, class Start, class Objective>
 [[nodiscard]] motion_plan<C::joints>
-follow(const C& chain, const Start& start, const Target& target, std::vector<double> stops,
+follow(const C& chain, const Start& start, const path_function& target, std::vector<double> stops,
        const plan_options& options, const Objective& objective) {
   require_options(options);
   joint_vector<double, C::joints> theta(chain.size());
@@ -37,7 +37,7 @@ follow(const C& chain, const Start& start, const Target& target, std::vector<dou
             << gap.angle << " rad away from the tip at the start";
     throw invalid_input(message.str());
   }
-  return path_follower<C, Target, Objective>(chain, target, std::move(stops), options, objective)
+  return path_follower<C, Objective>(chain, target, std::move(stops), options, objective)
       .plan(theta);
 }
 

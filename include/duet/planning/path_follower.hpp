@@ -21,15 +21,15 @@ namespace duet::detail {
 
 /// Plans along a path, first without stopping; where that comes to an end, with motions in place.
 ///
-/// \tparam Target  the tip's pose as a function of the parameter of the path
-template <class C, class Target, class Objective>
+template <class C, class Objective>
 class path_follower {
 public:
   using vector = typename chain_state<C>::vector;
 
-  /// \param stops  parameters that become waypoints, increasing; the first and the last are the
-  ///               ends of the path
-  path_follower(const C& chain, const Target& target, std::vector<double> stops,
+  /// \param target  the tip's pose
+  /// \param stops   parameters that become waypoints, increasing; the first and the last are the
+  ///                ends of the path
+  path_follower(const C& chain, const path_function& target, std::vector<double> stops,
                 const plan_options& options, const Objective& objective)
       : solver_(chain, options.tolerance), target_(target), stops_(std::move(stops)),
         options_(options), objective_(objective), length_(stops_.back() - stops_.front()),
@@ -99,8 +99,7 @@ private:
     result.waypoints.assign(before.waypoints.begin(),
                             before.waypoints.begin() + std::ptrdiff_t(first) + 1);
     result.reason = before.reason;
-    self_motion_search<C, Target> search(solver_, target_, options_.self_motion_step,
-                                         iterations_left_);
+    self_motion_search<C> search(solver_, target_, options_.self_motion_step, iterations_left_);
     const auto way = search.run(result.back().state, search_parameters(result.back().u));
     iterations_left_ = search.iterations_left();
     for (std::size_t i = 1; i < way.size(); ++i) {
@@ -193,7 +192,7 @@ private:
   }
 
   pose_solver<C> solver_;
-  const Target& target_;
+  const path_function& target_;
   std::vector<double> stops_;
   plan_options options_;
   const Objective& objective_;

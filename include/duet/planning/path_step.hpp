@@ -8,6 +8,7 @@
 #include <duet/quaternion/exponential.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 /// \file
@@ -42,6 +43,9 @@ template <class V>
   }
   return result;
 }
+
+/// Poses by a parameter. Its type is forgotten, so that planners are compiled once for all.
+using path_function = std::function<dual_quaternion<double>(double)>;
 
 /// A configuration of a chain, with its tip's pose and Jacobian in `frame::hybrid`.
 template <class C>
@@ -115,16 +119,16 @@ private:
   void correct(attempt<C>& x, const dual_quaternion<double>& target) const {
     double before = std::numeric_limits<double>::infinity();
     for (;;) {
-      x.left = deviation_between(x.state.pose, target);
+      const vector6<double> error = error_twist(x.state.pose, target);
+      x.left = {error.head<3>().norm(), error.tail<3>().norm()};
       const double size = std::max(x.left.length, x.left.angle);
       // What does not at least halve the error will not get there.
       if (size <= tolerance_ || x.iterations == most || size > before / 2) {
         return;
       }
       before = size;
-      const auto step =
-          bounded_step(x.state.jacobian, error_twist(x.state.pose, target),
-                       vector(lower_ - x.state.theta), vector(upper_ - x.state.theta));
+      const auto step = bounded_step(x.state.jacobian, error, vector(lower_ - x.state.theta),
+                                     vector(upper_ - x.state.theta));
       x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
       x.is_bounded = x.is_bounded || step.is_bounded;
       x.state = chain_state<C>(chain_, within(x.state.theta + step.step));
