@@ -149,7 +149,7 @@ inline void print(const results& r, const hardpoints& points) {
 /// Above: toe-in and camber over the travel. Below: what moves them most.
 [[nodiscard]] inline std::string picture_script(const results& r, const hardpoints& points) {
   std::string text = "set datafile separator ','\nset multiplot layout 2,2\nset grid\n"
-                     "set key below\nset xlabel 'wheel height u [m]'\nset yrange [*:*]\n"
+                     "set key above\nset xlabel 'wheel height u [m]'\nset yrange [*:*]\n"
                      "set xrange [" +
                      duet::to_text(r.heights.front()) + ":" + duet::to_text(r.heights.back()) +
                      "]\n";
@@ -159,14 +159,15 @@ inline void print(const results& r, const hardpoints& points) {
       return "'' using 1:($" + column(2) + factor + "*$" + column(3) +
              ") skip 1 with lines lw 1.5 dt 2 lc rgb '#d62728' ";
     };
-    text += std::string("set title '") + angle_names[angle] +
+    text += std::string("set ylabel '") + angle_names[angle] +
             " [degrees]'\nplot 'summary.csv' using 1:" + column(6) + ":" + column(7) +
             " skip 1 with filledcurves fs solid 0.3 lc rgb '#1f77b4' title '95 % of samples', "
             "'' using 1:" +
             column(2) + " skip 1 with lines lw 2 lc rgb 'black' title 'design', " + bound("+1.96") +
             "title 'first order', " + bound("-1.96") + "notitle\n";
   }
-  text += "unset key\nset yrange [5.6:0.4]\nset xlabel 'root mean square [degrees per mm]'\n";
+  text += "unset key\nunset ylabel\nset yrange [5.6:0.4]\nset xlabel 'root mean square [degrees "
+          "per mm]'\n";
   for (std::size_t angle = 0; angle < 2; ++angle) {
     std::string labels, boxes;
     int place = 1;
@@ -186,7 +187,7 @@ inline void print(const results& r, const hardpoints& points) {
     text += boxes + "set ytics (" + labels + ")\nset xrange [0:" + duet::to_text(1.1 * most) +
             "]\nset title 'what moves " + angle_names[angle] + " most'\nplot 1/0\n";
   }
-  return text + "unset multiplot\nunset object\nset ytics autofreq\n";
+  return text + "unset multiplot\nunset object\nunset title\nset ytics autofreq\n";
 }
 
 } // namespace tolerance_study
