@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/number_text.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/planning/path_follower.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -41,20 +42,11 @@ follow(const C& chain, const Start& start, const path_function& target, std::vec
       .plan(theta);
 }
 
-/// \throws invalid_input
-inline void require_pose(const dual_quaternion<double>& a, const char* of, double at) {
-  if (!is_unit(a, 1e-6)) {
-    std::ostringstream message;
-    message << "duet: follow_path: " << of << " " << at << " is no unit dual quaternion";
-    throw invalid_input(message.str());
-  }
-}
-
 template <class Path>
 [[nodiscard]] auto checked(const Path& path) {
   return [&path](double u) {
     const dual_quaternion<double> a = path(u);
-    require_pose(a, "the pose at", u);
+    require_pose(a, "follow_path", "the pose at " + to_text(u));
     return normalized(a);
   };
 }
@@ -117,7 +109,7 @@ follow_path(const C& chain, const Start& start, std::span<const dual_quaternion<
   }
   std::vector<double> stops;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    detail::require_pose(poses[i], "pose", double(i));
+    detail::require_pose(poses[i], "follow_path", "pose " + std::to_string(i));
     stops.push_back(double(i));
   }
   const auto target = [&](double u) {

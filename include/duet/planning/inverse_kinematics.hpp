@@ -7,31 +7,17 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/inverse_kinematics_search.hpp>
+#include <duet/planning/motion_plan.hpp>
 #include <duet/quaternion/norm.hpp>
 
 #include <cstddef>
 #include <span>
-#include <sstream>
 #include <string>
 
 /// \file
 /// Joint coordinates for poses of the tip.
 
 namespace duet {
-namespace detail {
-
-inline void require_goal(const dual_quaternion<double>& goal, const std::string& name) {
-  if (!is_unit(goal, 1e-6)) {
-    const auto square = norm2(goal);
-    std::ostringstream message;
-    message << "duet: inverse_kinematics: " << name
-            << " is no unit dual quaternion: |p|^2 = " << square.value()
-            << ", p.q = " << square.epsilon() / 2;
-    throw invalid_input(message.str());
-  }
-}
-
-} // namespace detail
 
 /// Joint coordinates within the limits of a chain that take its tip to the pose `goal`, either sign
 /// of it.
@@ -52,7 +38,7 @@ template <SerialChain C, VectorLike Start>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options = {}) {
   const detail::inverse_kinematics_search<C> search(chain, start, options);
-  detail::require_goal(goal, "the goal");
+  detail::require_pose(goal, "inverse_kinematics", "the goal");
   return search(normalized(goal));
 }
 
@@ -69,7 +55,7 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
   }
   const detail::inverse_kinematics_search<C> search(chain, start, options);
   for (std::size_t i = 0; i < goals.size(); ++i) {
-    detail::require_goal(goals[i], "goal " + std::to_string(i));
+    detail::require_pose(goals[i], "inverse_kinematics", "goal " + std::to_string(i));
   }
   parallel_for(
       goals.size(), [&](std::size_t i) { out[i] = search(normalized(goals[i])); }, how);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <vector>
 
 /// \file
@@ -107,13 +108,29 @@ void require_start(const C& chain, const Start& start) {
   }
 }
 
+/// \throws invalid_input for what is no pose: "duet: plan: the goal is …"
+inline void require_pose(const dual_quaternion<double>& a, const char* caller,
+                         const std::string& name) {
+  if (is_unit(a, 1e-6)) {
+    return;
+  }
+  const auto square = norm2(a);
+  std::ostringstream message;
+  message << "duet: " << caller << ": " << name;
+  if (is_all_finite(square)) {
+    message << " is no unit dual quaternion: |p|^2 = " << square.value()
+            << ", p.q = " << square.epsilon() / 2;
+  } else {
+    message << " is not finite: " << a;
+  }
+  throw invalid_input(message.str());
+}
+
 /// \throws invalid_input for a start outside the limits, and for a goal that is no pose
 template <class C, class Start>
 void require_problem(const C& chain, const Start& start, const dual_quaternion<double>& goal) {
   require_start(chain, start);
-  if (!is_unit(goal, 1e-6)) {
-    throw invalid_input("duet: plan: the goal is no unit dual quaternion");
-  }
+  require_pose(goal, "plan", "the goal");
 }
 
 } // namespace detail
