@@ -34,6 +34,13 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/dual_quaternion/wrench.hpp>
+#include <duet/expression/condition.hpp>
+#include <duet/expression/derivative.hpp>
+#include <duet/expression/functions_of_many.hpp>
+#include <duet/expression/gradient.hpp>
+#include <duet/expression/special_functions.hpp>
+#include <duet/expression/symbol.hpp>
+#include <duet/expression/text.hpp>
 #include <duet/mechanism/analytic_jacobian.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>

@@ -1,0 +1,243 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/promotion.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/expression/held.hpp>
+#include <duet/expression/node.hpp>
+
+#include <boost/mp11/list.hpp>
+#include <boost/mp11/set.hpp>
+
+#include <concepts>
+#include <type_traits>
+
+/// \file
+/// Evaluation: all different nodes of some formulas in one list, operands first, each evaluated
+/// once.
+
+namespace duet::expression::detail {
+
+namespace mp11 = boost::mp11;
+
+/// The value of a symbol.
+template <class Symbol, class T>
+struct argument {
+  using symbol_type = Symbol;
+  using value_type = T;
+  T value;
+};
+
+/// What an argument is made of.
+template <class T>
+struct scalar_of {
+  using type = T;
+};
+template <class T>
+struct scalar_of<vector3<T>> {
+  using type = T;
+};
+template <class T>
+struct scalar_of<quaternion<T>> {
+  using type = T;
+};
+
+/// The real type in which numbers of a formula meet its arguments.
+template <class... T>
+struct common_real {
+  using type = double;
+};
+template <class T>
+struct common_real<T> {
+  using type = real_type_t<typename scalar_of<T>::type>;
+};
+template <class A, class B, class... Rest>
+struct common_real<A, B, Rest...> {
+  using type =
+      typename common_real<promote_t<typename common_real<A>::type, typename common_real<B>::type>,
+                           Rest...>::type;
+};
+
+/// The scalar that holds all arguments.
+template <class Real, class... T>
+struct common_scalar {
+  using type = Real;
+};
+template <class Real, class T, class... Rest>
+struct common_scalar<Real, T, Rest...> {
+  using type = typename common_scalar<promote_t<Real, typename scalar_of<T>::type>, Rest...>::type;
+};
+
+/// A constant as arguments of some precision meet it.
+template <class Real, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const T& x) {
+  if constexpr (std::floating_point<T>) {
+    return static_cast<Real>(x);
+  } else {
+    return x;
+  }
+}
+template <class Real, class T>
+[[nodiscard]] auto constant_over(const vector3<T>& v) {
+  using S = decltype(constant_over<Real>(v[0]));
+  return vector3<S>(S(v[0]), S(v[1]), S(v[2]));
+}
+template <class Real, class T>
+[[nodiscard]] constexpr auto constant_over(const quaternion<T>& q) {
+  if constexpr (std::floating_point<T>) {
+    return quaternion<Real>(Real(q.w()), Real(q.x()), Real(q.y()), Real(q.z()));
+  } else {
+    return q;
+  }
+}
+template <class Real, std::floating_point T>
+[[nodiscard]] constexpr auto constant_over(const dual_quaternion<T>& a) {
+  return make_dual_quaternion(constant_over<Real>(real_part(a)), constant_over<Real>(dual_part(a)));
+}
+
+/// Arguments and constants of a formula.
+template <class Held, class... Arguments>
+struct given : Held, Arguments... {
+  using real = typename common_real<typename Arguments::value_type...>::type;
+  using scalar = typename common_scalar<real, typename Arguments::value_type...>::type;
+};
+
+template <class Symbol, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& value_in(const argument<Symbol, T>& x) {
+  return x.value;
+}
+template <class Node, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T&
+value_in(const holding<held_constant<Node, T>>& x) {
+  return x.value;
+}
+
+/// How a node that is no operation is evaluated.
+template <class Node, class Given>
+struct leaf;
+
+template <kind K, char... Letters, class Given>
+struct leaf<symbol_node<K, Letters...>, Given> {
+  DUET_ALWAYS_INLINE static constexpr auto value(const Given& g) {
+    return value_in<symbol_node<K, Letters...>>(g);
+  }
+};
+template <kind K, class Tag, class Given>
+struct leaf<constant_node<K, Tag>, Given> {
+  DUET_ALWAYS_INLINE static constexpr auto value(const Given& g) {
+    return constant_over<typename Given::real>(value_in<constant_node<K, Tag>>(g));
+  }
+};
+template <std::uint64_t Bits, class Given>
+struct leaf<number_node<Bits>, Given> {
+  DUET_ALWAYS_INLINE static constexpr auto value(const Given&) {
+    return static_cast<typename Given::real>(number_node<Bits>::value);
+  }
+};
+template <kind K, class Given>
+struct leaf<zero_node<K>, Given> {
+  static constexpr auto value(const Given&) {
+    using real = typename Given::real;
+    if constexpr (K == kind::vector) {
+      return vector3<real>(real(0), real(0), real(0));
+    } else if constexpr (K == kind::quaternion) {
+      return quaternion<real>();
+    } else {
+      return dual_quaternion<real>();
+    }
+  }
+};
+
+template <class Node, class Given>
+struct value_of {
+  using type = decltype(leaf<Node, Given>::value(std::declval<const Given&>()));
+};
+template <class Operation, class... Operands, class Given>
+struct value_of<applied_node<Operation, Operands...>, Given> {
+  using type = decltype(Operation::value(
+      std::declval<const typename value_of<Operands, Given>::type&>()...));
+};
+
+/// The list with a node and what it needs added, operands first.
+template <class List, class... Nodes>
+struct with_nodes {
+  using type = List;
+};
+template <class List, class Node>
+struct operands_added {
+  using type = List;
+};
+template <class List, class Operation, class... Operands>
+struct operands_added<List, applied_node<Operation, Operands...>> : with_nodes<List, Operands...> {
+};
+template <class List, class First, class... Rest>
+struct with_nodes<List, First, Rest...> {
+  template <bool IsThere, class L>
+  struct added {
+    using type = L;
+  };
+  template <class L>
+  struct added<false, L> {
+    using type = mp11::mp_push_back<typename operands_added<L, First>::type, First>;
+  };
+  using type =
+      typename with_nodes<typename added<mp11::mp_set_contains<List, First>::value, List>::type,
+                          Rest...>::type;
+};
+
+template <class Node, class T>
+struct slot {
+  T value;
+};
+
+template <class Node, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& value_in_slot(const slot<Node, T>& s) {
+  return s.value;
+}
+
+/// The nodes and their values.
+template <class Given, class... Nodes>
+class frame : slot<Nodes, typename value_of<Nodes, Given>::type>... {
+public:
+  DUET_ALWAYS_INLINE constexpr explicit frame(const Given& g) { (fill(g, Nodes{}), ...); }
+
+  /// The value of one of the nodes.
+  template <class Node>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr const auto& operator[](Node) const {
+    return value_in_slot<Node>(*this);
+  }
+
+private:
+  template <class Node>
+  using slot_of = slot<Node, typename value_of<Node, Given>::type>;
+  template <class Node>
+  static constexpr bool has = std::derived_from<frame, slot_of<Node>>;
+
+  template <class Node>
+  DUET_ALWAYS_INLINE constexpr void fill(const Given& g, Node) {
+    slot_of<Node>::value = leaf<Node, Given>::value(g);
+  }
+  template <class Operation, class... Operands>
+  DUET_ALWAYS_INLINE constexpr void fill(const Given&, applied_node<Operation, Operands...>) {
+    using node = applied_node<Operation, Operands...>;
+    slot_of<node>::value = Operation::value((*this)[Operands{}]...);
+  }
+};
+
+template <class List, class Given>
+struct frame_over;
+template <template <class...> class List, class... Nodes, class Given>
+struct frame_over<List<Nodes...>, Given> {
+  using type = frame<Given, Nodes...>;
+};
+
+/// The values of some nodes and of all they need.
+template <class... Roots, class Given>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated_nodes(const Given& g) {
+  using list = typename with_nodes<mp11::mp_list<>, Roots...>::type;
+  return typename frame_over<list, Given>::type(g);
+}
+
+} // namespace duet::expression::detail
