@@ -64,10 +64,18 @@ template <class T>
 concept QuaternionTerm = Term<T> && detail::kind_of_term<T>()
 == kind::quaternion;
 template <class T>
+concept DualVectorTerm = Term<T> && detail::kind_of_term<T>()
+== kind::dual_vector;
+template <class T>
 concept PoseTerm = Term<T> && detail::kind_of_term<T>()
 == kind::pose;
 
 namespace detail {
+
+/// A column of three, of Eigen.
+template <class T>
+concept ThreeComponents = std::derived_from<T, Eigen::MatrixBase<T>> && T::RowsAtCompileTime == 3 &&
+                          T::ColsAtCompileTime == 1;
 
 /// Which kind of constant an ordinary value is, and what it is held in.
 template <class T>
@@ -81,29 +89,23 @@ struct constant_traits<T> {
   static constexpr kind kind_of = kind::scalar;
   using held_type = std::conditional_t<std::integral<T>, double, T>;
 };
+template <ThreeComponents T>
+struct constant_traits<T> {
+  static constexpr bool is_constant = true;
+  static constexpr kind kind_of =
+      is_screw_dual<typename T::Scalar> ? kind::dual_vector : kind::vector;
+  using held_type = vector3<typename T::Scalar>;
+};
 template <class T>
-  requires std::derived_from<T, Eigen::MatrixBase<T>> &&
-      (T::RowsAtCompileTime == 3 && T::ColsAtCompileTime == 1) struct constant_traits<T> {
-    static constexpr bool is_constant = true;
-    static constexpr kind kind_of = kind::vector;
-    using held_type = vector3<typename T::Scalar>;
-  };
-  template <class T>
-  struct constant_traits<quaternion<T>> {
-    static constexpr bool is_constant = true;
-    static constexpr kind kind_of = kind::quaternion;
-    using held_type = quaternion<T>;
-  };
-  template <class T>
-  struct constant_traits<dual_quaternion<T>> {
-    static constexpr bool is_constant = true;
-    static constexpr kind kind_of = kind::pose;
-    using held_type = dual_quaternion<T>;
-  };
+struct constant_traits<quaternion<T>> {
+  static constexpr bool is_constant = true;
+  static constexpr kind kind_of = is_screw_dual<T> ? kind::pose : kind::quaternion;
+  using held_type = quaternion<T>;
+};
 
 } // namespace detail
 
-/// A number, 3-vector, quaternion or dual quaternion.
+/// A number, 3-vector, quaternion, dual vector or dual quaternion.
 template <class T>
 concept Constant = !std::is_array_v<T> && detail::constant_traits<T>::is_constant;
 

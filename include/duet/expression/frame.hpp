@@ -12,7 +12,9 @@
 #include <boost/mp11/set.hpp>
 
 #include <concepts>
+#include <cstdint>
 #include <type_traits>
+#include <utility>
 
 /// \file
 /// Evaluation: all different nodes of some formulas in one list, operands first, each evaluated
@@ -30,19 +32,24 @@ struct argument {
   T value;
 };
 
-/// What an argument is made of.
+template <class T>
+inline constexpr bool is_screw_dual = false;
+template <class T>
+inline constexpr bool is_screw_dual<screw_dual<T>> = true;
+
+/// What an argument is made of; of rigid motion, real and dual part apart.
 template <class T>
 struct scalar_of {
   using type = T;
 };
 template <class T>
-struct scalar_of<vector3<T>> {
+struct scalar_of<screw_dual<T>> {
   using type = T;
 };
 template <class T>
-struct scalar_of<quaternion<T>> {
-  using type = T;
-};
+struct scalar_of<vector3<T>> : scalar_of<T> {};
+template <class T>
+struct scalar_of<quaternion<T>> : scalar_of<T> {};
 
 /// The real type in which numbers of a formula meet its arguments.
 template <class... T>
@@ -80,21 +87,21 @@ template <class Real, class T>
   }
 }
 template <class Real, class T>
-[[nodiscard]] auto constant_over(const vector3<T>& v) {
-  using S = decltype(constant_over<Real>(v[0]));
-  return vector3<S>(S(v[0]), S(v[1]), S(v[2]));
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const screw_dual<T>& x) {
+  const auto value = constant_over<Real>(x.value());
+  return screw_dual<std::remove_const_t<decltype(value)>>(value, constant_over<Real>(x.epsilon()));
 }
 template <class Real, class T>
-[[nodiscard]] constexpr auto constant_over(const quaternion<T>& q) {
-  if constexpr (std::floating_point<T>) {
-    return quaternion<Real>(Real(q.w()), Real(q.x()), Real(q.y()), Real(q.z()));
-  } else {
-    return q;
-  }
+[[nodiscard]] DUET_ALWAYS_INLINE auto constant_over(const vector3<T>& v) {
+  using S = decltype(constant_over<Real>(v[0]));
+  return vector3<S>(constant_over<Real>(v[0]), constant_over<Real>(v[1]),
+                    constant_over<Real>(v[2]));
 }
-template <class Real, std::floating_point T>
-[[nodiscard]] constexpr auto constant_over(const dual_quaternion<T>& a) {
-  return make_dual_quaternion(constant_over<Real>(real_part(a)), constant_over<Real>(dual_part(a)));
+template <class Real, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const quaternion<T>& q) {
+  using S = decltype(constant_over<Real>(q.w()));
+  return quaternion<S>(constant_over<Real>(q.w()), constant_over<Real>(q.x()),
+                       constant_over<Real>(q.y()), constant_over<Real>(q.z()));
 }
 
 /// Arguments and constants of a formula.
@@ -142,6 +149,9 @@ struct leaf<zero_node<K>, Given> {
     using real = typename Given::real;
     if constexpr (K == kind::vector) {
       return vector3<real>(real(0), real(0), real(0));
+    } else if constexpr (K == kind::dual_vector) {
+      using D = screw_dual<real>;
+      return dual_vector<real>(D(real(0)), D(real(0)), D(real(0)));
     } else if constexpr (K == kind::quaternion) {
       return quaternion<real>();
     } else {

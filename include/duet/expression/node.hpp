@@ -14,10 +14,11 @@ namespace duet::expression {
 /// What a node stands for.
 enum class kind {
   scalar,
-  condition,  ///< true or false
-  vector,     ///< three scalars
-  quaternion, ///< a rotation, if of unit norm
-  pose        ///< a dual quaternion, a rigid motion if unit
+  condition,   ///< true or false
+  vector,      ///< three scalars
+  quaternion,  ///< a rotation, if of unit norm
+  dual_vector, ///< a line, screw or twist of rigid motion
+  pose         ///< a dual quaternion, a rigid motion if unit
 };
 
 /// A variable with a name, spelt out in letters, for every compiler to print.

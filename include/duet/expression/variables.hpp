@@ -4,6 +4,7 @@
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/node.hpp>
 #include <duet/expression/number.hpp>
+#include <duet/expression/vector.hpp>
 
 #include <boost/mp11/list.hpp>
 
@@ -26,6 +27,13 @@ struct directions;
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::scalar> {
   using type = motion_list<motion<moving<Symbol, number_node<bits_of(1)>>>>;
+};
+
+template <class Symbol, class Frame>
+struct directions<Symbol, Frame, kind::vector> {
+  using type = motion_list<motion<moving<Symbol, unit_vector_node<kind::vector, 0>>>,
+                           motion<moving<Symbol, unit_vector_node<kind::vector, 1>>>,
+                           motion<moving<Symbol, unit_vector_node<kind::vector, 2>>>>;
 };
 
 } // namespace detail
