@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/expression/frame.hpp>
+#include <duet/expression/given.hpp>
 #include <duet/expression/held.hpp>
 #include <duet/expression/node.hpp>
 

@@ -200,4 +200,11 @@ template <ScalarTerm X>
   return apply<op::atan>(x);
 }
 
+/// f with the sines and cosines of the C library, bit for bit. Otherwise those of several doubles
+/// are taken at once, four times as fast and within one unit of the last place too.
+template <Formula F>
+[[nodiscard]] constexpr auto with_library_sines(const F& f) {
+  return make_formula(typename F::node_type{}, merged(f.held(), held<detail::library_sines>{}));
+}
+
 } // namespace duet::expression

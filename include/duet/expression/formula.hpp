@@ -5,6 +5,7 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/call.hpp>
 #include <duet/expression/frame.hpp>
+#include <duet/expression/given.hpp>
 #include <duet/expression/held.hpp>
 #include <duet/expression/node.hpp>
 

@@ -2,173 +2,35 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/scalar_traits.hpp>
-#include <duet/dual/promotion.hpp>
-#include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/expression/held.hpp>
+#include <duet/dual/sine_cosine.hpp>
+#include <duet/expression/given.hpp>
 #include <duet/expression/node.hpp>
+#include <duet/expression/sines.hpp>
 
+#include <boost/mp11/algorithm.hpp>
 #include <boost/mp11/list.hpp>
 #include <boost/mp11/set.hpp>
 
-#include <concepts>
-#include <cstdint>
+#include <algorithm>
+#include <cstddef>
 #include <type_traits>
-#include <utility>
 
 /// \file
 /// Evaluation: all different nodes of some formulas in one list, operands first, each evaluated
-/// once.
+/// once. It goes by stages, so that all sines that can be taken at once are.
 
-namespace duet::expression::detail {
+namespace duet::expression {
+
+namespace op {
+
+struct sin;
+struct cos;
+
+} // namespace op
+
+namespace detail {
 
 namespace mp11 = boost::mp11;
-
-/// The value of a symbol.
-template <class Symbol, class T>
-struct argument {
-  using symbol_type = Symbol;
-  using value_type = T;
-  T value;
-};
-
-template <class T>
-inline constexpr bool is_screw_dual = false;
-template <class T>
-inline constexpr bool is_screw_dual<screw_dual<T>> = true;
-
-/// What an argument is made of; of rigid motion, real and dual part apart.
-template <class T>
-struct scalar_of {
-  using type = T;
-};
-template <class T>
-struct scalar_of<screw_dual<T>> {
-  using type = T;
-};
-template <class T>
-struct scalar_of<vector3<T>> : scalar_of<T> {};
-template <class T>
-struct scalar_of<quaternion<T>> : scalar_of<T> {};
-
-/// The real type in which numbers of a formula meet its arguments.
-template <class... T>
-struct common_real {
-  using type = double;
-};
-template <class T>
-struct common_real<T> {
-  using type = real_type_t<typename scalar_of<T>::type>;
-};
-template <class A, class B, class... Rest>
-struct common_real<A, B, Rest...> {
-  using type =
-      typename common_real<promote_t<typename common_real<A>::type, typename common_real<B>::type>,
-                           Rest...>::type;
-};
-
-/// The scalar that holds all arguments.
-template <class Real, class... T>
-struct common_scalar {
-  using type = Real;
-};
-template <class Real, class T, class... Rest>
-struct common_scalar<Real, T, Rest...> {
-  using type = typename common_scalar<promote_t<Real, typename scalar_of<T>::type>, Rest...>::type;
-};
-
-/// A constant as arguments of some precision meet it.
-template <class Real, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const T& x) {
-  if constexpr (std::floating_point<T>) {
-    return static_cast<Real>(x);
-  } else {
-    return x;
-  }
-}
-template <class Real, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const screw_dual<T>& x) {
-  const auto value = constant_over<Real>(x.value());
-  return screw_dual<std::remove_const_t<decltype(value)>>(value, constant_over<Real>(x.epsilon()));
-}
-template <class Real, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE auto constant_over(const vector3<T>& v) {
-  using S = decltype(constant_over<Real>(v[0]));
-  return vector3<S>(constant_over<Real>(v[0]), constant_over<Real>(v[1]),
-                    constant_over<Real>(v[2]));
-}
-template <class Real, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const quaternion<T>& q) {
-  using S = decltype(constant_over<Real>(q.w()));
-  return quaternion<S>(constant_over<Real>(q.w()), constant_over<Real>(q.x()),
-                       constant_over<Real>(q.y()), constant_over<Real>(q.z()));
-}
-
-/// Arguments and constants of a formula.
-template <class Held, class... Arguments>
-struct given : Held, Arguments... {
-  using real = typename common_real<typename Arguments::value_type...>::type;
-  using scalar = typename common_scalar<real, typename Arguments::value_type...>::type;
-};
-
-template <class Symbol, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& value_in(const argument<Symbol, T>& x) {
-  return x.value;
-}
-template <class Node, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T&
-value_in(const holding<held_constant<Node, T>>& x) {
-  return x.value;
-}
-
-/// How a node that is no operation is evaluated.
-template <class Node, class Given>
-struct leaf;
-
-template <kind K, char... Letters, class Given>
-struct leaf<symbol_node<K, Letters...>, Given> {
-  DUET_ALWAYS_INLINE static constexpr auto value(const Given& g) {
-    return value_in<symbol_node<K, Letters...>>(g);
-  }
-};
-template <kind K, class Tag, class Given>
-struct leaf<constant_node<K, Tag>, Given> {
-  DUET_ALWAYS_INLINE static constexpr auto value(const Given& g) {
-    return constant_over<typename Given::real>(value_in<constant_node<K, Tag>>(g));
-  }
-};
-template <std::uint64_t Bits, class Given>
-struct leaf<number_node<Bits>, Given> {
-  DUET_ALWAYS_INLINE static constexpr auto value(const Given&) {
-    return static_cast<typename Given::real>(number_node<Bits>::value);
-  }
-};
-template <kind K, class Given>
-struct leaf<zero_node<K>, Given> {
-  static constexpr auto value(const Given&) {
-    using real = typename Given::real;
-    if constexpr (K == kind::vector) {
-      return vector3<real>(real(0), real(0), real(0));
-    } else if constexpr (K == kind::dual_vector) {
-      using D = screw_dual<real>;
-      return dual_vector<real>(D(real(0)), D(real(0)), D(real(0)));
-    } else if constexpr (K == kind::quaternion) {
-      return quaternion<real>();
-    } else {
-      return dual_quaternion<real>();
-    }
-  }
-};
-
-template <class Node, class Given>
-struct value_of {
-  using type = decltype(leaf<Node, Given>::value(std::declval<const Given&>()));
-};
-template <class Operation, class... Operands, class Given>
-struct value_of<applied_node<Operation, Operands...>, Given> {
-  using type = decltype(Operation::value(
-      std::declval<const typename value_of<Operands, Given>::type&>()...));
-};
 
 /// The list with a node and what it needs added, operands first.
 template <class List, class... Nodes>
@@ -207,11 +69,46 @@ template <class Node, class T>
   return s.value;
 }
 
+/// How many sines or cosines must have been taken before a node can be evaluated.
+template <class Node>
+inline constexpr int stage_of = 0;
+template <class Operation, class... Operands>
+inline constexpr int
+    stage_of<applied_node<Operation, Operands...>> = std::max({stage_of<Operands>...});
+template <class X>
+inline constexpr int stage_of<applied_node<op::sin, X>> = stage_of<X> + 1;
+template <class X>
+inline constexpr int stage_of<applied_node<op::cos, X>> = stage_of<X> + 1;
+
+template <class Node>
+inline constexpr bool is_sine = is_applied<Node, op::sin> || is_applied<Node, op::cos>;
+
+/// The arguments whose sines or cosines are taken at the end of a stage.
+template <int Stage, class Arguments, class... Nodes>
+struct sines_of_stage {
+  using type = Arguments;
+};
+template <int Stage, class Arguments, class Node, class... Rest>
+struct sines_of_stage<Stage, Arguments, Node, Rest...> : sines_of_stage<Stage, Arguments, Rest...> {
+};
+template <int Stage, class Arguments, class X, class... Rest>
+struct sines_of_stage<Stage, Arguments, applied_node<op::sin, X>, Rest...>
+    : sines_of_stage<
+          Stage,
+          mp11::mp_if_c<stage_of<X> == Stage, mp11::mp_set_push_back<Arguments, X>, Arguments>,
+          Rest...> {};
+template <int Stage, class Arguments, class X, class... Rest>
+struct sines_of_stage<Stage, Arguments, applied_node<op::cos, X>, Rest...>
+    : sines_of_stage<
+          Stage,
+          mp11::mp_if_c<stage_of<X> == Stage, mp11::mp_set_push_back<Arguments, X>, Arguments>,
+          Rest...> {};
+
 /// The nodes and their values.
 template <class Given, class... Nodes>
 class frame : slot<Nodes, typename value_of<Nodes, Given>::type>... {
 public:
-  DUET_ALWAYS_INLINE constexpr explicit frame(const Given& g) { (fill(g, Nodes{}), ...); }
+  DUET_ALWAYS_INLINE constexpr explicit frame(const Given& g) { fill_from<0>(g); }
 
   /// The value of one of the nodes.
   template <class Node>
@@ -223,16 +120,65 @@ private:
   template <class Node>
   using slot_of = slot<Node, typename value_of<Node, Given>::type>;
   template <class Node>
-  static constexpr bool has = std::derived_from<frame, slot_of<Node>>;
+  static constexpr bool has = (std::is_same_v<Node, Nodes> || ...);
 
-  template <class Node>
-  DUET_ALWAYS_INLINE constexpr void fill(const Given& g, Node) {
-    slot_of<Node>::value = leaf<Node, Given>::value(g);
+  template <int Stage>
+  DUET_ALWAYS_INLINE constexpr void fill_from(const Given& g) {
+    (fill<Stage>(g, Nodes{}), ...);
+    if constexpr (Stage < std::max({0, stage_of<Nodes>...})) {
+      take_sines(typename sines_of_stage<Stage, mp11::mp_list<>, Nodes...>::type{});
+      fill_from<Stage + 1>(g);
+    }
   }
-  template <class Operation, class... Operands>
+
+  template <int Stage, class Node>
+  DUET_ALWAYS_INLINE constexpr void fill(const Given& g, Node) {
+    if constexpr (stage_of<Node> == Stage) {
+      slot_of<Node>::value = leaf<Node, Given>::value(g);
+    }
+  }
+  template <int Stage, class Operation, class... Operands>
   DUET_ALWAYS_INLINE constexpr void fill(const Given&, applied_node<Operation, Operands...>) {
     using node = applied_node<Operation, Operands...>;
-    slot_of<node>::value = Operation::value((*this)[Operands{}]...);
+    if constexpr (stage_of<node> == Stage && !is_sine<node>) {
+      slot_of<node>::value = Operation::value((*this)[Operands{}]...);
+    }
+  }
+
+  template <class... X>
+  DUET_ALWAYS_INLINE constexpr void take_sines(mp11::mp_list<X...>) {
+    if constexpr (takes_sines_at_once<Given, typename value_of<X, Given>::type...>) {
+      if (!std::is_constant_evaluated()) {
+        const sines_at_once<sizeof...(X)> y((*this)[X{}]...);
+        int i = 0;
+        ((set_sine<X>(y.sine(i), y.cosine(i)), ++i), ...);
+        return;
+      }
+    }
+    (take_sine<X>(), ...);
+  }
+  template <class X>
+  DUET_ALWAYS_INLINE constexpr void take_sine() {
+    using duet::detail::sine_and_cosine_of;
+    const auto& x = (*this)[X{}];
+    using T = std::remove_cvref_t<decltype(x)>;
+    if constexpr (!has<applied_node<op::cos, X>>) {
+      slot_of<applied_node<op::sin, X>>::value = duet::rule::sin{}.value(x);
+    } else if constexpr (!has<applied_node<op::sin, X>>) {
+      slot_of<applied_node<op::cos, X>>::value = duet::rule::cos{}.value(x);
+    } else {
+      const duet::detail::sine_cosine<T> y = sine_and_cosine_of(x);
+      set_sine<X>(y.sine, y.cosine);
+    }
+  }
+  template <class X, class T>
+  DUET_ALWAYS_INLINE constexpr void set_sine(const T& sine, const T& cosine) {
+    if constexpr (has<applied_node<op::sin, X>>) {
+      slot_of<applied_node<op::sin, X>>::value = sine;
+    }
+    if constexpr (has<applied_node<op::cos, X>>) {
+      slot_of<applied_node<op::cos, X>>::value = cosine;
+    }
   }
 };
 
@@ -250,4 +196,5 @@ template <class... Roots, class Given>
   return typename frame_over<list, Given>::type(g);
 }
 
-} // namespace duet::expression::detail
+} // namespace detail
+} // namespace duet::expression

@@ -220,9 +220,13 @@ struct slerp {
 struct rotate {
   static constexpr kind kind_of(kind, kind v) { return v; }
   template <class Q, class V>
-  static constexpr auto simplified(Q, V v) {
+  static constexpr auto simplified([[maybe_unused]] Q q, V v) {
     if constexpr (is_zero<V>) {
       return v;
+    } else if constexpr (is_applied<V, product>) { // of a scalar
+      return operand<0>(v) * apply<rotate>(q, operand<1>(v));
+    } else if constexpr (is_applied<V, negative>) {
+      return -apply<rotate>(q, operand<0>(v));
     } else {
       return applied_node<rotate, Q, V>{};
     }
