@@ -23,18 +23,22 @@ struct moving {};
 
 /// Which symbols move, and how; the others do not.
 template <class... Moving>
-struct motion {};
+struct movement {};
+
+template <class Symbol>
+using movement_of_scalar = movement<moving<Symbol, number_node<bits_of(1)>>>;
 
 template <class Symbol, class Motion>
 struct rate_of_symbol {
   using type = decltype(zero_of<Symbol::kind_of>());
 };
 template <class Symbol, class Rate, class... Rest>
-struct rate_of_symbol<Symbol, motion<moving<Symbol, Rate>, Rest...>> {
+struct rate_of_symbol<Symbol, movement<moving<Symbol, Rate>, Rest...>> {
   using type = Rate;
 };
 template <class Symbol, class Other, class... Rest>
-struct rate_of_symbol<Symbol, motion<Other, Rest...>> : rate_of_symbol<Symbol, motion<Rest...>> {};
+struct rate_of_symbol<Symbol, movement<Other, Rest...>>
+    : rate_of_symbol<Symbol, movement<Rest...>> {};
 
 template <class Node, class Motion>
 struct rate {
@@ -106,9 +110,8 @@ template <Formula F, Symbol U>
   static_assert(symbol_type::kind_of == kind::scalar,
                 "duet: derivative(f, u) is by a scalar symbol; by vectors, rotations and poses "
                 "there is jacobian(f, wrt(w))");
-  using motion =
-      detail::motion<detail::moving<symbol_type, std::remove_const_t<decltype(whole<1>)>>>;
-  return make_formula(detail::rate_t<typename F::node_type, motion>{}, f.held());
+  return make_formula(
+      detail::rate_t<typename F::node_type, detail::movement_of_scalar<symbol_type>>{}, f.held());
 }
 
 /// A symbol and the direction in which it moves.
@@ -130,8 +133,8 @@ template <Symbol U, Formula Direction>
 template <Formula F, class... SymbolType, class... Direction>
 [[nodiscard]] constexpr auto directional_derivative(const F& f,
                                                     const moved<SymbolType, Direction>&... m) {
-  using motion = detail::motion<detail::moving<SymbolType, typename Direction::node_type>...>;
-  return make_formula(detail::rate_t<typename F::node_type, motion>{},
+  using movement = detail::movement<detail::moving<SymbolType, typename Direction::node_type>...>;
+  return make_formula(detail::rate_t<typename F::node_type, movement>{},
                       merged(f.held(), m.direction.held()...));
 }
 

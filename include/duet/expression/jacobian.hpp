@@ -7,6 +7,7 @@
 #include <duet/expression/call.hpp>
 #include <duet/expression/formula.hpp>
 #include <duet/expression/node.hpp>
+#include <duet/expression/pose_chain.hpp>
 #include <duet/expression/variables.hpp>
 #include <duet/expression/velocity.hpp>
 
@@ -66,14 +67,23 @@ private:
                                                      const Arguments&... arguments) const {
     using S = typename given<typename F::held_type, Arguments...>::scalar;
     constexpr int rows = node::kind_of == kind::pose ? 6 : 3;
-    const auto values =
-        called<node, decltype(column_of<node, Motions, Frame>())...>(f_.held(), arguments...);
-    using value = std::decay_t<decltype(values[node{}])>;
-    value_and_jacobian<value, Eigen::Matrix<S, rows, int(sizeof...(Motions))>> result;
-    result.value = values[node{}];
-    S* column = result.jacobian.data();
-    ((write_column(column, values[column_of<node, Motions, Frame>()]), column += rows), ...);
-    return result;
+    if constexpr (is_pose_chain<node> && std::is_same_v<Frame, spatial_frame> &&
+                  std::is_same_v<S, double>) {
+      value_and_jacobian<dual_quaternion<double>, Eigen::Matrix<S, 6, int(sizeof...(Motions))>>
+          result;
+      using chain = pose_chain<typename factors<node>::type, motion_list<Motions...>>;
+      result.value = chain::evaluate(result.jacobian.data(), f_.held(), arguments...);
+      return result;
+    } else {
+      const auto values =
+          called<node, decltype(column_of<node, Motions, Frame>())...>(f_.held(), arguments...);
+      using value = std::decay_t<decltype(values[node{}])>;
+      value_and_jacobian<value, Eigen::Matrix<S, rows, int(sizeof...(Motions))>> result;
+      result.value = values[node{}];
+      S* column = result.jacobian.data();
+      ((write_column(column, values[column_of<node, Motions, Frame>()]), column += rows), ...);
+      return result;
+    }
   }
 
   F f_;

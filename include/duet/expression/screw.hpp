@@ -193,12 +193,29 @@ template <class N, class Angle, class Tag = decltype([] {})>
   return make_formula(detail::turn_about(detail::node_of(axis), detail::node_of(a)),
                       merged(detail::held_of(axis), detail::held_of(a)));
 }
-/// The translation by d along a unit vector, a prismatic joint.
+/// The translation by d along a unit vector or line, a prismatic joint.
 template <class N, class D, class Tag = decltype([] {})>
   requires Operands<N, D>
 [[nodiscard]] constexpr auto slide(const N& n, const D& d) {
-  return apply<op::slide>(detail::term<Tag>(n), detail::term<Tag>(d));
+  const auto direction = detail::term<Tag>(n);
+  if constexpr (DualVectorTerm<std::remove_cvref_t<decltype(direction)>>) {
+    return apply<op::slide>(apply<op::part<false>>(direction), detail::term<Tag>(d));
+  } else {
+    return apply<op::slide>(direction, detail::term<Tag>(d));
+  }
 }
+/// The coordinate axes, lines through the origin, known to the compiler: `screw(axis::z, theta)`,
+/// `slide(axis::x, 0.3)`.
+namespace axis {
+
+template <int I>
+using coordinate = formula<unit_vector_node<kind::dual_vector, I>, held<>>;
+inline constexpr coordinate<0> x{};
+inline constexpr coordinate<1> y{};
+inline constexpr coordinate<2> z{};
+
+} // namespace axis
+
 /// The line along n through a point, n + ε point × n, for `screw`.
 [[nodiscard]] inline dual_vector<double> axis_through(const vector3<double>& point,
                                                       const vector3<double>& n) {

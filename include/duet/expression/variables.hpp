@@ -26,14 +26,14 @@ struct directions;
 
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::scalar> {
-  using type = motion_list<motion<moving<Symbol, number_node<bits_of(1)>>>>;
+  using type = motion_list<movement_of_scalar<Symbol>>;
 };
 
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::vector> {
-  using type = motion_list<motion<moving<Symbol, unit_vector_node<kind::vector, 0>>>,
-                           motion<moving<Symbol, unit_vector_node<kind::vector, 1>>>,
-                           motion<moving<Symbol, unit_vector_node<kind::vector, 2>>>>;
+  using type = motion_list<movement<moving<Symbol, unit_vector_node<kind::vector, 0>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::vector, 1>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::vector, 2>>>>;
 };
 
 } // namespace detail

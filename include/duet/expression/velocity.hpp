@@ -24,11 +24,11 @@ template <class Symbol, class Velocity, class Frame>
 struct turning {};
 
 template <class Symbol, class Velocity, class... Rest>
-struct rate_of_symbol<Symbol, motion<turning<Symbol, Velocity, spatial_frame>, Rest...>> {
+struct rate_of_symbol<Symbol, movement<turning<Symbol, Velocity, spatial_frame>, Rest...>> {
   using type = decltype(number_node<bits_of(0.5)>{} * (apply<op::pure>(Velocity{}) * Symbol{}));
 };
 template <class Symbol, class Velocity, class... Rest>
-struct rate_of_symbol<Symbol, motion<turning<Symbol, Velocity, body_frame>, Rest...>> {
+struct rate_of_symbol<Symbol, movement<turning<Symbol, Velocity, body_frame>, Rest...>> {
   using type = decltype(number_node<bits_of(0.5)>{} * (Symbol{} * apply<op::pure>(Velocity{})));
 };
 
@@ -61,7 +61,7 @@ struct velocity_of_symbol {
   }
 };
 template <class Symbol, class V, class FrameOfV, class... Rest>
-struct velocity_of_symbol<Symbol, motion<turning<Symbol, V, FrameOfV>, Rest...>> {
+struct velocity_of_symbol<Symbol, movement<turning<Symbol, V, FrameOfV>, Rest...>> {
   template <class Frame>
   static constexpr auto in() {
     if constexpr (std::is_same_v<Frame, FrameOfV>) {
@@ -74,8 +74,8 @@ struct velocity_of_symbol<Symbol, motion<turning<Symbol, V, FrameOfV>, Rest...>>
   }
 };
 template <class Symbol, class Other, class... Rest>
-struct velocity_of_symbol<Symbol, motion<Other, Rest...>>
-    : velocity_of_symbol<Symbol, motion<Rest...>> {};
+struct velocity_of_symbol<Symbol, movement<Other, Rest...>>
+    : velocity_of_symbol<Symbol, movement<Rest...>> {};
 
 template <kind K, char... Letters, class Motion>
 struct velocity<symbol_node<K, Letters...>, Motion>
@@ -179,19 +179,20 @@ struct rate<applied_node<op::translation, A>, Motion> {
 
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::quaternion> {
-  using type = motion_list<motion<turning<Symbol, unit_vector_node<kind::vector, 0>, Frame>>,
-                           motion<turning<Symbol, unit_vector_node<kind::vector, 1>, Frame>>,
-                           motion<turning<Symbol, unit_vector_node<kind::vector, 2>, Frame>>>;
+  using type = motion_list<movement<turning<Symbol, unit_vector_node<kind::vector, 0>, Frame>>,
+                           movement<turning<Symbol, unit_vector_node<kind::vector, 1>, Frame>>,
+                           movement<turning<Symbol, unit_vector_node<kind::vector, 2>, Frame>>>;
 };
 /// In the order of [v; ω].
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::pose> {
-  using type = motion_list<motion<turning<Symbol, unit_vector_node<kind::dual_vector, 3>, Frame>>,
-                           motion<turning<Symbol, unit_vector_node<kind::dual_vector, 4>, Frame>>,
-                           motion<turning<Symbol, unit_vector_node<kind::dual_vector, 5>, Frame>>,
-                           motion<turning<Symbol, unit_vector_node<kind::dual_vector, 0>, Frame>>,
-                           motion<turning<Symbol, unit_vector_node<kind::dual_vector, 1>, Frame>>,
-                           motion<turning<Symbol, unit_vector_node<kind::dual_vector, 2>, Frame>>>;
+  using type =
+      motion_list<movement<turning<Symbol, unit_vector_node<kind::dual_vector, 3>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 4>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 5>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 0>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 1>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 2>, Frame>>>;
 };
 
 } // namespace duet::expression::detail
