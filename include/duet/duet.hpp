@@ -38,6 +38,9 @@
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/functions_of_many.hpp>
 #include <duet/expression/gradient.hpp>
+#include <duet/expression/jacobian.hpp>
+#include <duet/expression/motion.hpp>
+#include <duet/expression/screw.hpp>
 #include <duet/expression/special_functions.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/text.hpp>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/derivative/structure.hpp>
 #include <duet/expression/formula.hpp>
 #include <duet/expression/node.hpp>
 #include <duet/expression/number.hpp>
@@ -19,14 +18,41 @@ namespace duet::expression {
 
 namespace detail {
 
-/// The result of an operation on an A and a B as a number or vector of its own, where Eigen or
-/// Boost have an expression template.
-template <class A, class B, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto plain(const T& x) {
-  if constexpr (Scalar<A> && Scalar<B>) {
-    return static_cast<promote_t<A, B>>(x);
+// Results are held in numbers and vectors of their own, no expression templates. Of vectors this is
+// done by component: Eigen would put three together in packets, which are slower to take apart.
+
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const auto& component_of(const T& x,
+                                                                    [[maybe_unused]] int i) {
+  if constexpr (ThreeComponents<T>) {
+    return x[i];
   } else {
-    return duet::detail::evaluated(x);
+    return x;
+  }
+}
+
+/// f(a), by component of a vector.
+template <class F, class A>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr A componentwise(const F& f, const A& a) {
+  if constexpr (ThreeComponents<A>) {
+    return A(f(a[0]), f(a[1]), f(a[2]));
+  } else {
+    return A(f(a));
+  }
+}
+/// f(a, b), by component of vectors.
+template <class F, class A, class B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto componentwise(const F& f, const A& a, const B& b) {
+  if constexpr (ThreeComponents<A> || ThreeComponents<B>) {
+    using S = promote_t<std::remove_cvref_t<decltype(component_of(a, 0))>,
+                        std::remove_cvref_t<decltype(component_of(b, 0))>>;
+    return vector3<S>(S(f(component_of(a, 0), component_of(b, 0))),
+                      S(f(component_of(a, 1), component_of(b, 1))),
+                      S(f(component_of(a, 2), component_of(b, 2))));
+  } else if constexpr (Scalar<A> && Scalar<B>) {
+    return static_cast<promote_t<A, B>>(f(a, b));
+  } else {
+    return f(a, b);
   }
 }
 
@@ -115,7 +141,7 @@ struct negative {
   }
   template <class A>
   DUET_ALWAYS_INLINE static constexpr auto value(const A& a) {
-    return detail::plain<A, A>(-a);
+    return detail::componentwise([](const auto& x) DUET_INLINE_LAMBDA { return -x; }, a);
   }
   template <class A, class DA>
   static constexpr auto differential(A, DA da) {
@@ -155,7 +181,8 @@ struct sum {
   }
   template <class A, class B>
   DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
-    return detail::plain<A, B>(a + b);
+    return detail::componentwise(
+        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x + y; }, a, b);
   }
   template <class A, class B, class DA, class DB>
   static constexpr auto differential(A, B, DA da, DB db) {
@@ -193,7 +220,8 @@ struct difference {
   }
   template <class A, class B>
   DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
-    return detail::plain<A, B>(a - b);
+    return detail::componentwise(
+        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x - y; }, a, b);
   }
   template <class A, class B, class DA, class DB>
   static constexpr auto differential(A, B, DA da, DB db) {

@@ -124,7 +124,7 @@ struct power {
   template <class X, class P>
   static auto value(const X& x, const P& p) {
     using std::pow;
-    return detail::plain<X, P>(pow(x, p));
+    return static_cast<promote_t<X, P>>(pow(x, p));
   }
   template <class X, class P>
   static constexpr auto slope_of_first(X x, [[maybe_unused]] P p) {

@@ -118,7 +118,8 @@ struct product {
   }
   template <class A, class B>
   DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
-    return detail::plain<A, B>(a * b);
+    return detail::componentwise(
+        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x * y; }, a, b);
   }
   template <class A, class B, class DA, class DB>
   static constexpr auto differential(A a, B b, DA da, DB db) {
@@ -159,7 +160,8 @@ struct quotient {
   }
   template <class A, class B>
   DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
-    return detail::plain<A, B>(a / b);
+    return detail::componentwise(
+        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x / y; }, a, b);
   }
   template <class A, class B, class DA, class DB>
   static constexpr auto differential(A a, B b, DA da, DB db) {

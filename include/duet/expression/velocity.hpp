@@ -54,10 +54,12 @@ struct velocity {
 };
 
 template <class Symbol, class Motion>
-struct velocity_of_symbol {
+struct velocity_of_symbol;
+template <class Symbol, class Rate, class... Rest>
+struct velocity_of_symbol<Symbol, movement<moving<Symbol, Rate>, Rest...>> {
   template <class Frame>
   static constexpr auto in() {
-    return velocity_by_rate<Frame>(Symbol{}, rate_t<Symbol, Motion>{});
+    return velocity_by_rate<Frame>(Symbol{}, Rate{});
   }
 };
 template <class Symbol, class V, class FrameOfV, class... Rest>
