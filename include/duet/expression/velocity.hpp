@@ -6,6 +6,7 @@
 #include <duet/expression/node.hpp>
 #include <duet/expression/number.hpp>
 #include <duet/expression/rotation.hpp>
+#include <duet/expression/scalar_factor.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/variables.hpp>
 #include <duet/expression/vector.hpp>
