@@ -17,6 +17,7 @@
 #include <boost/mp11/list.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
@@ -99,21 +100,31 @@ struct link<applied_node<op::slide, unit_vector_node<kind::vector, I>, D>> {
   }
 };
 
-/// Whether a motion moves one of the factors before the K-th.
-template <std::size_t K, class Motion, class... Factors>
-[[nodiscard]] constexpr bool moves_before() {
-  std::size_t i = 0;
-  return ((i++ < K && !is_zero<typename link<Factors>::template twist<Motion>>) || ...);
-}
+/// Those of the motions that move a factor, a short list as a rule: what a compiler spends on a
+/// chain grows with these, not with the product of factors and motions.
+template <class Factor, class... Motions>
+struct motions_of_factor {
+  template <class Motion>
+  using moves = mp11::mp_bool<!is_zero<typename link<Factor>::template twist<Motion>>>;
+  using type = mp11::mp_copy_if<mp11::mp_list<Motions...>, moves>;
+};
 
 template <class Factors, class Motions,
           class Indices = std::make_index_sequence<mp11::mp_size<Factors>::value>>
 struct pose_chain;
 template <class... Factors, class... Motions, std::size_t... K>
 struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index_sequence<K...>> {
-  template <class Motion>
-  using twists = mp11::mp_list<typename link<Factors>::template twist<Motion>...>;
-  using roots = mp11::mp_append<typename link<Factors>::nodes..., twists<Motions>...>;
+  template <class Factor>
+  using moved_by = typename motions_of_factor<Factor, Motions...>::type;
+
+  template <class Factor, class List>
+  struct twists_of;
+  template <class Factor, class... M>
+  struct twists_of<Factor, mp11::mp_list<M...>> {
+    using type = mp11::mp_list<typename link<Factor>::template twist<M>...>;
+  };
+  using roots = mp11::mp_append<typename link<Factors>::nodes...,
+                                typename twists_of<Factors, moved_by<Factors>>::type...>;
 
   /// The pose; its Jacobian is written into 6 × n doubles, column by column.
   template <class Held, class... Arguments>
@@ -121,37 +132,44 @@ struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index
   evaluate(double* jacobian, const Held& held, const Arguments&... arguments) {
     const auto values = values_of(roots{}, held, arguments...);
     moving_frame f;
-    (step<K, Factors>(f, jacobian, values), ...);
+    (step<K, Factors>(moved_by<Factors>{}, f, jacobian, values), ...);
     (clear_column<Motions>(jacobian), ...);
     return f.pose();
   }
 
 private:
+  using moving = mp11::mp_append<moved_by<Factors>...>;
+  static constexpr std::array<std::size_t, sizeof...(Factors)> moved_counts = {
+      mp11::mp_size<moved_by<Factors>>::value...};
+
+  /// Whether a motion moves one of the factors before the K-th.
+  template <std::size_t At, class Motion>
+  static constexpr bool moves_before = [] {
+    std::size_t before = 0;
+    for (std::size_t i = 0; i < At; ++i) {
+      before += moved_counts[i];
+    }
+    return mp11::mp_find<moving, Motion>::value < before;
+  }();
+
+  template <class Motion>
+  static constexpr int column = 6 * int(mp11::mp_find<mp11::mp_list<Motions...>, Motion>::value);
+
   template <class... Roots, class Held, class... Arguments>
   DUET_ALWAYS_INLINE static auto values_of(mp11::mp_list<Roots...>, const Held& held,
                                            const Arguments&... arguments) {
     return called<Roots...>(held, arguments...);
   }
-  template <class Motion>
-  static constexpr int column = 6 * int(mp11::mp_find<mp11::mp_list<Motions...>, Motion>::value);
-
-  template <std::size_t At, class Factor, class Frame>
-  DUET_ALWAYS_INLINE static void step(moving_frame& f, double* jacobian, const Frame& values) {
-    (write<At, Factor, Motions>(f, jacobian, values), ...);
+  template <std::size_t At, class Factor, class... M, class Frame>
+  DUET_ALWAYS_INLINE static void step(mp11::mp_list<M...>, moving_frame& f,
+                                      [[maybe_unused]] double* jacobian, const Frame& values) {
+    (link<Factor>::template write<!moves_before<At, M>, M>(f, jacobian + column<M>, values), ...);
     constexpr bool is_first = ((K >= At || !link<Factors>::turns) && ...);
     link<Factor>::template append<is_first>(f, values);
   }
-  template <std::size_t At, class Factor, class Motion, class Frame>
-  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* jacobian,
-                                       const Frame& values) {
-    if constexpr (!is_zero<typename link<Factor>::template twist<Motion>>) {
-      constexpr bool is_first = !moves_before<At, Motion, Factors...>();
-      link<Factor>::template write<is_first, Motion>(f, jacobian + column<Motion>, values);
-    }
-  }
   template <class Motion>
   DUET_ALWAYS_INLINE static void clear_column(double* jacobian) {
-    if constexpr (!moves_before<sizeof...(Factors), Motion, Factors...>()) {
+    if constexpr (!moves_before<sizeof...(Factors), Motion>) {
       std::fill_n(jacobian + column<Motion>, 6, 0.0);
     }
   }

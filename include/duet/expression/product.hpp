@@ -33,6 +33,13 @@ inline constexpr int exponent_of<X, X> = 1;
 template <int N, class X>
 inline constexpr int exponent_of<applied_node<op::whole_power<N>, X>, X> = N;
 
+/// A product of scalars, the second a whole positive power of X.
+template <class T, class X>
+inline constexpr bool ends_with_power_of = false;
+template <class A, class B, class X>
+inline constexpr bool ends_with_power_of<applied_node<op::product, A, B>, X> =
+    exponent_of<B, X> > 0 && X::kind_of == kind::scalar;
+
 /// X of x^n, and x itself of what is no power.
 template <class T>
 struct base {
@@ -112,6 +119,8 @@ struct product {
                          detail::exponent_of<B, base_of_b> > 0) {
       constexpr int n = detail::exponent_of<A, base_of_a> + detail::exponent_of<B, base_of_b>;
       return applied_node<whole_power<n>, base_of_a>{};
+    } else if constexpr (detail::ends_with_power_of<A, base_of_b>) {
+      return operand<0>(a) * (operand<1>(a) * b);
     } else {
       return applied_node<product, A, B>{};
     }
