@@ -1,0 +1,114 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+
+/// \file
+/// Sine and cosine of all lanes of a compiler vector of doubles at once, within one unit of the
+/// last place.
+
+namespace duet::detail {
+
+/// sin and cos of the lanes of a vector.
+template <class V>
+struct vector_sines_and_cosines {
+  V sine;
+  V cosine;
+};
+
+/// From here on, and for infinities and NaN, the C library is asked: n below would have too many
+/// bits.
+inline constexpr double vector_sine_limit = 8e5;
+
+/// A vector of doubles, `typedef double V __attribute__((vector_size(32)))`.
+template <class V>
+concept VectorOfDoubles = requires(V v) {
+  requires std::same_as < std::remove_cvref_t<decltype(v[0])>,
+  double > ;
+  v = v < v ? v : -v;
+};
+
+/// The lanes that are too large, by the C library.
+template <VectorOfDoubles V>
+[[gnu::noinline, gnu::cold]] inline void replace_sines_of_large(const V& x,
+                                                                vector_sines_and_cosines<V>& y) {
+  for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) {
+    if (!(std::abs(x[i]) < vector_sine_limit)) {
+      y.sine[i] = std::sin(x[i]);
+      y.cosine[i] = std::cos(x[i]);
+    }
+  }
+}
+
+/// The same of a vector all lanes of which are below `vector_sine_limit`; others give garbage.
+template <VectorOfDoubles V>
+[[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V>
+vector_sine_and_cosine_of_moderate(const V& x) {
+  // x = n π/2 + r + tail with |r| ≤ π/4. π/2 in three parts of 33 bits, whose products with n are
+  // exact, and a rest: also next to a multiple of π/2, where the first parts cancel, r is exact.
+  constexpr double round = 0x1.8p52; // leaves n in the lowest bits
+  const V shifted = x * 0x1.45f306dc9c883p-1 + round;
+  const V n = shifted - round;
+  const V w1 = n * 0x1.921fb544p+0, w2 = n * 0x1.0b4611a6p-34, w3 = n * 0x1.3198a2ep-69;
+  const V r1 = x - w1;
+  const V r2 = r1 - w2;
+  const V r3 = r2 - w3;
+  // Negative, or −0 would lose its sign.
+  const V lost = n * 0x1.b839a252049c1p-104 - (((r1 - r2) - w2) + ((r2 - r3) - w3));
+  const V r = r3 - lost;
+  const V tail = (r3 - r) - lost;
+
+  // Minimax polynomials on |r| ≤ π/4, relative errors 3.5e-18 and 5e-20.
+  const V z = r * r, z2 = z * z, cube = z * r;
+  const V s =
+      (0x1.111111110f8a5p-7 - z * 0x1.a01a019c15e6dp-13) +
+      z2 * ((0x1.71de357ae42b6p-19 - z * 0x1.ae5e686c75808p-26) + z2 * 0x1.5d93942c9fa1ap-33);
+  const V c = (0x1.555555555554cp-5 - z * 0x1.6c16c16c1521ep-10) +
+              z2 * ((0x1.a01a019cbf387p-16 - z * 0x1.27e4f8128eacfp-22) +
+                    z2 * (0x1.1ee9f1327a1fap-29 - z * 0x1.8fb11e2c1d83cp-37));
+  const V sine = r - ((z * (0.5 * tail - cube * s) - tail) + cube * 0x1.5555555555549p-3);
+  const V half = 0.5 * z;
+  const V rounded = 1.0 - half;
+  const V cosine = rounded + (((1.0 - rounded) - half) + (z2 * c - r * tail));
+
+  // The quadrant: odd ones swap; the second bit of n is the sign of the sine, that of n + 1 the
+  // cosine's.
+  using bits = decltype(x < x);
+  const bits quadrant = bits(shifted);
+  const bits swapped = (quadrant & 1) != 0;
+  const bits sine_sign = (quadrant << 62) & (bits{} + (1LL << 63));
+  const bits cosine_sign = ((quadrant + 1) << 62) & (bits{} + (1LL << 63));
+  return {V(bits(swapped ? cosine : sine) ^ sine_sign),
+          V(bits(swapped ? sine : cosine) ^ cosine_sign)};
+}
+
+/// sin x and cos x, lane by lane: within one unit of the last place of the truth.
+template <VectorOfDoubles V>
+[[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V> vector_sine_and_cosine(const V& x) {
+#ifdef __FAST_MATH__ // would drop what the reduction compensates
+  vector_sines_and_cosines<V> y{};
+  for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) {
+    y.sine[i] = std::sin(x[i]);
+    y.cosine[i] = std::cos(x[i]);
+  }
+#else
+  vector_sines_and_cosines<V> y = vector_sine_and_cosine_of_moderate(x);
+  const V size = x < 0 ? -x : x;
+  const auto moderate = size < vector_sine_limit;
+  auto all = moderate[0];
+  for (std::size_t i = 1; i < sizeof(V) / sizeof(double); ++i) {
+    all &= moderate[i];
+  }
+  if (!all) [[unlikely]] {
+    replace_sines_of_large(x, y);
+  }
+#endif
+  return y;
+}
+
+} // namespace duet::detail
