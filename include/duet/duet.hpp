@@ -52,6 +52,7 @@
 #include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/screw_axes.hpp>
+#include <duet/mechanism/sweep.hpp>
 #include <duet/mechanism/urdf.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>

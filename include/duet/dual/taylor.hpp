@@ -85,9 +85,9 @@ public:
 
   /// Does the predicate hold for every coefficient?
   template <class Predicate>
-  [[nodiscard]] constexpr bool all_of(Predicate&& predicate) const {
-    bool result = true;
-    for (int k = 0; k <= K; ++k) {
+  [[nodiscard]] constexpr auto all_of(Predicate&& predicate) const {
+    auto result = predicate(value());
+    for (int k = 1; k <= K; ++k) {
       result = result && predicate(coefficient(k));
     }
     return result;
