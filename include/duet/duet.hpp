@@ -41,7 +41,8 @@
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/screw_axes.hpp>
 #include <duet/mechanism/urdf.hpp>
-#include <duet/planning/closest_points.hpp>
+#include <duet/planning/clearance.hpp>
+#include <duet/planning/constrained_step.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/planning/printed_plan.hpp>
 #include <duet/quaternion/average.hpp>
