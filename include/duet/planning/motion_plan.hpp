@@ -7,6 +7,7 @@
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/quaternion/rotation.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
 #include <vector>
@@ -51,28 +52,46 @@ struct pose_deviation {
           rotation_vector(quaternion<double>(conj(rotation(a)) * rotation(b))).norm()};
 }
 
-/// A path of joint coordinates from the start on, waypoint by waypoint. Where the goal is not
-/// reached, the path ends as far as the planner came.
+/// A path of joint coordinates from the start on, waypoint by waypoint, joints moving straight on
+/// between them. Where the goal is not reached, the path ends as far as the planner came.
 ///
 /// \tparam N  as of `serial_chain`
 template <int N>
 struct motion_plan {
   std::vector<detail::joint_vector<double, N>> joints;
   std::vector<dual_quaternion<double>> poses; ///< of the tip
-  std::vector<double> tau;                    ///< fraction of the screw motion at each waypoint
-  std::vector<pose_deviation> deviations;     ///< from the screw motion, at each waypoint
+  /// The fraction of the screw motion, or the parameter of the path, at each waypoint; the same in
+  /// successive ones where the joints move with the tip in place.
+  std::vector<double> tau;
+  std::vector<pose_deviation> deviations; ///< from the motion asked for, at each waypoint
   /// Of the Jacobian in `frame::hybrid` on the way, estimated from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
+  /// Of any joint, at any waypoint, to its nearer limit; in coordinates.
+  double smallest_limit_margin = std::numeric_limits<double>::infinity();
   int iterations = 0;
   stop_reason reason = stop_reason::no_progress;
 };
 
 namespace detail {
 
-/// \throws invalid_input for a start that is not finite or outside the limits, and for a goal that
-/// is no pose
+template <class C>
+void add_waypoint(motion_plan<C::joints>& plan, const C& chain,
+                  const joint_vector<double, C::joints>& theta, const dual_quaternion<double>& pose,
+                  double tau, const pose_deviation& deviation) {
+  plan.joints.push_back(theta);
+  plan.poses.push_back(pose);
+  plan.tau.push_back(tau);
+  plan.deviations.push_back(deviation);
+  for (int i = 0; i < chain.size(); ++i) {
+    const auto& limits = chain.limits(i);
+    plan.smallest_limit_margin =
+        std::min({plan.smallest_limit_margin, theta[i] - limits.lower, limits.upper - theta[i]});
+  }
+}
+
+/// \throws invalid_input for a start that is not finite or outside the limits
 template <class C, class Start>
-void require_problem(const C& chain, const Start& start, const dual_quaternion<double>& goal) {
+void require_start(const C& chain, const Start& start) {
   require_size(chain, start);
   for (int i = 0; i < chain.size(); ++i) {
     const double x = vector_argument<Start>::get(start, i);
@@ -83,6 +102,12 @@ void require_problem(const C& chain, const Start& start, const dual_quaternion<d
       throw invalid_input(message.str());
     }
   }
+}
+
+/// \throws invalid_input for a start outside the limits, and for a goal that is no pose
+template <class C, class Start>
+void require_problem(const C& chain, const Start& start, const dual_quaternion<double>& goal) {
+  require_start(chain, start);
   if (!is_unit(goal, 1e-6)) {
     throw invalid_input("duet: plan: the goal is no unit dual quaternion");
   }
