@@ -41,10 +41,9 @@
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/screw_axes.hpp>
 #include <duet/mechanism/urdf.hpp>
-#include <duet/planning/clearance.hpp>
-#include <duet/planning/constrained_step.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/planning/printed_plan.hpp>
+#include <duet/planning/save_plan.hpp>
 #include <duet/planning/time_parametrised.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>

@@ -30,9 +30,14 @@ using obstacle = std::variant<sphere<double>, box<double>, half_space<double>>;
 struct scene {
   std::vector<link_body> bodies;
   std::vector<obstacle> obstacles;
+  /// How far planners keep them apart, in units of length.
+  double margin = 0;
+  /// From how far beyond the margin on planners look at an obstacle before each step.
+  double horizon = .1;
 };
 
-/// \throws invalid_input for shapes that are none (`require_shape`) and links that `chain` lacks
+/// \throws invalid_input for shapes that are none (`require_shape`), links that `chain` lacks, and
+/// a margin or horizon that is negative or not finite
 template <SerialChain C>
 void require_scene(const C& chain, const scene& s) {
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {
@@ -43,6 +48,8 @@ void require_scene(const C& chain, const scene& s) {
     std::visit([&](const auto& o) { require_shape(o, "obstacle " + std::to_string(i)); },
                s.obstacles[i]);
   }
+  detail::require_extent("the margin of a scene", s.margin);
+  detail::require_extent("the horizon of a scene", s.horizon);
 }
 
 /// Where a body of a chain is nearest to an obstacle, over the scalar of the coordinates θ.
