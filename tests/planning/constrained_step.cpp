@@ -112,7 +112,7 @@ TEST_CASE("a step keeps the twist, the limits and the inequalities, and is the n
     for (int i = 0; i < 3; ++i) {
       given.push_back({random_matrix(random, joints()), .3 * random.normal()});
     }
-    const auto step = detail::constrained_step(j, e, wish, lower, upper, given);
+    const auto step = detail::constrained_step(j, e, wish, lower, upper, given).step;
     // The one self-motion; where on some + y z everything is kept, and the wish.
     const joints any = random_matrix(random, joints());
     const joints z = detail::self_motion<joints>(j)(any).normalized();
@@ -149,10 +149,10 @@ TEST_CASE("no joint to spare: the step as it is, or none") {
   const six far = six::Constant(std::numeric_limits<double>::infinity()), none = six::Zero();
   const std::vector<inequality<six>> given{{-six::Unit(2), -.5}}; // Δ_2 ≤ 0.5
   const six e = six::Constant(.4);
-  const auto step = detail::constrained_step(j, e, six(six::Ones()), six(-far), far, given);
+  const auto step = detail::constrained_step(j, e, six(six::Ones()), six(-far), far, given).step;
   REQUIRE(step);
   CHECK((*step - e).norm() < 1e-15);
-  CHECK(!detail::constrained_step(j, six(2 * e), none, six(-far), far, given));
+  CHECK(!detail::constrained_step(j, six(2 * e), none, six(-far), far, given).step);
 }
 
 } // namespace test_planning_constrained_step

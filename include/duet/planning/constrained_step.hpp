@@ -47,12 +47,18 @@ private:
   std::size_t count_ = 0;
 };
 
+template <class V>
+struct constrained_step_result {
+  std::optional<V> step;          ///< nothing where there is none
+  double smallest_singular_value; ///< of the Jacobian, from above
+};
+
 /// The Δ nearest to `preferred` with lower ≤ Δ ≤ upper and the inequalities, and with J Δ = e, or
-/// what damping near singularities leaves of that; nothing where there is none.
+/// what damping near singularities leaves of that.
 template <class J, class V>
-[[nodiscard]] std::optional<V> constrained_step(const J& jacobian, const vector6<double>& e,
-                                                const V& preferred, const V& lower, const V& upper,
-                                                const std::vector<inequality<V>>& inequalities) {
+[[nodiscard]] constrained_step_result<V>
+constrained_step(const J& jacobian, const vector6<double>& e, const V& preferred, const V& lower,
+                 const V& upper, const std::vector<inequality<V>>& inequalities) {
   const Eigen::Index n = jacobian.cols();
   const damped_gram gram(matrix6<double>(jacobian * jacobian.transpose()));
   const self_motion<V> without_tip(jacobian);
@@ -70,7 +76,7 @@ template <class J, class V>
     add(-V::Unit(n, i), -upper[i]);
   }
   const std::optional<V> correction = least_distance(left, n);
-  return correction ? std::optional<V>(wanted + *correction) : std::nullopt;
+  return {correction ? std::optional<V>(wanted + *correction) : std::nullopt, gram.smallest()};
 }
 
 } // namespace duet::detail

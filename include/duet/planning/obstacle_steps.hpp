@@ -6,7 +6,7 @@
 #include <duet/planning/constrained_step.hpp>
 
 #include <algorithm>
-#include <concepts>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <vector>
@@ -52,7 +52,7 @@ template <class C, class V>
 /// A step in the presence of obstacles.
 template <class V>
 struct step_beside_obstacles {
-  std::optional<V> step;
+  constrained_step_result<V> result = {std::nullopt, std::numeric_limits<double>::infinity()};
   bool is_free = true; ///< is there nothing near, or nothing that obstacles could help with?
 };
 
@@ -66,10 +66,10 @@ step_beside(const C& chain, const V& theta, const J& jacobian, const vector6<dou
     return {};
   }
   const V down = lower - theta, up = upper - theta;
-  const auto step = constrained_step(jacobian, e, wish, down, up, near);
+  const auto result = constrained_step(jacobian, e, wish, down, up, near);
   // What cannot be done without obstacles either is not for them to answer for.
-  const bool is_free = !step && !constrained_step(jacobian, e, wish, down, up, {});
-  return {step, is_free};
+  const bool is_free = !result.step && !constrained_step(jacobian, e, wish, down, up, {}).step;
+  return {result, is_free};
 }
 
 /// \throws invalid_input for a scene that is none, and where the chain is too close to an obstacle

@@ -140,8 +140,10 @@ private:
     if constexpr (!std::same_as<Scene, no_scene>) {
       const auto beside =
           step_beside(chain_, from.theta, from.jacobian, e, wish, lower_, upper_, around_);
-      if (beside.step) {
-        x.state = chain_state<C>(chain_, within(from.theta + *beside.step));
+      x.smallest_singular_value =
+          std::min(x.smallest_singular_value, beside.result.smallest_singular_value);
+      if (beside.result.step) {
+        x.state = chain_state<C>(chain_, within(from.theta + *beside.result.step));
         return true;
       }
       if (!beside.is_free) {
