@@ -45,12 +45,13 @@ inline std::string deviation_script(bool has_obstacles) {
 }
 
 inline std::string arm_script(bool has_obstacles) {
-  return "set datafile separator ','\nset grid\nset view equal xyz\nset view 62,40,1.25\n"
+  return "set datafile separator ','\nset grid\nset view equal xyz\nset view 68,125,1.5\n"
          "set xyplane relative 0\nset xlabel 'x / m'\nset ylabel 'y / m'\nset zlabel 'z / m'\n"
          "set palette defined (0 '#9ecae1', 1 '#08306b')\nset cbrange [0:1]\n"
-         "set cblabel 'share of the waypoints'\nset key top left\nsplot " +
+         "set colorbox user origin 0.9,0.25 size 0.02,0.5\nset cblabel 'from start to goal'\nset "
+         "key at screen 0.3,0.97\nsplot " +
          std::string(has_obstacles ? "'obstacles.csv' using 1:2:3 skip 1 with lines lw 1 lc rgb "
-                                     "'#e6842a' title 'obstacles', "
+                                     "'#e0a060' title 'obstacles', "
                                    : "") +
          "'arms.csv' using 1:2:3:4 skip 1 with linespoints lw 3 pt 7 ps 0.6 lc palette title "
          "'arm', 'tip.csv' using 1:2:3 skip 1 with lines lw 3 lc rgb '#d62728' title 'tip'\n";

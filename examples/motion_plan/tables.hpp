@@ -108,8 +108,8 @@ inline std::string obstacles_csv(const problem& p) {
       }
     } else {
       for (int i = -4; i <= 4; ++i) {
-        line({point(.2 * i, -.8, o.offset), point(.2 * i, .8, o.offset)});
-        line({point(-.8, .2 * i, o.offset), point(.8, .2 * i, o.offset)});
+        line({point(.1 * i, -.4, o.offset), point(.1 * i, .4, o.offset)});
+        line({point(-.4, .1 * i, o.offset), point(.4, .1 * i, o.offset)});
       }
     }
   };

@@ -21,9 +21,9 @@ namespace duet {
 namespace detail {
 
 /// A plan along a path that is known to hold unit poses.
-template <class C, class Start, class Target, class Objective, class Scene>
+template <class C, class Start, class Objective, class Scene>
 [[nodiscard]] motion_plan<C::joints>
-follow(const C& chain, const Start& start, const Target& target, std::vector<double> stops,
+follow(const C& chain, const Start& start, const path_function& target, std::vector<double> stops,
        const plan_options& options, const Objective& objective, const Scene& around) {
   require_options(options);
   joint_vector<double, C::joints> theta(chain.size());

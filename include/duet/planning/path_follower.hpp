@@ -21,15 +21,15 @@ namespace duet::detail {
 
 /// Plans along a path, first without stopping; where that comes to an end, with motions in place.
 ///
-/// \tparam Target  the tip's pose as a function of the parameter of the path
-template <class C, class Target, class Objective, class Scene>
+template <class C, class Objective, class Scene>
 class path_follower {
 public:
   using vector = typename chain_state<C>::vector;
 
-  /// \param stops  parameters that become waypoints, increasing; the first and the last are the
-  ///               ends of the path
-  path_follower(const C& chain, const Target& target, std::vector<double> stops,
+  /// \param target  the tip's pose
+  /// \param stops   parameters that become waypoints, increasing; the first and the last are the
+  ///                ends of the path
+  path_follower(const C& chain, const path_function& target, std::vector<double> stops,
                 const plan_options& options, const Objective& objective, const Scene& around)
       : around_(around), solver_(chain, options.tolerance, around), target_(target),
         stops_(std::move(stops)), options_(options), objective_(objective),
@@ -201,7 +201,7 @@ private:
 
   const Scene& around_;
   pose_solver<C, Scene> solver_;
-  const Target& target_;
+  const path_function& target_;
   std::vector<double> stops_;
   plan_options options_;
   const Objective& objective_;

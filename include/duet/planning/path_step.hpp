@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <functional>
 #include <limits>
 
 /// \file
@@ -44,6 +45,9 @@ template <class V>
   }
   return result;
 }
+
+/// Poses by a parameter. Its type is forgotten, so that planners are compiled once for all.
+using path_function = std::function<dual_quaternion<double>(double)>;
 
 /// A configuration of a chain, with its tip's pose and Jacobian in `frame::hybrid`.
 template <class C>

@@ -27,8 +27,15 @@ plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<doub
                   const Scene& around = {}) {
   detail::require_problem(chain, start, goal);
   const auto first = chain.pose(start);
-  const auto last = normalized(goal);
-  const auto target = [&](double tau) { return sclerp(first, last, tau); };
+  auto between = conj(first) * normalized(goal);
+  if (innermost(between.w()) < 0) {
+    between = -between;
+  }
+  const auto half = detail::log_vector(between, "plan_screw_motion");
+  const auto target = [&](double tau) {
+    return dual_quaternion<double>(first *
+                                   exp(dual_vector<double>(half * screw_dual<double>(tau))));
+  };
   return detail::follow(chain, start, target, {0, 1}, options, objective, around);
 }
 

@@ -7,8 +7,6 @@
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/path_speed.hpp>
 
-#include <boost/math/interpolators/pchip.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,56 +34,44 @@ struct joint_polygon {
     for (const V& each : given) {
       const double way = (each - points.back()).norm();
       if (way > 1e-10 * (1 + each.norm())) {
-        add(each, s.back() + way);
+        points.push_back(each);
+        s.push_back(s.back() + way);
       }
       given_at.push_back(s.back());
-    }
-  }
-
-  void add(const V& point, double at) {
-    points.push_back(point);
-    s.push_back(at);
-  }
-  /// The same with every edge in three.
-  void refine() {
-    joint_polygon coarse = std::move(*this);
-    points = {coarse.points.front()};
-    s = {0.0};
-    given_at = std::move(coarse.given_at);
-    for (std::size_t k = 1; k < coarse.points.size(); ++k) {
-      const V edge = coarse.points[k] - coarse.points[k - 1];
-      const double length = coarse.s[k] - coarse.s[k - 1];
-      add(coarse.points[k - 1] + edge / 3, coarse.s[k - 1] + length / 3);
-      add(coarse.points[k - 1] + edge * 2 / 3, coarse.s[k - 1] + length * 2 / 3);
-      add(coarse.points[k], coarse.s[k]);
     }
   }
 };
 
 /// The curve through the points of a polygon, a cubic on each edge, with the slopes of Fritsch and
-/// Butland: every component rises and falls where the points do, and so stays between them.
+/// Butland (A method for constructing local monotone piecewise cubic interpolants, 1984): a
+/// weighted harmonic mean of those of both edges, and 0 where their signs differ. So every
+/// component rises and falls where the points do, and stays between them.
 template <class V>
-[[nodiscard]] std::vector<joint_cubic<V>> monotone_curve(joint_polygon<V> polygon) {
-  if (polygon.points.size() < 4) {
-    polygon.refine(); // Boost asks for four points
-  }
-  const auto& [points, s, given_at] = polygon;
+[[nodiscard]] std::vector<joint_cubic<V>> monotone_curve(const joint_polygon<V>& polygon) {
+  const auto& points = polygon.points;
+  const auto& s = polygon.s;
   const std::size_t count = points.size();
-  std::vector<V> slopes = points;
-  for (Eigen::Index joint = 0; joint < points.front().size(); ++joint) {
-    std::vector<double> x = s, y;
-    for (const V& point : points) {
-      y.push_back(point[joint]);
+  const auto chord_of = [&](std::size_t k) {
+    return V((points[k + 1] - points[k]) / (s[k + 1] - s[k]));
+  };
+  std::vector<V> slopes{chord_of(0)};
+  for (std::size_t k = 1; k + 1 < count; ++k) {
+    const V before = chord_of(k - 1), after = chord_of(k);
+    const double left = s[k] - s[k - 1], right = s[k + 1] - s[k];
+    const double w_before = 2 * right + left, w_after = right + 2 * left;
+    V slope = V::Zero(before.size());
+    for (Eigen::Index i = 0; i < slope.size(); ++i) {
+      if (before[i] * after[i] > 0) {
+        slope[i] = (w_before + w_after) / (w_before / before[i] + w_after / after[i]);
+      }
     }
-    const boost::math::interpolators::pchip<std::vector<double>> curve(std::move(x), std::move(y));
-    for (std::size_t k = 0; k < count; ++k) {
-      slopes[k][joint] = curve.prime(s[k]);
-    }
+    slopes.push_back(slope);
   }
+  slopes.push_back(chord_of(count - 2));
   std::vector<joint_cubic<V>> result;
   for (std::size_t k = 0; k + 1 < count; ++k) {
     const double h = s[k + 1] - s[k];
-    const V chord = (points[k + 1] - points[k]) / h;
+    const V chord = chord_of(k);
     result.push_back({points[k], slopes[k], V((3 * chord - 2 * slopes[k] - slopes[k + 1]) / h),
                       V((slopes[k] + slopes[k + 1] - 2 * chord) / (h * h)), h});
   }
