@@ -45,8 +45,9 @@ inline std::string deviation_script(bool has_obstacles) {
 }
 
 inline std::string arm_script(bool has_obstacles) {
-  return "set datafile separator ','\nset grid\nset view equal xyz\nset view 68,125,1.5\n"
-         "set xyplane relative 0\nset xlabel 'x / m'\nset ylabel 'y / m'\nset zlabel 'z / m'\n"
+  return "set datafile separator ','\nset grid\nset view equal xyz\nset view 66,128,1.15\n"
+         "set xyplane relative 0\nset xtics .2\nset ytics .2\nset ztics .2\nset xlabel 'x / "
+         "m'\nset ylabel 'y / m'\nset zlabel 'z / m'\n"
          "set palette defined (0 '#9ecae1', 1 '#08306b')\nset cbrange [0:1]\n"
          "set colorbox user origin 0.9,0.25 size 0.02,0.5\nset cblabel 'from start to goal'\nset "
          "key at screen 0.3,0.97\nsplot " +
