@@ -43,35 +43,51 @@ template <class T>
   return a == b || (a != a && b != b);
 }
 
-template <class ConstantNode, class T>
-constexpr void require_same(const holding<held_constant<ConstantNode, T>>& a,
-                            const holding<held_constant<ConstantNode, T>>& b) {
-  if (are_same_value(a.value, b.value)) {
-    return;
-  }
+template <class T>
+void refuse(const T& a, const T& b) {
   std::string values;
   if constexpr (std::floating_point<T>) {
-    values = ", " + to_text(a.value) + " and " + to_text(b.value);
+    values = ", " + to_text(a) + " and " + to_text(b);
   }
   throw invalid_input("duet: a formula: one place in the code made two constants" + values +
                       ", which would be taken for one; make what changes a symbol");
 }
 
-template <class Item, class A, class B>
-[[nodiscard]] constexpr holding<Item> taken(const A& a, const B& b) {
-  if constexpr (!std::derived_from<A, holding<Item>>) {
-    return static_cast<const holding<Item>&>(b);
-  } else {
-    if constexpr (std::derived_from<B, holding<Item>> && !std::is_empty_v<holding<Item>>) {
-      require_same(static_cast<const holding<Item>&>(a), static_cast<const holding<Item>&>(b));
-    }
-    return static_cast<const holding<Item>&>(a);
+/// An item of what either holds; instantiated for the item, not for all that is held beside it.
+template <bool IsInFirst, bool IsInSecond>
+struct chosen;
+template <>
+struct chosen<false, true> {
+  template <class Item>
+  [[nodiscard]] static constexpr const holding<Item>& of(const void*, const holding<Item>* b) {
+    return *b;
   }
-}
+};
+template <>
+struct chosen<true, false> {
+  template <class Item>
+  [[nodiscard]] static constexpr const holding<Item>& of(const holding<Item>* a, const void*) {
+    return *a;
+  }
+};
+template <>
+struct chosen<true, true> {
+  template <class Item>
+  [[nodiscard]] static constexpr const holding<Item>& of(const holding<Item>* a,
+                                                         const holding<Item>* b) {
+    if constexpr (!std::is_empty_v<holding<Item>>) {
+      if (!are_same_value(a->value, b->value)) {
+        refuse(a->value, b->value);
+      }
+    }
+    return *a;
+  }
+};
 
 template <class... Items, class A, class B>
 [[nodiscard]] constexpr held<Items...> merged_into(held<Items...>*, const A& a, const B& b) {
-  return {taken<Items>(a, b)...};
+  return {chosen<std::is_base_of_v<holding<Items>, A>,
+                 std::is_base_of_v<holding<Items>, B>>::template of<Items>(&a, &b)...};
 }
 
 } // namespace detail
