@@ -9,6 +9,9 @@
 #include "support/contest.hpp"
 
 #include <duet/derivative/derivative.hpp>
+#include <duet/expression/motion.hpp>
+#include <duet/expression/symbol.hpp>
+#include <duet/quaternion/euler.hpp>
 #include <duet/spline/interpolate.hpp>
 
 #include <array>
@@ -75,6 +78,57 @@ numbers taylor_motion(double u) {
           2 * w.y(), 2 * w.z(), 2 * a.x(), 2 * a.y(), 2 * a.z()};
 }
 
+/// The same cubic as a formula of one segment.
+class formula_spline {
+public:
+  explicit formula_spline(const std::vector<duet::quaternion<double>>& controls) {
+    duet::quaternion<double> previous = controls.front();
+    for (duet::quaternion<double> control : controls) {
+      if (dot(previous, control) < 0) {
+        control = -control;
+      }
+      const duet::vector3<double> omega = log(conj(previous) * control).vec();
+      const double half = omega.norm();
+      const duet::vector3<double> axis = half > 0 ? duet::vector3<double>(omega / half) : omega;
+      nodes_.push_back({control, axis, 2 * half});
+      previous = control;
+    }
+  }
+
+  [[nodiscard]] numbers motion(double u) const {
+    using namespace duet::expression;
+    constexpr symbol<"x"> x;
+    constexpr quaternion_symbol<"q"> q;
+    constexpr vector_symbol<"n1"> n1;
+    constexpr vector_symbol<"n2"> n2;
+    constexpr vector_symbol<"n3"> n3;
+    constexpr symbol<"a1"> a1;
+    constexpr symbol<"a2"> a2;
+    constexpr symbol<"a3"> a3;
+    constexpr auto b1 = (c<5> + c<3> * x - c<3> * x * x + x * x * x) / c<6>;
+    constexpr auto b2 = (c<1> + c<3> * x + c<3> * x * x - c<2> * x * x * x) / c<6>;
+    constexpr auto b3 = x * x * x / c<6>;
+    constexpr auto curve = q * turn(n1, a1 * b1) * turn(n2, a2 * b2) * turn(n3, a3 * b3);
+
+    constexpr double r = 1 / knot_distance;
+    const auto segment = std::size_t(u * r);
+    const node* n = &nodes_[segment];
+    const auto [value, w, a] = duet::expression::motion(curve, x, duet::frame::body)(
+        x = u * r - double(segment), q = n[0].q, n1 = n[1].axis, n2 = n[2].axis, n3 = n[3].axis,
+        a1 = n[1].angle, a2 = n[2].angle, a3 = n[3].angle);
+    return {value.w(), value.x(), value.y(),    value.z(),    r * w[0],
+            r * w[1],  r * w[2],  r * r * a[0], r * r * a[1], r * r * a[2]};
+  }
+
+private:
+  struct node {
+    duet::quaternion<double> q;
+    duet::vector3<double> axis;
+    double angle; ///< of the whole rotation
+  };
+  std::vector<node> nodes_;
+};
+
 const bool registered = [] {
   const auto hand_value = [](double u) { return by_hand.value(u); };
   compare("spline", "duet", hand_value, duet_value);
@@ -86,6 +140,10 @@ const bool registered = [] {
   compare("spline_motion", "taylor", hand_motion, taylor_motion);
   add("spline_motion", "duet", duet_motion);
   add("spline_motion", "hand", hand_motion);
+  static const formula_spline by_formula(controls());
+  const auto formula_motion = [](double u) { return by_formula.motion(u); };
+  compare("spline_motion", "formula", hand_motion, formula_motion);
+  add("spline_motion", "formula", formula_motion);
   add("spline_motion", "taylor", taylor_motion);
 
   std::vector<double> parameters;

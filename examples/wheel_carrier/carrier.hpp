@@ -8,6 +8,7 @@
 #include <duet/quaternion/tangent.hpp>
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <tuple>
 
@@ -43,6 +44,22 @@ inline hardpoints published_hardpoints() {
             {"lateral", {0.036, 0.338, -0.133}, {0.029, 0.842, -0.093}},
             {"trailing", {0.723, 0.599, -0.072}, {0, 0.864, -0.156}},
             {"tie rod", {-0.257, 0.320, -0.116}, {-0.144, 0.862, -0.056}}}}};
+}
+
+/// Toe-in of the left wheel for a carrier turned by q, rad.
+template <class T>
+[[nodiscard]] T toe_in(const duet::quaternion<T>& q) {
+  using std::atan2;
+  const duet::vector3<T> ahead = rotate(q, vector3(1, 0, 0));
+  return -atan2(ahead[1], ahead[0]);
+}
+
+/// Camber of the left wheel for a carrier turned by q, rad.
+template <class T>
+[[nodiscard]] T camber(const duet::quaternion<T>& q) {
+  using std::atan2;
+  const duet::vector3<T> up = rotate(q, vector3(0, 0, 1));
+  return atan2(up[1], up[2]);
 }
 
 /// The carrier at some u, and its derivatives with respect to u.

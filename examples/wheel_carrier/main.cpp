@@ -7,6 +7,7 @@
 
 #include "comparison.hpp"
 #include "figures.hpp"
+#include "hardpoints_file.hpp"
 #include "options.hpp"
 #include "splines.hpp"
 #include "table.hpp"

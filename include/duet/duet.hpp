@@ -9,6 +9,7 @@
 #include <duet/core/csv.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/parallel_for.hpp>
+#include <duet/core/vector_sine_cosine.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -33,6 +34,16 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/dual_quaternion/wrench.hpp>
+#include <duet/expression/condition.hpp>
+#include <duet/expression/derivative.hpp>
+#include <duet/expression/functions_of_many.hpp>
+#include <duet/expression/gradient.hpp>
+#include <duet/expression/jacobian.hpp>
+#include <duet/expression/motion.hpp>
+#include <duet/expression/screw.hpp>
+#include <duet/expression/special_functions.hpp>
+#include <duet/expression/symbol.hpp>
+#include <duet/expression/text.hpp>
 #include <duet/mechanism/analytic_jacobian.hpp>
 #include <duet/mechanism/closed_loop.hpp>
 #include <duet/mechanism/jacobian.hpp>
@@ -46,6 +57,8 @@
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/planning/printed_plan.hpp>
+#include <duet/planning/save_plan.hpp>
+#include <duet/planning/time_parametrised.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/domain.hpp>

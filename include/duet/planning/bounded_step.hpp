@@ -20,15 +20,11 @@ namespace duet::detail {
 class damped_gram {
 public:
   explicit damped_gram(const matrix6<double>& gram) : factors_(gram) {
-    // The smallest eigenvalue from above, by inverse iteration.
-    vector6<double> x = vector6<double>::Ones().normalized();
+    // The smallest eigenvalue from above: Rayleigh's quotient after two inverse iterations.
     if (factors_.info() == Eigen::Success) {
-      for (int i = 0; i < 4; ++i) {
-        const vector6<double> next = factors_.solve(x);
-        const double length = next.norm();
-        smallest_ = 1 / length;
-        x = next / length;
-      }
+      const vector6<double> once = factors_.solve(vector6<double>::Ones());
+      const vector6<double> twice = factors_.solve(once);
+      smallest_ = once.dot(twice) / twice.squaredNorm();
     }
     smallest_ = smallest_ > 0 ? std::sqrt(smallest_) : 0;
     if (smallest_ < threshold) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <vector>
 
 /// \file
@@ -22,6 +23,7 @@ enum class stop_reason {
   reached,         ///< the tip is at the goal
   joint_limit,     ///< the way on leads beyond the limits of a joint
   singular,        ///< the way on leads through a singularity
+  obstacle,        ///< the way on leads too close to an obstacle
   no_progress,     ///< steps became too small, for neither of these reasons
   iteration_limit, ///< the number of iterations that was allowed is used up
   out_of_reach     ///< the goal is farther away than the links reach
@@ -35,6 +37,8 @@ enum class stop_reason {
     return "joint_limit";
   case stop_reason::singular:
     return "singular";
+  case stop_reason::obstacle:
+    return "obstacle";
   case stop_reason::no_progress:
     return "no_progress";
   case stop_reason::iteration_limit:
@@ -71,6 +75,8 @@ struct motion_plan {
   double smallest_singular_value = std::numeric_limits<double>::infinity();
   /// Of any joint, at any waypoint, to its nearer limit; in coordinates.
   double smallest_limit_margin = std::numeric_limits<double>::infinity();
+  /// Of the bodies of the chain from obstacles, at any waypoint; infinite without.
+  double smallest_clearance = std::numeric_limits<double>::infinity();
   int iterations = 0;
   stop_reason reason = stop_reason::no_progress;
 };
@@ -107,13 +113,29 @@ void require_start(const C& chain, const Start& start) {
   }
 }
 
+/// \throws invalid_input for what is no pose: "duet: plan: the goal is …"
+inline void require_pose(const dual_quaternion<double>& a, const char* caller,
+                         const std::string& name) {
+  if (is_unit(a, 1e-6)) {
+    return;
+  }
+  const auto square = norm2(a);
+  std::ostringstream message;
+  message << "duet: " << caller << ": " << name;
+  if (is_all_finite(square)) {
+    message << " is no unit dual quaternion: |p|^2 = " << square.value()
+            << ", p.q = " << square.epsilon() / 2;
+  } else {
+    message << " is not finite: " << a;
+  }
+  throw invalid_input(message.str());
+}
+
 /// \throws invalid_input for a start outside the limits, and for a goal that is no pose
 template <class C, class Start>
 void require_problem(const C& chain, const Start& start, const dual_quaternion<double>& goal) {
   require_start(chain, start);
-  if (!is_unit(goal, 1e-6)) {
-    throw invalid_input("duet: plan: the goal is no unit dual quaternion");
-  }
+  require_pose(goal, "plan", "the goal");
 }
 
 } // namespace detail

@@ -50,13 +50,13 @@ struct reachable {
 /// from all its points one step is taken to the next parameter, where those pieces are followed
 /// that are new. With several joints to spare one curve of the manifold is, with none a piece is a
 /// point.
-template <class C, class Target>
+template <class C, class Scene>
 class self_motion_search {
 public:
   using vector = typename chain_state<C>::vector;
 
-  self_motion_search(const pose_solver<C>& solver, const Target& target, double spacing,
-                     int iterations)
+  self_motion_search(const pose_solver<C, Scene>& solver, const path_function& target,
+                     double spacing, int iterations)
       : solver_(solver), target_(target), spacing_(spacing), left_(iterations) {}
 
   /// The way from a state at u.front() to u.back(), or as far as it goes, each configuration a step
@@ -70,7 +70,7 @@ public:
       const std::size_t end = found_.size();
       const auto target = target_(u[k]);
       for (std::size_t i = first; i < end && left_ > 0; ++i) {
-        const auto next = go(found_[i].state, found_[i].u, u[k], 3);
+        const auto next = go(found_[i].state, found_[i].u, u[k], 1);
         if (next.is_within(solver_.tolerance()) && !is_known(next.state.theta, end)) {
           found_.push_back({next.state, u[k], std::ptrdiff_t(i)});
           follow(found_.size() - 1, target);
@@ -182,8 +182,8 @@ private:
     return false;
   }
 
-  const pose_solver<C>& solver_;
-  const Target& target_;
+  const pose_solver<C, Scene>& solver_;
+  const path_function& target_;
   double spacing_;
   int left_;
   std::vector<reachable<C>> found_;

@@ -180,4 +180,15 @@ template <class Spline, class T, class Ends>
   return detail::interpolate_cubic(parameters, orientations, ends, &report);
 }
 
+/// Rows over another scalar than the curve's.
+template <class Spline, class T, class Ends = natural>
+  requires(!std::same_as<typename Spline::scalar_type, T>)
+Spline interpolate(const std::vector<real_type_t<T>>&, const std::vector<quaternion<T>>&,
+                   const Ends& = {}) {
+  static_assert(std::same_as<typename Spline::scalar_type, T>,
+                "duet: interpolate: the curve is over another scalar than the rows: rotations make "
+                "a cumulative_bspline<double>, poses a "
+                "cumulative_bspline<dual<double, 1, screw_tag>>");
+}
+
 } // namespace duet

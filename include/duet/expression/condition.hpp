@@ -1,0 +1,158 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/expression/formula.hpp>
+#include <duet/expression/function.hpp>
+#include <duet/expression/node.hpp>
+#include <duet/expression/number.hpp>
+#include <duet/expression/printed.hpp>
+
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+/// \file
+/// Choices by value: comparisons, `select`, |x|.
+
+namespace duet::expression {
+
+namespace op {
+
+/// a < b or a ≤ b, by innermost values.
+template <bool OrEqual>
+struct less {
+  static constexpr kind kind_of(kind, kind) { return kind::condition; }
+  template <class A, class B>
+  static constexpr auto value(const A& a, const B& b) {
+    if constexpr (OrEqual) {
+      return innermost(a) <= innermost(b);
+    } else {
+      return innermost(a) < innermost(b);
+    }
+  }
+  static printed print(notation style, const printed& a, const printed& b) {
+    const std::string sign = !OrEqual ? " < " : style == notation::latex ? " \\le " : " <= ";
+    return {a.inside(precedence::sum) + sign + b.inside(precedence::sum), precedence::condition};
+  }
+};
+
+/// a where the condition holds, else b.
+struct select {
+  static constexpr kind kind_of(kind, kind a, kind) { return a; }
+  template <class C, class A, class B>
+  static constexpr auto simplified(C, A a, B) {
+    static_assert(C::kind_of == kind::condition && A::kind_of == B::kind_of,
+                  "duet: select takes a condition, as a < b, and two formulas of one kind");
+    if constexpr (std::is_same_v<A, B>) {
+      return a;
+    } else {
+      return applied_node<select, C, A, B>{};
+    }
+  }
+  template <class C, class A, class B>
+  static constexpr auto value(const C& condition, const A& a, const B& b) {
+    return duet::select(
+        condition, [&] { return a; }, [&] { return b; });
+  }
+  template <class C, class A, class B>
+  static constexpr auto differential(C c, A, B, auto, auto da, auto db) {
+    return apply<select>(c, da, db);
+  }
+  static printed print(notation style, const printed& c, const printed& a, const printed& b) {
+    if (style == notation::latex) {
+      return {"\\begin{cases}" + a.text + " & " + c.text + "\\\\" + b.text +
+              " & \\text{else}\\end{cases}"};
+    }
+    return {"select(" + c.text + ", " + a.text + ", " + b.text + ")"};
+  }
+};
+
+/// 1, or −1 where the sign bit is set.
+struct sign {
+  static constexpr kind kind_of(kind a) { return a; }
+  template <class X>
+  static X value(const X& x) {
+    using std::signbit;
+    return duet::select(
+        signbit(innermost(x)), [] { return X(-1); }, [] { return X(1); });
+  }
+  template <class X>
+  static constexpr auto slope(X) {
+    return whole<0>;
+  }
+  static printed print(notation style, const printed& x) {
+    return detail::printed_call(style, {"sign", ""}, x.text);
+  }
+};
+
+/// |x|; at 0 the derivative from the side of the sign bit.
+struct abs {
+  static constexpr kind kind_of(kind a) { return a; }
+  template <class X>
+  static X value(const X& x) {
+    using std::abs;
+    return X(abs(x));
+  }
+  template <class X>
+  static constexpr auto slope(X x) {
+    return apply<sign>(x);
+  }
+  static printed print(notation style, const printed& x) {
+    return style == notation::latex ? printed{"\\left|" + x.text + "\\right|"}
+                                    : printed{"abs(" + x.text + ")"};
+  }
+};
+
+} // namespace op
+
+template <class A, class B, class Tag = decltype([] {})>
+  requires Operands<A, B>
+[[nodiscard]] constexpr auto operator<(const A& a, const B& b) {
+  return apply<op::less<false>>(detail::term<Tag>(a), detail::term<Tag>(b));
+}
+template <class A, class B, class Tag = decltype([] {})>
+  requires Operands<A, B>
+[[nodiscard]] constexpr auto operator<=(const A& a, const B& b) {
+  return apply<op::less<true>>(detail::term<Tag>(a), detail::term<Tag>(b));
+}
+template <class A, class B, class Tag = decltype([] {})>
+  requires Operands<A, B>
+[[nodiscard]] constexpr auto operator>(const A& a, const B& b) {
+  return apply<op::less<false>>(detail::term<Tag>(b), detail::term<Tag>(a));
+}
+template <class A, class B, class Tag = decltype([] {})>
+  requires Operands<A, B>
+[[nodiscard]] constexpr auto operator>=(const A& a, const B& b) {
+  return apply<op::less<true>>(detail::term<Tag>(b), detail::term<Tag>(a));
+}
+
+/// a where the condition holds, else b, of one kind. Both are evaluated, so both must be safe to
+/// evaluate anywhere; the derivative is that of the one chosen.
+template <Term C, class A, class B, class TagA = decltype([] {}), class TagB = decltype([] {})>
+[[nodiscard]] constexpr auto select(const C& condition, const A& a, const B& b) {
+  return apply<op::select>(condition, detail::term<TagA>(a), detail::term<TagB>(b));
+}
+
+template <ScalarTerm X>
+[[nodiscard]] constexpr auto abs(const X& x) {
+  return apply<op::abs>(x);
+}
+template <class A, class B, class Tag = decltype([] {})>
+  requires Operands<A, B>
+[[nodiscard]] constexpr auto max(const A& a, const B& b) {
+  const auto first = detail::term<Tag>(a);
+  const auto second = detail::term<Tag>(b);
+  return select(first < second, second, first);
+}
+template <class A, class B, class Tag = decltype([] {})>
+  requires Operands<A, B>
+[[nodiscard]] constexpr auto min(const A& a, const B& b) {
+  const auto first = detail::term<Tag>(a);
+  const auto second = detail::term<Tag>(b);
+  return select(second < first, second, first);
+}
+
+} // namespace duet::expression

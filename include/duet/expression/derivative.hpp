@@ -1,0 +1,141 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/expression/arithmetic.hpp>
+#include <duet/expression/formula.hpp>
+#include <duet/expression/node.hpp>
+#include <duet/expression/number.hpp>
+#include <duet/expression/product.hpp>
+#include <duet/expression/symbol.hpp>
+
+#include <type_traits>
+
+/// \file
+/// Derivatives of formulas as formulas.
+
+namespace duet::expression {
+
+namespace detail {
+
+/// How a symbol moves: its own derivative.
+template <class Symbol, class Rate>
+struct moving {};
+
+/// Which symbols move, and how; the others do not.
+template <class... Moving>
+struct movement {};
+
+template <class Symbol>
+using movement_of_scalar = movement<moving<Symbol, number_node<bits_of(1)>>>;
+
+template <class Symbol, class Motion>
+struct rate_of_symbol {
+  using type = decltype(zero_of<Symbol::kind_of>());
+};
+template <class Symbol, class Rate, class... Rest>
+struct rate_of_symbol<Symbol, movement<moving<Symbol, Rate>, Rest...>> {
+  using type = Rate;
+};
+template <class Symbol, class Other, class... Rest>
+struct rate_of_symbol<Symbol, movement<Other, Rest...>>
+    : rate_of_symbol<Symbol, movement<Rest...>> {};
+
+template <class Node, class Motion>
+struct rate {
+  using type = decltype(zero_of<Node::kind_of>());
+};
+template <class Node, class Motion>
+using rate_t = typename rate<Node, Motion>::type;
+
+template <kind K, char... Letters, class Motion>
+struct rate<symbol_node<K, Letters...>, Motion>
+    : rate_of_symbol<symbol_node<K, Letters...>, Motion> {};
+
+/// What the I-th operand adds by its own rate.
+template <int I, class Operation, class Rate, class... Operands>
+[[nodiscard]] constexpr auto rate_by_operand(Rate rate, Operands... x) {
+  if constexpr (is_zero<Rate>) {
+    return rate;
+  } else if constexpr (sizeof...(Operands) == 1) {
+    return Operation::slope(x...) * rate;
+  } else if constexpr (I == 0) {
+    return Operation::slope_of_first(x...) * rate;
+  } else {
+    return Operation::slope_of_second(x...) * rate;
+  }
+}
+
+template <class Operation, class A, class RateOfA>
+[[nodiscard]] constexpr auto rate_by_slopes(A a, RateOfA da) {
+  return rate_by_operand<0, Operation>(da, a);
+}
+template <class Operation, class A, class B, class RateOfA, class RateOfB>
+[[nodiscard]] constexpr auto rate_by_slopes(A a, B b, RateOfA da, RateOfB db) {
+  return rate_by_operand<0, Operation>(da, a, b) + rate_by_operand<1, Operation>(db, a, b);
+}
+
+template <class Operation, class... Operands, class Motion>
+struct rate<applied_node<Operation, Operands...>, Motion> {
+  static constexpr auto make() {
+    if constexpr (applied_node<Operation, Operands...>::kind_of == kind::condition ||
+                  (is_zero<rate_t<Operands, Motion>> && ...)) {
+      return zero_of<applied_node<Operation, Operands...>::kind_of>();
+    } else if constexpr (requires {
+                           Operation::differential(Operands{}..., rate_t<Operands, Motion>{}...);
+                         }) {
+      return Operation::differential(Operands{}..., rate_t<Operands, Motion>{}...);
+    } else {
+      return rate_by_slopes<Operation>(Operands{}..., rate_t<Operands, Motion>{}...);
+    }
+  }
+  using type = decltype(make());
+};
+
+template <class T>
+inline constexpr bool is_symbol_formula = false;
+template <class NodeType, class Held>
+inline constexpr bool is_symbol_formula<formula<NodeType, Held>> = is_symbol<NodeType>;
+
+} // namespace detail
+
+/// A formula that is one symbol.
+template <class T>
+concept Symbol = detail::is_symbol_formula<T>;
+
+/// ∂f/∂u of any formula by a scalar symbol: of a scalar, a vector componentwise, a quaternion or
+/// pose in its own algebra (N6).
+template <Formula F, Symbol U>
+[[nodiscard]] constexpr auto derivative(const F& f, const U&) {
+  using symbol_type = typename U::node_type;
+  static_assert(symbol_type::kind_of == kind::scalar,
+                "duet: derivative(f, u) is by a scalar symbol; by vectors, rotations and poses "
+                "there is jacobian(f, wrt(w))");
+  return make_formula(
+      detail::rate_t<typename F::node_type, detail::movement_of_scalar<symbol_type>>{}, f.held());
+}
+
+/// A symbol and the direction in which it moves.
+template <class SymbolType, Term Direction>
+struct moved {
+  Direction direction;
+};
+
+/// u moves in the direction of another formula of its kind.
+template <Symbol U, Formula Direction>
+[[nodiscard]] constexpr auto along(const U&, const Direction& direction) {
+  static_assert(U::node_type::kind_of == Direction::node_type::kind_of,
+                "duet: along(u, v): the direction is of the symbol's kind");
+  return moved<typename U::node_type, Direction>{direction};
+}
+
+/// The derivative of f where symbols move along formulas: Σ ∂f/∂uᵢ u̇ᵢ, as
+/// `directional_derivative(f, along(u, v), along(w, s))`.
+template <Formula F, class... SymbolType, class... Direction>
+[[nodiscard]] constexpr auto directional_derivative(const F& f,
+                                                    const moved<SymbolType, Direction>&... m) {
+  using movement = detail::movement<detail::moving<SymbolType, typename Direction::node_type>...>;
+  return make_formula(detail::rate_t<typename F::node_type, movement>{},
+                      merged(f.held(), m.direction.held()...));
+}
+
+} // namespace duet::expression

@@ -1,0 +1,217 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/expression/call.hpp>
+#include <duet/expression/frame.hpp>
+#include <duet/expression/given.hpp>
+#include <duet/expression/held.hpp>
+#include <duet/expression/node.hpp>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <type_traits>
+
+/// \file
+/// A formula: a node and the constants in it, and how operations are applied.
+
+namespace duet::expression {
+
+/// A formula over symbols, a plain value: it refers to nothing, so `auto`, returning it from
+/// functions and `constexpr` variables are safe.
+///
+/// \tparam NodeType  the formula as a type
+/// \tparam Held      the constants in it, and the symbols it was written with
+template <Node NodeType, class Held>
+class formula;
+
+template <class T>
+inline constexpr bool is_formula = false;
+template <class NodeType, class Held>
+inline constexpr bool is_formula<formula<NodeType, Held>> = true;
+
+/// A formula, or a symbol.
+template <class T>
+concept Formula = requires(const T& f) {
+  []<class N, class H>(const formula<N, H>&) {}(f);
+};
+
+/// A node by itself, as in the rules of derivatives, or a formula.
+template <class T>
+concept Term = Node<T> || Formula<T>;
+
+namespace detail {
+
+template <class T>
+[[nodiscard]] constexpr kind kind_of_term() {
+  if constexpr (Node<T>) {
+    return T::kind_of;
+  } else {
+    return T::node_type::kind_of;
+  }
+}
+
+} // namespace detail
+
+template <class T>
+concept ScalarTerm = Term<T> && detail::kind_of_term<T>()
+== kind::scalar;
+template <class T>
+concept VectorTerm = Term<T> && detail::kind_of_term<T>()
+== kind::vector;
+template <class T>
+concept QuaternionTerm = Term<T> && detail::kind_of_term<T>()
+== kind::quaternion;
+template <class T>
+concept DualVectorTerm = Term<T> && detail::kind_of_term<T>()
+== kind::dual_vector;
+template <class T>
+concept PoseTerm = Term<T> && detail::kind_of_term<T>()
+== kind::pose;
+
+namespace detail {
+
+/// A column of three, of Eigen.
+template <class T>
+concept ThreeComponents = std::derived_from<T, Eigen::MatrixBase<T>> && T::RowsAtCompileTime == 3 &&
+                          T::ColsAtCompileTime == 1;
+
+/// Which kind of constant an ordinary value is, and what it is held in.
+template <class T>
+struct constant_traits {
+  static constexpr bool is_constant = false;
+};
+template <class T>
+  requires(Scalar<T> || Arithmetic<T>)
+struct constant_traits<T> {
+  static constexpr bool is_constant = true;
+  static constexpr kind kind_of = kind::scalar;
+  using held_type = std::conditional_t<std::integral<T>, double, T>;
+};
+template <ThreeComponents T>
+struct constant_traits<T> {
+  static constexpr bool is_constant = true;
+  static constexpr kind kind_of =
+      is_screw_dual<typename T::Scalar> ? kind::dual_vector : kind::vector;
+  using held_type = vector3<typename T::Scalar>;
+};
+template <class T>
+struct constant_traits<quaternion<T>> {
+  static constexpr bool is_constant = true;
+  static constexpr kind kind_of = is_screw_dual<T> ? kind::pose : kind::quaternion;
+  using held_type = quaternion<T>;
+};
+
+} // namespace detail
+
+/// A number, 3-vector, quaternion, dual vector or dual quaternion.
+template <class T>
+concept Constant = !std::is_array_v<T> && detail::constant_traits<T>::is_constant;
+
+/// What an operation takes: at least one formula, the others formulas or constants.
+template <class... T>
+concept Operands = (Term<T> || ...) && ((Term<T> || Constant<T>)&&...);
+
+template <Node NodeType, class Held>
+class formula {
+public:
+  using node_type = NodeType;
+  using held_type = Held;
+
+  constexpr formula() = default;
+  constexpr explicit formula(const Held& held) : held_(held) {}
+
+  [[nodiscard]] constexpr const Held& held() const { return held_; }
+
+  /// The value where symbols have values: `f(u = 0.3, w = w0)`, over any scalars. Every symbol that
+  /// the formula was written with is given one, also where simplification removed it. What occurs
+  /// more than once is evaluated once.
+  template <class... Arguments>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator()(const Arguments&... arguments) const {
+    if constexpr (detail::call_of<Held>::template is_complete<Arguments...>()) {
+      return detail::called<NodeType>(held_, arguments...)[NodeType{}];
+    }
+  }
+
+  /// A value for a symbol, to be handed to a formula.
+  template <class T>
+    requires is_symbol<NodeType>
+  [[nodiscard]] constexpr auto operator=(const T& value) const {
+    constexpr bool is_right_kind = [] {
+      if constexpr (Constant<T>) {
+        return detail::constant_traits<T>::kind_of == NodeType::kind_of;
+      } else {
+        return false;
+      }
+    }();
+    static_assert(is_right_kind, "duet: a symbol is given a value of another kind; scalar, vector, "
+                                 "quaternion and pose symbols take just that");
+    if constexpr (is_right_kind) {
+      using held_type_of_value = typename detail::constant_traits<T>::held_type;
+      return detail::argument<NodeType, held_type_of_value>{static_cast<held_type_of_value>(value)};
+    }
+  }
+
+private:
+  [[no_unique_address]] Held held_;
+};
+
+/// A formula of what is already a node.
+template <class NodeType, class Held>
+[[nodiscard]] constexpr formula<NodeType, Held> make_formula(NodeType, const Held& held) {
+  return formula<NodeType, Held>(held);
+}
+
+namespace detail {
+
+template <class Tag, Term T>
+[[nodiscard]] constexpr const T& term(const T& x) {
+  return x;
+}
+template <class Tag, Constant T>
+[[nodiscard]] constexpr auto term(const T& x) {
+  using traits = constant_traits<T>;
+  using node = constant_node<traits::kind_of, Tag>;
+  using value = typename traits::held_type;
+  return make_formula(node{}, held<held_constant<node, value>>{{static_cast<value>(x)}});
+}
+
+template <Node T>
+[[nodiscard]] constexpr T node_of(const T& x) {
+  return x;
+}
+template <Formula T>
+[[nodiscard]] constexpr auto node_of(const T&) {
+  return typename T::node_type{};
+}
+template <Node T>
+[[nodiscard]] constexpr held<> held_of(const T&) {
+  return {};
+}
+template <Formula T>
+[[nodiscard]] constexpr const auto& held_of(const T& x) {
+  return x.held();
+}
+
+} // namespace detail
+
+/// The operation applied to terms, simplified. Nodes give a node, formulas a formula.
+template <class Operation, Term... T>
+[[nodiscard]] constexpr auto apply(const T&... x) {
+  const auto node = [] {
+    if constexpr (requires { Operation::simplified(detail::node_of(x)...); }) {
+      return decltype(Operation::simplified(detail::node_of(x)...)){};
+    } else {
+      return applied_node<Operation, decltype(detail::node_of(x))...>{};
+    }
+  }();
+  if constexpr ((Node<T> && ...)) {
+    return node;
+  } else {
+    return make_formula(node, merged(detail::held_of(x)...));
+  }
+}
+
+} // namespace duet::expression

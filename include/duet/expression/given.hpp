@@ -1,0 +1,167 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/promotion.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/expression/held.hpp>
+#include <duet/expression/node.hpp>
+
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// The values that a formula is evaluated at, and what its nodes are of them.
+
+namespace duet::expression::detail {
+
+/// The value of a symbol.
+template <class Symbol, class T>
+struct argument {
+  using symbol_type = Symbol;
+  using value_type = T;
+  T value;
+};
+
+template <class T>
+inline constexpr bool is_screw_dual = false;
+template <class T>
+inline constexpr bool is_screw_dual<screw_dual<T>> = true;
+
+/// What an argument is made of; of rigid motion, real and dual part apart.
+template <class T>
+struct scalar_of {
+  using type = T;
+};
+template <class T>
+struct scalar_of<screw_dual<T>> {
+  using type = T;
+};
+template <class T>
+struct scalar_of<vector3<T>> : scalar_of<T> {};
+template <class T>
+struct scalar_of<quaternion<T>> : scalar_of<T> {};
+
+/// The real type in which numbers of a formula meet its arguments.
+template <class... T>
+struct common_real {
+  using type = double;
+};
+template <class T>
+struct common_real<T> {
+  using type = real_type_t<typename scalar_of<T>::type>;
+};
+template <class A, class B, class... Rest>
+struct common_real<A, B, Rest...> {
+  using type =
+      typename common_real<promote_t<typename common_real<A>::type, typename common_real<B>::type>,
+                           Rest...>::type;
+};
+
+/// The scalar that holds all arguments.
+template <class Real, class... T>
+struct common_scalar {
+  using type = Real;
+};
+template <class Real, class T, class... Rest>
+struct common_scalar<Real, T, Rest...> {
+  using type = typename common_scalar<promote_t<Real, typename scalar_of<T>::type>, Rest...>::type;
+};
+
+/// A constant as arguments of some precision meet it.
+template <class Real, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const T& x) {
+  if constexpr (std::floating_point<T>) {
+    return static_cast<Real>(x);
+  } else {
+    return x;
+  }
+}
+template <class Real, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const screw_dual<T>& x) {
+  const auto value = constant_over<Real>(x.value());
+  return screw_dual<std::remove_const_t<decltype(value)>>(value, constant_over<Real>(x.epsilon()));
+}
+template <class Real, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE auto constant_over(const vector3<T>& v) {
+  using S = decltype(constant_over<Real>(v[0]));
+  return vector3<S>(constant_over<Real>(v[0]), constant_over<Real>(v[1]),
+                    constant_over<Real>(v[2]));
+}
+template <class Real, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const quaternion<T>& q) {
+  using S = decltype(constant_over<Real>(q.w()));
+  return quaternion<S>(constant_over<Real>(q.w()), constant_over<Real>(q.x()),
+                       constant_over<Real>(q.y()), constant_over<Real>(q.z()));
+}
+
+/// Arguments and constants of a formula.
+template <class Held, class... Arguments>
+struct given : Held, Arguments... {
+  using real = typename common_real<typename Arguments::value_type...>::type;
+  using scalar = typename common_scalar<real, typename Arguments::value_type...>::type;
+};
+
+template <class Symbol, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& value_in(const argument<Symbol, T>& x) {
+  return x.value;
+}
+template <class Node, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T&
+value_in(const holding<held_constant<Node, T>>& x) {
+  return x.value;
+}
+
+/// How a node that is no operation is evaluated.
+template <class Node, class Given>
+struct leaf;
+
+template <kind K, char... Letters, class Given>
+struct leaf<symbol_node<K, Letters...>, Given> {
+  DUET_ALWAYS_INLINE static constexpr auto value(const Given& g) {
+    return value_in<symbol_node<K, Letters...>>(g);
+  }
+};
+template <kind K, class Tag, class Given>
+struct leaf<constant_node<K, Tag>, Given> {
+  DUET_ALWAYS_INLINE static constexpr auto value(const Given& g) {
+    return constant_over<typename Given::real>(value_in<constant_node<K, Tag>>(g));
+  }
+};
+template <std::uint64_t Bits, class Given>
+struct leaf<number_node<Bits>, Given> {
+  DUET_ALWAYS_INLINE static constexpr auto value(const Given&) {
+    return static_cast<typename Given::real>(number_node<Bits>::value);
+  }
+};
+template <kind K, class Given>
+struct leaf<zero_node<K>, Given> {
+  static constexpr auto value(const Given&) {
+    using real = typename Given::real;
+    if constexpr (K == kind::vector) {
+      return vector3<real>(real(0), real(0), real(0));
+    } else if constexpr (K == kind::dual_vector) {
+      using D = screw_dual<real>;
+      return dual_vector<real>(D(real(0)), D(real(0)), D(real(0)));
+    } else if constexpr (K == kind::quaternion) {
+      return quaternion<real>();
+    } else {
+      return dual_quaternion<real>();
+    }
+  }
+};
+
+template <class Node, class Given>
+struct value_of {
+  using type = decltype(leaf<Node, Given>::value(std::declval<const Given&>()));
+};
+template <class Operation, class... Operands, class Given>
+struct value_of<applied_node<Operation, Operands...>, Given> {
+  using type = decltype(Operation::value(
+      std::declval<const typename value_of<Operands, Given>::type&>()...));
+};
+
+} // namespace duet::expression::detail

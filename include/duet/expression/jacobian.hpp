@@ -1,0 +1,126 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/derivative/jacobian.hpp>
+#include <duet/expression/call.hpp>
+#include <duet/expression/formula.hpp>
+#include <duet/expression/node.hpp>
+#include <duet/expression/pose_chain.hpp>
+#include <duet/expression/variables.hpp>
+#include <duet/expression/velocity.hpp>
+
+#include <Eigen/Core>
+
+#include <type_traits>
+
+/// \file
+/// Jacobians of formulas of vectors, rotations and poses.
+
+namespace duet::expression {
+
+namespace detail {
+
+/// What a column of the Jacobian is: a velocity, or the rate of a vector.
+template <class Node, class Motion, class Frame>
+[[nodiscard]] constexpr auto column_of() {
+  if constexpr (Node::kind_of == kind::vector) {
+    return rate_t<Node, Motion>{};
+  } else {
+    return velocity_of<Frame, Node, Motion>();
+  }
+}
+
+template <class T, class V>
+DUET_ALWAYS_INLINE void write_column(T* column, const V& v) {
+  if constexpr (is_screw_dual<typename V::Scalar>) {
+    for (int i = 0; i < 3; ++i) {
+      column[i] = v[i].epsilon();
+      column[3 + i] = v[i].value();
+    }
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      column[i] = v[i];
+    }
+  }
+}
+
+/// The Jacobian of a formula, to be called with values for its symbols.
+template <class F, class Variables, class Frame>
+class jacobian_of {
+public:
+  constexpr explicit jacobian_of(const F& f) : f_(f) {}
+
+  template <class... Arguments>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
+    if constexpr (call_of<typename F::held_type>::template is_complete<Arguments...>()) {
+      return with_motions(typename Variables::template motions_in<Frame>{}, arguments...);
+    }
+  }
+
+private:
+  using node = typename F::node_type;
+
+  template <class... Motions, class... Arguments>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto with_motions(motion_list<Motions...>,
+                                                     const Arguments&... arguments) const {
+    using S = typename given<typename F::held_type, Arguments...>::scalar;
+    constexpr int rows = node::kind_of == kind::pose ? 6 : 3;
+    if constexpr (is_pose_chain<node> && std::is_same_v<Frame, spatial_frame> &&
+                  std::is_same_v<S, double>) {
+      value_and_jacobian<dual_quaternion<double>, Eigen::Matrix<S, 6, int(sizeof...(Motions))>>
+          result;
+      using chain = pose_chain<typename factors<node>::type, motion_list<Motions...>>;
+      result.value = chain::evaluate(result.jacobian.data(), f_.held(), arguments...);
+      return result;
+    } else {
+      const auto values =
+          called<node, decltype(column_of<node, Motions, Frame>())...>(f_.held(), arguments...);
+      using value = std::decay_t<decltype(values[node{}])>;
+      value_and_jacobian<value, Eigen::Matrix<S, rows, int(sizeof...(Motions))>> result;
+      result.value = values[node{}];
+      S* column = result.jacobian.data();
+      ((write_column(column, values[column_of<node, Motions, Frame>()]), column += rows), ...);
+      return result;
+    }
+  }
+
+  F f_;
+};
+
+template <class F, class Variables, class Frame>
+[[nodiscard]] constexpr auto make_jacobian(const F& f) {
+  constexpr kind k = F::node_type::kind_of;
+  static_assert(
+      k == kind::vector || k == kind::quaternion || k == kind::pose,
+      "duet: a Jacobian is that of a vector, a rotation or a pose; a scalar formula has a "
+      "gradient");
+  return jacobian_of<F, Variables, Frame>(f);
+}
+
+} // namespace detail
+
+/// f and the matrix ∂f/∂(u, w …), a function to be called by name:
+/// `auto [x, J] = jacobian(f, wrt(u, w), frame::spatial)(u = 0.3, w = w0)`.
+///
+/// Columns are of the variables in their order: a scalar has one, a vector three, a rotation three
+/// and a pose six, in which it moves along its tangent coordinates. Rows: the components of a
+/// vector; the angular velocity of a rotation (N7); the twist [v; ω] of a pose (N18). Rotations and
+/// poses, on both sides, are taken as unit, and in `frame::spatial` or `frame::body`.
+template <Formula F, class... Symbols, class Frame>
+[[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>, Frame frame) {
+  static_cast<void>(duet::detail::is_spatial(frame));
+  return detail::make_jacobian<F, variables<Symbols...>, Frame>(f);
+}
+
+/// The same of vectors by scalars and vectors, where no frame matters.
+template <Formula F, class... Symbols>
+[[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>) {
+  static_assert(F::node_type::kind_of != kind::quaternion && F::node_type::kind_of != kind::pose &&
+                    ((Symbols::kind_of == kind::scalar || Symbols::kind_of == kind::vector) && ...),
+                "duet: with rotations and poses say the frame: jacobian(f, wrt(u), frame::body)");
+  return detail::make_jacobian<F, variables<Symbols...>, void>(f);
+}
+
+} // namespace duet::expression

@@ -1,0 +1,118 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+
+/// \file
+/// What formulas are made of: nodes are types without any data, so equal subexpressions are equal
+/// types, and nothing can dangle.
+
+namespace duet::expression {
+
+/// What a node stands for.
+enum class kind {
+  scalar,
+  condition,   ///< true or false
+  vector,      ///< three scalars
+  quaternion,  ///< a rotation, if of unit norm
+  dual_vector, ///< a line, screw or twist of rigid motion
+  pose         ///< a dual quaternion, a rigid motion if unit
+};
+
+/// A variable with a name, spelt out in letters, for every compiler to print.
+template <kind K, char... Letters>
+struct symbol_node {
+  static constexpr kind kind_of = K;
+};
+
+/// A number known when the program runs, which its formula holds. The tag is that of the place in
+/// the code where it was written.
+template <kind K, class Tag>
+struct constant_node {
+  static constexpr kind kind_of = K;
+};
+
+/// A number known to the compiler, by the bits of a double.
+template <std::uint64_t Bits>
+struct number_node {
+  static constexpr kind kind_of = kind::scalar;
+  static constexpr double value = std::bit_cast<double>(Bits);
+};
+
+/// 0 of what is no scalar.
+template <kind K>
+struct zero_node {
+  static constexpr kind kind_of = K;
+};
+
+/// An operation and what it is applied to.
+template <class Operation, class... Operands>
+struct applied_node {
+  static constexpr kind kind_of = Operation::kind_of(Operands::kind_of...);
+};
+
+template <class T>
+concept Node = requires {
+  T::kind_of;
+  requires std::is_empty_v<T>;
+  requires std::is_same_v<std::remove_cvref_t<decltype(T::kind_of)>, kind>;
+};
+
+template <class T>
+inline constexpr bool is_number = false;
+template <std::uint64_t Bits>
+inline constexpr bool is_number<number_node<Bits>> = true;
+
+template <class T>
+inline constexpr bool is_symbol = false;
+template <kind K, char... Letters>
+inline constexpr bool is_symbol<symbol_node<K, Letters...>> = true;
+
+template <class T, class Operation>
+inline constexpr bool is_applied = false;
+template <class Operation, class... Operands>
+inline constexpr bool is_applied<applied_node<Operation, Operands...>, Operation> = true;
+
+namespace detail {
+
+template <class T>
+[[nodiscard]] constexpr bool is_number_equal_to(double x) {
+  if constexpr (is_number<T>) {
+    return T::value == x;
+  } else {
+    return false;
+  }
+}
+
+} // namespace detail
+
+template <class T>
+inline constexpr bool is_zero = detail::is_number_equal_to<T>(0);
+template <kind K>
+inline constexpr bool is_zero<zero_node<K>> = true;
+template <class T>
+inline constexpr bool is_one = detail::is_number_equal_to<T>(1);
+
+/// 0 of a kind.
+template <kind K>
+[[nodiscard]] constexpr auto zero_of() {
+  if constexpr (K == kind::scalar) {
+    return number_node<0>{};
+  } else {
+    return zero_node<K>{};
+  }
+}
+
+/// The I-th operand.
+template <int I, class Operation, class First, class... Rest>
+[[nodiscard]] constexpr auto operand(applied_node<Operation, First, Rest...>) {
+  if constexpr (I == 0) {
+    return First{};
+  } else {
+    return operand<I - 1>(applied_node<Operation, Rest...>{});
+  }
+}
+
+} // namespace duet::expression

@@ -1,0 +1,157 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/expression/formula.hpp>
+#include <duet/expression/node.hpp>
+#include <duet/expression/number.hpp>
+#include <duet/expression/printed.hpp>
+#include <duet/expression/product.hpp>
+
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+/// \file
+/// Powers of scalars.
+
+namespace duet::expression {
+
+namespace op {
+
+struct log;
+
+/// x^n by products, for whole n that the compiler knows.
+template <int Exponent>
+struct whole_power {
+  static_assert(Exponent >= 2 || Exponent <= -1);
+  static constexpr kind kind_of(kind a) { return a; }
+  template <class X>
+  DUET_ALWAYS_INLINE static constexpr X value(const X& x) {
+    if constexpr (Exponent < 0) {
+      return X(1 / power_of<-Exponent>(x));
+    } else if constexpr (Exponent == 2) {
+      return X(x * x);
+    } else if constexpr (Exponent == 3) {
+      return X(x * x * x);
+    } else {
+      const X root = power_of<Exponent / 2>(x);
+      if constexpr (Exponent % 2 == 0) {
+        return X(root * root);
+      } else {
+        return X(root * root * x);
+      }
+    }
+  }
+  template <class X>
+  static constexpr auto slope(X x) {
+    if constexpr (Exponent == 2) {
+      return whole<Exponent> * x;
+    } else {
+      return whole<Exponent> * applied_node<whole_power<Exponent - 1>, X>{};
+    }
+  }
+  static printed print(notation style, const printed& x) {
+    const std::string n = std::to_string(Exponent);
+    return {x.inside(precedence::atom) + "^" + (style == notation::latex ? "{" + n + "}" : n),
+            precedence::power};
+  }
+
+private:
+  template <int N, class X>
+  DUET_ALWAYS_INLINE static constexpr X power_of(const X& x) {
+    if constexpr (N == 1) {
+      return x;
+    } else {
+      return whole_power<N>::value(x);
+    }
+  }
+};
+
+struct power;
+
+/// p x^{p−1}, 0 where p is.
+struct power_slope {
+  static constexpr kind kind_of(kind, kind) { return kind::scalar; }
+  template <class X, class P>
+  static auto value(const X& x, const P& p) {
+    using T = promote_t<X, P>;
+    if constexpr (std::is_same_v<T, X>) {
+      return duet::rule::power<P>{p}.slope(x, x);
+    } else {
+      return duet::rule::power<T>{T(p)}.slope(T(x), T(x));
+    }
+  }
+  template <class X, class P>
+  static constexpr auto slope_of_first(X x, P p) {
+    return p * apply<power_slope>(x, p - whole<1>);
+  }
+  template <class X, class P>
+  static constexpr auto slope_of_second(X x, P p) {
+    const auto lower = apply<power>(x, p - whole<1>);
+    return lower + p * (lower * apply<log>(x));
+  }
+  static printed print(notation style, const printed& x, const printed& p) {
+    const std::string n = p.inside(precedence::product) + " - 1";
+    return {p.inside(precedence::product) + (style == notation::latex ? " " : " * ") +
+                x.inside(precedence::atom) +
+                (style == notation::latex ? "^{" + n + "}" : "^(" + n + ")"),
+            precedence::product};
+  }
+};
+
+/// x^p.
+struct power {
+  static constexpr kind kind_of(kind, kind) { return kind::scalar; }
+  template <class X, class P>
+  static constexpr auto simplified([[maybe_unused]] X x, [[maybe_unused]] P p) {
+    if constexpr (is_zero<P> || is_one<X>) {
+      return whole<1>;
+    } else if constexpr (is_number<P>) {
+      constexpr double value = P::value;
+      if constexpr (value == 1) {
+        return x;
+      } else if constexpr (value >= -16 && value <= 16 && value == int(value)) {
+        return applied_node<whole_power<int(value)>, X>{};
+      } else {
+        return applied_node<power, X, P>{};
+      }
+    } else {
+      return applied_node<power, X, P>{};
+    }
+  }
+  template <class X, class P>
+  static auto value(const X& x, const P& p) {
+    using std::pow;
+    return static_cast<promote_t<X, P>>(pow(x, p));
+  }
+  template <class X, class P>
+  static constexpr auto slope_of_first(X x, [[maybe_unused]] P p) {
+    if constexpr (is_number<P>) {
+      return p * apply<power>(x, p - whole<1>);
+    } else {
+      return apply<power_slope>(x, p);
+    }
+  }
+  template <class X, class P>
+  static constexpr auto slope_of_second(X x, P p) {
+    return apply<power>(x, p) * apply<log>(x);
+  }
+  static printed print(notation style, const printed& x, const printed& p) {
+    return {x.inside(precedence::atom) + "^" +
+                (style == notation::latex ? "{" + p.text + "}" : p.inside(precedence::atom)),
+            precedence::power};
+  }
+};
+
+} // namespace op
+
+/// x^p of scalars. Exponents that the compiler knows, as `c<2>`, are simplified.
+template <class X, class P, class Tag = decltype([] {})>
+  requires Operands<X, P> &&(!QuaternionTerm<X> && !PoseTerm<X>)
+      [[nodiscard]] constexpr auto pow(const X& x, const P& p) {
+    return apply<op::power>(detail::term<Tag>(x), detail::term<Tag>(p));
+  }
+
+} // namespace duet::expression

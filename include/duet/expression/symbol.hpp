@@ -1,0 +1,56 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/expression/formula.hpp>
+#include <duet/expression/node.hpp>
+
+#include <cstddef>
+#include <utility>
+
+/// \file
+/// Variables of formulas, by name: `symbol<"u"> u;`. Symbols of one name and kind are one.
+
+namespace duet::expression {
+
+/// A name as a template argument.
+template <std::size_t Size>
+struct name {
+  char letters[Size];
+  constexpr name(const char (&text)[Size]) {
+    for (std::size_t i = 0; i < Size; ++i) {
+      letters[i] = text[i];
+    }
+  }
+};
+
+namespace detail {
+
+template <kind K, name Name, class Letters>
+struct symbol_of;
+template <kind K, name Name, std::size_t... I>
+struct symbol_of<K, Name, std::index_sequence<I...>> {
+  static_assert(sizeof...(I) > 0, "duet: a symbol needs a name");
+  using node = symbol_node<K, Name.letters[I]...>;
+  using type = formula<node, held<node>>;
+};
+
+template <kind K, name Name>
+using symbol_of_kind =
+    typename symbol_of<K, Name, std::make_index_sequence<sizeof(Name.letters) - 1>>::type;
+
+} // namespace detail
+
+/// A scalar variable.
+template <name Name>
+using symbol = detail::symbol_of_kind<kind::scalar, Name>;
+/// Three scalars.
+template <name Name>
+using vector_symbol = detail::symbol_of_kind<kind::vector, Name>;
+/// A rotation, by a unit quaternion.
+template <name Name>
+using quaternion_symbol = detail::symbol_of_kind<kind::quaternion, Name>;
+/// A rigid motion, by a unit dual quaternion.
+template <name Name>
+using pose_symbol = detail::symbol_of_kind<kind::pose, Name>;
+
+} // namespace duet::expression

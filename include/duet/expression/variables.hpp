@@ -1,0 +1,59 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/expression/derivative.hpp>
+#include <duet/expression/node.hpp>
+#include <duet/expression/number.hpp>
+#include <duet/expression/vector.hpp>
+
+#include <boost/mp11/list.hpp>
+
+#include <type_traits>
+
+/// \file
+/// By which symbols a formula is differentiated, and in which directions each of them moves.
+
+namespace duet::expression {
+
+namespace detail {
+
+template <class... Motions>
+struct motion_list {};
+
+/// The directions in which a symbol can move, one for each coordinate of its tangent space.
+template <class Symbol, class Frame, kind K = Symbol::kind_of>
+struct directions;
+
+template <class Symbol, class Frame>
+struct directions<Symbol, Frame, kind::scalar> {
+  using type = motion_list<movement_of_scalar<Symbol>>;
+};
+
+template <class Symbol, class Frame>
+struct directions<Symbol, Frame, kind::vector> {
+  using type = motion_list<movement<moving<Symbol, unit_vector_node<kind::vector, 0>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::vector, 1>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::vector, 2>>>>;
+};
+
+} // namespace detail
+
+/// Variables in an order; made by `wrt`.
+template <class... Symbols>
+struct variables {
+  /// How they move, where rotations and poses move in a frame.
+  template <class Frame>
+  using motions_in = boost::mp11::mp_append<detail::motion_list<>,
+                                            typename detail::directions<Symbols, Frame>::type...>;
+  using motions = motions_in<void>;
+};
+
+/// With respect to u, w …: the columns of a Jacobian in this order, one for a scalar, three for a
+/// vector or a rotation, six for a pose.
+template <Symbol... U>
+[[nodiscard]] constexpr variables<typename U::node_type...> wrt(const U&...) {
+  static_assert(sizeof...(U) > 0, "duet: wrt needs at least one symbol");
+  return {};
+}
+
+} // namespace duet::expression

@@ -1,0 +1,201 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/derivative/frame.hpp>
+#include <duet/expression/derivative.hpp>
+#include <duet/expression/node.hpp>
+#include <duet/expression/number.hpp>
+#include <duet/expression/rotation.hpp>
+#include <duet/expression/scalar_factor.hpp>
+#include <duet/expression/screw.hpp>
+#include <duet/expression/variables.hpp>
+#include <duet/expression/vector.hpp>
+
+#include <type_traits>
+
+/// \file
+/// Velocities of rotations and poses as formulas (N7, N18): three and six numbers instead of four
+/// and eight, and in the frame asked for. What a factor of a product adds, in spatial axes the
+/// factors before it carry along, in body axes those behind it.
+
+namespace duet::expression::detail {
+
+/// A rotation or pose that turns: its velocity in a frame.
+template <class Symbol, class Velocity, class Frame>
+struct turning {};
+
+template <class Symbol, class Velocity, class... Rest>
+struct rate_of_symbol<Symbol, movement<turning<Symbol, Velocity, spatial_frame>, Rest...>> {
+  using type = decltype(number_node<bits_of(0.5)>{} * (apply<op::pure>(Velocity{}) * Symbol{}));
+};
+template <class Symbol, class Velocity, class... Rest>
+struct rate_of_symbol<Symbol, movement<turning<Symbol, Velocity, body_frame>, Rest...>> {
+  using type = decltype(number_node<bits_of(0.5)>{} * (Symbol{} * apply<op::pure>(Velocity{})));
+};
+
+/// The vector or dual vector ω of q̇ = ½ ω q or ½ q ω.
+template <class Frame, class Q, class Motion>
+[[nodiscard]] constexpr auto velocity_of();
+
+template <class Frame, class Q, class Rate>
+[[nodiscard]] constexpr auto velocity_by_rate(Q q, Rate rate) {
+  if constexpr (std::is_same_v<Frame, spatial_frame>) {
+    return whole<2> * apply<op::vec>(rate * apply<op::conj>(q));
+  } else {
+    return whole<2> * apply<op::vec>(apply<op::conj>(q) * rate);
+  }
+}
+
+template <class Node, class Motion>
+struct velocity {
+  template <class Frame>
+  static constexpr auto in() {
+    return velocity_by_rate<Frame>(Node{}, rate_t<Node, Motion>{});
+  }
+};
+
+template <class Symbol, class Motion>
+struct velocity_of_symbol;
+template <class Symbol, class Rate, class... Rest>
+struct velocity_of_symbol<Symbol, movement<moving<Symbol, Rate>, Rest...>> {
+  template <class Frame>
+  static constexpr auto in() {
+    return velocity_by_rate<Frame>(Symbol{}, Rate{});
+  }
+};
+template <class Symbol, class V, class FrameOfV, class... Rest>
+struct velocity_of_symbol<Symbol, movement<turning<Symbol, V, FrameOfV>, Rest...>> {
+  template <class Frame>
+  static constexpr auto in() {
+    if constexpr (std::is_same_v<Frame, FrameOfV>) {
+      return V{};
+    } else if constexpr (std::is_same_v<Frame, spatial_frame>) {
+      return apply<op::rotate>(Symbol{}, V{});
+    } else {
+      return apply<op::rotate>(apply<op::conj>(Symbol{}), V{});
+    }
+  }
+};
+template <class Symbol, class Other, class... Rest>
+struct velocity_of_symbol<Symbol, movement<Other, Rest...>>
+    : velocity_of_symbol<Symbol, movement<Rest...>> {};
+
+template <kind K, char... Letters, class Motion>
+struct velocity<symbol_node<K, Letters...>, Motion>
+    : velocity_of_symbol<symbol_node<K, Letters...>, Motion> {};
+
+template <class A, class B, class Motion>
+  requires(A::kind_of != kind::scalar)
+struct velocity<applied_node<op::product, A, B>, Motion> {
+  template <class Frame>
+  static constexpr auto in() {
+    constexpr auto a = velocity_of<Frame, A, Motion>();
+    constexpr auto b = velocity_of<Frame, B, Motion>();
+    if constexpr (std::is_same_v<Frame, spatial_frame>) {
+      return a + apply<op::rotate>(A{}, b);
+    } else {
+      return apply<op::rotate>(apply<op::conj>(B{}), a) + b;
+    }
+  }
+};
+
+template <class A, class Motion>
+struct velocity<applied_node<op::conj, A>, Motion> {
+  template <class Frame>
+  static constexpr auto in() {
+    using other =
+        std::conditional_t<std::is_same_v<Frame, spatial_frame>, body_frame, spatial_frame>;
+    return -velocity_of<other, A, Motion>();
+  }
+};
+
+template <class A, class Motion>
+struct velocity<applied_node<op::negative, A>, Motion> {
+  template <class Frame>
+  static constexpr auto in() {
+    return velocity_of<Frame, A, Motion>();
+  }
+};
+
+template <class A, class Motion>
+struct velocity<applied_node<op::rotation, A>, Motion> {
+  template <class Frame>
+  static constexpr auto in() {
+    return apply<op::part<false>>(velocity_of<Frame, A, Motion>());
+  }
+};
+
+template <class N, class Angle, class S, class C, class Motion>
+  requires is_zero<rate_t<N, Motion>>
+struct velocity<applied_node<op::turn, N, Angle, S, C>, Motion> {
+  template <class Frame>
+  static constexpr auto in() {
+    return rate_t<Angle, Motion>{} * N{};
+  }
+};
+
+template <class V, class Motion>
+struct velocity<applied_node<op::exp_vector, V>, Motion> {
+  template <class Frame>
+  static constexpr auto in() {
+    constexpr direction_t<V> w;
+    constexpr auto rate = factor_of(rate_t<V, Motion>{}, w);
+    if constexpr (is_zero<std::remove_const_t<decltype(rate)>>) {
+      using node = applied_node<op::exp_vector, V>;
+      return velocity_by_rate<Frame>(node{}, rate_t<node, Motion>{});
+    } else {
+      return (whole<2> * rate) * w;
+    }
+  }
+};
+
+template <class Frame, class Q, class Motion>
+[[nodiscard]] constexpr auto velocity_of() {
+  if constexpr (is_zero<rate_t<Q, Motion>>) {
+    return zero_of<vector_kind(Q::kind_of)>();
+  } else {
+    return velocity<Q, Motion>::template in<Frame>();
+  }
+}
+
+/// (q v q*)˙ = ω × q v q* + q v̇ q*, for unit q.
+template <class Q, class V, class Motion>
+struct rate<applied_node<op::rotate, Q, V>, Motion> {
+  static constexpr auto make() {
+    using node = applied_node<op::rotate, Q, V>;
+    return apply<op::cross>(velocity_of<spatial_frame, Q, Motion>(), node{}) +
+           apply<op::rotate>(Q{}, rate_t<V, Motion>{});
+  }
+  using type = decltype(make());
+};
+
+/// ṫ = v + ω × t of the twist ω + εv in spatial axes (N18).
+template <class A, class Motion>
+struct rate<applied_node<op::translation, A>, Motion> {
+  static constexpr auto make() {
+    constexpr auto twist = velocity_of<spatial_frame, A, Motion>();
+    return apply<op::part<true>>(twist) +
+           apply<op::cross>(apply<op::part<false>>(twist), applied_node<op::translation, A>{});
+  }
+  using type = decltype(make());
+};
+
+template <class Symbol, class Frame>
+struct directions<Symbol, Frame, kind::quaternion> {
+  using type = motion_list<movement<turning<Symbol, unit_vector_node<kind::vector, 0>, Frame>>,
+                           movement<turning<Symbol, unit_vector_node<kind::vector, 1>, Frame>>,
+                           movement<turning<Symbol, unit_vector_node<kind::vector, 2>, Frame>>>;
+};
+/// In the order of [v; ω].
+template <class Symbol, class Frame>
+struct directions<Symbol, Frame, kind::pose> {
+  using type =
+      motion_list<movement<turning<Symbol, unit_vector_node<kind::dual_vector, 3>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 4>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 5>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 0>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 1>, Frame>>,
+                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 2>, Frame>>>;
+};
+
+} // namespace duet::expression::detail

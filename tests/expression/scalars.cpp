@@ -1,0 +1,198 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/multiprecision.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/expression/condition.hpp>
+#include <duet/expression/derivative.hpp>
+#include <duet/expression/functions_of_many.hpp>
+#include <duet/expression/special_functions.hpp>
+#include <duet/expression/symbol.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace test_expression_scalars {
+namespace {
+
+using namespace duet::expression;
+using duet_test::real_50;
+
+constexpr symbol<"x"> x;
+constexpr symbol<"y"> y;
+
+/// The same code on a symbol and on numbers.
+template <class F>
+void check_function(const char* name, const F& function, double at) {
+  CAPTURE(name);
+  CAPTURE(at);
+  const auto f = function(x);
+  const auto first = derivative(f, x);
+  const auto second = derivative(first, x);
+  CHECK(f(x = at) == doctest::Approx(function(at)).epsilon(1e-15));
+  const auto expected = duet::derivatives<2>(function, at);
+  CHECK(first(x = at) == doctest::Approx(expected[1]).epsilon(4e-15));
+  CHECK(second(x = at) == doctest::Approx(expected[2]).epsilon(2e-14));
+}
+
+#define CHECK_FUNCTION(function, at)                                                               \
+  check_function(                                                                                  \
+      #function,                                                                                   \
+      [](const auto& t) {                                                                          \
+        using std::function;                                                                       \
+        return function(t);                                                                        \
+      },                                                                                           \
+      at)
+
+} // namespace
+
+TEST_CASE("functions of one scalar: expression derivatives are dual derivatives") {
+  for (const double at : {0.3, 0.8}) {
+    CHECK_FUNCTION(sqrt, at);
+    CHECK_FUNCTION(cbrt, at);
+    CHECK_FUNCTION(exp, -at);
+    CHECK_FUNCTION(exp2, at);
+    CHECK_FUNCTION(expm1, at);
+    CHECK_FUNCTION(log, at);
+    CHECK_FUNCTION(log2, at);
+    CHECK_FUNCTION(log10, at);
+    CHECK_FUNCTION(log1p, at);
+    CHECK_FUNCTION(sin, at);
+    CHECK_FUNCTION(cos, at);
+    CHECK_FUNCTION(tan, at);
+    CHECK_FUNCTION(asin, at);
+    CHECK_FUNCTION(acos, at);
+    CHECK_FUNCTION(atan, 3 * at);
+    CHECK_FUNCTION(sinh, at);
+    CHECK_FUNCTION(cosh, at);
+    CHECK_FUNCTION(tanh, at);
+    CHECK_FUNCTION(asinh, at);
+    CHECK_FUNCTION(acosh, 1 + at);
+    CHECK_FUNCTION(atanh, at);
+    CHECK_FUNCTION(erf, at);
+    CHECK_FUNCTION(erfc, at);
+    CHECK_FUNCTION(tgamma, 1 + at);
+    CHECK_FUNCTION(lgamma, 2 + at);
+    CHECK_FUNCTION(abs, -at);
+  }
+}
+
+TEST_CASE("functions of two scalars and choices") {
+  const auto check = [](const auto& function) {
+    check_function("of two", function, 0.7);
+    check_function("of two", function, 1.9);
+  };
+  check([](const auto& t) {
+    using std::atan2;
+    return atan2(t, 1.2) + atan2(0.3, t * t);
+  });
+  check([](const auto& t) {
+    using std::hypot;
+    return hypot(t, 2 * t - 1.3);
+  });
+  check([](const auto& t) {
+    using std::pow;
+    return pow(t, 2.5) + pow(t, t) + pow(1.7, t) + pow(t, 3) + pow(t, -1.0);
+  });
+  check([](const auto& t) { return t / (1 + t) - (2 - t) * -t / t + 3 / t; });
+  CHECK(derivative(lerp(x, y, x * y), x)(x = 0.3, y = 0.4) ==
+        doctest::Approx(1 - 0.12 + (0.4 - 0.3) * 0.4));
+  CHECK(derivative(fma(x, x, y), x)(x = 3.0, y = 1.0) == 6);
+  const auto choice = select(x < y, x * x, sqrt(x - y));
+  CHECK(derivative(choice, x)(x = 3.0, y = 4.0) == 6);
+  CHECK(derivative(choice, x)(x = 3.0, y = 2.0) == 0.5);
+  CHECK(derivative(max(x, c<2>), x)(x = 1.0) == 0);
+  CHECK(derivative(min(x, 2.0), x)(x = 1.0) == 1);
+}
+
+TEST_CASE("any scalar: 50 digits, float, Taylor numbers") {
+  const auto f = sin(x) * exp(-x * x) + log(1 + x * x) / sqrt(2 + cos(x)) + pi;
+  const auto generic = [](const auto& t) {
+    using std::cos;
+    using std::exp;
+    using std::log;
+    using std::sin;
+    using std::sqrt;
+    return sin(t) * exp(-t * t) + log(1 + t * t) / sqrt(2 + cos(t));
+  };
+  const real_50 at("0.73");
+  const real_50 slope = derivative(f, x)(x = at);
+  const real_50 expected = duet::derivative(generic, at).derivative;
+  CHECK(abs(slope - expected) < 1e-48);
+  CHECK(abs(f(x = at) - generic(at) - duet::constant::pi<real_50>()) < 1e-48);
+  static_assert(std::is_same_v<decltype(f(x = 1.0F)), float>);
+  const auto series = duet::derivatives<3>([&](auto t) { return f(x = t); }, 0.4);
+  const auto third = derivative(derivative(derivative(f, x), x), x);
+  CHECK(series[3] == doctest::Approx(third(x = 0.4)).epsilon(1e-13));
+}
+
+TEST_CASE("constant expressions") {
+  constexpr auto f = (x * x - 2.5) / (y + c<1>);
+  static_assert(f(x = 3.0, y = 1.0) == 3.25);
+  static_assert(derivative(f, x)(x = 3.0, y = 1.0) == 3);
+  static_assert(derivative(f, y)(x = 3.0, y = 1.0) == -1.625);
+  CHECK(f(x = 1, y = 2) == -0.5);
+}
+
+namespace {
+
+template <class A, class B>
+constexpr bool are_same(const A&, const B&) {
+  return std::is_same_v<A, B>;
+}
+template <class A, class B>
+constexpr bool have_same_node(const A&, const B&) {
+  return std::is_same_v<typename A::node_type, typename B::node_type>;
+}
+
+} // namespace
+
+TEST_CASE("simplification, by type") {
+  static_assert(have_same_node(x + c<0>, x));
+  static_assert(have_same_node(x * c<1>, x));
+  static_assert(have_same_node(x * c<0>, c<0>));
+  static_assert(have_same_node(-(-x), x));
+  static_assert(have_same_node(x - x, c<0>));
+  static_assert(have_same_node(x + -y, x - y));
+  static_assert(have_same_node(-x * -y, x * y));
+  static_assert(have_same_node(c<2> * (3.5_c * x), c<7> * x));
+  static_assert(have_same_node(pow(x, c<1>), x));
+  static_assert(have_same_node(pow(x, c<0>), c<1>));
+  static_assert(have_same_node(x * x * x, pow(x, c<3>)));
+  static_assert(have_same_node(0.1_c + 0.5_c, 0.1_c + 0.5_c));
+  static_assert(!is_number<decltype(0.1_c * 0.1_c)::node_type>); // rounding is left to the scalar
+  static_assert(is_number<decltype(1.5_c / c<2>)::node_type>);
+  static_assert(!is_number<decltype(c<1> / c<3>)::node_type>);
+  static_assert(!is_number<decltype(c<1> / c<0>)::node_type>);
+  static_assert(have_same_node(derivative(sin(y), x), c<0>));
+  CHECK((x * c<0>)(x = 2.0) == 0);
+  CHECK(derivative(sin(y), x)(y = 2.0) == 0);
+}
+
+TEST_CASE("constants written in the code differ by place, even where they are equal") {
+  const auto f = sin(2.0 * x) + sin(3.0 * x);
+  CHECK(f(x = 0.3) == doctest::Approx(std::sin(0.6) + std::sin(0.9)).epsilon(1e-15));
+  CHECK(derivative(f, x)(x = 0.3) ==
+        doctest::Approx(2 * std::cos(0.6) + 3 * std::cos(0.9)).epsilon(1e-15));
+  static_assert(!are_same(2.0 * x, 2.0 * x));
+  static_assert(are_same(c<2> * x, c<2> * x));
+
+  // One place that makes different constants of one type would be taken for one.
+  const auto wave = [](double k) { return sin(k * x); };
+  const auto twice = wave(2) + wave(2);
+  CHECK(twice(x = 0.3) == doctest::Approx(2 * std::sin(0.6)).epsilon(1e-15));
+  try {
+    static_cast<void>(wave(2) + wave(3));
+    CHECK(false);
+  } catch (const duet::invalid_input& error) {
+    CHECK(
+        std::string(error.what()) ==
+        "duet: a formula: one place in the code made two constants, 2 and 3, which would be taken "
+        "for one; make what changes a symbol");
+  }
+}
+
+} // namespace test_expression_scalars

@@ -1,0 +1,20 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+// expect: duet: a gradient is that of a scalar formula
+
+#include <duet/expression/elementary_functions.hpp>
+#include <duet/expression/gradient.hpp>
+#include <duet/expression/jacobian.hpp>
+#include <duet/expression/symbol.hpp>
+
+int main() {
+  using namespace duet::expression;
+  constexpr symbol<"u"> u;
+  constexpr vector_symbol<"w"> w;
+  const duet::vector3<double> w0(1, 2, 3);
+  const auto f = sin(u) * norm(w);
+#ifdef DUET_MUST_FAIL
+  static_cast<void>(duet::expression::gradient(u * w, wrt(u)));
+#else
+  static_cast<void>(duet::expression::gradient(f, wrt(u)));
+#endif
+}
