@@ -77,11 +77,10 @@ public:
     const place p = model_.at(u);
     const double kinetic = inertia_.cwiseProduct(p.twist).dot(p.twist) * u_dot * u_dot / 2;
     const double height = duet::translation(p.pose)[2];
-    const vector3<double> ahead = rotate(duet::rotation(p.pose), vector3<double>(1, 0, 0));
     return {t,
             u,
             height,
-            -std::atan2(ahead[1], ahead[0]) * 180 / std::numbers::pi,
+            wheel_carrier::toe_in(duet::rotation(p.pose)) * 180 / std::numbers::pi,
             kinetic + vehicle_.spring * height * height / 2 + vehicle_.load * height - work,
             kinetic};
   }

@@ -9,7 +9,6 @@
 #include <duet/core/csv.hpp>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <string>
@@ -28,12 +27,9 @@ inline std::string path_csv(const std::vector<state>& states, const vector3& des
   std::string text = "u,x,y,z,qw,qx,qy,qz,toe_in_deg,camber_deg,dx,dy\n";
   constexpr double degrees = 180 / std::numbers::pi;
   for (const state& s : states) {
-    const vector3 heading = rotate(s.q, vector3(1, 0, 0));
-    const vector3 up = rotate(s.q, vector3(0, 0, 1));
-    text +=
-        csv_line({s.u, s.centre[0], s.centre[1], s.centre[2], s.q.w(), s.q.x(), s.q.y(), s.q.z(),
-                  -std::atan2(heading[1], heading[0]) * degrees, std::atan2(up[1], up[2]) * degrees,
-                  s.centre[0] - design[0], s.centre[1] - design[1]});
+    text += csv_line({s.u, s.centre[0], s.centre[1], s.centre[2], s.q.w(), s.q.x(), s.q.y(),
+                      s.q.z(), toe_in(s.q) * degrees, camber(s.q) * degrees,
+                      s.centre[0] - design[0], s.centre[1] - design[1]});
   }
   return text;
 }

@@ -7,6 +7,7 @@
 
 #include "comparison.hpp"
 #include "figures.hpp"
+#include "hardpoints_file.hpp"
 #include "options.hpp"
 #include "splines.hpp"
 #include "table.hpp"
@@ -42,8 +43,9 @@ std::vector<state> solve(const carrier& mechanism, const std::vector<double>& sa
   for (const double u : samples) {
     try {
       states.push_back(mechanism.at(u));
-    } catch (const duet::no_convergence&) {
-      throw std::runtime_error("the rods cannot close at u = " + duet::to_text(u) + " m");
+    } catch (const duet::cannot_close& error) {
+      throw std::runtime_error(
+          "the rods cannot close beyond u = " + duet::to_text(error.parameter().front()) + " m");
     }
   }
   return states;

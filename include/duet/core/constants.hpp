@@ -14,8 +14,8 @@ namespace duet::constant {
 
 template <Real T>
 [[nodiscard]] T pi() {
-  if constexpr (std::floating_point<T>) {
-    return std::numbers::pi_v<T>;
+  if constexpr (std::floating_point<lane_type_t<T>>) {
+    return std::numbers::pi_v<lane_type_t<T>>;
   } else {
     return T(4 * atan(T(1)));
   }
@@ -23,8 +23,8 @@ template <Real T>
 
 template <Real T>
 [[nodiscard]] T ln2() {
-  if constexpr (std::floating_point<T>) {
-    return std::numbers::ln2_v<T>;
+  if constexpr (std::floating_point<lane_type_t<T>>) {
+    return std::numbers::ln2_v<lane_type_t<T>>;
   } else {
     return T(log(T(2)));
   }
@@ -32,8 +32,8 @@ template <Real T>
 
 template <Real T>
 [[nodiscard]] T ln10() {
-  if constexpr (std::floating_point<T>) {
-    return std::numbers::ln10_v<T>;
+  if constexpr (std::floating_point<lane_type_t<T>>) {
+    return std::numbers::ln10_v<lane_type_t<T>>;
   } else {
     return T(log(T(10)));
   }
@@ -42,8 +42,8 @@ template <Real T>
 /// 2/√π
 template <Real T>
 [[nodiscard]] T two_over_sqrt_pi() {
-  if constexpr (std::floating_point<T>) {
-    return 2 * std::numbers::inv_sqrtpi_v<T>;
+  if constexpr (std::floating_point<lane_type_t<T>>) {
+    return 2 * std::numbers::inv_sqrtpi_v<lane_type_t<T>>;
   } else {
     return T(2 / sqrt(pi<T>()));
   }

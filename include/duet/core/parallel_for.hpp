@@ -81,13 +81,14 @@ private:
 /// What the blocks write must not overlap. Results then do not depend on the number of threads. Of
 /// exceptions, the one of the first block that throws is rethrown once all threads have ended;
 /// blocks behind it may not have been called.
-/// \param block  the most elements a block has; 0: an eighth of a thread's share
+/// \param block  the most elements a block has; 0: an eighth of a thread's share, of one thread all
 template <class Body>
 void parallel_for_blocks(std::size_t count, const Body& body, execution how = all_cores,
                          std::size_t block = 0) {
   const std::size_t wanted =
       how.threads > 0 ? how.threads : std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t size = block > 0 ? block : std::max<std::size_t>(1, count / (8 * wanted));
+  const std::size_t share = wanted == 1 ? count : count / (8 * wanted);
+  const std::size_t size = block > 0 ? block : std::max<std::size_t>(1, share);
   detail::block_queue queue(count, size);
   std::vector<std::thread> helpers;
   const std::size_t blocks = count / size + (count % size > 0 ? 1 : 0);

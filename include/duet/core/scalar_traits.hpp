@@ -57,6 +57,23 @@ concept Scalar = Field<T> || Infinitesimal<T>;
 template <class T>
 using real_type_t = typename scalar_traits<T>::real_type;
 
+/// Facts on a number that stands for several at once: `batch` specialises it. Any other is its own
+/// only lane.
+template <class T>
+struct lane_traits {
+  static constexpr bool is_batch = false;
+  static constexpr int lanes = 1;
+  using type = T; ///< what is in a lane
+};
+
+/// Several numbers at once, or an infinitesimal extension of them.
+template <class T>
+concept Batched = lane_traits<real_type_t<T>>::is_batch;
+
+/// The real number in one lane of T.
+template <class T>
+using lane_type_t = typename lane_traits<real_type_t<T>>::type;
+
 /// An infinitesimal extension of the real numbers, where functions need not be analytic.
 template <class T>
 concept RealInfinitesimal = Infinitesimal<T> && Real<real_type_t<T>>;

@@ -24,4 +24,8 @@ template <std::same_as<bool> Condition, std::invocable F, std::invocable G>
   return static_cast<result>(g());
 }
 
+/// Of one lane.
+[[nodiscard]] constexpr bool any(std::same_as<bool> auto x) { return x; }
+[[nodiscard]] constexpr bool all(std::same_as<bool> auto x) { return x; }
+
 } // namespace duet

@@ -36,7 +36,7 @@ template <class T, int N, int Terms>
 /// Every other term from the K-th on by Horner's rule, unrolled.
 template <int N, int Terms, int K, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE T stumpff_half_polynomial(const T& square) {
-  constexpr T coefficient = stumpff_coefficients<T, N, Terms>()[K];
+  constexpr auto coefficient = stumpff_coefficients<lane_type_t<T>, N, Terms>()[K];
   if constexpr (K + 2 >= Terms) {
     return coefficient;
   } else {
@@ -81,14 +81,14 @@ template <class T>
 /// Where the closed forms of c₂, c₃ … and of derivatives take over from the series: below, they
 /// cancel; above, the series does.
 template <Real T>
-[[nodiscard]] constexpr bool is_beyond_series(const T& s) {
+[[nodiscard]] constexpr auto is_beyond_series(const T& s) {
   return s > T(4);
 }
 
 /// c_n(s) of small s.
 template <int N, Real T>
 [[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_small(const T& s) {
-  if constexpr (std::floating_point<T>) {
+  if constexpr (std::floating_point<lane_type_t<T>>) {
     // The last terms are 2e-19 at s = 1 and 2e-21 at s = 4, with more digits 3e-25 and 2e-25.
     constexpr bool is_double = std::numeric_limits<T>::digits <= 53;
     return stumpff_polynomial < N, N < 2 ? (is_double ? 10 : 13) : (is_double ? 13 : 15) > (s);
@@ -112,7 +112,7 @@ template <int N, Real T>
     const T root = sqrt(s);
     return sin(root) / root;
   } else {
-    return (inverse_factorial<T>(N - 2) - stumpff_of_real<N - 2>(s)) / s;
+    return (inverse_factorial<lane_type_t<T>>(N - 2) - stumpff_of_real<N - 2>(s)) / s;
   }
 }
 

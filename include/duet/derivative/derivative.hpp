@@ -5,6 +5,7 @@
 #include <duet/dual/math.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <utility>
 
@@ -33,6 +34,8 @@ template <class Tag = void, class F, class X>
 [[nodiscard]] auto derivative(F&& f, const X& x) {
   using T = detail::differentiable_t<X>;
   using tag = detail::tag_for<Tag, F>;
+  static_assert(std::invocable<F, dual<T, 1, tag>>,
+                "duet: derivative: the function must take any scalar: [](auto x) { ... }");
   const auto y = detail::evaluated(std::forward<F>(f)(dual<T, 1, tag>::variable(T(x))));
   return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};
 }
@@ -43,6 +46,8 @@ template <int K, class Tag = void, class F, class X>
 [[nodiscard]] auto derivatives(F&& f, const X& x) {
   using T = detail::differentiable_t<X>;
   using tag = detail::tag_for<Tag, F>;
+  static_assert(std::invocable<F, taylor<T, K, tag>>,
+                "duet: derivatives: the function must take any scalar: [](auto x) { ... }");
   const auto y = detail::evaluated(std::forward<F>(f)(taylor<T, K, tag>::variable(T(x))));
   return [&]<int... I>(std::integer_sequence<int, I...>) {
     return std::array{detail::parts<tag>(y, I)...};

@@ -102,8 +102,8 @@ public:
 
   /// Does the predicate hold for the value and for every partial?
   template <class Predicate>
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool all_of(Predicate&& predicate) const {
-    bool result = predicate(value_);
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto all_of(Predicate&& predicate) const {
+    auto result = predicate(value_);
     for (int i = 0; i < size(); ++i) {
       result = result && predicate(partials_.get(i));
     }

@@ -16,27 +16,27 @@
 namespace duet {
 
 template <RealInfinitesimal D>
-[[nodiscard]] bool signbit(const D& x) {
+[[nodiscard]] auto signbit(const D& x) {
   using std::signbit;
   return signbit(innermost(x));
 }
 template <RealInfinitesimal D>
-[[nodiscard]] bool isfinite(const D& x) {
+[[nodiscard]] auto isfinite(const D& x) {
   using std::isfinite;
   return isfinite(innermost(x));
 }
 template <RealInfinitesimal D>
-[[nodiscard]] bool isinf(const D& x) {
+[[nodiscard]] auto isinf(const D& x) {
   using std::isinf;
   return isinf(innermost(x));
 }
 template <RealInfinitesimal D>
-[[nodiscard]] bool isnan(const D& x) {
+[[nodiscard]] auto isnan(const D& x) {
   using std::isnan;
   return isnan(innermost(x));
 }
 template <RealInfinitesimal D>
-[[nodiscard]] bool isnormal(const D& x) {
+[[nodiscard]] auto isnormal(const D& x) {
   using std::isnormal;
   return isnormal(innermost(x));
 }
@@ -50,25 +50,25 @@ template <RealInfinitesimal D>
 
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] bool isunordered(const A& a, const B& b) {
+[[nodiscard]] auto isunordered(const A& a, const B& b) {
   using std::isnan;
   return isnan(innermost(a)) || isnan(innermost(b));
 }
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] bool isless(const A& a, const B& b) { return !isunordered(a, b) && a < b; }
+[[nodiscard]] auto isless(const A& a, const B& b) { return !isunordered(a, b) && a < b; }
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] bool islessequal(const A& a, const B& b) { return !isunordered(a, b) && a <= b; }
+[[nodiscard]] auto islessequal(const A& a, const B& b) { return !isunordered(a, b) && a <= b; }
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] bool isgreater(const A& a, const B& b) { return !isunordered(a, b) && a > b; }
+[[nodiscard]] auto isgreater(const A& a, const B& b) { return !isunordered(a, b) && a > b; }
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] bool isgreaterequal(const A& a, const B& b) { return !isunordered(a, b) && a >= b; }
+[[nodiscard]] auto isgreaterequal(const A& a, const B& b) { return !isunordered(a, b) && a >= b; }
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] bool islessgreater(const A& a, const B& b) { return !isunordered(a, b) && a != b; }
+[[nodiscard]] auto islessgreater(const A& a, const B& b) { return !isunordered(a, b) && a != b; }
 
 /// |x|; at 0 the derivative from the side of the sign bit.
 template <RealInfinitesimal D>

@@ -79,9 +79,9 @@ struct exponential {
   T slope(const T& x, const T& y) const {
     const T regular = y * detail::log_of_base<T>(base);
     // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
-    const bool vanishes =
+    const auto vanishes =
         innermost(base) == detail::integer<Base>(0) && detail::real_part(innermost(x)) > 0;
-    const bool is_flat =
+    const auto is_flat =
         is_constant(base) || detail::real_part(innermost(x)) > scalar_traits<T>::order;
     return select(
         vanishes && is_flat, [] { return T(0); },
@@ -94,7 +94,7 @@ struct exponential {
 
 private:
   template <class U>
-  static bool is_constant(const U& u) {
+  static auto is_constant(const U& u) {
     return detail::is_structural_zero(detail::with_innermost(u, real_type_t<U>(0)));
   }
 };
@@ -188,7 +188,7 @@ struct remainder {
 struct lerp {
   template <class T>
   T value(const T& a, const T& b, const T& t) const {
-    if constexpr (std::floating_point<T> || Infinitesimal<T>) {
+    if constexpr (std::floating_point<lane_type_t<T>> || Infinitesimal<T>) {
       using std::lerp;
       return lerp(a, b, t);
     } else { // <cmath> knows built-in types only
@@ -206,7 +206,7 @@ struct lerp {
 struct midpoint {
   template <class T>
   T value(const T& a, const T& b) const {
-    if constexpr (std::floating_point<T> || Infinitesimal<T>) {
+    if constexpr (std::floating_point<lane_type_t<T>> || Infinitesimal<T>) {
       using std::midpoint;
       return midpoint(a, b);
     } else { // <numeric> knows built-in types only; wider exponents leave room for the sum

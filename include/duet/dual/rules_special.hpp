@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
 
@@ -15,10 +16,13 @@
 namespace duet {
 namespace detail {
 
+template <class T>
+[[nodiscard]] T digamma(const T& argument);
+
 /// ψ(x) = Γ′(x)/Γ(x), from its asymptotic series after enough steps ψ(x) = ψ(x + 1) − 1/x. Nothing
 /// but algebra, log and tan, so every scalar of duet gives the derivatives of ψ too.
 template <class T>
-[[nodiscard]] T digamma(const T& argument) {
+[[nodiscard]] T digamma_of_one(const T& argument) {
   using std::log;
   using std::round;
   using std::tan;
@@ -61,6 +65,15 @@ template <class T>
     series = (series + real(b[0]) / real(b[1] * 2 * k)) * z;
   }
   return sum + log(x) - r / 2 - series;
+}
+
+template <class T>
+[[nodiscard]] T digamma(const T& argument) {
+  if constexpr (Batched<T>) {
+    return by_lane([](const auto& x) { return digamma(x); }, argument);
+  } else {
+    return digamma_of_one(argument);
+  }
 }
 
 } // namespace detail

@@ -37,6 +37,7 @@ class second_dual : detail::infinitesimal_operators<second_dual<T, N, Tag>, T> {
 
 public:
   using value_type = T;
+  static constexpr int variables = N;
   using gradient_type = detail::partials<T, N>;
   using hessian_type = detail::lower_triangle<T, N>;
 
@@ -93,8 +94,8 @@ public:
 
   /// Does the predicate hold for the value and for every derivative?
   template <class Predicate>
-  [[nodiscard]] bool all_of(Predicate&& predicate) const {
-    bool result = predicate(value_);
+  [[nodiscard]] auto all_of(Predicate&& predicate) const {
+    auto result = predicate(value_);
     for (int i = 0; i < N; ++i) {
       result = result && predicate(partial(i));
       for (int j = 0; j <= i; ++j) {
@@ -160,7 +161,7 @@ public:
     const T slope = -inverse * inverse;
     const T curvature = -2 * slope * inverse;
     const T value = a.value_ / b.value_;
-    if (!detail::is_all_finite(curvature)) [[unlikely]] {
+    if (!all(detail::is_all_finite(curvature))) [[unlikely]] {
       return composed<2>(value, {&a, &b}, {inverse, T(a.value_ * slope)},
                          {{{T(0), slope}, {slope, T(a.value_ * curvature)}}});
     }
@@ -173,7 +174,7 @@ public:
   /// H = f′ H + f″ g gᵀ.
   [[nodiscard]] DUET_ALWAYS_INLINE second_dual composed(const T& y, const T& slope,
                                                         const T& curvature) const {
-    if (detail::is_all_finite(slope) && detail::is_all_finite(curvature)) [[likely]] {
+    if (all(detail::is_all_finite(slope) && detail::is_all_finite(curvature))) [[likely]] {
       const auto scaled = [](const T& c) DUET_INLINE_LAMBDA {
         return [&c](const auto& p)
                    DUET_INLINE_LAMBDA { return std::remove_cvref_t<decltype(p)>(p * c); };

@@ -1,7 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_functions.hpp>
 #include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
 
 #include <cmath>
 #include <concepts>
@@ -38,9 +40,14 @@ template <class T>
     return {duet_sinf(x), duet_cosf(x)};
   }
 #endif
-  using std::cos;
-  using std::sin;
-  return {T(sin(x)), T(cos(x))};
+  if constexpr (lane_traits<T>::is_batch) {
+    const auto both = sine_cosine_of_batch(x);
+    return {both.sine, both.cosine};
+  } else {
+    using std::cos;
+    using std::sin;
+    return {T(sin(x)), T(cos(x))};
+  }
 }
 
 } // namespace duet::detail

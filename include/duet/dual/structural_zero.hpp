@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 
 #include <concepts>
 #include <limits>
@@ -19,7 +20,7 @@ namespace duet::detail {
 
 /// Is `x`, with every infinitesimal part, an exact zero?
 template <class T>
-[[nodiscard]] constexpr bool is_structural_zero(const T& x) {
+[[nodiscard]] constexpr auto is_structural_zero(const T& x) {
   if constexpr (Infinitesimal<T>) {
     return x.all_of([](const auto& part) { return is_structural_zero(part); });
   } else {
@@ -29,7 +30,7 @@ template <class T>
 
 /// Are `x` and all its infinitesimal parts finite? (x − x is NaN for infinities and NaN.)
 template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_all_finite(const T& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_all_finite(const T& x) {
   if constexpr (Infinitesimal<T>) {
     return x.all_of([](const auto& part) { return is_all_finite(part); });
   } else {
@@ -44,16 +45,14 @@ template <class T>
 /// variable.
 template <class T>
 [[nodiscard]] constexpr T product_of_partial(const T& slope, const T& partial) {
-  return is_structural_zero(slope) ? T(0) : guarded_product(slope, partial);
+  return select(
+      is_structural_zero(slope), [] { return T(0); },
+      [&] { return guarded_product(slope, partial); });
 }
 
-/// slope · partial, zero where the partial is a structural zero; for nested scalars part by part,
-/// or what does not depend on the inner variable would be poisoned by it.
+/// slope · partial part by part, for a partial that is not zero.
 template <class T>
-[[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial) {
-  if (is_structural_zero(partial)) {
-    return T(0);
-  }
+[[nodiscard]] constexpr T guarded_parts(const T& slope, const T& partial) {
   if constexpr (!Infinitesimal<T>) {
     return slope * partial;
   } else if constexpr (requires { slope.hessian(); }) {
@@ -81,12 +80,23 @@ template <class T>
   }
 }
 
-/// The same for a built-in number or a packet of them, without a branch: what stays in one block is
-/// merged and scheduled better. A single number takes a packet too, for g++ makes a branch of its
-/// conditional expression.
+/// slope · partial, zero where the partial is a structural zero; for nested scalars part by part,
+/// or what does not depend on the inner variable would be poisoned by it.
+template <class T>
+[[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial) {
+  return select(
+      is_structural_zero(partial), [] { return T(0); },
+      [&] { return guarded_parts(slope, partial); });
+}
+
+/// The same for a built-in number, a batch or a packet of them, without a branch: what stays in one
+/// block is merged and scheduled better. A single number takes a packet too, for g++ makes a branch
+/// of its conditional expression.
 template <class T, class P>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr P masked_product(const T& slope, const P& partial) {
-  if constexpr (!std::same_as<P, T>) {
+  if constexpr (lane_traits<T>::is_batch) {
+    return blended(partial != T(0), T(slope * partial), T(0));
+  } else if constexpr (!std::same_as<P, T>) {
     return partial != T(0) ? partial * slope : P{};
   } else {
     if constexpr (sizeof(T) <= sizeof(double)) {
@@ -104,10 +114,10 @@ template <class T, class P>
 /// slope · x of two numbers with surviving zeros.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr T surviving_product(const T& slope, const T& x) {
-  if constexpr (std::floating_point<T>) {
+  if constexpr (std::floating_point<T> || lane_traits<T>::is_batch) {
     return masked_product(slope, x);
   } else {
-    return is_all_finite(slope) ? T(slope * x) : guarded_product(slope, x);
+    return all(is_all_finite(slope)) ? T(slope * x) : guarded_product(slope, x);
   }
 }
 
@@ -129,7 +139,7 @@ struct chain_of_one {
   static constexpr int masked_packets = mask_limit;
   T slope;
 
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const { return is_all_finite(slope); }
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_finite() const { return is_all_finite(slope); }
   template <class Product, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr P operator()(Product product, const P& p) const {
     return product(slope, p);
@@ -143,7 +153,7 @@ struct chain_of_two {
   static constexpr int masked_packets = mask_limit;
   T slope_a, slope_b;
 
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const {
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_finite() const {
     return is_all_finite(slope_a) && is_all_finite(slope_b);
   }
   template <class Product, class P>
@@ -162,7 +172,7 @@ struct chain_of_quotient {
   static constexpr int masked_packets = 2;
   T ratio, inverse;
 
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr bool is_finite() const {
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_finite() const {
     return is_all_finite(ratio) && (!Infinitesimal<T> || is_all_finite(inverse));
   }
   template <class Product, class P>
@@ -177,7 +187,7 @@ template <class Kernel, class Row, class T>
   if constexpr (requires { Row::packet_count; }) {
     return Row::packet_count <= Kernel::masked_packets;
   } else {
-    return std::floating_point<T> && Kernel::masks_numbers;
+    return (std::floating_point<T> && Kernel::masks_numbers) || lane_traits<T>::is_batch;
   }
 }
 
@@ -200,7 +210,7 @@ template <template <class> class Kernel, class T, class Row, class... Rows>
     return Row::map([&](const auto&... p) DUET_INLINE_LAMBDA { return kernel(product, p...); }, row,
                     rows...);
   } else {
-    if (kernel.is_finite()) [[likely]] {
+    if (all(kernel.is_finite())) [[likely]] {
       const auto product = [](const T& slope, const auto& p) DUET_INLINE_LAMBDA {
         return std::remove_cvref_t<decltype(p)>(p * slope);
       };

@@ -16,6 +16,28 @@
 /// sine, cosine and arctangent forms are not, with exact derivatives of every order.
 
 namespace duet {
+namespace detail {
+
+template <class B>
+[[nodiscard, gnu::noinline]] std::array<B, 2> first_stumpff_pair_of_large(B s) {
+  const B root = sqrt(s);
+  const auto both = sine_and_cosine_of(root);
+  return {both.cosine, both.sine / root};
+}
+
+/// c₀(s) and c₁(s) of a batch, whose larger lanes share one sine and cosine.
+template <class B>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<B, 2> first_stumpff_pair(const B& s) {
+  return select(
+      s <= 1,
+      [&]() DUET_INLINE_LAMBDA {
+        return std::array<B, 2>{stumpff_of_small<0>(s), stumpff_of_small<1>(s)};
+      },
+      [&]() DUET_INLINE_LAMBDA { return first_stumpff_pair_of_large(s); });
+}
+
+} // namespace detail
+
 namespace rule {
 
 template <int N>

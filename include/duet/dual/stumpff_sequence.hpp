@@ -60,8 +60,8 @@ stumpff_sequence(const T& s) {
           return c;
         });
   };
-  if constexpr (std::floating_point<R>) {
-    constexpr auto table = detail::inverse_factorials<R, n + 1>();
+  if constexpr (std::floating_point<lane_type_t<R>>) {
+    constexpr auto table = detail::inverse_factorials<lane_type_t<R>, n + 1>();
     return run(table);
   } else {
     return run(detail::inverse_factorials<R, n + 1>());

@@ -78,7 +78,7 @@ template <class T>
 /// N16: is A A* = 1, that is |p| = 1 and p·q = 0, each to within the tolerance? `normalized`
 /// restores both.
 template <class T>
-[[nodiscard]] bool is_unit(const dual_quaternion<T>& a, double tolerance = 1e-12) {
+[[nodiscard]] auto is_unit(const dual_quaternion<T>& a, double tolerance = 1e-12) {
   using std::abs;
   const screw_dual<T> square = norm2(a);
   return abs(innermost(square.value()) - 1) <= tolerance &&

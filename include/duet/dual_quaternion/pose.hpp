@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
@@ -97,8 +98,8 @@ template <class T>
 /// \throws invalid_input where the last row is another, and as `from_rotation_matrix`
 template <class T>
 [[nodiscard]] dual_quaternion<T> from_transform_matrix(const Eigen::Matrix<T, 4, 4>& m) {
-  if (!(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 && innermost(m(3, 2)) == 0 &&
-        innermost(m(3, 3)) == 1)) {
+  if (!all(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 && innermost(m(3, 2)) == 0 &&
+           innermost(m(3, 3)) == 1)) {
     std::ostringstream message;
     message << "duet: from_transform_matrix: the last row is " << innermost(m(3, 0)) << " "
             << innermost(m(3, 1)) << " " << innermost(m(3, 2)) << " " << innermost(m(3, 3))

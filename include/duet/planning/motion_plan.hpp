@@ -7,8 +7,10 @@
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/quaternion/rotation.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <vector>
 
 /// \file
@@ -18,11 +20,13 @@ namespace duet {
 
 /// Why a planner stopped.
 enum class stop_reason {
-  reached,        ///< the tip is at the goal
-  joint_limit,    ///< the way on leads beyond the limits of a joint
-  singular,       ///< the way on leads through a singularity
-  no_progress,    ///< steps became too small, for neither of these reasons
-  iteration_limit ///< the number of iterations that was allowed is used up
+  reached,         ///< the tip is at the goal
+  joint_limit,     ///< the way on leads beyond the limits of a joint
+  singular,        ///< the way on leads through a singularity
+  obstacle,        ///< the way on leads too close to an obstacle
+  no_progress,     ///< steps became too small, for neither of these reasons
+  iteration_limit, ///< the number of iterations that was allowed is used up
+  out_of_reach     ///< the goal is farther away than the links reach
 };
 
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
@@ -33,10 +37,14 @@ enum class stop_reason {
     return "joint_limit";
   case stop_reason::singular:
     return "singular";
+  case stop_reason::obstacle:
+    return "obstacle";
   case stop_reason::no_progress:
     return "no_progress";
-  default:
+  case stop_reason::iteration_limit:
     return "iteration_limit";
+  default:
+    return "out_of_reach";
   }
 }
 
@@ -51,28 +59,48 @@ struct pose_deviation {
           rotation_vector(quaternion<double>(conj(rotation(a)) * rotation(b))).norm()};
 }
 
-/// A path of joint coordinates from the start on, waypoint by waypoint. Where the goal is not
-/// reached, the path ends as far as the planner came.
+/// A path of joint coordinates from the start on, waypoint by waypoint, joints moving straight on
+/// between them. Where the goal is not reached, the path ends as far as the planner came.
 ///
 /// \tparam N  as of `serial_chain`
 template <int N>
 struct motion_plan {
   std::vector<detail::joint_vector<double, N>> joints;
   std::vector<dual_quaternion<double>> poses; ///< of the tip
-  std::vector<double> tau;                    ///< fraction of the screw motion at each waypoint
-  std::vector<pose_deviation> deviations;     ///< from the screw motion, at each waypoint
+  /// The fraction of the screw motion, or the parameter of the path, at each waypoint; the same in
+  /// successive ones where the joints move with the tip in place.
+  std::vector<double> tau;
+  std::vector<pose_deviation> deviations; ///< from the motion asked for, at each waypoint
   /// Of the Jacobian in `frame::hybrid` on the way, estimated from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
+  /// Of any joint, at any waypoint, to its nearer limit; in coordinates.
+  double smallest_limit_margin = std::numeric_limits<double>::infinity();
+  /// Of the bodies of the chain from obstacles, at any waypoint; infinite without.
+  double smallest_clearance = std::numeric_limits<double>::infinity();
   int iterations = 0;
   stop_reason reason = stop_reason::no_progress;
 };
 
 namespace detail {
 
-/// \throws invalid_input for a start that is not finite or outside the limits, and for a goal that
-/// is no pose
+template <class C>
+void add_waypoint(motion_plan<C::joints>& plan, const C& chain,
+                  const joint_vector<double, C::joints>& theta, const dual_quaternion<double>& pose,
+                  double tau, const pose_deviation& deviation) {
+  plan.joints.push_back(theta);
+  plan.poses.push_back(pose);
+  plan.tau.push_back(tau);
+  plan.deviations.push_back(deviation);
+  for (int i = 0; i < chain.size(); ++i) {
+    const auto& limits = chain.limits(i);
+    plan.smallest_limit_margin =
+        std::min({plan.smallest_limit_margin, theta[i] - limits.lower, limits.upper - theta[i]});
+  }
+}
+
+/// \throws invalid_input for a start that is not finite or outside the limits
 template <class C, class Start>
-void require_problem(const C& chain, const Start& start, const dual_quaternion<double>& goal) {
+void require_start(const C& chain, const Start& start) {
   require_size(chain, start);
   for (int i = 0; i < chain.size(); ++i) {
     const double x = vector_argument<Start>::get(start, i);
@@ -83,9 +111,31 @@ void require_problem(const C& chain, const Start& start, const dual_quaternion<d
       throw invalid_input(message.str());
     }
   }
-  if (!is_unit(goal, 1e-6)) {
-    throw invalid_input("duet: plan: the goal is no unit dual quaternion");
+}
+
+/// \throws invalid_input for what is no pose: "duet: plan: the goal is …"
+inline void require_pose(const dual_quaternion<double>& a, const char* caller,
+                         const std::string& name) {
+  if (is_unit(a, 1e-6)) {
+    return;
   }
+  const auto square = norm2(a);
+  std::ostringstream message;
+  message << "duet: " << caller << ": " << name;
+  if (is_all_finite(square)) {
+    message << " is no unit dual quaternion: |p|^2 = " << square.value()
+            << ", p.q = " << square.epsilon() / 2;
+  } else {
+    message << " is not finite: " << a;
+  }
+  throw invalid_input(message.str());
+}
+
+/// \throws invalid_input for a start outside the limits, and for a goal that is no pose
+template <class C, class Start>
+void require_problem(const C& chain, const Start& start, const dual_quaternion<double>& goal) {
+  require_start(chain, start);
+  require_pose(goal, "plan", "the goal");
 }
 
 } // namespace detail

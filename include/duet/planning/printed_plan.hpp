@@ -42,10 +42,8 @@ template <SerialChain C, VectorLike Start>
   const auto motion = screw_parameters(conj(first) * goal);
   const auto keep = [&](const dual_quaternion<double>& here) {
     const auto nearest = nearest_on_screw(first, motion, here, 1);
-    plan.joints.push_back(theta);
-    plan.poses.push_back(here);
-    plan.tau.push_back(nearest.tau);
-    plan.deviations.push_back(deviation_between(nearest.pose, here));
+    detail::add_waypoint(plan, chain, theta, here, nearest.tau,
+                         deviation_between(nearest.pose, here));
   };
   dual_quaternion<double> here = first;
   keep(here);

@@ -109,7 +109,8 @@ private:
 /// the iteration.
 ///
 /// \param weights  wᵢ ≥ 0 in proportion, or none for equal ones
-/// \throws invalid_input for nothing to average and for weights that are negative, not finite, all
+/// \throws invalid_input for nothing to average, elements that are not finite, and weights that are
+/// negative, not finite, all
 ///         zero or too many or few; no_convergence where the rotations are all over the place
 template <class T>
 [[nodiscard]] quaternion<T> average(const std::vector<quaternion<T>>& q,
@@ -123,6 +124,12 @@ template <class T>
   std::vector<R> w;
   std::vector<quaternion<R>> values;
   for (std::size_t k = 0; k < q.size(); ++k) {
+    if (!(detail::is_all_finite(q[k].w()) && detail::is_all_finite(q[k].x()) &&
+          detail::is_all_finite(q[k].y()) && detail::is_all_finite(q[k].z()))) {
+      std::ostringstream message;
+      message << "duet: average: element " << k << " is not finite: " << q[k];
+      throw invalid_input(message.str());
+    }
     w.push_back(R(weights.empty() ? 1 : weights[k]) / R(sum));
     values.push_back(detail::innermost_of(q[k]));
   }

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/constants.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/stumpff.hpp>
@@ -10,6 +11,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 /// \file
 /// Exponential, logarithm, powers (N4, N5) and spherical interpolation (N9), in half angles.
@@ -23,6 +25,10 @@ namespace duet {
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<T> exp(const vector3<T>& v) {
   const T s = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  if constexpr (lane_traits<T>::is_batch) {
+    const auto c = detail::first_stumpff_pair(s);
+    return {c[0], v[0] * c[1], v[1] * c[1], v[2] * c[1]};
+  }
   const T ratio = stumpff<1>(s);
   return {stumpff<0>(s), v[0] * ratio, v[1] * ratio, v[2] * ratio};
 }
@@ -54,23 +60,30 @@ template <class T>
       [&] { return v; }));
 }
 
+template <class T>
+[[nodiscard]] vector3<T> log_vector(const quaternion<T>& q, const char* function);
+
 /// û φ where |q| is out of range or a full turn is near.
 template <class T>
 [[nodiscard, gnu::cold]] vector3<T> log_vector_of_extreme(const quaternion<T>& q,
                                                           const char* function) {
-  using real = real_type_t<T>;
-  require_not_zero(q, function);
-  const quaternion<T> near_one =
-      scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
-  const quaternion<T> v(T(0), near_one.x(), near_one.y(), near_one.z());
-  const T s = norm2(v);
-  return select(
-      innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>(),
-      [&] { return vector3<T>(v.vec() * arc_ratio(s, near_one.w())); },
-      [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
-        const T short_way = arc_ratio(s, T(-near_one.w()));
-        return vector3<T>((axis_of(near_one) * constant::pi<real>() - v * short_way).vec());
-      });
+  if constexpr (Batched<T>) {
+    return by_lane([function](const auto& p) { return log_vector(p, function); }, q);
+  } else {
+    using real = real_type_t<T>;
+    require_not_zero(q, function);
+    const quaternion<T> near_one =
+        scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
+    const quaternion<T> v(T(0), near_one.x(), near_one.y(), near_one.z());
+    const T s = norm2(v);
+    return select(
+        innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>(),
+        [&] { return vector3<T>(v.vec() * arc_ratio(s, near_one.w())); },
+        [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
+          const T short_way = arc_ratio(s, T(-near_one.w()));
+          return vector3<T>((axis_of(near_one) * constant::pi<real>() - v * short_way).vec());
+        });
+  }
 }
 
 /// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|².
@@ -95,17 +108,28 @@ template <class T>
   return log_vector(q, s, T(s + q.w() * q.w()), function);
 }
 
+template <class T>
+[[nodiscard]] T log_norm(const quaternion<T>& q, const T& square);
+
+template <class T>
+[[nodiscard, gnu::cold]] T log_norm_of_extreme(const quaternion<T>& q) {
+  if constexpr (Batched<T>) {
+    return by_lane([](const auto& p) { return log_norm(p, norm2(p)); }, q);
+  } else {
+    using std::log;
+    using real = real_type_t<T>;
+    const int e = binary_exponent(largest_component(innermost_of(q)));
+    return T(log(norm2(scaled_down(q, e))) / 2 + real(e) * constant::ln2<real>());
+  }
+}
+
 /// log|q|; `square` = |q|².
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE T log_norm(const quaternion<T>& q, const T& square) {
   using std::log;
   return select(
       is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return T(log(square) / 2); },
-      [&] {
-        using real = real_type_t<T>;
-        const int e = binary_exponent(largest_component(innermost_of(q)));
-        return T(log(norm2(scaled_down(q, e))) / 2 + real(e) * constant::ln2<real>());
-      });
+      [&] { return log_norm_of_extreme(q); });
 }
 
 } // namespace detail
@@ -141,23 +165,27 @@ pow_of_regular(const quaternion<T>& q, const vector3<T>& v, const S& exponent) {
 template <class T, class S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow_near_full_turn(const quaternion<T>& q,
                                                              const S& exponent) {
-  using std::cos;
-  using std::fmod;
-  using std::round;
-  using std::sin;
   using R = promote_t<T, S>;
-  using real = real_type_t<R>;
-  const real whole = round(real(innermost(exponent)));
-  const auto rest = exponent - whole;
-  const auto power = pow_of_regular(-q, log_vector(-q, "pow"), exponent);
-  const auto half_turns = select(
-      fmod(whole, real(2)) == 0, [&] { return power; }, [&] { return -power; });
-  return select(
-      is_structural_zero(rest), [&] { return half_turns; },
-      [&] {
-        const R angle = constant::pi<real>() * rest;
-        return (quaternion<R>(cos(angle)) + axis_of(q) * R(sin(angle))) * half_turns;
-      });
+  if constexpr (Batched<R>) {
+    return by_lane([](const auto& p, const auto& rho) { return pow(p, rho); }, q, exponent);
+  } else {
+    using std::cos;
+    using std::fmod;
+    using std::round;
+    using std::sin;
+    using real = real_type_t<R>;
+    const real whole = round(real(innermost(exponent)));
+    const auto rest = exponent - whole;
+    const auto power = pow_of_regular(-q, log_vector(-q, "pow"), exponent);
+    const auto half_turns = select(
+        fmod(whole, real(2)) == 0, [&] { return power; }, [&] { return -power; });
+    return select(
+        is_structural_zero(rest), [&] { return half_turns; },
+        [&] {
+          const R angle = constant::pi<real>() * rest;
+          return (quaternion<R>(cos(angle)) + axis_of(q) * R(sin(angle))) * half_turns;
+        });
+  }
 }
 
 } // namespace detail
@@ -188,7 +216,7 @@ enum class way {
 /// Are two rotations, or those of two poses, half a turn apart to within a tolerance in radians, so
 /// that neither way from one to the other is the shorter?
 template <class A, class B>
-[[nodiscard]] bool is_half_turn_apart(const quaternion<A>& a, const quaternion<B>& b,
+[[nodiscard]] auto is_half_turn_apart(const quaternion<A>& a, const quaternion<B>& b,
                                       double tolerance = 1e-9) {
   using std::abs;
   return 2 * abs(innermost(dot(a, b))) <= tolerance;
@@ -203,11 +231,12 @@ template <class A, class B, class S>
                          way round = way::shortest) {
   using T = promote_t<A, B>;
   const T cosine = dot(a, b);
-  const bool other_side = round == way::shortest ? innermost(cosine) < 0
-                                                 : round == way::longest && innermost(cosine) > 0;
+  const auto other_side = (round == way::shortest && innermost(cosine) < 0) ||
+                          (round == way::longest && innermost(cosine) > 0);
   // a* a has no vector part. Subtracting it first keeps all digits of a small rotation.
-  const quaternion<B> aligned = select(
-      other_side, [&] { return -b; }, [&] { return b; });
+  using end = std::conditional_t<Batched<T>, T, B>; // which of a batch turn round
+  const quaternion<end> aligned = select(
+      other_side, [&] { return quaternion<end>(-b); }, [&] { return quaternion<end>(b); });
   const quaternion<T> difference = conj(a) * (aligned - a);
   const quaternion<T> relative(select(
                                    other_side, [&] { return T(-cosine); }, [&] { return cosine; }),

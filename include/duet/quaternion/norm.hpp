@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -36,7 +37,7 @@ template <Real R>
 /// Squares beyond these limits, or their powers in derivatives of the first orders, overflow or
 /// lose digits.
 template <Real R>
-[[nodiscard]] bool is_moderate(const R& square) {
+[[nodiscard]] auto is_moderate(const R& square) {
   if constexpr (std::numeric_limits<R>::max_exponent >= 1024) {
     return square > R(0x1p-100) && square < R(0x1p100);
   } else {
@@ -46,7 +47,7 @@ template <Real R>
 
 /// Exactly zero in all components: squares of small numbers vanish too, and NaN is not zero.
 template <class T>
-[[nodiscard]] bool is_zero(const quaternion<T>& q) {
+[[nodiscard]] auto is_zero(const quaternion<T>& q) {
   return innermost(q.w()) == 0 && innermost(q.x()) == 0 && innermost(q.y()) == 0 &&
          innermost(q.z()) == 0;
 }
@@ -69,39 +70,52 @@ template <class T>
 
 template <class T>
 void require_not_zero(const quaternion<T>& q, const char* function) {
-  if (is_zero(q)) {
+  if (any(is_zero(q))) {
     throw invalid_input(std::string("duet: ") + function + " of the zero quaternion");
   }
 }
 
 template <class T>
 [[nodiscard, gnu::cold]] T norm_of_extreme(const quaternion<T>& q, const T& square) {
-  using std::ldexp;
-  using std::sqrt;
-  const auto largest = largest_component(innermost_of(q));
-  return select(
-      largest > 0 && largest <= std::numeric_limits<real_type_t<T>>::max(),
-      [&] {
-        const int e = binary_exponent(largest);
-        return T(ldexp(T(sqrt(norm2(scaled_down(q, e)))), e));
-      },
-      [&] { return T(sqrt(square)); }); // zero, infinite or not a number
+  if constexpr (Batched<T>) {
+    static_cast<void>(square);
+    return by_lane([](const auto& p) { return norm(p); }, q);
+  } else {
+    using std::ldexp;
+    using std::sqrt;
+    const auto largest = largest_component(innermost_of(q));
+    return select(
+        largest > 0 && largest <= std::numeric_limits<real_type_t<T>>::max(),
+        [&] {
+          const int e = binary_exponent(largest);
+          return T(ldexp(T(sqrt(norm2(scaled_down(q, e)))), e));
+        },
+        [&] { return T(sqrt(square)); }); // zero, infinite or not a number
+  }
 }
 
 template <class T>
 [[nodiscard, gnu::cold]] quaternion<T> normalized_of_extreme(const quaternion<T>& q) {
-  using std::sqrt;
-  require_not_zero(q, "normalized");
-  const auto near_one = scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
-  return near_one / T(sqrt(norm2(near_one)));
+  if constexpr (Batched<T>) {
+    return by_lane([](const auto& p) { return normalized(p); }, q);
+  } else {
+    using std::sqrt;
+    require_not_zero(q, "normalized");
+    const auto near_one = scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
+    return near_one / T(sqrt(norm2(near_one)));
+  }
 }
 
 template <class T>
 [[nodiscard, gnu::cold]] quaternion<T> inverse_of_extreme(const quaternion<T>& q) {
-  require_not_zero(q, "inverse");
-  const int e = binary_exponent(largest_component(innermost_of(q)));
-  const auto near_one = scaled_down(q, e);
-  return scaled_down(conj(near_one) / norm2(near_one), e);
+  if constexpr (Batched<T>) {
+    return by_lane([](const auto& p) { return inverse(p); }, q);
+  } else {
+    require_not_zero(q, "inverse");
+    const int e = binary_exponent(largest_component(innermost_of(q)));
+    const auto near_one = scaled_down(q, e);
+    return scaled_down(conj(near_one) / norm2(near_one), e);
+  }
 }
 
 } // namespace detail

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/eigen_traits.hpp>
@@ -156,7 +157,7 @@ operator/(const quaternion<T>& q, const S& a) {
 /// Componentwise, by value. q and −q are the same rotation but not the same quaternion.
 template <class A, class B>
   requires Promotable<A, B>
-[[nodiscard]] constexpr bool operator==(const quaternion<A>& p, const quaternion<B>& q) {
+[[nodiscard]] constexpr auto operator==(const quaternion<A>& p, const quaternion<B>& q) {
   return p.w() == q.w() && p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
 }
 
@@ -165,6 +166,32 @@ template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<T> conj(const quaternion<T>& q) {
   return {q.w(), -q.x(), -q.y(), -q.z()};
 }
+
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE auto lane(const quaternion<T>& q, int i) {
+  using S = std::decay_t<decltype(lane(q.w(), i))>;
+  return quaternion<S>(lane(q.w(), i), lane(q.x(), i), lane(q.y(), i), lane(q.z(), i));
+}
+template <int W, class T, class Get>
+[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const quaternion<T>& pattern,
+                                                   const Get& get) {
+  const auto joined = [](const T& example, const auto& part_of) DUET_INLINE_LAMBDA {
+    return joined_lanes(lane_width<W>{}, example, part_of);
+  };
+  using S = decltype(joined(pattern.w(), [&](int i) DUET_INLINE_LAMBDA { return get(i).w(); }));
+  return quaternion<S>(joined(pattern.w(), [&](int i) DUET_INLINE_LAMBDA { return get(i).w(); }),
+                       joined(pattern.x(), [&](int i) DUET_INLINE_LAMBDA { return get(i).x(); }),
+                       joined(pattern.y(), [&](int i) DUET_INLINE_LAMBDA { return get(i).y(); }),
+                       joined(pattern.z(), [&](int i) DUET_INLINE_LAMBDA { return get(i).z(); }));
+}
+template <class R, int W, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE quaternion<T>
+blended(const lane_mask<R, W>& m, const quaternion<T>& a, const quaternion<T>& b) {
+  return {blended(m, a.w(), b.w()), blended(m, a.x(), b.x()), blended(m, a.y(), b.y()),
+          blended(m, a.z(), b.z())};
+}
+template <class T>
+inline constexpr int lane_count<quaternion<T>> = lane_count<T>;
 
 /// The scalar product of p and q as vectors of R⁴.
 template <class A, class B>

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include <concepts>
+
 /// \file
 /// Rates of unit quaternions and angular velocities (N6–N8). ω in rad per unit of the parameter.
 
@@ -26,6 +28,13 @@ angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame
   return {2 * half.x(), 2 * half.y(), 2 * half.z()};
 }
 
+/// Without a frame it is not clear which is meant.
+template <class A, class B>
+void angular_velocity(const quaternion<A>&, const quaternion<B>&) {
+  static_assert(!std::same_as<A, A>,
+                "duet: in which axes? angular_velocity(q, q_dot, frame::spatial) or frame::body");
+}
+
 /// N7: q̇ = ½ ω^s q = ½ q ω^b
 template <class A, class B, class Frame>
   requires Promotable<A, B>
@@ -37,6 +46,13 @@ quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_
   } else {
     return q * half;
   }
+}
+
+/// Without a frame it is not clear which is meant.
+template <class A, class B>
+void quaternion_rate(const quaternion<A>&, const vector3<B>&) {
+  static_assert(!std::same_as<A, A>,
+                "duet: in which axes? quaternion_rate(q, omega, frame::spatial) or frame::body");
 }
 
 /// N8: the 3×4 matrix with ω = 2 M q̇ in the order (w, x, y, z): E(q) for spatial, G(q) for body
@@ -54,6 +70,13 @@ template <class T, class Frame>
         -q.z(), q.y(), -q.x(), q.w();
   }
   return m;
+}
+
+/// Without a frame it is not clear which is meant.
+template <class A>
+void rate_matrix(const quaternion<A>&) {
+  static_assert(!std::same_as<A, A>,
+                "duet: in which axes? rate_matrix(q, frame::spatial) or frame::body");
 }
 
 } // namespace duet

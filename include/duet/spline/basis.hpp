@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
@@ -100,9 +101,44 @@ public:
   template <int Derivatives, class S>
   [[nodiscard]] DUET_ALWAYS_INLINE auto weights(std::size_t span, const S& u) const {
     using P = std::conditional_t<Arithmetic<S>, R, S>;
+    return weights_of<Derivatives>(spans_[span], P(u));
+  }
+  /// The same for a batch of parameters, every lane on its own span.
+  template <int Derivatives, std::size_t W, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto weights(const std::array<std::size_t, W>& spans,
+                                                const P& u) const {
+    const auto join = [&](const auto& get) DUET_INLINE_LAMBDA {
+      return joined_lanes(lane_width<int(W)>{}, get(spans_[0]), [&](int k) DUET_INLINE_LAMBDA {
+        return get(spans_[spans[std::size_t(k)]]);
+      });
+    };
+    span_data<real_type_t<P>> data{
+        0, join([](const auto& s) DUET_INLINE_LAMBDA { return s.middle; }), {}};
+    for (std::size_t j = 0; j + 1 < std::size_t(Order); ++j) {
+      for (std::size_t d = 0; d < std::size_t(Order); ++d) {
+        data.polynomials[j][d] =
+            join([=](const auto& s) DUET_INLINE_LAMBDA { return s.polynomials[j][d]; });
+      }
+    }
+    return weights_of<Derivatives>(data, u);
+  }
+
+private:
+  /// Derivatives 0 … k−1 at the middle of the span. About the middle no term of the Taylor series
+  /// exceeds the sum by much.
+  template <class S>
+  using polynomial = std::array<S, std::size_t(Order)>;
+  template <class S>
+  struct span_data {
+    std::size_t first;
+    S middle;
+    std::array<polynomial<S>, std::size_t(Order) - 1> polynomials;
+  };
+
+  template <int Derivatives, class S, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto weights_of(const span_data<S>& data, const P& u) {
     using number = real_type_t<P>;
-    const span_data& data = spans_[span];
-    const P t = P(u) - data.middle;
+    const P t = u - data.middle;
     return [&]<std::size_t... K>(std::index_sequence<K...>) DUET_INLINE_LAMBDA {
       const std::array<P, sizeof...(K)> steps{P(t * (number(1) / number(K + 1)))...};
       cumulative_weights<P, Order, Derivatives> result;
@@ -112,19 +148,10 @@ public:
     (std::make_index_sequence<std::size_t(Order) - 1>{});
   }
 
-private:
-  /// Derivatives 0 … k−1 at the middle of the span. About the middle no term of the Taylor series
-  /// exceeds the sum by much.
-  using polynomial = std::array<R, std::size_t(Order)>;
-  struct span_data {
-    std::size_t first;
-    R middle;
-    std::array<polynomial, std::size_t(Order) - 1> polynomials;
-  };
-
   /// Rows D, D + 1 … of the result.
-  template <std::size_t D, class Weights, class Steps>
-  DUET_ALWAYS_INLINE static void fill(Weights& result, const span_data& data, const Steps& steps) {
+  template <std::size_t D, class Weights, class S, class Steps>
+  DUET_ALWAYS_INLINE static void fill(Weights& result, const span_data<S>& data,
+                                      const Steps& steps) {
     if constexpr (D < std::tuple_size_v<Weights>) {
       [&]<std::size_t... J>(std::index_sequence<J...>) DUET_INLINE_LAMBDA {
         ((result[D][J] = series<D>(data.polynomials[J], steps)), ...);
@@ -135,12 +162,12 @@ private:
   }
 
   /// c_D + t (c_{D+1} + t/2 (c_{D+2} + t/3 (…))), from the K-th term on. steps: t, t/2, t/3 …
-  template <std::size_t D, std::size_t K = D, class Steps>
-  [[nodiscard]] DUET_ALWAYS_INLINE static typename Steps::value_type series(const polynomial& c,
+  template <std::size_t D, std::size_t K = D, class C, class Steps>
+  [[nodiscard]] DUET_ALWAYS_INLINE static typename Steps::value_type series(const polynomial<C>& c,
                                                                             const Steps& steps) {
     using S = typename Steps::value_type;
     if constexpr (K >= std::size_t(Order)) {
-      return S(R(0));
+      return S(C(0));
     } else if constexpr (K + 1 == std::size_t(Order)) {
       return S(c[K]);
     } else {
@@ -153,7 +180,7 @@ private:
   /// at the middle of the span, where all values are positive. Then P3,
   ///   B̃_i′ = (k−1)/(u_{i+k−1} − u_i) B_i^{k−1}.
   /// The factors (k−1)(k−2)… are left to the end, where they are one exact number.
-  [[nodiscard]] span_data make_span(std::size_t i) const {
+  [[nodiscard]] span_data<R> make_span(std::size_t i) const {
     constexpr auto k = std::size_t(Order);
     const R middle = knots_[i] + (knots_[i + 1] - knots_[i]) / 2;
     // b[d][j] is the d-th derivative of B_{i−r+1+j}^r.
@@ -178,7 +205,7 @@ private:
     for (std::size_t r = 2; r < k; ++r) {
       raise(r);
     }
-    span_data result{i + 1 - k, middle, {}};
+    span_data<R> result{i + 1 - k, middle, {}};
     R highest(0);
     for (std::size_t j = 0; j + 1 < k; ++j) {
       const std::size_t f = i + 2 + j - k;
@@ -213,7 +240,7 @@ private:
 
   std::vector<R> knots_;
   std::vector<R> breaks_;
-  std::vector<span_data> spans_;
+  std::vector<span_data<R>> spans_;
   R spans_per_unit_;
 };
 

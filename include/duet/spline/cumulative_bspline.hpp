@@ -118,6 +118,24 @@ private:
                                                     increments.data(), weights);
     }
   }
+  template <int Rates, std::size_t W, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto on_span(std::array<std::size_t, W> spans,
+                                                const P& u) const {
+    using D = promote_t<T, P>;
+    const auto weights = basis_.template weights<Rates>(spans, u);
+    for (std::size_t& i : spans) {
+      i = basis_.first_function(i);
+    }
+    const auto start = detail::gathered(spans, controls_);
+    std::array<vector3<D>, std::size_t(Order) - 1> increments;
+    for (vector3<D>& omega : increments) {
+      for (std::size_t& i : spans) {
+        ++i;
+      }
+      omega = detail::gathered(spans, increments_).template cast<D>();
+    }
+    return detail::product_of_exponentials<Rates>(quaternion<D>(start), increments.data(), weights);
+  }
 
   basis_type basis_;
   std::vector<quaternion<T>> controls_;

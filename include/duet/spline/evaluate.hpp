@@ -1,13 +1,18 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_functions.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/parallel_for.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/location.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/orientations.hpp>
 
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <span>
 #include <sstream>
@@ -20,8 +25,27 @@
 namespace duet {
 namespace detail {
 
+/// Scalars that are quickest several at a time, in the lanes of batches.
+template <class T>
+concept QuickInLanes = std::same_as < real_type_t<T>,
+double > &&(std::same_as<T, double> || std::same_as<T, screw_dual<double>>);
+
+/// The error of f, of the first parameter from i on that has one.
+template <class R, class F>
+[[noreturn]] void rethrow_with_row(std::span<const R> parameters, std::size_t i, const F& f) {
+  span_hint hint;
+  for (;; ++i) {
+    try {
+      static_cast<void>(f(parameters[i], hint));
+    } catch (const invalid_input& error) {
+      const std::string_view reason = error.what(); // begins as that of invalid_row does
+      throw invalid_row(i, std::string(reason.substr(std::string_view("duet: ").size())));
+    }
+  }
+}
+
 /// out[i] = f(parameters[i], hint) with a hint for every block.
-template <class R, class Out, class F>
+template <class T, class R, class Out, class F>
 void evaluate_blocks(const char* function, std::span<const R> parameters, std::span<Out> out,
                      execution how, const F& f) {
   if (parameters.size() != out.size()) {
@@ -36,12 +60,23 @@ void evaluate_blocks(const char* function, std::span<const R> parameters, std::s
         span_hint hint;
         std::size_t i = first;
         try {
-          for (; i < last; ++i) {
-            out[i] = f(parameters[i], hint);
+          if constexpr (QuickInLanes<T>) {
+            using B = batch<R>;
+            for (; i < last; i += std::size_t(B::lanes)) {
+              const std::size_t count = std::min(std::size_t(B::lanes), last - i);
+              const auto u = detail::load_some<B>(&parameters[i], count);
+              const auto result = f(u, hint);
+              for (std::size_t k = 0; k < count; ++k) {
+                out[i + k] = lane(result, int(k));
+              }
+            }
+          } else {
+            for (; i < last; ++i) {
+              out[i] = f(parameters[i], hint);
+            }
           }
-        } catch (const invalid_input& error) {
-          const std::string_view reason = error.what(); // begins as that of invalid_row does
-          throw invalid_row(i, std::string(reason.substr(std::string_view("duet: ").size())));
+        } catch (const invalid_input&) {
+          rethrow_with_row(parameters, i, f);
         }
       },
       how);
@@ -50,14 +85,15 @@ void evaluate_blocks(const char* function, std::span<const R> parameters, std::s
 } // namespace detail
 
 /// out[i] = s(parameters[i]), quickest where parameters increase; on one core unless more are asked
-/// for, with the same results.
+/// for, with the same results. Rotations and poses over double are evaluated several at a time, in
+/// the lanes of batches.
 /// \throws invalid_input where the sizes differ; invalid_row for the first parameter outside the
 /// domain of s
 template <class Spline>
 void evaluate(const Spline& s, std::span<const typename Spline::real_type> parameters,
               std::span<quaternion<typename Spline::scalar_type>> out, execution how = one_core) {
-  detail::evaluate_blocks("evaluate", parameters, out, how,
-                          [&](const auto& u, span_hint& hint) { return s(u, hint); });
+  detail::evaluate_blocks<typename Spline::scalar_type>(
+      "evaluate", parameters, out, how, [&](const auto& u, span_hint& hint) { return s(u, hint); });
 }
 
 /// out[i] = s.motion(parameters[i], frame), as `evaluate`.
@@ -65,8 +101,9 @@ template <class Spline, class Frame>
 void evaluate_motion(const Spline& s, std::span<const typename Spline::real_type> parameters,
                      Frame frame, std::span<motion<typename Spline::scalar_type>> out,
                      execution how = one_core) {
-  detail::evaluate_blocks("evaluate_motion", parameters, out, how,
-                          [&](const auto& u, span_hint& hint) { return s.motion(u, frame, hint); });
+  detail::evaluate_blocks<typename Spline::scalar_type>(
+      "evaluate_motion", parameters, out, how,
+      [&](const auto& u, span_hint& hint) { return s.motion(u, frame, hint); });
 }
 
 } // namespace duet

@@ -117,7 +117,7 @@ interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<qua
   if constexpr (is_periodic) {
     q = closed(std::move(q));
   }
-  const cubic_equations<T, Ends> equations(parameters, q, ends);
+  cubic_equations<T, Ends> equations(parameters, q, ends);
   const auto curve = [&](auto&& newton, const auto& solution) {
     if (report != nullptr) {
       *report = {newton.iterations(), 2 * double(newton.residual()),
@@ -125,7 +125,8 @@ interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<qua
     }
     std::vector<vector3<T>> increments = equations.increments(solution);
     std::vector<quaternion<T>> controls = equations.controls(increments);
-    return cumulative_bspline<T, 4>(equations.basis(), std::move(controls), std::move(increments));
+    return cumulative_bspline<T, 4>(std::move(equations).basis(), std::move(controls),
+                                    std::move(increments));
   };
   if constexpr (Real<T>) {
     spline_newton newton(equations);
@@ -177,6 +178,17 @@ template <class Spline, class T, class Ends>
                                  const std::vector<quaternion<T>>& orientations, const Ends& ends,
                                  fit_report& report) {
   return detail::interpolate_cubic(parameters, orientations, ends, &report);
+}
+
+/// Rows over another scalar than the curve's.
+template <class Spline, class T, class Ends = natural>
+  requires(!std::same_as<typename Spline::scalar_type, T>)
+Spline interpolate(const std::vector<real_type_t<T>>&, const std::vector<quaternion<T>>&,
+                   const Ends& = {}) {
+  static_assert(std::same_as<typename Spline::scalar_type, T>,
+                "duet: interpolate: the curve is over another scalar than the rows: rotations make "
+                "a cumulative_bspline<double>, poses a "
+                "cumulative_bspline<dual<double, 1, screw_tag>>");
 }
 
 } // namespace duet

@@ -36,6 +36,13 @@ struct motion {
   rate_type jerk;
 };
 
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE auto lane(const motion<T>& m, int i) {
+  const auto value = lane(m.value, i);
+  return motion<typename std::decay_t<decltype(value)>::scalar_type>{
+      value, lane(m.velocity, i), lane(m.acceleration, i), lane(m.jerk, i)};
+}
+
 /// The motion in time of a curve whose parameter u is driven by u(t): ω = δ u̇, ω̇ = δ′u̇² + δ ü,
 /// ω̈ = δ″u̇³ + 3 δ′u̇ü + δ u⃛, with the rates δ, δ′, δ″ of m by u in any one frame.
 template <class T, ScalarFor<T> S>

@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/structural_zero.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -68,16 +69,19 @@ void check_rows(const std::vector<R>& parameters, std::size_t elements, std::siz
 
 /// The same quaternions, normalised.
 ///
-/// \throws invalid_row for a quaternion that is not finite or whose norm is not 1
+/// \throws invalid_row for a quaternion that is not finite, its infinitesimal parts included, or
+/// whose norm is not 1
 template <class T>
 [[nodiscard]] std::vector<quaternion<T>> unit_quaternions(std::vector<quaternion<T>> q) {
   using std::abs;
   for (std::size_t i = 0; i < q.size(); ++i) {
     const auto length = norm(detail::innermost_of(q[i]));
-    if (!(abs(length - 1) <= unit_norm_tolerance)) {
+    const bool is_finite = detail::is_all_finite(q[i].w()) && detail::is_all_finite(q[i].x()) &&
+                           detail::is_all_finite(q[i].y()) && detail::is_all_finite(q[i].z());
+    if (!is_finite || !(abs(length - 1) <= unit_norm_tolerance)) {
       std::ostringstream reason;
       reason << "quaternion " << q[i];
-      if (length - length == 0) {
+      if (is_finite) {
         reason << " has norm " << length << ", not 1";
       } else {
         reason << " is not finite";

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -20,7 +21,8 @@ namespace duet {
 /// A curve Q(u) over the spans of a basis.
 ///
 /// \tparam Curve  what derives from it, with `spans()`, the basis, and `on_span<Rates>(span, u)`,
-///                Q with so many of its rates in body axes, halved
+///                Q with so many of its rates in body axes, halved; for a batch of parameters with
+///                an array of spans, one for each lane
 /// \tparam R      the parameter's real type
 template <class Curve, class R>
 class piecewise_curve {
@@ -81,6 +83,15 @@ private:
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const S& parameter, Hint&& hint) const {
     using P = std::conditional_t<Arithmetic<S>, R, S>;
     P u(parameter);
+    if constexpr (Batched<P>) {
+      return evaluate_lanes<Rates>(u, hint);
+    } else {
+      return evaluate_one<Rates>(u, hint);
+    }
+  }
+
+  template <int Rates, class P, class Hint>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate_one(P u, Hint& hint) const {
     const auto& spans = curve().spans();
     const auto value = static_cast<R>(innermost(u));
     std::size_t span = 0;
@@ -91,7 +102,7 @@ private:
       if (is_at_rest) {
         u = P(value < spans.front() ? spans.front() : spans.back());
       }
-    } else if constexpr (std::is_same_v<std::decay_t<Hint>, span_hint>) {
+    } else if constexpr (std::is_same_v<Hint, span_hint>) {
       span = spans.span_of(value, hint);
     } else {
       span = spans.span_of(value);
@@ -101,6 +112,40 @@ private:
       m.velocity.setZero();
       m.acceleration.setZero();
       m.jerk.setZero();
+    }
+    return m;
+  }
+
+  /// Lanes may be on different spans.
+  template <int Rates, class P, class Hint>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate_lanes(P u, Hint& hint) const {
+    using reals = real_type_t<P>;
+    const auto& spans = curve().spans();
+    const reals value = innermost(u);
+    std::array<std::size_t, std::size_t(reals::lanes)> span;
+    typename reals::mask_type is_at_rest(false);
+    for (int k = 0; k < reals::lanes; ++k) {
+      const auto here = static_cast<R>(value[k]);
+      std::size_t& i = span[std::size_t(k)];
+      if (!spans.contains(here)) [[unlikely]] {
+        i = span_beside(here);
+        is_at_rest.set(k, outside_ == outside::clamp);
+      } else if constexpr (std::is_same_v<Hint, span_hint>) {
+        i = spans.span_of(here, hint);
+      } else {
+        i = spans.span_of(here);
+      }
+    }
+    if (!any(is_at_rest)) [[likely]] {
+      return curve().template on_span<Rates>(span, u);
+    }
+    u = blended(is_at_rest,
+                P(blended(value < spans.front(), reals(spans.front()), reals(spans.back()))), u);
+    auto m = curve().template on_span<Rates>(span, u);
+    if constexpr (Rates > 0) {
+      for (auto* rate : {&m.velocity, &m.acceleration, &m.jerk}) {
+        *rate = blended(is_at_rest, std::decay_t<decltype(*rate)>::Zero().eval(), *rate);
+      }
     }
     return m;
   }

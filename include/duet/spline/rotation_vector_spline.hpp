@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -92,9 +93,22 @@ private:
   /// Q, w, w′, w″.
   template <int Rates, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE auto on_span(std::size_t i, const P& u) const {
-    using D = promote_t<T, P>;
-    const auto x = detail::taylor_shift<std::size_t(Rates) + 1>(pieces_[i], P(u - knots()[i]));
-    detail::half_motion<D> m{elements_[i] * duet::exp(x[0]), {}, {}, {}};
+    return on_piece<Rates>(elements_[i], pieces_[i], P(u - knots()[i]));
+  }
+  template <int Rates, std::size_t W, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto on_span(const std::array<std::size_t, W>& spans,
+                                                const P& u) const {
+    return on_piece<Rates>(detail::gathered(spans, elements_), detail::gathered(spans, pieces_),
+                           P(u - detail::gathered(spans, knots())));
+  }
+
+  template <int Rates, class S, class P>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto
+  on_piece(const quaternion<S>& start, const std::array<vector3<S>, std::size_t(Order)>& piece,
+           const P& t) {
+    using D = promote_t<S, P>;
+    const auto x = detail::taylor_shift<std::size_t(Rates) + 1>(piece, t);
+    detail::half_motion<D> m{start * duet::exp(x[0]), {}, {}, {}};
     if constexpr (Rates > 0) {
       const detail::jacobian_coefficients<Rates, D> jacobian(detail::inner_product(x[0], x[0]));
       std::array<vector3<D>, Rates> rates;

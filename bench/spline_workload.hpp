@@ -1,0 +1,152 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// A uniform cubic spline of 100 segments, by duet and as a kernel for this one curve.
+
+namespace duet_bench {
+
+inline constexpr int segments = 100;
+inline constexpr double knot_distance = 0.1;
+
+/// Value, angular velocity and acceleration in body axes.
+using numbers = std::array<double, 10>;
+
+/// A smooth tumble, up to 0.25 rad a segment.
+inline duet::quaternion<double> orientation(double t) {
+  return duet::from_euler<duet::zyx>(1.9 * std::sin(t), 0.8 * std::sin(1.3 * t + 1),
+                                     2 * std::cos(0.7 * t));
+}
+
+/// Control quaternions one knot apart; the domain is [0, segments · knot_distance].
+inline std::vector<duet::quaternion<double>> controls() {
+  std::vector<duet::quaternion<double>> result;
+  for (int i = 0; i < segments + 3; ++i) {
+    result.push_back(orientation((i - 1) * knot_distance));
+  }
+  return result;
+}
+
+inline duet::cumulative_bspline<double> make_spline() {
+  std::vector<double> knots;
+  for (int i = -3; i <= segments + 3; ++i) {
+    knots.push_back(i * knot_distance);
+  }
+  return {knots, controls()};
+}
+
+/// The cubic as one writes it by hand for uniform knots and nothing else: logarithms cached as axis
+/// and half angle, the segment found by one product, polynomials written out.
+class hand_written_spline {
+public:
+  explicit hand_written_spline(const std::vector<duet::quaternion<double>>& controls) {
+    duet::quaternion<double> previous = controls.front();
+    for (duet::quaternion<double> q : controls) {
+      if (dot(previous, q) < 0) {
+        q = -q;
+      }
+      const duet::vector3<double> omega = log(conj(previous) * q).vec();
+      const double angle = omega.norm();
+      const duet::vector3<double> axis = angle > 0 ? duet::vector3<double>(omega / angle) : omega;
+      nodes_.push_back({{q.w(), q.x(), q.y(), q.z()}, {axis[0], axis[1], axis[2]}, angle});
+      previous = q;
+    }
+  }
+
+  [[nodiscard]] std::array<double, 4> value(double u) const {
+    const location at(u);
+    const node* n = &nodes_[at.segment];
+    std::array<double, 4> q = n->q;
+    const auto b = weights(at.x);
+    for (int i = 0; i < 3; ++i) {
+      q = product(q, exponential(*++n, b[i]));
+    }
+    return q;
+  }
+
+  [[nodiscard]] numbers motion(double u) const {
+    const location at(u);
+    const node* n = &nodes_[at.segment];
+    const double x = at.x;
+    constexpr double r = 1 / knot_distance;
+    const auto b = weights(x);
+    const double first[] = {r * (1 - x) * (1 - x) / 2, r * (0.5 + x - x * x), r * x * x / 2};
+    const double second[] = {r * r * (x - 1), r * r * (1 - 2 * x), r * r * x};
+    std::array<double, 4> q = n->q;
+    std::array<double, 3> w{}, a{};
+    for (int i = 0; i < 3; ++i) {
+      ++n;
+      const auto e = exponential(*n, b[i]);
+      q = product(q, e);
+      const double w1 = n->angle * first[i], w2 = n->angle * second[i];
+      const double d[] = {n->axis[0] * w1, n->axis[1] * w1, n->axis[2] * w1};
+      if (i == 0) {
+        w = {d[0], d[1], d[2]};
+        a = {n->axis[0] * w2, n->axis[1] * w2, n->axis[2] * w2};
+        continue;
+      }
+      w = turned_back(e, w);
+      a = turned_back(e, a);
+      a = {a[0] + n->axis[0] * w2 + 2 * (w[1] * d[2] - w[2] * d[1]),
+           a[1] + n->axis[1] * w2 + 2 * (w[2] * d[0] - w[0] * d[2]),
+           a[2] + n->axis[2] * w2 + 2 * (w[0] * d[1] - w[1] * d[0])};
+      w = {w[0] + d[0], w[1] + d[1], w[2] + d[2]};
+    }
+    return {q[0], q[1], q[2], q[3], 2 * w[0], 2 * w[1], 2 * w[2], 2 * a[0], 2 * a[1], 2 * a[2]};
+  }
+
+private:
+  struct node {
+    std::array<double, 4> q;
+    std::array<double, 3> axis;
+    double angle;
+  };
+
+  struct location {
+    explicit location(double u) {
+      const double s = u * (1 / knot_distance);
+      segment = static_cast<std::size_t>(s);
+      x = s - double(segment);
+    }
+    std::size_t segment;
+    double x;
+  };
+
+  static std::array<double, 3> weights(double x) {
+    const double x2 = x * x, x3 = x2 * x;
+    return {(5 + 3 * x - 3 * x2 + x3) / 6, (1 + 3 * x + 3 * x2 - 2 * x3) / 6, x3 / 6};
+  }
+  static std::array<double, 4> exponential(const node& n, double b) {
+    const double s = std::sin(n.angle * b), c = std::cos(n.angle * b);
+    return {c, n.axis[0] * s, n.axis[1] * s, n.axis[2] * s};
+  }
+  static std::array<double, 4> product(const std::array<double, 4>& p,
+                                       const std::array<double, 4>& q) {
+    return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+            p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+            p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+            p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
+  }
+  /// e* v e
+  static std::array<double, 3> turned_back(const std::array<double, 4>& e,
+                                           const std::array<double, 3>& v) {
+    const double tx = 2 * (e[2] * v[2] - e[3] * v[1]);
+    const double ty = 2 * (e[3] * v[0] - e[1] * v[2]);
+    const double tz = 2 * (e[1] * v[1] - e[2] * v[0]);
+    return {v[0] - e[0] * tx + (e[2] * tz - e[3] * ty), v[1] - e[0] * ty + (e[3] * tx - e[1] * tz),
+            v[2] - e[0] * tz + (e[1] * ty - e[2] * tx)};
+  }
+
+  std::vector<node> nodes_;
+};
+
+} // namespace duet_bench

@@ -1,0 +1,193 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "blocks.hpp"
+#include "samples.hpp"
+#include "toleranced_carrier.hpp"
+
+#include <duet/core/csv.hpp>
+#include <duet/core/number_text.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <numeric>
+#include <string>
+#include <vector>
+
+/// \file
+/// First order and samples side by side: tables and a picture. Degrees, metres.
+
+namespace tolerance_study {
+
+inline constexpr std::array<const char*, 2> angle_names{"toe-in", "camber"};
+
+/// Toe-in or camber at one height.
+struct spread {
+  double design;
+  double linear; ///< standard deviation to first order
+  statistics sampled;
+};
+
+struct results {
+  std::vector<double> heights;
+  std::array<std::vector<spread>, 2> spreads; ///< of toe-in and camber
+  std::vector<sensitivity> sensitivities;     ///< at the heights, degrees per metre
+  std::array<std::array<double, coordinate_count>, 2> influence; ///< root mean square of these
+};
+
+/// √Σ (σ ∂/∂h_j)² beside what the samples say.
+[[nodiscard]] inline results results_of(const toleranced_carrier& mechanism, double tolerance,
+                                        const std::vector<std::vector<double>>& columns) {
+  results r{};
+  for (std::size_t row = 0; row < mechanism.rows(); ++row) {
+    const vector2 design = mechanism.angles(row, errors::Zero()) * degrees;
+    r.heights.push_back(mechanism.height(row));
+    r.sensitivities.push_back(mechanism.sensitivities(row) * degrees);
+    for (std::size_t angle = 0; angle < 2; ++angle) {
+      const auto i = Eigen::Index(angle);
+      r.spreads[angle].push_back({design[i], tolerance * r.sensitivities[row].row(i).norm(),
+                                  statistics_of(columns[2 * row + angle])});
+      for (int j = 0; j < coordinate_count; ++j) {
+        const double s = r.sensitivities[row](i, j);
+        r.influence[angle][std::size_t(j)] += s * s / double(mechanism.rows());
+      }
+    }
+  }
+  for (auto& influence : r.influence) {
+    for (double& x : influence) {
+      x = std::sqrt(x);
+    }
+  }
+  return r;
+}
+
+/// The five coordinates that matter most, the first of them most.
+[[nodiscard]] inline std::array<int, 5> most_influential(const results& r, std::size_t angle) {
+  std::array<int, coordinate_count> order{};
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return r.influence[angle][std::size_t(a)] > r.influence[angle][std::size_t(b)];
+  });
+  return {order[0], order[1], order[2], order[3], order[4]};
+}
+
+/// The largest |sampled / linear standard deviation − 1|.
+[[nodiscard]] inline double largest_difference(const results& r) {
+  double largest = 0;
+  for (const auto& spreads : r.spreads) {
+    for (const spread& s : spreads) {
+      largest = std::max(largest, std::abs(s.sampled.deviation / s.linear - 1));
+    }
+  }
+  return largest;
+}
+
+inline void print(const results& r, const hardpoints& points) {
+  for (std::size_t angle = 0; angle < 2; ++angle) {
+    std::printf("%s, degrees%*s standard deviation       samples less the design\n",
+                angle_names[angle], 4, "");
+    std::printf("  %7s %9s %9s %9s %9s %9s %9s\n", "u [m]", "design", "linear", "sampled", "mean",
+                "2.5 %", "97.5 %");
+    for (std::size_t row = 0; row < r.heights.size(); ++row) {
+      const spread& s = r.spreads[angle][row];
+      const double design = std::abs(s.design) < 5e-5 ? 0 : s.design; // no -0.0000
+      std::printf("  %7.3f %9.4f %9.4f %9.4f %9.4f %9.4f %9.4f\n", r.heights[row], design, s.linear,
+                  s.sampled.deviation, s.sampled.mean - s.design, s.sampled.low - s.design,
+                  s.sampled.high - s.design);
+    }
+    std::printf("  most influential (root mean square over the travel, degrees per mm):\n");
+    for (const int j : most_influential(r, angle)) {
+      std::printf("    %-28s %7.4f\n", coordinate_name(points, j).c_str(),
+                  r.influence[angle][std::size_t(j)] / 1000);
+    }
+    std::printf("\n");
+  }
+}
+
+[[nodiscard]] inline std::string summary_csv(const results& r) {
+  std::string text = "u";
+  for (const std::string name : angle_names) {
+    for (const char* column : {"design", "linear sd", "sampled sd", "mean", "2.5 %", "97.5 %"}) {
+      text += "," + name + " " + column;
+    }
+  }
+  text += "\n";
+  for (std::size_t row = 0; row < r.heights.size(); ++row) {
+    std::vector<double> numbers{r.heights[row]};
+    for (const auto& spreads : r.spreads) {
+      const spread& s = spreads[row];
+      numbers.insert(numbers.end(), {s.design, s.linear, s.sampled.deviation, s.sampled.mean,
+                                     s.sampled.low, s.sampled.high});
+    }
+    text += duet::csv_line(numbers);
+  }
+  return text;
+}
+
+/// Degrees per metre: a line per coordinate, toe-in and camber at every height.
+[[nodiscard]] inline std::string sensitivities_csv(const results& r, const hardpoints& points) {
+  std::string text = "coordinate";
+  for (const double u : r.heights) {
+    text += ",toe-in at " + duet::to_text(u) + ",camber at " + duet::to_text(u);
+  }
+  text += "\n";
+  for (int j = 0; j < coordinate_count; ++j) {
+    std::string name = coordinate_name(points, j);
+    std::replace(name.begin(), name.end(), ',', ' ');
+    std::vector<double> numbers;
+    for (const sensitivity& s : r.sensitivities) {
+      numbers.insert(numbers.end(), {s(0, j), s(1, j)});
+    }
+    text += name + "," + duet::csv_line(numbers);
+  }
+  return text;
+}
+
+/// Above: toe-in and camber over the travel. Below: what moves them most.
+[[nodiscard]] inline std::string picture_script(const results& r, const hardpoints& points) {
+  std::string text = "set datafile separator ','\nset multiplot layout 2,2\nset grid\n"
+                     "set key above\nset xlabel 'wheel height u [m]'\nset yrange [*:*]\n"
+                     "set xrange [" +
+                     duet::to_text(r.heights.front()) + ":" + duet::to_text(r.heights.back()) +
+                     "]\n";
+  for (std::size_t angle = 0; angle < 2; ++angle) {
+    const auto column = [angle](std::size_t i) { return std::to_string(i + 6 * angle); };
+    const auto bound = [&](const char* factor) {
+      return "'' using 1:($" + column(2) + factor + "*$" + column(3) +
+             ") skip 1 with lines lw 1.5 dt 2 lc rgb '#d62728' ";
+    };
+    text += std::string("set ylabel '") + angle_names[angle] +
+            " [degrees]'\nplot 'summary.csv' using 1:" + column(6) + ":" + column(7) +
+            " skip 1 with filledcurves fs solid 0.3 lc rgb '#1f77b4' title '95 % of samples', "
+            "'' using 1:" +
+            column(2) + " skip 1 with lines lw 2 lc rgb 'black' title 'design', " + bound("+1.96") +
+            "title 'first order', " + bound("-1.96") + "notitle\n";
+  }
+  text += "unset key\nunset ylabel\nset yrange [5.6:0.4]\nset xlabel 'root mean square [degrees "
+          "per mm]'\n";
+  for (std::size_t angle = 0; angle < 2; ++angle) {
+    std::string labels, boxes;
+    int place = 1;
+    for (const int j : most_influential(r, angle)) {
+      std::string name = coordinate_name(points, j);
+      for (char& c : name) {
+        c = c == '\'' ? ' ' : c;
+      }
+      labels += (place > 1 ? ", '" : "'") + name + "' " + std::to_string(place);
+      const std::string y = std::to_string(place);
+      boxes += "set object " + y + " rectangle from 0," + y + "-0.35 to " +
+               duet::to_text(r.influence[angle][std::size_t(j)] / 1000) + "," + y +
+               "+0.35 fc rgb '#1f77b4' fs solid 0.6 noborder\n";
+      ++place;
+    }
+    const double most = r.influence[angle][std::size_t(most_influential(r, angle)[0])] / 1000;
+    text += boxes + "set ytics (" + labels + ")\nset xrange [0:" + duet::to_text(1.1 * most) +
+            "]\nset title 'what moves " + angle_names[angle] + " most'\nplot 1/0\n";
+  }
+  return text + "unset multiplot\nunset object\nunset title\nset ytics autofreq\n";
+}
+
+} // namespace tolerance_study

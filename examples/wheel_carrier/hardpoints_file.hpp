@@ -1,0 +1,51 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "carrier.hpp"
+
+#include <duet/core/csv.hpp>
+
+#include <cstddef>
+#include <string>
+
+/// \file
+/// Hardpoints from a file.
+
+namespace wheel_carrier {
+
+using duet::csv_file;
+using duet::csv_row;
+using duet::file_error;
+
+/// Reads five rows `name, ax, ay, az, px, py, pz` (chassis, carrier) and one `wheel centre, x, y,
+/// z`. \throws file_error
+inline hardpoints read_hardpoints(const std::string& path) {
+  const csv_file file(path);
+  hardpoints result;
+  bool has_centre = false;
+  std::size_t rods = 0;
+  for (const csv_row& row : file.rows()) {
+    const auto& x = row.numbers;
+    if (row.name == "wheel centre" && x.size() == 3 && !has_centre) {
+      result.wheel_centre = {x[0], x[1], x[2]};
+      has_centre = true;
+    } else if (row.name == "wheel centre") {
+      throw file_error(path, row.line, "the wheel centre has three coordinates, once");
+    } else if (x.size() != 6) {
+      throw file_error(path, row.line, "a rod is name, ax, ay, az, px, py, pz");
+    } else if (rods == 5) {
+      throw file_error(path, row.line, "a sixth rod; the carrier has five");
+    } else {
+      result.rods[rods++] = {row.name, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+    }
+  }
+  if (rods != 5) {
+    throw file_error(path, std::to_string(rods) + " rods instead of five");
+  }
+  if (!has_centre) {
+    throw file_error(path, "no line `wheel centre, x, y, z`");
+  }
+  return result;
+}
+
+} // namespace wheel_carrier

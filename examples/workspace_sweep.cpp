@@ -1,0 +1,193 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// Where a robot arm moves well: manipulability in many random configurations within its limits, as
+// a histogram and over the distance from the vertical axis and the height of the tip. Samples are
+// computed several at a time on all cores; the same ones whatever the machine.
+
+#include "support/arms.hpp"
+#include "support/command_line.hpp"
+#include "support/gnuplot.hpp"
+
+#include <duet/core/csv.hpp>
+#include <duet/core/parallel_for.hpp>
+#include <duet/mechanism/sweep.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <numbers>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace duet;
+namespace po = example::po;
+
+using chain = example::arm_chain;
+using coordinates = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 16, 1>;
+using matrix = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 16>;
+using result = value_and_jacobian<dual_quaternion<double>, matrix>;
+
+struct sample {
+  double radius; ///< of the tip from the vertical axis
+  double height;
+  double manipulability;
+};
+
+/// The n-th number of a sequence in [0, 1) that is as good as random (splitmix64): each sample
+/// finds its own, whichever core it is on.
+double uniform(std::uint64_t n) {
+  std::uint64_t x = (n + 1) * 0x9e3779b97f4a7c15U;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
+  return double((x ^ (x >> 31)) >> 11) * 0x1p-53;
+}
+
+coordinates configuration(const chain& arm, std::size_t number) {
+  coordinates theta(arm.size());
+  for (int j = 0; j < arm.size(); ++j) {
+    const double lower = std::max(arm.limits(j).lower, -std::numbers::pi);
+    const double upper = std::min(arm.limits(j).upper, std::numbers::pi);
+    theta[j] = lower + (upper - lower) * uniform(16 * number + std::uint64_t(j));
+  }
+  return theta;
+}
+
+/// √det(J Jᵀ)
+double manipulability_of(const matrix& m) {
+  const Eigen::Matrix<double, 6, 6> square = m.lazyProduct(m.transpose());
+  return std::sqrt(std::max(0.0, square.determinant()));
+}
+
+std::vector<sample> sweep(const chain& arm, std::size_t count) {
+  constexpr std::size_t piece = 16384;
+  std::vector<sample> samples(count);
+  std::vector<coordinates> theta(piece);
+  std::vector<result> results(piece, result{{}, matrix(6, arm.size())});
+  for (std::size_t first = 0; first < count; first += piece) {
+    const std::size_t size = std::min(piece, count - first);
+    parallel_for(size, [&](std::size_t i) { theta[i] = configuration(arm, first + i); });
+    poses_and_jacobians(arm, std::span(theta).first(size), frame::hybrid,
+                        std::span(results).first(size), all_cores);
+    parallel_for(size, [&](std::size_t i) {
+      const auto t = translation(results[i].value);
+      samples[first + i] = {std::hypot(t[0], t[1]), t[2], manipulability_of(results[i].jacobian)};
+    });
+    std::fprintf(stderr, "\r%zu of %zu configurations", first + size, count);
+  }
+  std::fprintf(stderr, "\n");
+  return samples;
+}
+
+/// Shares of the samples in bins of equal width from 0 to the largest manipulability.
+std::string histogram(const std::vector<sample>& samples, double largest) {
+  constexpr std::size_t bins = 40;
+  std::vector<std::size_t> counts(bins);
+  for (const sample& s : samples) {
+    ++counts[std::min(bins - 1, std::size_t(s.manipulability / largest * double(bins)))];
+  }
+  std::string csv = "manipulability,share\n";
+  for (std::size_t i = 0; i < bins; ++i) {
+    csv += csv_line(
+        {largest * (double(i) + 0.5) / double(bins), double(counts[i]) / double(samples.size())});
+  }
+  return csv;
+}
+
+/// Cells that the tip was in, with the largest manipulability that it had there.
+std::string map(const std::vector<sample>& samples) {
+  constexpr double cell = 0.02;
+  double reach = 0;
+  for (const sample& s : samples) {
+    reach = std::max({reach, s.radius, std::abs(s.height)});
+  }
+  const std::size_t columns = std::size_t(reach / cell) + 1, rows = 2 * columns;
+  std::vector<double> best(columns * rows, -1);
+  for (const sample& s : samples) {
+    const auto column = std::size_t(s.radius / cell);
+    const auto row = std::size_t(s.height / cell + double(columns));
+    double& value = best[std::min(rows - 1, row) * columns + column];
+    value = std::max(value, s.manipulability);
+  }
+  std::string csv = "radius,height,largest manipulability\n";
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    if (best[i] >= 0) {
+      csv += csv_line({cell * (double(i % columns) + 0.5),
+                       cell * (double(i / columns) + 0.5 - double(columns)), best[i]});
+    }
+  }
+  return csv;
+}
+
+const char* const picture = "set datafile separator ','\nset multiplot layout 1,2\nset grid\n"
+                            "set xlabel 'distance from the axis / m'\nset ylabel 'height / m'\n"
+                            "set size ratio -1\nset cblabel 'largest manipulability'\n"
+                            "plot 'workspace_sweep_map.csv' skip 1 using 1:2:3 with points pt 5 "
+                            "ps 0.55 palette notitle\nset size noratio\n"
+                            "set xlabel 'manipulability'\nset ylabel 'share of configurations'\n"
+                            "set style fill solid 0.6\n"
+                            "plot 'workspace_sweep_histogram.csv' skip 1 using 1:2 with boxes "
+                            "lc rgb '#1f77b4' notitle\nunset multiplot\n";
+
+void run(const chain& arm, std::size_t count, const std::string& folder) {
+  const std::vector<sample> samples = sweep(arm, count);
+  double sum = 0, largest = 0;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    sum += samples[i].manipulability;
+    if (samples[i].manipulability > largest) {
+      largest = samples[i].manipulability;
+      best = i;
+    }
+  }
+  write_file(folder + "/workspace_sweep_histogram.csv", histogram(samples, largest));
+  write_file(folder + "/workspace_sweep_map.csv", map(samples));
+  std::printf("best joints");
+  for (const double x : configuration(arm, best)) {
+    std::printf(" %.4f", x);
+  }
+  std::printf("\nworkspace sweep: configurations=%zu mean_manipulability=%.6g "
+              "largest_manipulability=%.6g\n",
+              count, sum / double(count), largest);
+  if (!example::draw(folder, "workspace_sweep", "1200,620", picture)) {
+    std::cout << "No picture: gnuplot is not installed or failed\n";
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    po::options_description description("Where a robot arm moves well. Options");
+    auto add = description.add_options();
+    add("help", "print this and stop");
+    add("samples", po::value<int>()->value_name("N"),
+        "random configurations, 1 to 10000000 (default: 20000)");
+    add("out", po::value<std::string>()->value_name("FOLDER"),
+        "an existing folder for tables and picture (default: .)");
+    example::add_arm_options(description);
+    const auto line = example::command_line::parse(argc, argv, description);
+    if (!line) {
+      return 0;
+    }
+    const int samples = line->get<int>("samples").value_or(20000);
+    if (samples < 1 || samples > 10000000) {
+      throw std::runtime_error("--samples: 1 to 10000000, not " + std::to_string(samples));
+    }
+    run(example::arm_of(*line), std::size_t(samples), line->text("out").value_or("."));
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "workspace_sweep: " << error.what() << "\n";
+    return 1;
+  }
+}

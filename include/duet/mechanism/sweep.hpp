@@ -1,0 +1,163 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/batch_functions.hpp>
+#include <duet/core/batch_lanes.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/core/parallel_for.hpp>
+#include <duet/mechanism/jacobian.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <ranges>
+#include <span>
+#include <sstream>
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// A chain in many configurations: several at once in the lanes of batches, on one core or more.
+
+namespace duet {
+
+namespace detail {
+
+/// One lane of a matrix of batches.
+template <class M, class To>
+DUET_ALWAYS_INLINE void write_lane(const M& m, int k, To& to) {
+  for (Eigen::Index j = 0; j < m.cols(); ++j) {
+    for (Eigen::Index i = 0; i < m.rows(); ++i) {
+      to(i, j) = m(i, j)[k];
+    }
+  }
+}
+
+/// Have the matrices of all results 6 rows and n columns?
+template <class Out, class Matrix>
+void require_matrices(const char* function, Out& out, Eigen::Index n, const Matrix& matrix_of) {
+  for (std::size_t i = 0; i < std::size(out); ++i) {
+    const auto& m = matrix_of(out[i]);
+    if (m.rows() != 6 || m.cols() != n) {
+      std::ostringstream message;
+      message << "duet: " << function << ": result " << i << " is a " << m.rows() << " × "
+              << m.cols() << " matrix, not 6 × " << n;
+      throw invalid_input(message.str());
+    }
+  }
+}
+
+/// Calls write(i, count, f(θ)) with the configurations i … i + count − 1 in the lanes of θ; those
+/// beyond the last are the last.
+template <class C, class X, class Write>
+void sweep(const char* function, const C& chain, std::span<const X> configurations,
+           std::size_t room, execution how, const Write& write) {
+  using argument = vector_argument<X>;
+  using B = batch<typename argument::scalar>;
+  using lanes = joint_vector<B, C::joints>;
+  if (configurations.size() != room) {
+    std::ostringstream message;
+    message << "duet: " << function << ": " << configurations.size()
+            << " configurations, but room for " << room << " results";
+    throw invalid_input(message.str());
+  }
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    if (argument::size(configurations[i]) != chain.size()) {
+      std::ostringstream message;
+      message << "duet: " << function << ": configuration " << i << " has "
+              << argument::size(configurations[i]) << " coordinates, but " << chain.size()
+              << " joints move";
+      throw invalid_input(message.str());
+    }
+  }
+  parallel_for_blocks(
+      configurations.size(),
+      [&](std::size_t first, std::size_t last) {
+        lanes theta(chain.size());
+        for (std::size_t i = first; i < last; i += std::size_t(B::lanes)) {
+          const std::size_t count = std::min(std::size_t(B::lanes), last - i);
+          for (Eigen::Index j = 0; j < chain.size(); ++j) {
+            theta[j] = B::from_lanes([&](int k) DUET_INLINE_LAMBDA {
+              return argument::get(configurations[i + std::min(std::size_t(k), count - 1)], j);
+            });
+          }
+          write(i, count, theta);
+        }
+      },
+      how);
+}
+
+template <class Range>
+using range_element =
+    std::remove_cv_t<std::remove_pointer_t<decltype(std::data(std::declval<Range&>()))>>;
+
+template <class Range>
+[[nodiscard]] std::span<const range_element<Range>> read_only(const Range& range) {
+  return {std::data(range), std::size(range)};
+}
+
+} // namespace detail
+
+/// Coordinates of a chain in many configurations, one after the other in memory: a span or a vector
+/// of what `chain.pose` takes, of numbers.
+template <class R>
+concept Configurations = std::ranges::contiguous_range<R> && VectorLike<detail::range_element<R>>;
+
+/// out[i] = chain.pose(configurations[i], at…), several at a time in the lanes of batches; `out` is
+/// a span or a vector.
+///
+/// Sines are within 1 ulp, and a result depends neither on the others nor on the number of cores.
+/// No heap is used on one core.
+/// \throws invalid_input where the sizes differ, and for another number of coordinates than the
+/// chain has
+template <SerialChain C, Configurations X, std::ranges::contiguous_range Out, class... At>
+void poses(const C& chain, const X& configurations, Out&& out, execution how = one_core,
+           const At&... at) {
+  detail::sweep("poses", chain, detail::read_only(configurations), std::size(out), how,
+                [&](std::size_t i, std::size_t count, const auto& theta) {
+                  const auto a = chain.pose(theta, at...);
+                  for (std::size_t k = 0; k < count; ++k) {
+                    out[i + k] = lane(a, int(k));
+                  }
+                });
+}
+
+/// out[i] = jacobian(chain, configurations[i], frame, at…), as `poses`.
+///
+/// Elements of `out` are 6 × n matrices of fixed or dynamic size; the latter must have it already.
+/// \throws invalid_input as `poses`, and for a matrix of another size
+template <SerialChain C, Configurations X, FrameConstant Frame, std::ranges::contiguous_range Out,
+          class... At>
+void jacobians(const C& chain, const X& configurations, Frame frame_of_result, Out&& out,
+               execution how = one_core, const At&... at) {
+  detail::require_matrices(
+      "jacobians", out, chain.size(), [](auto& m) -> auto& { return m; });
+  detail::sweep("jacobians", chain, detail::read_only(configurations), std::size(out), how,
+                [&](std::size_t i, std::size_t count, const auto& theta) {
+                  const auto m = jacobian(chain, theta, frame_of_result, at...);
+                  for (std::size_t k = 0; k < count; ++k) {
+                    detail::write_lane(m, int(k), out[i + k]);
+                  }
+                });
+}
+
+/// out[i] = pose_and_jacobian(chain, configurations[i], frame, at…), as `jacobians`.
+template <SerialChain C, Configurations X, FrameConstant Frame, std::ranges::contiguous_range Out,
+          class... At>
+void poses_and_jacobians(const C& chain, const X& configurations, Frame frame_of_result, Out&& out,
+                         execution how = one_core, const At&... at) {
+  detail::require_matrices(
+      "poses_and_jacobians", out, chain.size(), [](auto& both) -> auto& { return both.jacobian; });
+  detail::sweep("poses_and_jacobians", chain, detail::read_only(configurations), std::size(out),
+                how, [&](std::size_t i, std::size_t count, const auto& theta) {
+                  const auto both = pose_and_jacobian(chain, theta, frame_of_result, at...);
+                  for (std::size_t k = 0; k < count; ++k) {
+                    out[i + k].value = lane(both.value, int(k));
+                    detail::write_lane(both.jacobian, int(k), out[i + k].jacobian);
+                  }
+                });
+}
+
+} // namespace duet

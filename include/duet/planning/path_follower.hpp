@@ -1,0 +1,212 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/objectives.hpp>
+#include <duet/planning/path_step.hpp>
+#include <duet/planning/plan_options.hpp>
+#include <duet/planning/self_motion_search.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The planner behind `follow_path` and `plan_screw_motion`.
+
+namespace duet::detail {
+
+/// Plans along a path, first without stopping; where that comes to an end, with motions in place.
+///
+template <class C, class Objective, class Scene>
+class path_follower {
+public:
+  using vector = typename chain_state<C>::vector;
+
+  /// \param target  the tip's pose
+  /// \param stops   parameters that become waypoints, increasing; the first and the last are the
+  ///                ends of the path
+  path_follower(const C& chain, const path_function& target, std::vector<double> stops,
+                const plan_options& options, const Objective& objective, const Scene& around)
+      : around_(around), solver_(chain, options.tolerance, around), target_(target),
+        stops_(std::move(stops)), options_(options), objective_(objective),
+        length_(stops_.back() - stops_.front()), iterations_left_(options.iterations) {}
+
+  [[nodiscard]] motion_plan<C::joints> plan(const vector& start) {
+    route best({chain_state<C>(solver_.chain(), start), stops_.front(), {}, 0});
+    go_on(best);
+    // From where it got stuck, or else from the beginning.
+    for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
+      if (is_at_end(best) || options_.search_step == 0) {
+        break;
+      }
+      route other = with_search(best, first);
+      if (other.back().u > best.back().u) {
+        best = std::move(other);
+      }
+    }
+    return summary(best);
+  }
+
+private:
+  struct waypoint {
+    chain_state<C> state;
+    double u;
+    pose_deviation left;
+    double smallest_singular_value;
+  };
+  struct route {
+    std::vector<waypoint> waypoints;
+    double step = .01; ///< the next one, of the path
+    stop_reason reason = stop_reason::no_progress;
+
+    explicit route(const waypoint& start) : waypoints{start} {}
+    [[nodiscard]] const waypoint& back() const { return waypoints.back(); }
+  };
+
+  [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops_.back(); }
+
+  /// As far as possible without stopping.
+  void go_on(route& x) {
+    for (const double stop : stops_) {
+      if (stop > x.back().u) {
+        const double part = (stop - x.back().u) / length_;
+        const auto wish = [&](const vector& theta, double from, double to) {
+          return downhill(theta, (to - from) * part);
+        };
+        if (!travel(x, stop, part, wish)) {
+          return;
+        }
+      }
+    }
+  }
+
+  /// What lowers the objectives.
+  [[nodiscard]] vector downhill(const vector& theta, double step) const {
+    vector wish = towards_middle(theta, solver_.lower(), solver_.upper(), options_.centring * step);
+    if constexpr (!std::same_as<Objective, no_objective>) {
+      wish -= step * objective_gradient(objective_, theta);
+    }
+    return wish;
+  }
+
+  /// A route with motions in place, from a waypoint of another one.
+  [[nodiscard]] route with_search(const route& before, std::size_t first) {
+    route result(before.waypoints.front());
+    result.waypoints.assign(before.waypoints.begin(),
+                            before.waypoints.begin() + std::ptrdiff_t(first) + 1);
+    result.reason = before.reason;
+    self_motion_search search(solver_, target_, options_.self_motion_step, iterations_left_);
+    const auto way = search.run(result.back().state, search_parameters(result.back().u));
+    iterations_left_ = search.iterations_left();
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      const vector& aim = way[i].state.theta;
+      const auto wish = [&](const vector& theta, double from, double to) {
+        return vector((to - from) / (1 - from) * (aim - theta));
+      };
+      result.step = options_.search_step;
+      if (!travel(result, way[i].u, options_.search_step, wish)) {
+        return result;
+      }
+    }
+    go_on(result);
+    return result;
+  }
+
+  /// From u on, where the search looks.
+  [[nodiscard]] std::vector<double> search_parameters(double u) const {
+    std::vector<double> result = {u};
+    for (const double stop : stops_) {
+      const double begin = result.back();
+      if (stop > begin) {
+        const int count = int(std::ceil((stop - begin) / (options_.search_step * length_)));
+        for (int i = 1; i < count; ++i) {
+          result.push_back(begin + (stop - begin) * i / count);
+        }
+        result.push_back(stop);
+      }
+    }
+    return result;
+  }
+
+  /// On to the parameter `end`, in steps that keep the tip near the path between waypoints too.
+  ///
+  /// \param part  how much of the path that counts for
+  /// \param wish  the change of the joints that would be best between two fractions of the way, if
+  ///              the tip were not to be minded
+  /// \return false where there is no going on
+  template <class Wish>
+  [[nodiscard]] bool travel(route& x, double end, double part, const Wish& wish) {
+    const double begin = x.back().u;
+    double way = 0; // 1 at the end
+    while (way < 1) {
+      const waypoint here = x.back();
+      const double next = way + x.step / part > 1 - 1e-9 ? 1 : way + x.step / part;
+      const double u = next == 1 ? end : begin + (end - begin) * next;
+      const auto there =
+          solver_.approach(here.state, target_(u), wish(here.state.theta, way, next));
+      iterations_left_ -= there.iterations;
+      double change = .25;
+      if (there.is_within(options_.tolerance)) {
+        const vector middle = (here.state.theta + there.state.theta) / 2;
+        const pose_deviation half_way =
+            deviation_between(solver_.chain().pose(middle), target_((here.u + u) / 2));
+        const double excess =
+            std::max({half_way.length, half_way.angle, solver_.shortfall(middle)}) /
+            options_.deviation;
+        // Between waypoints the deviation grows with the square of the step.
+        change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
+        if (excess <= .95) { // half way is not quite where it is largest
+          way = next;
+          x.waypoints.push_back({there.state, u, there.left, there.smallest_singular_value});
+        }
+      }
+      x.step = std::min(options_.largest_step, x.step * change);
+      if (way < 1 && (iterations_left_ <= 0 || x.step < options_.smallest_step)) {
+        x.reason = iterations_left_ <= 0 ? stop_reason::iteration_limit
+                   : there.is_blocked || there.shortfall > options_.tolerance
+                       ? stop_reason::obstacle
+                   : there.is_bounded ? stop_reason::joint_limit
+                   : there.smallest_singular_value < 10 * damped_gram::threshold
+                       ? stop_reason::singular
+                       : stop_reason::no_progress;
+        return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] motion_plan<C::joints> summary(const route& x) const {
+    motion_plan<C::joints> result;
+    for (const waypoint& w : x.waypoints) {
+      add_waypoint(result, solver_.chain(), w.state.theta, w.state.pose, w.u, w.left);
+      if constexpr (!std::same_as<Scene, no_scene>) {
+        result.smallest_clearance = std::min(
+            result.smallest_clearance, clearance(solver_.chain(), w.state.theta, around_).distance);
+      }
+      if (&w != &x.waypoints.front()) {
+        result.smallest_singular_value =
+            std::min(result.smallest_singular_value, w.smallest_singular_value);
+      }
+    }
+    result.iterations = options_.iterations - iterations_left_;
+    result.reason = is_at_end(x)            ? stop_reason::reached
+                    : iterations_left_ <= 0 ? stop_reason::iteration_limit
+                                            : x.reason;
+    return result;
+  }
+
+  const Scene& around_;
+  pose_solver<C, Scene> solver_;
+  const path_function& target_;
+  std::vector<double> stops_;
+  plan_options options_;
+  const Objective& objective_;
+  double length_;
+  int iterations_left_;
+};
+
+} // namespace duet::detail

@@ -1,0 +1,132 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+#include "support/lanes.hpp"
+
+#include <duet/mechanism/jacobian_rate.hpp>
+#include <duet/mechanism/sweep.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace test_mechanism_sweep {
+
+using namespace duet;
+using duet_test::ulps_apart;
+
+namespace {
+
+/// Sines of the library are within 1 ulp, and so are those of the C library; seven joints add them
+/// up.
+constexpr double limit = 16;
+
+using angles = Eigen::Matrix<double, 7, 1>;
+using matrix = Eigen::Matrix<double, 6, 7>;
+
+std::vector<angles> configurations(std::size_t count) {
+  duet_test::random_source random(5);
+  std::vector<angles> result(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < 7; ++j) {
+      result[i][j] = i == 1 ? 0 : i == 2 ? 1e-9 : random.uniform(-3, 3);
+    }
+  }
+  if (count > 3) {
+    result[3][2] = 1e7; // beyond the vector sine
+  }
+  return result;
+}
+
+template <class F>
+std::string message_of(const F& f) {
+  try {
+    f();
+  } catch (const invalid_input& error) {
+    return error.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST_CASE("a range gives what each configuration gives, on any number of cores") {
+  const auto known = robots::panda();
+  const auto table = known.table();
+  const serial_chain<-9> unsized = table;
+  for (const std::size_t count : {0U, 1U, 3U, 4U, 5U, 18U}) {
+    const auto theta = configurations(count);
+    const auto check = [&](const auto& chain, const auto& frame) {
+      std::vector<dual_quaternion<double>> a(count);
+      std::vector<matrix> m(count), again(count);
+      std::vector<value_and_jacobian<dual_quaternion<double>, matrix>> both(count);
+      poses(chain, theta, a);
+      jacobians(chain, theta, frame, m);
+      poses_and_jacobians(chain, theta, frame, both, execution{3});
+      jacobians(chain, std::span(theta), frame, std::span(again), execution{2});
+      for (std::size_t i = 0; i < count; ++i) {
+        CHECK(ulps_apart(a[i], chain.pose(theta[i])) <= limit);
+        CHECK(ulps_apart(m[i], matrix(jacobian(chain, theta[i], frame))) <= limit);
+        CHECK(m[i] == again[i]);
+        CHECK(ulps_apart(both[i].jacobian, m[i]) <= limit);
+        CHECK(ulps_apart(both[i].value, a[i]) <= limit);
+      }
+    };
+    duet_test::for_each_frame([&](const auto& frame) { check(known, frame); });
+    check(table, frame::body);
+    check(unsized, frame::hybrid);
+  }
+}
+
+TEST_CASE("other frames, and matrices of dynamic size") {
+  const auto chain = robots::panda();
+  const auto theta = configurations(6);
+  std::vector<dual_quaternion<double>> a(6);
+  std::vector<Eigen::MatrixXd> m(6, Eigen::MatrixXd(6, 7));
+  poses(chain, theta, a, one_core, 3);
+  jacobians(chain, theta, frame::hybrid, m, one_core, chain.tip().at_point({0.1, 0, 0}));
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK(ulps_apart(a[i], chain.pose(theta[i], 3)) <= limit);
+    const matrix expected =
+        jacobian(chain, theta[i], frame::hybrid, chain.tip().at_point({0.1, 0, 0}));
+    CHECK(ulps_apart(matrix(m[i]), expected) <= limit);
+  }
+}
+
+TEST_CASE("bad sizes are named") {
+  const auto chain = robots::panda();
+  auto theta = configurations(5);
+  std::vector<dual_quaternion<double>> a(4);
+  CHECK(message_of([&] { poses(chain, theta, a); }) ==
+        "duet: poses: 5 configurations, but room for 4 results");
+  std::vector<Eigen::MatrixXd> m(5, Eigen::MatrixXd(6, 7));
+  m[3].resize(6, 2);
+  CHECK(message_of([&] { jacobians(chain, theta, frame::body, m); }) ==
+        "duet: jacobians: result 3 is a 6 × 2 matrix, not 6 × 7");
+  std::vector<Eigen::VectorXd> wrong(4, Eigen::VectorXd::Zero(7));
+  wrong[2].resize(5);
+  CHECK(message_of([&] { poses(chain, wrong, a); }) ==
+        "duet: poses: configuration 2 has 5 coordinates, but 7 joints move");
+}
+
+TEST_CASE("rates and derivatives over batches are those of the lanes") {
+  const auto chain = robots::panda();
+  const auto table = chain.table();
+  std::vector<angles> theta = configurations(6), velocity = configurations(6);
+  std::swap(velocity[0], velocity[4]);
+  duet_test::check_lanes<4>(
+      [&](const auto& x, const auto& v) { return jacobian_rate(chain, x, v, frame::body); }, limit,
+      theta, velocity);
+  using D = dual<double>;
+  std::vector<Eigen::Matrix<D, 7, 1>> moving(theta.size());
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    for (Eigen::Index j = 0; j < 7; ++j) {
+      moving[i][j] = D(theta[i][j], velocity[i][j] / 3e6);
+    }
+  }
+  duet_test::check_lanes<4>([&](const auto& x) { return table.pose(x); }, 4 * limit, moving);
+}
+
+} // namespace test_mechanism_sweep

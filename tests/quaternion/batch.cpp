@@ -1,0 +1,179 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+
+#include "support/lanes.hpp"
+#include "support/random.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace test_quaternion_batch {
+
+using duet::batch;
+using duet::dual;
+using duet::quaternion;
+using duet::vector3;
+using duet_test::check_lanes;
+
+namespace {
+
+/// The lanes' sine and cosine may differ from the C library's in the last place each.
+constexpr double limit = 4;
+
+/// In every branch of exp and log: identity, tiny, small, half turns, nearly full turns, extreme
+/// norms, random.
+template <class T>
+std::vector<quaternion<T>> orientations() {
+  duet_test::random_source random(3);
+  const auto number = [&](double value) {
+    if constexpr (duet::Infinitesimal<T>) {
+      return T(value, random.uniform(-1, 1));
+    } else {
+      return value;
+    }
+  };
+  std::vector<quaternion<T>> result;
+  const auto add = [&](double w, double x, double y, double z) {
+    result.push_back({number(w), number(x), number(y), number(z)});
+  };
+  add(1, 0, 0, 0);
+  add(1, 1e-9, -2e-9, 1e-160);
+  add(0, 0.6, 0, 0.8);
+  add(-0.9999, 0.01, 0, 0.001);
+  add(0.9, 0.3, -0.2, 0.1);
+  add(3e200, 1e200, -2e200, 1e190);
+  add(2e-200, -1e-200, 0, 1e-210);
+  add(1e-17, 0, 1, 0);
+  add(-1, 1e-40, 0, 0);
+  while (result.size() < 15) {
+    add(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  }
+  return result;
+}
+
+template <class T>
+std::vector<vector3<T>> vectors() {
+  std::vector<vector3<T>> result;
+  for (const auto& q : orientations<T>()) {
+    const double factor = std::abs(duet::innermost(q.w())) > 10 ? 1e-200 : 1;
+    result.push_back(vector3<T>(q.x() * factor, q.y() * factor, q.z() * factor));
+  }
+  result[1] = vector3<T>::Zero();
+  result[3] *= 1000;
+  return result;
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("exp, log and powers", T, double, dual<double>) {
+  const auto q = orientations<T>();
+  check_lanes<4>([](const auto& v) { return duet::exp(v); }, limit, vectors<T>());
+  check_lanes<4>([](const auto& a) { return log(a); }, limit, q);
+  check_lanes<4>([](const auto& a) { return pow(a, 2); }, limit, q);
+  check_lanes<4>([](const auto& a) { return pow(a, 0.3); }, limit, q);
+  check_lanes<4>([](const auto& a, const auto& p) { return pow(a, p); }, limit, q,
+                 std::vector<T>{T(0.5), T(1), T(0), T(-1.7), T(3)});
+}
+
+TEST_CASE_TEMPLATE("norm, normalisation and inverse", T, double, dual<double>) {
+  const auto q = orientations<T>();
+  check_lanes<4>([](const auto& a) { return norm(a); }, limit, q);
+  check_lanes<4>([](const auto& a) { return normalized(a); }, limit, q);
+  check_lanes<4>([](const auto& a) { return inverse(a); }, limit, q);
+  check_lanes<4>([](const auto& a, const auto& b) { return a * normalized(b) - conj(a); }, limit, q,
+                 q);
+}
+
+TEST_CASE_TEMPLATE("slerp", T, double, dual<double>) {
+  std::vector<quaternion<T>> a, b;
+  for (const auto& q : orientations<T>()) {
+    a.push_back(normalized(q));
+  }
+  b = a;
+  std::swap(b[1], b[4]);
+  std::swap(b[6], b[12]);
+  b[13] = -b[13];
+  for (const auto way : {duet::way::shortest, duet::way::longest, duet::way::as_given}) {
+    // The longest way between equal orientations is undetermined.
+    if (way == duet::way::shortest) {
+      check_lanes<4>([&](const auto& p, const auto& r) { return slerp(p, r, 0.3, way); }, limit, a,
+                     b);
+    } else {
+      check_lanes<4>(
+          [&](const auto& p) {
+            return slerp(quaternion<double>(0.5, 0.5, -0.5, 0.5), p, 0.3, way);
+          },
+          limit, a);
+    }
+  }
+  check_lanes<4>(
+      [&](const auto& tau) {
+        return slerp(quaternion<double>(1), quaternion<double>(0.6, 0, 0.8, 0), tau);
+      },
+      limit, std::vector<T>{T(0), T(0.4), T(1), T(1e-9)});
+}
+
+TEST_CASE_TEMPLATE("rotations", T, double, dual<double>) {
+  const auto q = orientations<T>();
+  std::vector<quaternion<T>> unit;
+  std::vector<duet::matrix3<T>> matrices;
+  for (const auto& a : q) {
+    unit.push_back(normalized(a));
+    matrices.push_back(rotation_matrix(unit.back()));
+  }
+  check_lanes<4>([](const auto& a) { return rotation_matrix(a); }, limit, unit);
+  check_lanes<4>([](const auto& m) { return duet::from_rotation_matrix(m); }, limit, matrices);
+  check_lanes<4>([](const auto& a) { return rotation_vector(a); }, limit, unit);
+  check_lanes<4>([](const auto& a, const auto& v) { return rotate(a, v); }, limit, unit,
+                 vectors<T>());
+  check_lanes<4>([](const auto& r) { return duet::from_rotation_vector(r); }, limit, vectors<T>());
+  check_lanes<4>([](const auto& a) { return duet::euler<duet::zyx>(a); }, limit, unit);
+  check_lanes<4>([](const auto& a) { return duet::euler<duet::zxz>(a); }, limit, unit);
+  check_lanes<4>(
+      [](const auto& v) { return duet::from_two_vectors(v, decltype(v)(v + 1e-3 * v.cross(v))); },
+      limit, std::vector<vector3<T>>{vectors<T>()[2], vectors<T>()[4], vectors<T>()[10]});
+  check_lanes<4>(
+      [](const auto& a, const auto& b) { return angular_velocity(a, b, duet::frame::body); }, limit,
+      unit, unit);
+}
+
+TEST_CASE("functions of numbers, over nested derivatives") {
+  using D = dual<dual<double, 1, struct outer>, 1, struct inner>;
+  std::vector<D> x;
+  for (const double value : {0.2, 0.7, 0.9, 1e-5, 0.999, 0.5}) {
+    x.push_back(D(dual<double, 1, outer>(value, 0.3), dual<double, 1, outer>(1.5, -2)));
+  }
+  check_lanes<4>([](const auto& a) { return sin(a) * exp(a) + sqrt(a) / log(a); }, 16, x);
+  check_lanes<4>([](const auto& a) { return pow(a, 3) + pow(2, a) + pow(a, a); }, 16, x);
+  check_lanes<4>([](const auto& a) { return acos(a) * atan(5 * a) + atan2(a, 1 - a); }, 16, x);
+  check_lanes<4>([](const auto& a) { return tgamma(a - 0.6) + erf(a) + abs(a - 0.5); }, 64, x);
+  check_lanes<4>([](const auto& a) { return duet::stumpff<3>(20 * a) + duet::stumpff<0>(2 * a); },
+                 64, x);
+}
+
+TEST_CASE("zeros survive infinite slopes lane by lane") {
+  using D = dual<double, 2>;
+  std::vector<D> x{D(0), D::variable(0, 1), D::variable(4, 0), D(1)};
+  check_lanes<4>([](const auto& a) { return sqrt(a); }, limit, x);
+  check_lanes<4>([](const auto& a) { return 1 / a; }, limit, x);
+  check_lanes<4>([](const auto& a) { return pow(a, 0.5); }, limit, x);
+}
+
+TEST_CASE("the zero quaternion in one lane is an error") {
+  using B = batch<double, 4>;
+  const quaternion<B> q(B::from_lanes([](int i) { return i - 2.0; }), B(0), B(0), B(0));
+  CHECK_THROWS_AS(static_cast<void>(normalized(q)), duet::invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(log(q)), duet::invalid_input);
+}
+
+} // namespace test_quaternion_batch

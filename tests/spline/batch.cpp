@@ -1,0 +1,62 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
+
+#include "support/lanes.hpp"
+#include "support/random.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace test_spline_batch {
+
+using namespace duet;
+using duet_test::check_lanes;
+
+namespace {
+
+constexpr double limit = 16;
+
+template <class Spline>
+Spline some_spline() {
+  duet_test::random_source random(2);
+  std::vector<double> u;
+  std::vector<quaternion<double>> rows;
+  for (int i = 0; i <= 12; ++i) {
+    u.push_back(i + 0.3 * std::sin(i));
+    // Steps of up to half a turn: both the series and the closed forms of exp.
+    rows.push_back(from_rotation_vector(vector3<double>(
+        random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5))));
+  }
+  return interpolate<Spline>(u, rows, natural{});
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("lanes on different spans, at knots and beyond the ends", Spline,
+                   cumulative_bspline<double>, rotation_vector_spline<double>) {
+  auto s = some_spline<Spline>();
+  const std::vector<double> inside{0, 3.3, 3.3, 12 + 0.3 * std::sin(12), 1 + 0.3 * std::sin(1),
+                                   7, 5.5};
+  const auto value = [&](const auto& u) { return s(u); };
+  const auto velocity = [&](const auto& u) { return s.motion(u, frame::body).velocity; };
+  const auto jerk = [&](const auto& u) { return s.motion(u, frame::spatial).jerk; };
+  check_lanes<4>(value, limit, inside);
+  check_lanes<4>(velocity, limit, inside);
+  check_lanes<4>(jerk, 4 * limit, inside);
+  check_lanes<4>(value, limit, std::vector<dual<double>>{{0.5, 1}, {3.1, 2}, {11, -1}});
+
+  const std::vector<double> all{-0.5, 3.3, 13, 0.2};
+  CHECK_THROWS_AS(check_lanes<4>(value, limit, all), invalid_input);
+  for (const auto way : {outside::clamp, outside::extrapolate}) {
+    s.set_outside_domain(way);
+    check_lanes<4>(value, limit, all);
+    check_lanes<4>(velocity, limit, all);
+  }
+}
+
+} // namespace test_spline_batch
