@@ -134,26 +134,14 @@ private:
   template <int Stage, class Node>
   DUET_ALWAYS_INLINE constexpr void fill(const Given& g, Node) {
     if constexpr (stage_of<Node> == Stage) {
-      put(slot_of<Node>::value, leaf<Node, Given>::value(g));
+      slot_of<Node>::value = leaf<Node, Given>::value(g);
     }
   }
   template <int Stage, class Operation, class... Operands>
   DUET_ALWAYS_INLINE constexpr void fill(const Given&, applied_node<Operation, Operands...>) {
     using node = applied_node<Operation, Operands...>;
     if constexpr (stage_of<node> == Stage && !is_sine<node>) {
-      put(slot_of<node>::value, Operation::value((*this)[Operands{}]...));
-    }
-  }
-
-  /// Component by component, or Eigen would move vectors of three in packets.
-  template <class T>
-  DUET_ALWAYS_INLINE static constexpr void put(T& target, const T& value) {
-    if constexpr (requires { value.transpose(); }) {
-      target[0] = value[0];
-      target[1] = value[1];
-      target[2] = value[2];
-    } else {
-      target = value;
+      slot_of<node>::value = Operation::value((*this)[Operands{}]...);
     }
   }
 
