@@ -5,11 +5,12 @@
 #include <duet/planning/path_follower.hpp>
 #include <duet/quaternion/norm.hpp>
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <sstream>
-#include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -95,13 +96,13 @@ const Path&, double > [[nodiscard]] motion_plan<C::joints>
 
 /// The same along a spline of poses, over all of its domain.
 template <SerialChain C, VectorLike Start, class Spline, class Objective = no_objective>
-  requires requires(const Spline& s) { s.spans().breaks().front(); }
+  requires requires(const Spline& s) { s.breaks().front(); }
 [[nodiscard]] motion_plan<C::joints> follow_path(const C& chain, const Start& start,
                                                  const Spline& spline,
                                                  const plan_options& options = {},
                                                  const Objective& objective = {}) {
   detail::require_start(chain, start);
-  const auto& breaks = spline.spans().breaks();
+  const auto& breaks = spline.breaks();
   return detail::follow(chain, start, detail::checked(spline),
                         std::vector<double>(breaks.begin(), breaks.end()), options, objective);
 }
