@@ -2,7 +2,7 @@
 
 /// \file
 /// Plans of a Panda along screws: how many of 300 random problems are solved, and how long one
-/// takes. A program of its own: build/bench/bench/duet_bench_planning
+/// takes. A program of its own: build/bench/bench/duet_planning_bench
 
 #include <duet/comparison/random_source.hpp>
 #include <duet/dual_quaternion/screw.hpp>

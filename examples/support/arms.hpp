@@ -1,0 +1,90 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "command_line.hpp"
+#include "numbers.hpp"
+
+#include <duet/mechanism/robots.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/mechanism/urdf.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// \file
+/// The arms that examples run on: duet's, or one from a URDF file.
+
+namespace example {
+
+/// Any of the arms, so that what is done with it is compiled once.
+using arm_chain = duet::serial_chain<-16>;
+
+/// The options --robot, --urdf, --base and --tip.
+inline void add_arm_options(po::options_description& description) {
+  auto add = description.add_options();
+  const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
+  add("robot", text("NAME"), "panda, iiwa14, ur5e or baxter_left (default: panda)");
+  add("urdf", text("FILE"), "a robot description instead, with --base and --tip");
+  add("base", text("LINK"), "its link to start from");
+  add("tip", text("LINK"), "its link to end with");
+}
+
+/// The arm that these options name.
+[[nodiscard]] inline arm_chain arm_of(const command_line& given) {
+  namespace robots = duet::robots;
+  const auto joints_of = [](const arm_chain& arm) {
+    if (arm.size() == 0) {
+      throw std::runtime_error("no joint moves between base and tip");
+    }
+    return arm;
+  };
+  if (const auto file = given.text("urdf")) {
+    return joints_of(
+        duet::read_urdf(*file, given.text("base").value_or(""), given.text("tip").value_or("")));
+  }
+  const std::string name = given.text("robot").value_or("panda");
+  if (name == "panda") {
+    return robots::panda().table();
+  }
+  if (name == "iiwa14") {
+    return robots::iiwa14().table();
+  }
+  if (name == "ur5e") {
+    return robots::ur5e().table();
+  }
+  if (name == "baxter_left") {
+    return robots::baxter_left().table();
+  }
+  throw std::runtime_error("--robot: '" + name +
+                           "' is none of panda, iiwa14, ur5e and baxter_left");
+}
+
+/// The coordinates that an option of this name gives, else the middle of the limits, or 0 where
+/// there are none.
+[[nodiscard]] inline Eigen::VectorXd coordinates(const arm_chain& arm, const command_line& given,
+                                                 const std::string& name) {
+  Eigen::VectorXd theta(arm.size());
+  const auto text = given.text(name);
+  if (!text) {
+    for (int i = 0; i < arm.size(); ++i) {
+      const double middle = (arm.limits(i).lower + arm.limits(i).upper) / 2;
+      theta[i] = middle - middle == 0 ? middle : 0;
+    }
+    return theta;
+  }
+  const std::vector<double> numbers = parse_numbers("--" + name, *text);
+  if (numbers.size() != std::size_t(arm.size())) {
+    throw std::runtime_error("--" + name + ": " + std::to_string(arm.size()) +
+                             " numbers expected, got " + std::to_string(numbers.size()));
+  }
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] = numbers[std::size_t(i)];
+  }
+  return theta;
+}
+
+} // namespace example
