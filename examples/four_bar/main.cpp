@@ -175,7 +175,7 @@ std::string links_csv(const options& given, const std::vector<sample>& samples) 
 }
 
 std::string picture_script() {
-  return "set datafile separator ','\nset grid\nset multiplot layout 1,2\n"
+  return "set datafile separator ','\nset autoscale\nset grid\nset multiplot layout 1,2\n"
          "set size ratio -1\nset xlabel 'x / m'\nset ylabel 'y / m'\nset key top left\n"
          "plot 'motion.csv' using 8:9 skip 1 with lines lw 2.5 lc rgb '#1f77b4' title "
          "'coupler point', 'links.csv' using 1:2 skip 1 with linespoints lw 1.2 pt 7 ps 0.5 "

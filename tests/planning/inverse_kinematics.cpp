@@ -126,7 +126,7 @@ TEST_CASE("goals and starts at singularities and limits") {
   }
 }
 
-TEST_CASE("either sign of the goal, small tolerances, an arm the compiler knows") {
+TEST_CASE("either sign of the goal, and small tolerances") {
   const chain arm = robots::panda().table();
   duet_test::random_source random(33);
   const vector start = configuration(arm, random);
@@ -135,10 +135,6 @@ TEST_CASE("either sign of the goal, small tolerances, an arm the compiler knows"
   CHECK(are_identical(found, inverse_kinematics(arm, -goal, start)));
   const auto close = inverse_kinematics(arm, goal, start, {.tolerance = 1e-13});
   CHECK(is_solution(arm, close, goal, 1e-13));
-  const Eigen::Matrix<double, 7, 1> seven = start;
-  const auto known = inverse_kinematics(robots::panda(), goal, seven);
-  CHECK(duet_test::gap(known.joints, found.joints) < 1e-9);
-  CHECK(known.iterations == found.iterations);
 }
 
 TEST_CASE("every kind of joint, without limits; turning joints are turned back into theirs") {
@@ -241,22 +237,25 @@ TEST_CASE("many goals: as one by one, on any number of cores") {
     goals.push_back(arm.pose(configuration(arm, random)));
   }
   goals[3] = at(.9, .2, .9);
-  std::vector<result> out(goals.size());
+  const inverse_kinematics_options options{.restarts = 10, .seed = 5};
+  std::vector<result> one_by_one, out(goals.size());
+  for (const auto& goal : goals) {
+    one_by_one.push_back(inverse_kinematics(arm, goal, start, options));
+  }
   for (const unsigned threads : {1U, 2U, 3U}) {
     std::fill(out.begin(), out.end(), result{});
-    inverse_kinematics(arm, goals, start, out, {.seed = 5}, execution{threads});
-    for (std::size_t i = 0; i < goals.size(); ++i) {
-      CHECK(are_identical(out[i], inverse_kinematics(arm, goals[i], start, {.seed = 5})));
-    }
+    inverse_kinematics(arm, goals, start, out, options, execution{threads});
+    CHECK(std::equal(out.begin(), out.end(), one_by_one.begin(), are_identical));
   }
   CHECK_THROWS_WITH_AS(
       inverse_kinematics(arm, goals, start, std::span(out).first(7), {}, all_cores),
       "duet: inverse_kinematics: 20 goals, but room for 7 results", invalid_input);
-  goals[17] = goals[17] * std::nan("");
+  goals[17] = at(0, 0, 0) * 2.0;
+  goals[18] = goals[18] * std::nan("");
   out[0].iterations = -1;
   CHECK_THROWS_WITH_AS(inverse_kinematics(arm, goals, start, out, {}, all_cores),
-                       "duet: inverse_kinematics: goal 17 is no unit dual quaternion, its norm is "
-                       "nan",
+                       "duet: inverse_kinematics: goal 17 is no unit dual quaternion: |p|^2 = 4, "
+                       "p.q = 0",
                        invalid_input);
   CHECK(out[0].iterations == -1); // nothing was begun
 }
@@ -265,10 +264,13 @@ TEST_CASE("bad problems") {
   const chain arm = robots::panda().table();
   const vector start = (lower_limits(arm) + upper_limits(arm)) / 2;
   const auto goal = arm.pose(start);
-  CHECK_THROWS_WITH_AS(
-      (void)inverse_kinematics(arm, goal * 2.0, start),
-      "duet: inverse_kinematics: the goal is no unit dual quaternion, its norm is 2",
-      invalid_input);
+  const auto half = make_dual_quaternion(quaternion<double>(1), quaternion<double>(.5));
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, half, start),
+                       "duet: inverse_kinematics: the goal is no unit dual quaternion: |p|^2 = 1, "
+                       "p.q = 0.5",
+                       invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal * std::nan(""), start), invalid_input);
+  CHECK(inverse_kinematics(arm, at(1e200, 0, 0), start).reason == stop_reason::out_of_reach);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, vector::Zero(6).eval()),
                        "duet: a chain of 7 moving joints, but 6 coordinates", invalid_input);
   vector broken = start;
