@@ -19,7 +19,7 @@ namespace {
 using namespace duet;
 namespace po = example::po;
 
-void report(const example::arm& arm, const Eigen::VectorXd& theta) {
+void report(const example::arm_chain& arm, const Eigen::VectorXd& theta) {
   const auto [tip, J] = pose_and_jacobian(arm, theta, frame::hybrid);
   const auto t = translation(tip);
   const auto q = rotation(tip);
@@ -52,18 +52,17 @@ void report(const example::arm& arm, const Eigen::VectorXd& theta) {
 int main(int argc, char** argv) {
   try {
     po::options_description description("A robot arm at given joint coordinates. Options");
-    description.add_options()("help", "print this and stop");
     example::add_arm_options(description);
-    description.add_options()(
-        "joints", po::value<std::string>()->value_name("X,X,..."),
+    auto add = description.add_options();
+    add("joints", po::value<std::string>()->value_name("X,X,..."),
         "coordinates, as 0,0.5,-1: radians or metres (default: the middle of the limits)");
+    add("help", "print this and stop");
     const auto line = example::command_line::parse(argc, argv, description);
     if (!line) {
       return 0;
     }
-    const example::arm arm = example::arm_of(*line);
-    const auto joints = line->text("joints");
-    report(arm, joints ? example::coordinates("--joints", *joints, arm) : example::middle(arm));
+    const example::arm_chain arm = example::arm_of(*line);
+    report(arm, example::coordinates(arm, *line, "joints"));
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "robot_arm: " << error.what() << "\n";

@@ -3,10 +3,12 @@
 
 #include "../support/arms.hpp"
 #include "../support/command_line.hpp"
+#include "../support/numbers.hpp"
 
 #include <duet/duet.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -21,7 +23,7 @@ using pose_type = duet::dual_quaternion<double>;
 using point = Eigen::Vector3d;
 
 struct problem {
-  example::arm arm;
+  example::arm_chain arm;
   Eigen::VectorXd start;
   pose_type goal;
   duet::scene around;
@@ -48,7 +50,7 @@ inline std::optional<std::vector<double>> usual_posture(const std::string& robot
 }
 
 /// A capsule along each link, from its frame to that of the next one.
-inline std::vector<duet::link_body> bodies(const example::arm& arm, double radius) {
+inline std::vector<duet::link_body> bodies(const example::arm_chain& arm, double radius) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.size());
   std::vector<duet::link_body> result;
   for (int link = 1; link <= arm.size(); ++link) {
@@ -60,9 +62,20 @@ inline std::vector<duet::link_body> bodies(const example::arm& arm, double radiu
   return result;
 }
 
+/// \throws std::runtime_error with the option's name
+inline std::vector<double> numbers(const std::string& option, const std::string& text,
+                                   std::size_t count) {
+  std::vector<double> result = example::parse_numbers(option, text);
+  if (result.size() != count) {
+    throw std::runtime_error(option + ": " + std::to_string(count) + " numbers expected, got " +
+                             std::to_string(result.size()));
+  }
+  return result;
+}
+
 /// `x, y, z, qw, qx, qy, qz`.
 inline pose_type pose_of(const std::string& option, const std::string& text) {
-  const auto x = example::numbers(option, text, 7);
+  const auto x = numbers(option, text, 7);
   const duet::quaternion<double> q(x[3], x[4], x[5], x[6]);
   if (!(std::abs(norm(q) - 1) <= duet::unit_norm_tolerance)) {
     throw std::runtime_error(option + ": the quaternion has norm " + duet::to_text(norm(q)) +
@@ -116,27 +129,22 @@ inline std::optional<problem> parse(int argc, char** argv) {
   problem result{example::arm_of(*given), {}, {}, {}};
   const auto usual =
       given->has("urdf") ? std::nullopt : usual_posture(given->text("robot").value_or("panda"));
-  if (const auto start = given->text("start")) {
-    result.start = example::coordinates("--start", *start, result.arm);
-  } else {
-    result.start = usual ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-                               usual->data(), Eigen::Index(usual->size())))
-                         : example::middle(result.arm);
-  }
+  result.start = usual && !given->has("start") ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                                                     usual->data(), Eigen::Index(usual->size())))
+                                               : example::coordinates(result.arm, *given, "start");
   const auto goal = given->text("goal"), goal_joints = given->text("goal-joints");
   if (goal && goal_joints) {
     throw std::runtime_error("--goal and --goal-joints exclude each other");
   }
-  result.goal =
-      goal ? pose_of("--goal", *goal)
-      : goal_joints
-          ? result.arm.pose(example::coordinates("--goal-joints", *goal_joints, result.arm))
-          : usual_goal(result.arm.pose(result.start));
+  result.goal = goal ? pose_of("--goal", *goal)
+                : goal_joints
+                    ? result.arm.pose(example::coordinates(result.arm, *given, "goal-joints"))
+                    : usual_goal(result.arm.pose(result.start));
 
   const auto each = [&](const char* name, std::size_t count, const auto& add) {
     for (const auto& text :
          given->get<std::vector<std::string>>(name).value_or(std::vector<std::string>{})) {
-      add(example::numbers(std::string("--") + name, text, count));
+      add(numbers(std::string("--") + name, text, count));
     }
   };
   auto& obstacles = result.around.obstacles;

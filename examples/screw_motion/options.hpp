@@ -2,24 +2,21 @@
 #pragma once
 
 #include "../support/command_line.hpp"
+#include "../support/poses.hpp"
+
 #include <duet/core/csv.hpp>
-
 #include <duet/core/errors.hpp>
-#include <duet/core/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/rotation.hpp>
 
-#include <cmath>
-#include <cstddef>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 /// \file
-/// The command line, and poses as it and files give them.
+/// The command line.
 
 namespace screw_motion {
 
@@ -32,49 +29,6 @@ struct options {
   std::string out = "screw_motion_out";
 };
 
-/// The pose of `x, y, z, qw, qx, qy, qz` or of a matrix [R t; 0 1], row by row, 12 or 16 numbers.
-/// \throws duet::invalid_input that says what is wrong, without a place
-inline pose_type parse_pose(const std::vector<double>& x) {
-  const std::string count = std::to_string(x.size());
-  if (x.size() == 7) {
-    const duet::quaternion<double> q(x[3], x[4], x[5], x[6]);
-    const double length = norm(q);
-    if (!(std::abs(length - 1) <= duet::unit_norm_tolerance)) {
-      throw duet::invalid_input("the quaternion has norm " + duet::to_text(length) + ", not 1");
-    }
-    return duet::pose(normalized(q), duet::vector3<double>(x[0], x[1], x[2]));
-  }
-  if (x.size() != 12 && x.size() != 16) {
-    throw duet::invalid_input("7 numbers (x, y, z, qw, qx, qy, qz) or 12 or 16 (a matrix, row by "
-                              "row) expected, got " +
-                              count);
-  }
-  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    m(Eigen::Index(i / 4), Eigen::Index(i % 4)) = x[i];
-  }
-  return duet::from_transform_matrix(m);
-}
-
-/// \throws std::runtime_error with the option's name
-inline pose_type parse_pose(const std::string& option, const std::string& text) {
-  std::vector<double> numbers;
-  std::istringstream cells(text);
-  std::string cell;
-  while (std::getline(cells, cell, ',')) {
-    const auto number = duet::parse_number(cell);
-    if (!number || !std::isfinite(*number)) {
-      throw std::runtime_error(option + ": '" + cell + "' is not a finite number");
-    }
-    numbers.push_back(*number);
-  }
-  try {
-    return parse_pose(numbers);
-  } catch (const duet::invalid_input& error) {
-    throw std::runtime_error(option + ": " + error.what());
-  }
-}
-
 /// The two poses of the command line, of the file, or of an example.
 inline std::pair<pose_type, pose_type> poses(const options& given) {
   if (given.file) {
@@ -82,7 +36,7 @@ inline std::pair<pose_type, pose_type> poses(const options& given) {
     std::vector<pose_type> result;
     for (const duet::csv_row& row : file.rows()) {
       try {
-        result.push_back(parse_pose(row.numbers));
+        result.push_back(example::parse_pose(row.numbers));
       } catch (const duet::invalid_input& error) {
         throw duet::file_error(*given.file, row.line, error.what());
       }
@@ -94,7 +48,7 @@ inline std::pair<pose_type, pose_type> poses(const options& given) {
     return {result[0], result[1]};
   }
   if (given.from && given.to) {
-    return {parse_pose("--from", *given.from), parse_pose("--to", *given.to)};
+    return {example::parse_pose("--from", *given.from), example::parse_pose("--to", *given.to)};
   }
   const auto turned = [](double x, double y, double z, double angle) {
     return duet::from_axis_angle(duet::vector3<double>(x, y, z), angle);

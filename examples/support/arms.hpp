@@ -2,97 +2,87 @@
 #pragma once
 
 #include "command_line.hpp"
+#include "numbers.hpp"
 
-#include <duet/core/number_text.hpp>
 #include <duet/mechanism/robots.hpp>
+#include <duet/mechanism/serial_chain.hpp>
 #include <duet/mechanism/urdf.hpp>
 
 #include <Eigen/Core>
 
 #include <cstddef>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 /// \file
-/// Arms by name or from files, and numbers for them, from command lines.
+/// The arms that examples run on: duet's, or one from a URDF file.
 
 namespace example {
 
-/// Any of the arms, so that what works on it is compiled once.
-using arm = duet::serial_chain<-16>;
+/// Any of the arms, so that what is done with it is compiled once.
+using arm_chain = duet::serial_chain<-16>;
 
-/// The options `arm_of` reads.
+/// The options --robot, --urdf, --base and --tip.
 inline void add_arm_options(po::options_description& description) {
-  const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
   auto add = description.add_options();
+  const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
   add("robot", text("NAME"), "panda, iiwa14, ur5e or baxter_left (default: panda)");
   add("urdf", text("FILE"), "a robot description instead, with --base and --tip");
   add("base", text("LINK"), "its link to start from");
   add("tip", text("LINK"), "its link to end with");
 }
 
-/// \throws std::exception with a one-line message
-[[nodiscard]] inline arm arm_of(const command_line& given) {
-  if (const auto file = given.text("urdf")) {
-    const arm read =
-        duet::read_urdf(*file, given.text("base").value_or(""), given.text("tip").value_or(""));
-    if (read.size() == 0) {
+/// The arm that these options name.
+[[nodiscard]] inline arm_chain arm_of(const command_line& given) {
+  namespace robots = duet::robots;
+  const auto joints_of = [](const arm_chain& arm) {
+    if (arm.size() == 0) {
       throw std::runtime_error("no joint moves between base and tip");
     }
-    return read;
+    return arm;
+  };
+  if (const auto file = given.text("urdf")) {
+    return joints_of(
+        duet::read_urdf(*file, given.text("base").value_or(""), given.text("tip").value_or("")));
   }
   const std::string name = given.text("robot").value_or("panda");
   if (name == "panda") {
-    return duet::robots::panda().table();
+    return robots::panda().table();
   }
   if (name == "iiwa14") {
-    return duet::robots::iiwa14().table();
+    return robots::iiwa14().table();
   }
   if (name == "ur5e") {
-    return duet::robots::ur5e().table();
+    return robots::ur5e().table();
   }
   if (name == "baxter_left") {
-    return duet::robots::baxter_left().table();
+    return robots::baxter_left().table();
   }
   throw std::runtime_error("--robot: '" + name +
                            "' is none of panda, iiwa14, ur5e and baxter_left");
 }
 
-/// `count` numbers with commas between them, or any number of them.
-/// \throws std::runtime_error with the option's name
-[[nodiscard]] inline std::vector<double> numbers(const std::string& option, const std::string& text,
-                                                 std::size_t count = 0) {
-  std::vector<double> result;
-  std::istringstream cells(text);
-  std::string cell;
-  while (std::getline(cells, cell, ',')) {
-    const auto number = duet::parse_number(cell);
-    if (!number || !(*number - *number == 0)) {
-      throw std::runtime_error(option + ": '" + cell + "' is not a finite number");
+/// The coordinates that an option of this name gives, else the middle of the limits, or 0 where
+/// there are none.
+[[nodiscard]] inline Eigen::VectorXd coordinates(const arm_chain& arm, const command_line& given,
+                                                 const std::string& name) {
+  Eigen::VectorXd theta(arm.size());
+  const auto text = given.text(name);
+  if (!text) {
+    for (int i = 0; i < arm.size(); ++i) {
+      const double middle = (arm.limits(i).lower + arm.limits(i).upper) / 2;
+      theta[i] = middle - middle == 0 ? middle : 0;
     }
-    result.push_back(*number);
+    return theta;
   }
-  if (count != 0 && result.size() != count) {
-    throw std::runtime_error(option + ": " + std::to_string(count) + " numbers expected, got " +
-                             std::to_string(result.size()));
+  const std::vector<double> numbers = parse_numbers("--" + name, *text);
+  if (numbers.size() != std::size_t(arm.size())) {
+    throw std::runtime_error("--" + name + ": " + std::to_string(arm.size()) +
+                             " numbers expected, got " + std::to_string(numbers.size()));
   }
-  return result;
-}
-
-[[nodiscard]] inline Eigen::VectorXd coordinates(const std::string& option, const std::string& text,
-                                                 const arm& of) {
-  const std::vector<double> x = numbers(option, text, std::size_t(of.size()));
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), of.size());
-}
-
-/// The middle of the limits, 0 where there are none.
-[[nodiscard]] inline Eigen::VectorXd middle(const arm& of) {
-  Eigen::VectorXd theta(of.size());
-  for (int i = 0; i < of.size(); ++i) {
-    const double half_way = (of.limits(i).lower + of.limits(i).upper) / 2;
-    theta[i] = half_way - half_way == 0 ? half_way : 0;
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] = numbers[std::size_t(i)];
   }
   return theta;
 }

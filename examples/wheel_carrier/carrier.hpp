@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/derivative/implicit_function.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/mechanism/closed_loop.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
@@ -58,38 +59,40 @@ struct state {
   [[nodiscard]] vector3 omega_first() const { return 2 * (q_second * conj(q)).vec(); }
 };
 
-/// Solves |W + R s_i − A_i|² = L_i², i = 1 … 5, for W_x, W_y and the rotation at W_z = u.
-class carrier {
-public:
-  explicit carrier(hardpoints points) : points_(std::move(points)) {}
+/// |W + R s_i − A_i|² = L_i², i = 1 … 5, for W_x, W_y and the rotation at W_z = u.
+struct constraints {
+  hardpoints points;
 
-  [[nodiscard]] const hardpoints& points() const { return points_; }
-
-  /// |W + R s_i − A_i|² − L_i² of the five rods.
   template <class X, class T>
-  [[nodiscard]] auto residuals(const X& x, const T& height) const {
-    const auto& xy = std::get<0>(x);
-    const auto& q = std::get<1>(x);
+  [[nodiscard]] auto operator()(const X& x, const T& height) const {
+    const auto& [xy, q] = x;
     using S = std::common_type_t<std::decay_t<decltype(q.w())>, T>;
     const duet::vector3<S> centre(xy[0], xy[1], S(height));
     Eigen::Matrix<S, 5, 1> result;
     for (int i = 0; i < 5; ++i) {
-      const auto& [name, chassis, joint] = points_.rods[std::size_t(i)];
-      const duet::vector3<S> d =
-          centre + rotate(duet::quaternion<S>(q), vector3(joint - points_.wheel_centre)) - chassis;
-      result[i] = d.squaredNorm() - (joint - chassis).squaredNorm();
+      const rod& r = points.rods[std::size_t(i)];
+      const vector3 arm = r.carrier - points.wheel_centre;
+      const duet::vector3<S> d = centre + rotate(duet::quaternion<S>(q), arm) - r.chassis;
+      result[i] = d.squaredNorm() - (r.carrier - r.chassis).squaredNorm();
     }
     return result;
   }
+};
 
-  /// Position, orientation and their first two derivatives, by the implicit function theorem.
-  /// Newton's method starts from the design position. \throws duet::no_convergence where the rods
-  /// cannot close
+/// The carrier on its rods, from the design position on.
+class carrier {
+public:
+  explicit carrier(const hardpoints& points)
+      : points_(points),
+        loop_(constraints{points}, unknowns(points.wheel_centre.head<2>(), rotation(1)),
+              points.wheel_centre[2]) {}
+
+  [[nodiscard]] const hardpoints& points() const { return points_; }
+
+  /// Position, orientation and their first two derivatives.
+  /// \throws duet::cannot_close where the rods cannot
   [[nodiscard]] state at(double u) const {
-    using unknowns = std::tuple<vector2, rotation>;
-    const unknowns design{points_.wheel_centre.head<2>(), rotation(1)};
-    const auto loop = [this](const auto& x, const auto& height) { return residuals(x, height); };
-    const auto x = duet::implicit_function<2>(loop, design, u);
+    const auto x = duet::derivatives<2>(loop_, u);
     const auto centre = [&](std::size_t order, double height) {
       const vector2& xy = std::get<0>(x[order]);
       return vector3(xy[0], xy[1], height);
@@ -104,7 +107,10 @@ public:
   }
 
 private:
+  using unknowns = std::tuple<vector2, rotation>;
+
   hardpoints points_;
+  duet::closed_loop<constraints, unknowns> loop_;
 };
 
 } // namespace wheel_carrier

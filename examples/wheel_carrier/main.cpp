@@ -42,8 +42,9 @@ std::vector<state> solve(const carrier& mechanism, const std::vector<double>& sa
   for (const double u : samples) {
     try {
       states.push_back(mechanism.at(u));
-    } catch (const duet::no_convergence&) {
-      throw std::runtime_error("the rods cannot close at u = " + duet::to_text(u) + " m");
+    } catch (const duet::cannot_close& error) {
+      throw std::runtime_error(
+          "the rods cannot close beyond u = " + duet::to_text(error.parameter().front()) + " m");
     }
   }
   return states;

@@ -34,6 +34,7 @@
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/dual_quaternion/wrench.hpp>
 #include <duet/mechanism/analytic_jacobian.hpp>
+#include <duet/mechanism/closed_loop.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
 #include <duet/mechanism/joint_efforts.hpp>
@@ -41,6 +42,7 @@
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/screw_axes.hpp>
 #include <duet/mechanism/urdf.hpp>
+#include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/planning/printed_plan.hpp>
 #include <duet/planning/save_plan.hpp>

@@ -157,4 +157,47 @@ struct polar {
   }
 };
 
+/// N19, A (A* B)^τ of the displacements (a, ta) and (b, tb), through the axis of the screw, and its
+/// derivative by τ.
+template <class T>
+struct screw_way {
+  q4<T> alpha, dalpha;
+  v3<T> place, dplace;
+  screw_way(const q4<T>& a, const v3<T>& ta, q4<T> b, const v3<T>& tb, const T& tau,
+            const T& dtau) {
+    using std::atan2;
+    using std::cos;
+    using std::sin;
+    using std::sqrt;
+    if (dot(a, b) < 0) {
+      b = times(T(-1), b);
+    }
+    // The way from A to B in axes of A: a turn `rel`, a shift t.
+    const q4<T> rel = product(conj(a), b);
+    const v3<T> t = vec(product(product(conj(a), pure(plus(tb, times(T(-1), ta)))), a));
+    const T length = sqrt(dot(vec(rel), vec(rel)));
+    const T half = atan2(length, rel[0]);
+    q4<T> q{T(1), T(0), T(0), T(0)}, dq{};
+    v3<T> s = times(tau, t), ds = times(dtau, t);
+    if (length > T(1e-20)) { // below, the axis is so far away that 50 digits do not do
+      const v3<T> n = times(T(1 / length), vec(rel));
+      const T along = dot(n, t);
+      // The point of the axis next to the origin: ½(t⊥ + cot(φ/2) n × t).
+      const v3<T> near =
+          times(T(0.5), plus(plus(t, times(T(-along), n)), times(T(rel[0] / length), cross(n, t))));
+      const T c = cos(T(half * tau)), h = sin(T(half * tau)), speed = half * dtau;
+      q = {c, T(h * n[0]), T(h * n[1]), T(h * n[2])};
+      dq = {T(-h * speed), T(c * speed * n[0]), T(c * speed * n[1]), T(c * speed * n[2])};
+      const v3<T> moved = vec(product(product(q, pure(near)), conj(q)));
+      s = plus(plus(near, times(T(-1), moved)), times(T(along * tau), n));
+      ds = plus(times(T(-2 * speed), cross(n, moved)), times(T(along * dtau), n));
+    }
+    // A times that.
+    alpha = product(a, q);
+    dalpha = product(a, dq);
+    place = plus(ta, vec(product(product(a, pure(s)), conj(a))));
+    dplace = vec(product(product(a, pure(ds)), conj(a)));
+  }
+};
+
 } // namespace by_hand

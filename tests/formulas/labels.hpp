@@ -17,11 +17,6 @@ inline constexpr const char* labels[] = {"N1",  "N2",  "N3",  "N4",  "N5",  "N6"
 
 inline std::vector<reference> references() {
   return {
-      {"N22", "least joint rates $\\dot\\Theta = B\\dot\\gamma$", "`resolved_rate_matrix`",
-       "`planning/resolved_motion`"},
-      {"N23", "step of the joints", "`resolved_step`", "`planning/resolved_motion`"},
-      {"N24", "motion planning step by step", "`printed_screw_plan`, `plan_screw_motion`",
-       "`planning/plan_screw_motion`"},
       {"N25", "given paths, inverse kinematics", "", "not in duet yet"},
       {"P1", "basis functions", "`bspline_basis`", "`examples/printed_formulas`, `spline/basis`"},
       {"P2", "cumulative curve", "`cumulative_bspline`",

@@ -103,47 +103,13 @@ formula screw_interpolation() {
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        using std::atan2;
-        using std::cos;
-        using std::sin;
-        using std::sqrt;
         const v3<T> none{};
-        const q4<T> a = unit<T>(part<3>(x, 0), none).q;
-        q4<T> b = unit<T>(part<3>(x, 6), none).q;
-        if (dot(a, b) < 0) {
-          b = times(T(-1), b);
-        }
-        const v3<T> ta = part<3>(x, 3);
-        // The way from A to B in axes of A: a turn `rel`, a shift t.
-        const q4<T> rel = product(conj(a), b);
-        const v3<T> t =
-            vec(product(product(conj(a), pure(plus(part<3>(x, 9), times(T(-1), ta)))), a));
-        const T length = sqrt(dot(vec(rel), vec(rel)));
-        const T half = atan2(length, rel[0]);
-        const T tau = x[12];
-        q4<T> q{T(1), T(0), T(0), T(0)}, dq{};
-        v3<T> s = times(tau, t), ds = times(d[12], t);
-        if (length > T(1e-20)) { // below, the axis is so far away that 50 digits do not do
-          const v3<T> n = times(T(1 / length), vec(rel));
-          const T along = dot(n, t);
-          // The point of the axis next to the origin: ½(t⊥ + cot(φ/2) n × t).
-          const v3<T> place = times(
-              T(0.5), plus(plus(t, times(T(-along), n)), times(T(rel[0] / length), cross(n, t))));
-          const T c = cos(T(half * tau)), h = sin(T(half * tau)), speed = half * d[12];
-          q = {c, T(h * n[0]), T(h * n[1]), T(h * n[2])};
-          dq = {T(-h * speed), T(c * speed * n[0]), T(c * speed * n[1]), T(c * speed * n[2])};
-          const v3<T> moved = vec(product(product(q, pure(place)), conj(q)));
-          s = plus(plus(place, times(T(-1), moved)), times(T(along * tau), n));
-          ds = plus(times(T(-2 * speed), cross(n, moved)), times(T(along * d[12]), n));
-        }
-        // A times that.
-        const q4<T> alpha = product(a, q), dalpha = product(a, dq);
-        const v3<T> place = plus(ta, vec(product(product(a, pure(s)), conj(a))));
-        const v3<T> dplace = vec(product(product(a, pure(ds)), conj(a)));
-        const q4<T> beta = times(T(0.5), product(pure(place), alpha));
+        const screw_way<T> c(unit<T>(part<3>(x, 0), none).q, part<3>(x, 3),
+                             unit<T>(part<3>(x, 6), none).q, part<3>(x, 9), x[12], d[12]);
+        const q4<T> beta = times(T(0.5), product(pure(c.place), c.alpha));
         const q4<T> dbeta =
-            times(T(0.5), plus(product(pure(dplace), alpha), product(pure(place), dalpha)));
-        return row<T>(alpha, beta, dalpha, dbeta);
+            times(T(0.5), plus(product(pure(c.dplace), c.alpha), product(pure(c.place), c.dalpha)));
+        return row<T>(c.alpha, beta, c.dalpha, dbeta);
       },
       {16, 16},
       [](const numbers<double>& x) {

@@ -212,7 +212,9 @@ numbers<double> direction(const formula& f, const numbers<double>& x,
 worst_errors measured(const formula& f) {
   worst_errors worst;
   duet_test::random_source random(9);
-  for (const auto& x : inputs_of(f)) {
+  const auto inputs = inputs_of(f);
+  CHECK(inputs.size() >= 4);
+  for (const auto& x : inputs) {
     const numbers<double> d = direction(f, x, random);
     const exact_values exact(f, x, d);
     const auto closed = f.closed(x, d);
@@ -277,7 +279,8 @@ TEST_CASE("every formula is as close to 50 digits as promised, and is in the tab
 
   table << "| | formula | by | value | closed form | dual | Taylor | nested | worst input |\n"
            "|---|---|---|---|---|---|---|---|---|\n";
-  for (const auto& group : {quaternion_formulas(), dual_formulas(), rigid_motion_formulas()}) {
+  for (const auto& group :
+       {quaternion_formulas(), dual_formulas(), rigid_motion_formulas(), planning_formulas()}) {
     for (const formula& f : group) {
       const worst_errors worst = measured(f);
       add(f.label, row_of(f),

@@ -13,5 +13,6 @@ namespace duet_formulas {
 std::vector<formula> quaternion_formulas();
 std::vector<formula> dual_formulas();
 std::vector<formula> rigid_motion_formulas();
+std::vector<formula> planning_formulas();
 
 } // namespace duet_formulas

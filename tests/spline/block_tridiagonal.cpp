@@ -59,7 +59,8 @@ void check(std::size_t n, const corners& at) {
     }
   }
   block_tridiagonal<double, 3> solver;
-  REQUIRE(solver.factorise(rows, at));
+  solver.rows() = rows;
+  REQUIRE(solver.factorise(at));
   solver.solve(x);
   const Eigen::VectorXd expected = dense(rows, at).partialPivLu().solve(right);
   for (std::size_t i = 0; i < n; ++i) {
@@ -85,7 +86,8 @@ TEST_CASE("one factorisation serves any scalar above") {
   duet_test::random_source random(1);
   const auto rows = random_rows(7, random);
   block_tridiagonal<double, 3> solver;
-  REQUIRE(solver.factorise(rows, {6, 0}));
+  solver.rows() = rows;
+  REQUIRE(solver.factorise({6, 0}));
   std::vector<duet::vector3<double>> value(7), part(7);
   std::vector<duet::vector3<duet::dual<double>>> both(7);
   for (std::size_t i = 0; i < 7; ++i) {
@@ -111,7 +113,8 @@ TEST_CASE("a singular pivot is reported") {
   auto rows = random_rows(4, random);
   rows[0].diagonal.setZero();
   block_tridiagonal<double, 3> solver;
-  CHECK(!solver.factorise(rows, {2, 1}));
+  solver.rows() = rows;
+  CHECK(!solver.factorise({2, 1}));
 }
 
 } // namespace test_spline_block_tridiagonal

@@ -29,6 +29,10 @@ public:
 
   [[nodiscard]] bool is_invertible() const { return lu_.isInvertible(); }
 
+  [[nodiscard]] double determinant() const {
+    return lu_.determinant() / (row_scale_.prod() * column_scale_.prod());
+  }
+
   /// x with J x = right
   [[nodiscard]] vector solve(const vector& right) const {
     return column_scale_.cwiseProduct(lu_.solve(row_scale_.cwiseProduct(right)));

@@ -70,26 +70,53 @@ public:
 
   newton(const F& f, const X& start, const P& p, const newton_options& options) : x(start) {
     linearise(f, p);
-    for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-      if (advance(f, p, iteration)) {
+    for (; iterations_ < options.max_iterations; ++iterations_) {
+      if (advance(f, p)) {
         return;
       }
     }
-    fail("did not converge", options.max_iterations);
+    failure_ = "did not converge";
+  }
+
+  [[nodiscard]] bool has_converged() const { return failure_ == nullptr; }
+  /// \throws no_convergence unless it has
+  void require_converged() const {
+    if (!has_converged()) {
+      std::ostringstream message;
+      message << "duet: implicit_function: Newton's method " << failure_ << " after " << iterations_
+              << " iterations; residual " << residual.norm();
+      throw no_convergence(message.str());
+    }
   }
 
   X x;
   equilibrated_lu<n> lu;
 
+  /// The largest number in x.
+  [[nodiscard]] double magnitude() const {
+    double largest = 0;
+    static_cast<void>(map_scalars(
+        [&](double component) {
+          largest = std::max(largest, std::abs(component));
+          return component;
+        },
+        x));
+    return largest;
+  }
+
 private:
   vector residual;
 
+  const char* failure_ = nullptr;
+  int iterations_ = 0;
+
   /// One step, halved while it does not bring x nearer to the solution. True where x is as accurate
-  /// as it gets.
-  [[nodiscard]] bool advance(const F& f, const P& p, int iteration) {
+  /// as it gets, and on failure.
+  [[nodiscard]] bool advance(const F& f, const P& p) {
     const vector step = lu.solve(-residual);
     if (!lu.is_invertible() || !step.allFinite()) {
-      fail("met a singular Jacobian", iteration);
+      failure_ = "met a singular Jacobian";
+      return true;
     }
     const X previous = x;
     const equilibrated_lu<n> previous_lu = lu;
@@ -112,19 +139,8 @@ private:
         return true;
       }
     }
-    fail("cannot reduce the residual", iteration);
-  }
-
-  /// The largest number in x.
-  [[nodiscard]] double magnitude() const {
-    double largest = 0;
-    static_cast<void>(map_scalars(
-        [&](double component) {
-          largest = std::max(largest, std::abs(component));
-          return component;
-        },
-        x));
-    return largest;
+    failure_ = "cannot reduce the residual";
+    return true;
   }
 
   void linearise(const F& f, const P& p) {
@@ -143,45 +159,20 @@ private:
     }
     lu.compute(jacobian);
   }
-
-  [[noreturn]] void fail(const char* what, int iterations) const {
-    std::ostringstream message;
-    message << "duet: implicit_function: Newton's method " << what << " after " << iterations
-            << " iterations; residual " << residual.norm();
-    throw no_convergence(message.str());
-  }
 };
 
-} // namespace detail
-
-/// The x with F(x, p) = 0 near x0, over the scalars of p and of whatever F captures.
-///
-/// \param f   F(x, p), templated over the scalars of both: an Eigen vector or array of as many
-///            residuals as x has coordinates, or a scalar where that is one
-/// \param x0  start: a scalar, a fixed-size vector, a unit quaternion, or a tuple of them
-/// \param p   parameters, of any scalars of duet and any shape
-///
-/// Newton's method with AD Jacobian runs on the real values only, in double precision, to the level
-/// of rounding. The derivatives follow by the implicit function theorem, order by order: with
-/// J = ∂F/∂x at the solution, each step x ← x − J⁻¹F(x, p) in the algebra of the infinitesimals
-/// makes one more order exact.
-///
-/// \throws no_convergence where there is no solution near x0 or ∂F/∂x is singular.
-template <class F, class X, class P>
-[[nodiscard]] auto implicit_solution(const F& f, const X& x0, const P& p,
-                                     const newton_options& options = {}) {
-  const auto start = map_scalars([](const auto& s) { return double(innermost(s)); }, x0);
-  using unknown = std::remove_const_t<decltype(start)>;
+/// The solution over all of p's scalar, given that of the real values: with J = ∂F/∂x there, each
+/// step x ← x − J⁻¹F(x, p) in the algebra of the infinitesimals makes one more order exact.
+template <class F, class Newton, class P>
+[[nodiscard]] auto with_infinitesimals(const F& f, const Newton& solved, const P& p) {
+  using unknown = std::decay_t<decltype(solved.x)>;
   constexpr int n = manifold<unknown>::dimension;
-  const auto real_p = map_scalars([](const auto& s) { return innermost(s); }, p);
-  const detail::newton<F, unknown, std::remove_const_t<decltype(real_p)>> solved(f, start, real_p,
-                                                                                 options);
-  using S = std::decay_t<decltype(detail::residuals<n>(f(solved.x, p))[0])>;
+  using S = std::decay_t<decltype(residuals<n>(f(solved.x, p))[0])>;
   auto x = map_scalars([](const auto& s) { return S(s); }, solved.x);
   if constexpr (scalar_traits<S>::order > 0) {
     const Eigen::Matrix<double, n, n> inverse = solved.lu.inverse();
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
-      const auto r = detail::residuals<n>(f(x, p));
+      const auto r = residuals<n>(f(x, p));
       Eigen::Matrix<S, n, 1> step;
       for (int i = 0; i < n; ++i) {
         step[i] = S(0);
@@ -193,6 +184,31 @@ template <class F, class X, class P>
     }
   }
   return x;
+}
+
+} // namespace detail
+
+/// The x with F(x, p) = 0 near x0, over the scalars of p and of whatever F captures.
+///
+/// \param f   F(x, p), templated over the scalars of both: an Eigen vector or array of as many
+///            residuals as x has coordinates, or a scalar where that is one
+/// \param x0  start: a scalar, a fixed-size vector, a unit quaternion, or a tuple of them
+/// \param p   parameters, of any scalars of duet and any shape
+///
+/// Newton's method with AD Jacobian runs on the real values only, in double precision, to the level
+/// of rounding. The derivatives follow by the implicit function theorem, order by order.
+///
+/// \throws no_convergence where there is no solution near x0 or ∂F/∂x is singular.
+template <class F, class X, class P>
+[[nodiscard]] auto implicit_solution(const F& f, const X& x0, const P& p,
+                                     const newton_options& options = {}) {
+  const auto start = map_scalars([](const auto& s) { return double(innermost(s)); }, x0);
+  using unknown = std::remove_const_t<decltype(start)>;
+  const auto real_p = map_scalars([](const auto& s) { return innermost(s); }, p);
+  const detail::newton<F, unknown, std::remove_const_t<decltype(real_p)>> solved(f, start, real_p,
+                                                                                 options);
+  solved.require_converged();
+  return detail::with_infinitesimals(f, solved, p);
 }
 
 /// x(p), x′(p), …, x^(K)(p) of the function defined by F(x, p) = 0, p a scalar. Element k has the

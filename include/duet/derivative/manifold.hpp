@@ -27,6 +27,7 @@ namespace duet {
 /// - `scalar`: what an X is made of
 /// - `plus(x, δ, frame)`: x moved by the tangent vector δ, whose scalar may be any
 /// - `velocity(x, ẋ, frame)`: the tangent vector of the rate ẋ, an Eigen column
+/// - `takes_rates_of_any_scalar`, if it does: ẋ over dual numbers, many rates at once
 ///
 /// Scalars, vectors, arrays and tuples are here, for which `frame` means nothing; rotations add
 /// their own, so that Newton's method and Jacobians never see redundant coordinates.

@@ -103,6 +103,16 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
     if (first == 0) {
       result.value = detail::parts<tag>(y, 0);
     }
+    if constexpr (requires { target::takes_rates_of_any_scalar; }) {
+      // Velocities are linear in the rates: those of all columns at once, packed as they are.
+      const auto columns = target::velocity(result.value, y, frame);
+      for (int i = 0; i < target::dimension; ++i) {
+        for (int j = 0; j < count; ++j) {
+          result.jacobian(i, first + j) = detail::part<tag>(columns[i], j + 1);
+        }
+      }
+      return;
+    }
     for (int j = 0; j < count; ++j) {
       const auto column = target::velocity(result.value, detail::parts<tag>(y, j + 1), frame);
       if (first + j == 0) {

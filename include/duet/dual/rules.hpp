@@ -4,6 +4,7 @@
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
+#include <duet/dual/pure_functions.hpp>
 
 #include <cmath>
 
@@ -32,8 +33,7 @@ namespace duet::rule {
 struct sqrt {
   template <class T>
   T value(const T& x) const {
-    using std::sqrt;
-    return sqrt(x);
+    return detail::pure_sqrt(x);
   }
   template <class T>
   T slope(const T&, const T& y) const {
@@ -56,8 +56,7 @@ struct cbrt {
 struct exp {
   template <class T>
   T value(const T& x) const {
-    using std::exp;
-    return exp(x);
+    return detail::pure_exp(x);
   }
   template <class T>
   T slope(const T&, const T& y) const {
@@ -93,8 +92,7 @@ struct expm1 {
 struct log {
   template <class T>
   T value(const T& x) const {
-    using std::log;
-    return log(x);
+    return detail::pure_log(x);
   }
   template <class T>
   T slope(const T& x, const T&) const {

@@ -6,6 +6,7 @@
 #include <duet/dual/algebra.hpp>
 #include <duet/dual/partials.hpp>
 #include <duet/dual/promotion.hpp>
+#include <duet/dual/series_product.hpp>
 #include <duet/dual/structural_zero.hpp>
 #include <duet/dual/tag.hpp>
 
@@ -149,20 +150,22 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr taylor quotient(const taylor& a,
                                                                     const taylor& b) {
     const T inverse = T(1) / b.value();
-    taylor result;
-    result.coefficients_[0] = a.value() / b.value();
-    detail::unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
-      const int k = i + 1;
-      T remainder = a.coefficient(k);
-      detail::unrolled<K>([&](int j) DUET_INLINE_LAMBDA {
-        if (j < k) {
-          remainder = remainder - detail::surviving_product(result.coefficient(k - j - 1),
-                                                            b.coefficient(j + 1));
-        }
+    const T first = a.value() / b.value();
+    const T probe = inverse + first;
+    return detail::with_surviving_products(probe, [&](const auto& product) DUET_INLINE_LAMBDA {
+      taylor result(coefficients_type{first});
+      detail::unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
+        const int k = i + 1;
+        T remainder = a.coefficient(k);
+        detail::unrolled<K>([&](int j) DUET_INLINE_LAMBDA {
+          if (j < k) {
+            remainder = remainder - product(result.coefficient(k - j - 1), b.coefficient(j + 1));
+          }
+        });
+        result.set_coefficient(k, product(inverse, remainder));
       });
-      result.set_coefficient(k, detail::surviving_product(inverse, remainder));
+      return result;
     });
-    return result;
   }
 
 private:

@@ -3,11 +3,13 @@
 
 #include <duet/dual/rules.hpp>
 #include <duet/dual/rules_hyperbolic.hpp>
+#include <duet/dual/series_product.hpp>
 #include <duet/dual/sine_cosine.hpp>
 #include <duet/dual/structural_zero.hpp>
 #include <duet/dual/taylor.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 
 /// \file
@@ -44,17 +46,33 @@ template <class T, class S>
   }
 }
 
+/// x / k. To built-in reals 1/k is a constant, of half a unit in the last place: a division would
+/// be the slowest link of the chain that coefficients make.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr T divided_by_order(const T& x, int k) {
+  if constexpr (std::floating_point<T>) {
+    return x * (T(1) / T(k));
+  } else {
+    return x / integer<T>(k);
+  }
+}
+
 /// Σ_{j=1…K} j x_j s_{K−j}, zero coefficients of x not touching infinite slopes.
 template <class T, int K, class Tag, class S>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr T chain_coefficient(const taylor<T, K, Tag>& x,
                                                                const S& slope) {
-  T sum(0);
-  unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
-    const int j = i + 1;
-    const T term = surviving_product(coefficient_of<T>(slope, K - j), x.coefficient(j));
-    sum = j == 1 ? T(sum + term) : T(sum + term * integer<T>(j));
+  T probe = coefficient_of<T>(slope, 0);
+  unrolled<K - 1>([&](int i)
+                      DUET_INLINE_LAMBDA { probe = probe + coefficient_of<T>(slope, i + 1); });
+  return with_surviving_products(probe, [&](const auto& product) DUET_INLINE_LAMBDA {
+    T sum(0);
+    unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
+      const int j = i + 1;
+      const T term = product(coefficient_of<T>(slope, K - j), x.coefficient(j));
+      sum = j == 1 ? T(sum + term) : T(sum + term * integer<T>(j));
+    });
+    return sum;
   });
-  return sum;
 }
 
 /// `shorter`, the series to order K−1, extended by the coefficient of ε^K.
@@ -75,7 +93,7 @@ template <class Rule, class T, int K, class Tag>
     return extended<taylor<T, K, Tag>>(y, chain_coefficient(x, rule.slope(shorter_x, y)), K);
   } else {
     const auto y = lift(rule, shorter_x);
-    const T last = chain_coefficient(x, rule.slope(shorter_x, y)) / integer<T>(K);
+    const T last = divided_by_order(chain_coefficient(x, rule.slope(shorter_x, y)), K);
     return extended<taylor<T, K, Tag>>(y, last, K);
   }
 }
@@ -97,7 +115,7 @@ template <class Rule, class T, int K, class Tag, class... Rest>
     static_assert(sizeof...(rest) == 1);
     last = last + (chain_coefficient(rest, slopes[2]) + ...);
   }
-  return extended<taylor<T, K, Tag>>(z, T(last / integer<T>(K)), K);
+  return extended<taylor<T, K, Tag>>(z, divided_by_order(last, K), K);
 }
 
 /// sin and cos share one recurrence, sinh and cosh another: each is the slope of its partner, and
@@ -105,20 +123,22 @@ template <class Rule, class T, int K, class Tag, class... Rest>
 template <int Sign, class T, int K, class Tag>
 inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
                             taylor<T, K, Tag>& c) {
-  unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
-    const int k = i + 1;
-    T ds(0);
-    T dc(0);
-    unrolled<K>([&](int m) DUET_INLINE_LAMBDA {
-      const int j = m + 1;
-      if (j <= k) {
-        const T jx = x.coefficient(j) * integer<T>(j);
-        ds = ds + surviving_product(c.coefficient(k - j), jx);
-        dc = dc + surviving_product(s.coefficient(k - j), jx);
-      }
+  with_surviving_products(T(s.value() + c.value()), [&](const auto& product) DUET_INLINE_LAMBDA {
+    unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
+      const int k = i + 1;
+      T ds(0);
+      T dc(0);
+      unrolled<K>([&](int m) DUET_INLINE_LAMBDA {
+        const int j = m + 1;
+        if (j <= k) {
+          const T jx = x.coefficient(j) * integer<T>(j);
+          ds = ds + product(c.coefficient(k - j), jx);
+          dc = dc + product(s.coefficient(k - j), jx);
+        }
+      });
+      s.set_coefficient(k, divided_by_order(ds, k));
+      c.set_coefficient(k, divided_by_order(T(dc * integer<T>(Sign)), k));
     });
-    s.set_coefficient(k, T(ds / integer<T>(k)));
-    c.set_coefficient(k, T(dc * integer<T>(Sign) / integer<T>(k)));
   });
 }
 

@@ -29,7 +29,10 @@ using matrix6 = Eigen::Matrix<T, 6, 6>;
 template <class T>
 [[nodiscard]] vector6<T> twist_of(const dual_vector<T>& v) {
   vector6<T> result;
-  result << dual_part(v), real_part(v);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    result[i] = v[i].epsilon();
+    result[i + 3] = v[i].value();
+  }
   return result;
 }
 /// The column [v; ω] as ω + εv.
@@ -50,8 +53,10 @@ template <class A, class B, class Frame>
   using T = promote_t<A, B>;
   if constexpr (std::same_as<Frame, hybrid_frame>) {
     vector6<T> v = twist(a, a_dot, frame::spatial);
-    const vector3<T> omega = v.template tail<3>();
-    v.template head<3>() += omega.cross(translation(a).template cast<T>());
+    const vector3<A> t = translation(a);
+    v[0] += v[4] * t[2] - v[5] * t[1];
+    v[1] += v[5] * t[0] - v[3] * t[2];
+    v[2] += v[3] * t[1] - v[4] * t[0];
     return v;
   } else {
     return twist_of<T>(angular_velocity(a, a_dot, frame));
@@ -113,9 +118,10 @@ struct manifold<quaternion<dual<T, 1, screw_tag>>> {
       return a * step;
     }
   }
-  template <class Frame>
-  [[nodiscard]] static vector6<T> velocity(const dual_quaternion<T>& a,
-                                           const dual_quaternion<T>& rate, Frame frame) {
+  static constexpr bool takes_rates_of_any_scalar = true;
+  template <class R, class Frame>
+  [[nodiscard]] static vector6<promote_t<T, R>>
+  velocity(const dual_quaternion<T>& a, const dual_quaternion<R>& rate, Frame frame) {
     return twist(a, rate, frame);
   }
 };

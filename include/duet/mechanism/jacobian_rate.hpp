@@ -27,12 +27,18 @@ template <class J>
                           vector3<S>(m(3, i), m(4, i), m(5, i))};
 }
 
+template <class J, class S>
+DUET_ALWAYS_INLINE void set_column(J&& m, Eigen::Index i, const velocity_pair<S>& x) {
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    m(k, i) = x.v[k];
+    m(k + 3, i) = x.w[k];
+  }
+}
+
 /// ad(a) b = [ω_a × v_b + v_a × ω_b; ω_a × ω_b], the Lie bracket.
 template <class S>
-[[nodiscard]] vector6<S> bracket(const velocity_pair<S>& a, const velocity_pair<S>& b) {
-  vector6<S> result;
-  result << a.w.cross(b.v) + a.v.cross(b.w), a.w.cross(b.w);
-  return result;
+[[nodiscard]] velocity_pair<S> bracket(const velocity_pair<S>& a, const velocity_pair<S>& b) {
+  return {a.w.cross(b.v) + a.v.cross(b.w), a.w.cross(b.w)};
 }
 
 /// ∂J_k/∂θ_j by the columns of J itself.
@@ -42,20 +48,16 @@ template <class S>
 /// joints before, ω_j × ω_k, and the tip moves with all, u the velocity of its origin: ω_j × u_k
 /// for j ≤ k, ω_k × u_j for j > k.
 template <class Frame, class S>
-[[nodiscard]] vector6<S> column_by_joint(const velocity_pair<S>& k, const velocity_pair<S>& j,
-                                         bool j_is_before_k) {
+[[nodiscard]] velocity_pair<S> column_by_joint(const velocity_pair<S>& k, const velocity_pair<S>& j,
+                                               bool j_is_before_k) {
+  const vector3<S> zero = vector3<S>::Zero();
   if constexpr (std::same_as<Frame, spatial_frame>) {
-    return j_is_before_k ? bracket(j, k) : vector6<S>(vector6<S>::Zero());
+    return j_is_before_k ? bracket(j, k) : velocity_pair<S>{zero, zero};
   } else if constexpr (std::same_as<Frame, body_frame>) {
-    return j_is_before_k ? vector6<S>(vector6<S>::Zero()) : bracket(k, j);
+    return j_is_before_k ? velocity_pair<S>{zero, zero} : bracket(k, j);
   } else {
-    vector6<S> result = vector6<S>::Zero();
-    if (j_is_before_k) {
-      result << j.w.cross(k.v), j.w.cross(k.w);
-    } else {
-      result.template head<3>() = k.w.cross(j.v);
-    }
-    return result;
+    return j_is_before_k ? velocity_pair<S>{j.w.cross(k.v), j.w.cross(k.w)}
+                         : velocity_pair<S>{k.w.cross(j.v), zero};
   }
 }
 
@@ -101,7 +103,8 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
     auto by_j = h[j];
     const auto column_j = detail::velocity_column(m, j);
     for (Eigen::Index k = 0; k < n; ++k) {
-      by_j.col(k) = detail::column_by_joint<Frame>(detail::velocity_column(m, k), column_j, j <= k);
+      detail::set_column(
+          by_j, k, detail::column_by_joint<Frame>(detail::velocity_column(m, k), column_j, j <= k));
     }
   }
   return h;
@@ -142,11 +145,13 @@ template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame, class.
     for (Eigen::Index k = 0; k < n; ++k) {
       const auto column = detail::velocity_column(m, k);
       if constexpr (std::same_as<Frame, spatial_frame>) {
-        result.rate.col(k) = detail::bracket(before, column);
+        detail::set_column(result.rate, k, detail::bracket(before, column));
         add(before, k);
       } else {
         add(before, k);
-        result.rate.col(k) << before.w.cross(column.v), before.w.cross(column.w);
+        detail::set_column(
+            result.rate, k,
+            detail::velocity_pair<S>{before.w.cross(column.v), before.w.cross(column.w)});
       }
     }
   }
@@ -155,9 +160,12 @@ template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame, class.
     for (Eigen::Index k = n - 1; k >= 0; --k) {
       const auto column = detail::velocity_column(m, k);
       if constexpr (std::same_as<Frame, body_frame>) {
-        result.rate.col(k) = detail::bracket(column, after);
+        detail::set_column(result.rate, k, detail::bracket(column, after));
       } else {
-        result.rate.col(k).template head<3>() += column.w.cross(after.v);
+        const vector3<S> more = column.w.cross(after.v);
+        for (Eigen::Index i = 0; i < 3; ++i) {
+          result.rate(i, k) += more[i];
+        }
       }
       add(after, k);
     }

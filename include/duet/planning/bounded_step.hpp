@@ -49,24 +49,28 @@ private:
 template <class V>
 struct bounded_step_result {
   V step;
-  double smallest_singular_value; ///< of all joints
+  double smallest_singular_value; ///< of all joints, 0 where it was not asked for
   bool is_bounded;                ///< did a limit hold a joint back?
 };
 
 /// The least Δ with J Δ = e and lower ≤ Δ ≤ upper. Joints that would go beyond a bound are put onto
 /// it, the worst one first, and the others make up for them as far as they can.
-template <class J, class V>
+/// \param factors  of J Jᵀ: what solves J Jᵀ y = e
+template <class J, class V, class Factors>
 [[nodiscard]] bounded_step_result<V> bounded_step(const J& jacobian, const vector6<double>& e,
-                                                  const V& lower, const V& upper) {
+                                                  const V& lower, const V& upper,
+                                                  const Factors& factors) {
   const Eigen::Index n = jacobian.cols();
   J free = jacobian;
   V fixed = V::Zero(n);
   std::array<bool, std::size_t(J::MaxColsAtCompileTime)> is_fixed{};
   bounded_step_result<V> result{V::Zero(n), 0, false};
   for (Eigen::Index round = 0; round <= n; ++round) {
-    const damped_gram gram(matrix6<double>(free * free.transpose()));
-    if (round == 0) {
-      result.smallest_singular_value = gram.smallest();
+    const auto gram = factors(matrix6<double>(free * free.transpose()));
+    if constexpr (requires { gram.smallest(); }) {
+      if (round == 0) {
+        result.smallest_singular_value = gram.smallest();
+      }
     }
     const vector6<double> rest = e - jacobian * fixed;
     result.step = fixed + free.transpose() * gram.solve(rest);
@@ -88,6 +92,12 @@ template <class J, class V>
     free.col(worst).setZero();
   }
   return result;
+}
+template <class J, class V>
+[[nodiscard]] bounded_step_result<V> bounded_step(const J& jacobian, const vector6<double>& e,
+                                                  const V& lower, const V& upper) {
+  return bounded_step(jacobian, e, lower, upper,
+                      [](const matrix6<double>& gram) { return damped_gram(gram); });
 }
 
 } // namespace duet::detail

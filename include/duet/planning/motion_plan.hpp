@@ -19,12 +19,13 @@ namespace duet {
 
 /// Why a planner stopped.
 enum class stop_reason {
-  reached,        ///< the tip is at the goal
-  joint_limit,    ///< the way on leads beyond the limits of a joint
-  singular,       ///< the way on leads through a singularity
-  obstacle,       ///< the way on leads too close to an obstacle
-  no_progress,    ///< steps became too small, for neither of these reasons
-  iteration_limit ///< the number of iterations that was allowed is used up
+  reached,         ///< the tip is at the goal
+  joint_limit,     ///< the way on leads beyond the limits of a joint
+  singular,        ///< the way on leads through a singularity
+  obstacle,        ///< the way on leads too close to an obstacle
+  no_progress,     ///< steps became too small, for neither of these reasons
+  iteration_limit, ///< the number of iterations that was allowed is used up
+  out_of_reach     ///< the goal is farther away than the links reach
 };
 
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
@@ -39,8 +40,10 @@ enum class stop_reason {
     return "obstacle";
   case stop_reason::no_progress:
     return "no_progress";
-  default:
+  case stop_reason::iteration_limit:
     return "iteration_limit";
+  default:
+    return "out_of_reach";
   }
 }
 

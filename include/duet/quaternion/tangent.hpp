@@ -40,9 +40,10 @@ struct manifold<quaternion<T>> {
       return q * turn;
     }
   }
-  template <class Frame>
-  [[nodiscard]] static vector3<T> velocity(const quaternion<T>& q, const quaternion<T>& rate,
-                                           Frame frame) {
+  static constexpr bool takes_rates_of_any_scalar = true;
+  template <class R, class Frame>
+  [[nodiscard]] static vector3<promote_t<T, R>> velocity(const quaternion<T>& q,
+                                                         const quaternion<R>& rate, Frame frame) {
     return angular_velocity(q, rate, frame);
   }
 };

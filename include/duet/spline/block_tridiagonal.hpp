@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 /// \file
@@ -35,9 +34,11 @@ class block_tridiagonal {
 public:
   using matrix = Eigen::Matrix<R, N, N>;
 
-  /// Two rows or more. True where no pivot is singular.
-  [[nodiscard]] bool factorise(std::vector<block_row<R, N>> rows, const corners& at) {
-    rows_ = std::move(rows);
+  /// To be filled before `factorise`, two rows or more: the storage is that of the last time.
+  [[nodiscard]] std::vector<block_row<R, N>>& rows() { return rows_; }
+
+  /// True where no pivot is singular.
+  [[nodiscard]] bool factorise(const corners& at) {
     at_ = at;
     column_.clear();
     bottom_.clear();
@@ -74,7 +75,7 @@ public:
     return true;
   }
 
-  /// Solves in place, over any scalar above R.
+  /// Solves in place, over any scalar above R: elements of N rows, columns as they like.
   template <class V>
   void solve(std::vector<V>& x) const {
     const std::size_t last = x.size() - 1;
@@ -116,9 +117,11 @@ private:
   /// y ← y − a x
   template <class V>
   static void subtract(V& y, const matrix& a, const V& x) {
-    for (int i = 0; i < N; ++i) {
-      for (int j = 0; j < N; ++j) {
-        y[i] -= a(i, j) * x[j];
+    for (int column = 0; column < V::ColsAtCompileTime; ++column) {
+      for (int i = 0; i < N; ++i) {
+        for (int j = 0; j < N; ++j) {
+          y(i, column) -= a(i, j) * x(j, column);
+        }
       }
     }
   }

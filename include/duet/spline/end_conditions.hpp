@@ -82,4 +82,12 @@ end_acceleration(V, V) -> end_acceleration<typename V::PlainObject>;
 template <class A, class B>
 end_acceleration(A, B) -> end_acceleration<typename A::PlainObject>;
 
+namespace detail {
+
+template <class Ends>
+inline constexpr bool is_clamped = false;
+template <class V>
+inline constexpr bool is_clamped<clamped<V>> = true;
+
+} // namespace detail
 } // namespace duet

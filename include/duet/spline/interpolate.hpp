@@ -117,7 +117,7 @@ interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<qua
   if constexpr (is_periodic) {
     q = closed(std::move(q));
   }
-  const cubic_equations<T, Ends> equations(parameters, q, ends);
+  cubic_equations<T, Ends> equations(parameters, q, ends);
   const auto curve = [&](auto&& newton, const auto& solution) {
     if (report != nullptr) {
       *report = {newton.iterations(), 2 * double(newton.residual()),
@@ -125,7 +125,8 @@ interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<qua
     }
     std::vector<vector3<T>> increments = equations.increments(solution);
     std::vector<quaternion<T>> controls = equations.controls(increments);
-    return cumulative_bspline<T, 4>(equations.basis(), std::move(controls), std::move(increments));
+    return cumulative_bspline<T, 4>(std::move(equations).basis(), std::move(controls),
+                                    std::move(increments));
   };
   if constexpr (Real<T>) {
     spline_newton newton(equations);

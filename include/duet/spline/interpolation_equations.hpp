@@ -13,6 +13,7 @@
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/motion.hpp>
+#include <duet/spline/small_turns.hpp>
 
 #include <array>
 #include <cstddef>
@@ -99,7 +100,11 @@ public:
   [[nodiscard]] corners corner_columns() const {
     return is_cyclic ? corners{size() - 1, 0} : corners{2, size() - 3};
   }
-  [[nodiscard]] const bspline_basis<4, R>& basis() const { return basis_; }
+  /// What the curve is made of; nothing else works afterwards.
+  [[nodiscard]] bspline_basis<4, R> basis() && { return std::move(basis_); }
+
+  /// Where Newton's method starts. For real T.
+  [[nodiscard]] unknowns start() const { return small_turn_solution<R>(*this); }
 
   /// The largest angle from one row to the next, and the row before it.
   [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
@@ -163,6 +168,24 @@ public:
     return log_vector(quaternion<D>(conj(turn) * quaternion<D>(turns_[row])), "interpolate");
   }
 
+  /// The same for turns so small that their order does not matter: Σ weights_j x_j = right.
+  [[nodiscard]] small_turn_equation<T> small_turns(std::size_t row) const {
+    if constexpr (has_end_rates) {
+      if (row == 0 || row + 1 == size()) {
+        const curve_end end = end_of_curve(row == 0);
+        std::array<R, 3> weights = end.weights[is_clamped<Ends> ? 1 : 2];
+        for (R& weight : weights) {
+          weight *= end.scale;
+        }
+        return {weights, detail::scaled(end.scale, end_rates_[row == 0 ? 0 : 1])};
+      }
+      --row;
+    }
+    const arc& a = arcs_[row];
+    return {{a.to[0] - a.from[0], a.to[1] - a.from[1], a.to[2] - a.from[2]},
+            log_vector(turns_[row], "interpolate")};
+  }
+
   /// All of them.
   void residuals(const std::vector<vector3<T>>& x, std::vector<vector3<T>>& result) const {
     result.resize(size());
@@ -176,7 +199,8 @@ public:
   [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
     using D = dual<R, 9, derivative_tag<cubic_equations>>;
     r.resize(x.size());
-    std::vector<block_row<R, 3>> rows(x.size());
+    auto& rows = jacobian.rows();
+    rows.resize(x.size());
     for (std::size_t row = 0; row < x.size(); ++row) {
       std::array<vector3<D>, 3> omega;
       for (std::size_t j = 0; j < 3; ++j) {
@@ -197,7 +221,7 @@ public:
         }
       }
     }
-    return jacobian.factorise(std::move(rows), corner_columns());
+    return jacobian.factorise(corner_columns());
   }
 
   /// ω_0 = 0 and the increments of all controls.
@@ -237,26 +261,30 @@ private:
     std::array<R, 3> from, to;
   };
 
+  /// The weights at an end of the curve, and what brings its rate to the size of an increment.
+  struct curve_end {
+    cumulative_weights<R, 4, 2> weights;
+    R scale;
+  };
+  [[nodiscard]] curve_end end_of_curve(bool at_start) const {
+    const std::size_t span = at_start ? 0 : basis_.breaks().size() - 2;
+    const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
+    return {basis_.template weights<2>(span, at_start ? basis_.front() : basis_.back()),
+            is_clamped<Ends> ? R(h / 3) : R(h * h / 6)};
+  }
+
   template <class D>
   [[nodiscard]] vector3<D> end_residual(bool at_start,
                                         const std::array<vector3<D>, 3>& omega) const {
-    const std::size_t span = at_start ? 0 : basis_.breaks().size() - 2;
-    const R& u = at_start ? basis_.front() : basis_.back();
-    const auto m = product_of_exponentials<2>(quaternion<D>(D(1)), omega.data(),
-                                              basis_.template weights<2>(span, u));
-    const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
+    const curve_end end = end_of_curve(at_start);
+    const auto m = product_of_exponentials<2>(quaternion<D>(D(1)), omega.data(), end.weights);
     const vector3<D> rate = end_rates_[at_start ? 0 : 1].template cast<D>();
-    if constexpr (gives_velocity(static_cast<const Ends*>(nullptr))) {
-      return detail::scaled(R(h / 3), vector3<D>(m.velocity - rate));
+    if constexpr (is_clamped<Ends>) {
+      return detail::scaled(end.scale, vector3<D>(m.velocity - rate));
     } else {
-      return detail::scaled(R(h * h / 6), vector3<D>(m.acceleration - rate));
+      return detail::scaled(end.scale, vector3<D>(m.acceleration - rate));
     }
   }
-  template <class V>
-  static constexpr bool gives_velocity(const clamped<V>*) {
-    return true;
-  }
-  static constexpr bool gives_velocity(const void*) { return false; }
 
   bspline_basis<4, R> basis_;
   std::vector<quaternion<T>> data_;

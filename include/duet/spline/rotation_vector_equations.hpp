@@ -91,6 +91,24 @@ public:
     return largest;
   }
 
+  /// Where Newton's method starts: the rates of parabolas through three rows, as if turns were
+  /// small.
+  [[nodiscard]] unknowns start() const {
+    unknowns x(size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const std::size_t left = i > 0 ? i - 1 : ends_.is_cyclic ? last_ - 1 : 0;
+      const std::size_t right = i < last_ ? i : last_ - 1;
+      const vector3<T> before = turns_[left] / steps_[left];
+      const vector3<T> after = turns_[right] / steps_[right];
+      const R h = steps_[left] + steps_[right];
+      x[i].template head<3>() = (before * steps_[right] + after * steps_[left]) / h;
+      if constexpr (own > 1) {
+        x[i].template tail<3>() = (after - before) * (2 / h);
+      }
+    }
+    return x;
+  }
+
   /// What x leaves of the equations.
   void residuals(const unknowns& x, unknowns& r) const {
     r.assign(x.size(), unknown::Constant(T(R(0))));
@@ -111,7 +129,8 @@ public:
     using D = dual<R, 2 * n, tag>;
     using block = typename matrix::matrix;
     const block zero = block::Zero();
-    std::vector<block_row<R, n>> rows(x.size(), {zero, zero, zero});
+    auto& rows = jacobian.rows();
+    rows.assign(x.size(), {zero, zero, zero});
     std::array<typename matrix::end_row, 2> ends;
     ends[0].fill(zero);
     ends[1].fill(zero);
@@ -143,8 +162,7 @@ public:
           }
         });
     subtract_given(r);
-    return ends_.is_cyclic ? jacobian.factorise_cyclic(std::move(rows))
-                           : jacobian.factorise(std::move(rows), ends, reach_ + 1);
+    return ends_.is_cyclic ? jacobian.factorise_cyclic() : jacobian.factorise(ends, reach_ + 1);
   }
 
   /// Rates of every knot as `rotation_vector_spline` takes them, in units of the parameter.

@@ -14,9 +14,9 @@
 
 namespace duet::detail {
 
-/// Newton's method with AD Jacobian on real equations, from zero. Where
-/// the turns are too large for that, by continuation from smaller ones: that also finds the curve
-/// that belongs to them, where several fulfil the equations.
+/// Newton's method with AD Jacobian on real equations, from their own start. Where the turns are
+/// too large for that, by continuation from smaller ones: that also finds the curve that belongs to
+/// them, where several fulfil the equations.
 ///
 /// \tparam Equations  what is to be solved: `residuals`, `linearise`, and the same of smaller turns
 template <class Equations>
@@ -29,7 +29,7 @@ public:
   using unknown = typename unknowns::value_type;
   using matrix = typename Equations::matrix;
 
-  explicit spline_newton(const equations& full) : full_(full), x_(full.size(), unknown::Zero()) {
+  explicit spline_newton(const equations& full) : full_(full), x_(full.start()) {
     if (!descend(full)) {
       continue_from_smaller_turns();
     }
@@ -54,37 +54,40 @@ public:
 
 private:
   /// From x_ to the solution near it: steps with the last Jacobian while they gain much, with a new
-  /// one otherwise. False where a step does not halve the residual.
+  /// one otherwise. False where a step with a new one does not halve the residual.
   [[nodiscard]] bool descend(const equations& f) {
     using std::sqrt;
     const R epsilon = std::numeric_limits<R>::epsilon();
-    R before = std::numeric_limits<R>::infinity();
-    R step = before;
-    R moved(0); // since the Jacobian was new
-    for (bool is_first = true;; is_first = false) {
-      f.residuals(x_, residual_);
-      const R left = largest(residual_);
-      if (!(left <= before / 2)) {
-        return step <= sqrt(epsilon); // nothing but rounding is left
-      }
-      if (is_first || left > before / 32) {
-        if (!linearise(f)) {
-          return false;
-        }
-        moved = R(0);
-      }
+    if (!linearise(f)) {
+      return false;
+    }
+    bool is_new = true; // the Jacobian
+    R moved(0);         // since it was new
+    for (R left = largest(residual_);;) {
       matrix_.solve(residual_);
       for (std::size_t k = 0; k < x_.size(); ++k) {
         x_[k] -= residual_[k];
       }
       ++iterations_;
-      step = largest(residual_);
+      const R step = largest(residual_);
       moved += step;
       // The Jacobian is about as far off as x has moved: the next step would be less than rounding.
       if (4 * moved * step <= epsilon) {
         return true;
       }
-      before = left;
+      const R before = left;
+      f.residuals(x_, residual_);
+      left = largest(residual_);
+      if (is_new && !(left <= before / 2)) {
+        return step <= sqrt(epsilon); // nothing but rounding is left
+      }
+      is_new = !(left <= before / 32);
+      if (is_new) {
+        if (!linearise(f)) {
+          return false;
+        }
+        moved = R(0);
+      }
     }
   }
 

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 /// \file
@@ -22,11 +21,14 @@ public:
   /// Blocks by their distance from the end.
   using end_row = std::array<matrix, Reach + 1>;
 
+  /// To be filled before it is factorised.
+  [[nodiscard]] std::vector<block_row<R, N>>& rows() { return tridiagonal_.rows(); }
+
   /// \param reach  the farthest block that counts, at least 1; the rows that far from the ends are
   ///               not ends themselves
-  [[nodiscard]] bool factorise(std::vector<block_row<R, N>> rows, std::array<end_row, 2> ends,
-                               std::size_t reach) {
+  [[nodiscard]] bool factorise(std::array<end_row, 2> ends, std::size_t reach) {
     reach_ = reach;
+    auto& rows = tridiagonal_.rows();
     const std::size_t last = rows.size() - 1;
     for (std::size_t q = reach; q >= 2; --q) {
       for (const bool at_start : {true, false}) {
@@ -44,12 +46,11 @@ public:
     rows.front().upper = ends[0][1];
     rows.back().diagonal = ends[1][0];
     rows.back().lower = ends[1][1];
-    return tridiagonal_.factorise(std::move(rows), {1, last - 1});
+    return tridiagonal_.factorise({1, last - 1});
   }
-  [[nodiscard]] bool factorise_cyclic(std::vector<block_row<R, N>> rows) {
+  [[nodiscard]] bool factorise_cyclic() {
     reach_ = 1;
-    const std::size_t last = rows.size() - 1;
-    return tridiagonal_.factorise(std::move(rows), {last, 0});
+    return tridiagonal_.factorise({tridiagonal_.rows().size() - 1, 0});
   }
 
   /// Solves in place, over any scalar above R.

@@ -1,0 +1,234 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// A crank drives a rocker through a coupler: a closed loop given by its constraints only, its
+// motion and the rates of its motion beside the textbook's closed forms.
+
+#include "linkage.hpp"
+
+#include "../support/command_line.hpp"
+#include "../support/gnuplot.hpp"
+
+#include <duet/core/csv.hpp>
+#include <duet/core/number_text.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/mechanism/closed_loop.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace four_bar {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+struct options {
+  linkage links{.2, .5, .4, .55};
+  Eigen::Vector2d point{.3, .25};
+  double from = 0, to = 360;
+  double speed = 1;
+  double side = -1;
+  int samples = 361;
+  std::string out = "four_bar_out";
+};
+
+std::optional<options> parse_options(int argc, char** argv) {
+  namespace po = example::po;
+  po::options_description description(
+      "A four-bar linkage as a closed loop: angles of coupler and rocker, angular velocity and\n"
+      "acceleration of the rocker, and the curve of a coupler point, over the crank's angle.\n"
+      "Lengths in metres, angles in degrees. Options");
+  const auto number = [] { return po::value<double>()->value_name("X"); };
+  description.add_options()("help", "print this and stop")(
+      "crank", number(), "length (default: 0.2)")("coupler", number(), "length (default: 0.5)")(
+      "rocker", number(), "length (default: 0.4)")("ground", number(), "length (default: 0.55)")(
+      "along", number(), "of the coupler point, from the crank along the coupler (default: 0.3)")(
+      "beside", number(), "of the coupler point, to the left of the coupler (default: 0.25)")(
+      "from", number(), "first angle of the crank (default: 0)")(
+      "to", number(), "last angle of the crank (default: 360)")("speed", number(),
+                                                                "of the crank, rad/s (default: 1)")(
+      "crossed", "assemble it with crossed links instead of open")(
+      "samples", po::value<int>()->value_name("N"),
+      "positions (default: 361)")("out", po::value<std::string>()->value_name("DIR"),
+                                  "folder for the table and the picture (default: four_bar_out)");
+  const auto given = example::command_line::parse(argc, argv, description);
+  if (!given) {
+    return std::nullopt;
+  }
+  options result;
+  const auto read = [&](const char* name, double& x, bool is_length) {
+    x = given->get<double>(name).value_or(x);
+    if (!std::isfinite(x) || (is_length && x <= 0)) {
+      throw std::runtime_error(std::string("--") + name + ": " + duet::to_text(x) +
+                               (is_length ? " is no length" : " is not finite"));
+    }
+  };
+  read("crank", result.links.crank, true);
+  read("coupler", result.links.coupler, true);
+  read("rocker", result.links.rocker, true);
+  read("ground", result.links.ground, true);
+  read("along", result.point[0], false);
+  read("beside", result.point[1], false);
+  read("from", result.from, false);
+  read("to", result.to, false);
+  read("speed", result.speed, false);
+  result.side = given->has("crossed") ? 1 : -1;
+  result.samples = given->get<int>("samples").value_or(result.samples);
+  result.out = given->text("out").value_or(result.out);
+  if (result.samples < 2) {
+    throw std::runtime_error("--samples: 2 or more");
+  }
+  return result;
+}
+
+struct sample {
+  double crank;                              ///< rad
+  angles x;                                  ///< rad
+  double velocity, velocity_by_hand;         ///< of the rocker, rad/s
+  double acceleration, acceleration_by_hand; ///< rad/s²
+  Eigen::Vector2d point;                     ///< m
+};
+
+/// From angle to angle, so that every loop starts where the one before ended.
+std::vector<sample> run_through(const options& given) {
+  const double first = given.from * degree;
+  const angles start = closed_form(given.links, first, given.side);
+  if (!start.allFinite()) {
+    throw std::runtime_error("the links cannot close at a crank angle of " +
+                             duet::to_text(given.from) + " degrees");
+  }
+  duet::closed_loop loop(given.links, start, first);
+  std::vector<sample> samples;
+  for (int i = 0; i < given.samples; ++i) {
+    const double theta = (given.from + (given.to - given.from) * i / (given.samples - 1)) * degree;
+    try {
+      loop = loop.moved_to(theta);
+    } catch (const duet::cannot_close& error) {
+      char text[100];
+      std::snprintf(text, sizeof text,
+                    "the links cannot close beyond a crank angle of %.6g degrees: a dead point",
+                    error.parameter().front() / degree);
+      throw std::runtime_error(text);
+    }
+    const auto x = duet::derivatives<2>(loop, theta);
+    const rocker_rates rates(given.links, theta, x[0]);
+    const double w = given.speed;
+    samples.push_back({theta, x[0], x[1][1] * w, rates.first * w, x[2][1] * w * w,
+                       rates.second * w * w, coupler_point(given.links, given.point, x[0], theta)});
+  }
+  return samples;
+}
+
+/// The largest difference from the closed form, over the largest value.
+template <class Automatic, class ByHand>
+double difference(const std::vector<sample>& samples, Automatic automatic, ByHand by_hand) {
+  double worst = 0, largest = 0;
+  for (const sample& s : samples) {
+    worst = std::max(worst, std::abs(s.*automatic - s.*by_hand));
+    largest = std::max(largest, std::abs(s.*by_hand));
+  }
+  return largest > 0 ? worst / largest : worst;
+}
+
+/// The same for ψ itself, in radians.
+double angle_difference(const std::vector<sample>& samples, const options& given) {
+  double worst = 0;
+  for (const sample& s : samples) {
+    const double psi = closed_form(given.links, s.crank, given.side)[1];
+    worst = std::max(worst, std::abs(std::remainder(s.x[1] - psi, 2 * std::numbers::pi)));
+  }
+  return worst;
+}
+
+std::string motion_csv(const std::vector<sample>& samples) {
+  std::string text = "crank_deg,coupler_deg,rocker_deg,rocker_velocity,rocker_velocity_closed_form,"
+                     "rocker_acceleration,rocker_acceleration_closed_form,point_x,point_y\n";
+  for (const sample& s : samples) {
+    text += duet::csv_line({s.crank / degree, s.x[0] / degree, s.x[1] / degree, s.velocity,
+                            s.velocity_by_hand, s.acceleration, s.acceleration_by_hand, s.point[0],
+                            s.point[1]});
+  }
+  return text;
+}
+
+/// The linkage at one of the positions, as a line: crank, coupler with its point, rocker.
+std::string links_csv(const options& given, const std::vector<sample>& samples) {
+  const sample& s = samples[samples.size() / 6];
+  const Eigen::Vector2d start(0, 0), foot(given.links.ground, 0);
+  const Eigen::Vector2d a =
+      given.links.crank * Eigen::Vector2d(std::cos(s.crank), std::sin(s.crank));
+  const Eigen::Vector2d b =
+      foot + given.links.rocker * Eigen::Vector2d(std::cos(s.x[1]), std::sin(s.x[1]));
+  std::string text = "x,y\n";
+  for (const Eigen::Vector2d& p : {start, a, s.point, b, a, b, foot}) {
+    text += duet::csv_line({p[0], p[1]});
+  }
+  return text;
+}
+
+std::string picture_script() {
+  return "set datafile separator ','\nset autoscale\nset grid\nset multiplot layout 1,2\n"
+         "set size ratio -1\nset xlabel 'x / m'\nset ylabel 'y / m'\nset key top left\n"
+         "plot 'motion.csv' using 8:9 skip 1 with lines lw 2.5 lc rgb '#1f77b4' title "
+         "'coupler point', 'links.csv' using 1:2 skip 1 with linespoints lw 1.2 pt 7 ps 0.5 "
+         "lc rgb '#888888' title 'links'\n"
+         "set size noratio\nset xlabel 'crank / degrees'\nset ylabel 'rad/s, rad/s^2'\nset "
+         "autoscale xfix\n"
+         "plot 'motion.csv' using 1:4 skip 1 with lines lw 2 lc rgb '#2ca02c' title "
+         "'angular velocity of the rocker', 'motion.csv' using 1:6 skip 1 with lines lw 2 lc rgb "
+         "'#d62728' title 'angular acceleration', 'motion.csv' using 1:5 every 15 skip 1 with "
+         "points "
+         "pt 6 lc rgb 'black' title 'closed form', 'motion.csv' using 1:7 every 15 skip 1 with "
+         "points pt 6 lc rgb 'black' notitle\nunset multiplot\n";
+}
+
+void run(const options& given) {
+  const std::vector<sample> samples = run_through(given);
+  const auto [a, b, c, d] = given.links;
+  std::printf("Links %g, %g, %g, ground %g m: %s\n\n", a, b, c, d, given.links.kind().c_str());
+  std::printf("%8s %10s %10s %14s %14s %16s %16s\n", "crank", "coupler", "rocker", "velocity",
+              "closed form", "acceleration", "closed form");
+  for (std::size_t k = 0; k <= 6; ++k) {
+    const sample& s = samples[k * (samples.size() - 1) / 6];
+    std::printf("%8.2f %10.4f %10.4f %14.10f %14.10f %16.10f %16.10f\n", s.crank / degree,
+                s.x[0] / degree, s.x[1] / degree, s.velocity, s.velocity_by_hand, s.acceleration,
+                s.acceleration_by_hand);
+  }
+  std::filesystem::create_directories(given.out);
+  duet::write_file(given.out + "/motion.csv", motion_csv(samples));
+  duet::write_file(given.out + "/links.csv", links_csv(given, samples));
+  const bool drawn = example::draw(given.out, "four_bar", "1100,520", picture_script());
+  std::cout << "\nTables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
+            << "\n";
+  if (!drawn) {
+    std::cout << "No picture: gnuplot is not installed or failed\n";
+  }
+  std::printf("four bar: samples=%zu angle_difference=%.2g velocity_difference=%.2g "
+              "acceleration_difference=%.2g\n",
+              samples.size(), angle_difference(samples, given),
+              difference(samples, &sample::velocity, &sample::velocity_by_hand),
+              difference(samples, &sample::acceleration, &sample::acceleration_by_hand));
+}
+
+} // namespace
+} // namespace four_bar
+
+int main(int argc, char** argv) {
+  try {
+    if (const auto given = four_bar::parse_options(argc, argv)) {
+      four_bar::run(*given);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "four_bar: " << error.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,166 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// Joint coordinates that take the tip of a robot arm to a pose, or to each pose of a file, within
+// the arm's limits; or what is in the way. The arm is one of duet's or read from a URDF file.
+
+#include "support/arms.hpp"
+#include "support/command_line.hpp"
+#include "support/poses.hpp"
+
+#include <duet/duet.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace duet;
+namespace po = example::po;
+using solution = inverse_kinematics_result<example::arm_chain::joints>;
+
+struct goal {
+  std::string name; ///< where it was given
+  dual_quaternion<double> pose;
+};
+
+/// Where the arm is a third of the way along its limits.
+[[nodiscard]] goal example_goal(const example::arm_chain& arm) {
+  Eigen::VectorXd theta(arm.size());
+  for (int i = 0; i < arm.size(); ++i) {
+    const double x = (2 * arm.limits(i).lower + arm.limits(i).upper) / 3;
+    theta[i] = x - x == 0 ? x : 1;
+  }
+  return {"the goal", arm.pose(theta)};
+}
+
+[[nodiscard]] std::vector<goal> goals_of(const example::command_line& given,
+                                         const example::arm_chain& arm) {
+  if (given.has("goal") && given.has("goals")) {
+    throw std::runtime_error("--goal and --goals exclude each other");
+  }
+  if (const auto text = given.text("goal")) {
+    return {{"--goal", example::parse_pose("--goal", *text)}};
+  }
+  const auto path = given.text("goals");
+  if (!path) {
+    return {example_goal(arm)};
+  }
+  std::vector<goal> result;
+  const csv_file file(*path);
+  for (const csv_row& row : file.rows()) {
+    try {
+      result.push_back({*path + ":" + std::to_string(row.line), example::parse_pose(row.numbers)});
+    } catch (const invalid_input& error) {
+      throw file_error(*path, row.line, error.what());
+    }
+  }
+  return result;
+}
+
+[[nodiscard]] std::string why_not(const goal& wanted, const solution& found) {
+  std::ostringstream text;
+  text << wanted.name << ": not reached (" << to_text(found.reason) << "), "
+       << found.deviation.length << " m and " << found.deviation.angle
+       << " rad from it with the nearest joints found";
+  return text.str();
+}
+
+void write_joints(const std::string& path, const std::vector<solution>& found) {
+  std::string text;
+  for (Eigen::Index i = 0; i < found.front().joints.size(); ++i) {
+    text += "q" + std::to_string(i) + ",";
+  }
+  text += "is_reached,length,angle\n";
+  for (const solution& s : found) {
+    std::vector<double> row(s.joints.begin(), s.joints.end());
+    row.insert(row.end(), {s.reason == stop_reason::reached ? 1.0 : 0.0, s.deviation.length,
+                           s.deviation.angle});
+    text += csv_line(row);
+  }
+  write_file(path, text);
+}
+
+void solve(const example::command_line& given) {
+  const example::arm_chain arm = example::arm_of(given);
+  const Eigen::VectorXd start = example::coordinates(arm, given, "start");
+  const std::vector<goal> goals = goals_of(given, arm);
+  inverse_kinematics_options options;
+  options.tolerance = given.get<double>("tolerance").value_or(options.tolerance);
+  options.restarts = given.get<int>("restarts").value_or(options.restarts);
+  options.seed = given.get<std::uint64_t>("seed").value_or(options.seed);
+
+  std::vector<dual_quaternion<double>> poses;
+  for (const goal& g : goals) {
+    poses.push_back(g.pose);
+  }
+  std::vector<solution> found(goals.size());
+  inverse_kinematics(arm, poses, start, found, options, all_cores);
+  if (goals.size() == 1 && found[0].reason != stop_reason::reached) {
+    throw std::runtime_error(why_not(goals[0], found[0]));
+  }
+  int reached = 0, iterations = 0, restarts = 0;
+  double deviation = 0;
+  for (std::size_t k = 0; k < goals.size(); ++k) {
+    const solution& s = found[k];
+    iterations += s.iterations;
+    restarts += s.restarts;
+    if (s.reason != stop_reason::reached) {
+      std::printf("%s\n", why_not(goals[k], s).c_str());
+      continue;
+    }
+    ++reached;
+    deviation = std::max({deviation, s.deviation.length, s.deviation.angle});
+    if (goals.size() == 1) {
+      std::printf("joints  ");
+      for (const double x : s.joints) {
+        std::printf(" %9.6f", x);
+      }
+      std::printf("\n");
+    }
+  }
+  if (const auto path = given.text("out")) {
+    write_joints(*path, found);
+  }
+  std::printf("inverse kinematics: reached=%d of=%zu iterations=%d restarts=%d deviation=%.2g\n",
+              reached, goals.size(), iterations, restarts, deviation);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    po::options_description description(
+        "Joint coordinates for a pose of a robot arm's tip, within the arm's limits.\nA pose is "
+        "x,y,z,qw,qx,qy,qz (scalar first), or a matrix [R t; 0 1] row by row, 12 or 16 numbers.\n"
+        "Metres and radians. Options");
+    example::add_arm_options(description);
+    auto add = description.add_options();
+    const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
+    add("goal", text("POSE"), "comma-separated (default: a third of the way along all limits)");
+    add("goals", text("FILE"), "poses instead, each on a line of a CSV file");
+    add("start", text("X,X,..."), "joints to begin from (default: the middle of the limits)");
+    add("tolerance", po::value<double>()->value_name("X"),
+        "how close, in metres and radians (default: 1e-6)");
+    add("restarts", po::value<int>()->value_name("N"),
+        "random joints to begin anew from, at most (default: 100)");
+    add("seed", po::value<std::uint64_t>()->value_name("N"), "of those (default: 1)");
+    add("out", text("FILE"), "a CSV file for the joints of each goal");
+    add("help", "print this and stop");
+    const auto line = example::command_line::parse(argc, argv, description);
+    if (line) {
+      solve(*line);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "inverse_kinematics: " << error.what() << "\n";
+    return 1;
+  }
+}

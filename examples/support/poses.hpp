@@ -1,0 +1,57 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "numbers.hpp"
+
+#include <duet/core/errors.hpp>
+#include <duet/core/number_text.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/norm.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// \file
+/// Poses as command lines and files give them.
+
+namespace example {
+
+/// The pose of `x, y, z, qw, qx, qy, qz` or of a matrix [R t; 0 1], row by row, 12 or 16 numbers.
+/// \throws duet::invalid_input that says what is wrong, without a place
+inline duet::dual_quaternion<double> parse_pose(const std::vector<double>& x) {
+  const std::string count = std::to_string(x.size());
+  if (x.size() == 7) {
+    const duet::quaternion<double> q(x[3], x[4], x[5], x[6]);
+    const double length = norm(q);
+    if (!(std::abs(length - 1) <= duet::unit_norm_tolerance)) {
+      throw duet::invalid_input("the quaternion has norm " + duet::to_text(length) + ", not 1");
+    }
+    return duet::pose(normalized(q), duet::vector3<double>(x[0], x[1], x[2]));
+  }
+  if (x.size() != 12 && x.size() != 16) {
+    throw duet::invalid_input("7 numbers (x, y, z, qw, qx, qy, qz) or 12 or 16 (a matrix, row by "
+                              "row) expected, got " +
+                              count);
+  }
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    m(Eigen::Index(i / 4), Eigen::Index(i % 4)) = x[i];
+  }
+  return duet::from_transform_matrix(m);
+}
+
+/// \throws std::runtime_error with the option's name
+inline duet::dual_quaternion<double> parse_pose(const std::string& option,
+                                                const std::string& text) {
+  const std::vector<double> numbers = parse_numbers(option, text);
+  try {
+    return parse_pose(numbers);
+  } catch (const duet::invalid_input& error) {
+    throw std::runtime_error(option + ": " + error.what());
+  }
+}
+
+} // namespace example

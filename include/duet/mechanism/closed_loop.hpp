@@ -1,0 +1,214 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/number_text.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/implicit_function.hpp>
+#include <duet/derivative/manifold.hpp>
+#include <duet/derivative/structure.hpp>
+#include <duet/dual/dual.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Mechanisms whose links form loops: positions x(u) by the constraints F(x, u) = 0.
+
+namespace duet {
+
+/// A closed loop that has no position where one was asked for.
+class cannot_close : public no_convergence {
+public:
+  cannot_close(const std::string& message, std::vector<double> parameter)
+      : no_convergence(message), parameter_(std::move(parameter)) {}
+
+  /// The driving parameters at which it closed last, or was to close first.
+  [[nodiscard]] const std::vector<double>& parameter() const { return parameter_; }
+
+private:
+  std::vector<double> parameter_;
+};
+
+/// How a loop is followed.
+struct closed_loop_options {
+  double largest_step = .5; ///< of u. Large ones cannot tell whole turns of driving angles
+};
+
+/// The positions x(u) of a mechanism that is given by its constraints F(x, u) = 0.
+///
+/// \tparam F  callable, templated over the scalars of both arguments: as many residuals as x has
+///            coordinates, of which a rotation has three; see `implicit_function`
+/// \tparam X  positions, in double: a scalar, a fixed-size vector, a unit quaternion, or a tuple
+/// \tparam P  the driving parameter u, double, or a fixed-size vector of them
+///
+/// A loop usually closes in several ways. Which of them is meant is said by the position at one u;
+/// from there x is followed along the straight line to any other u by steps small enough
+/// for the rates at both ends to agree with the way, and for det ∂F/∂x, whose sign differs on the
+/// two branches that meet in a dead point, to change little. As a function of u it is
+/// differentiated by all drivers, by the implicit function theorem: `derivatives<2>(loop, u)` are
+/// position, velocity and acceleration per unit of u. Evaluation is `const` and uses no heap.
+///
+/// Source: P. Deuflhard, Newton Methods for Nonlinear Problems, chapter 5.
+template <class F, class X, class P = double>
+class closed_loop {
+  static constexpr int size = manifold<P>::dimension;
+  using coordinates = Eigen::Matrix<double, size, 1>;
+  using solution = detail::newton<F, X, P>;
+  using tangent = typename solution::vector;
+  using tag = derivative_tag<closed_loop>;
+
+public:
+  /// \param constraints  F
+  /// \param position     near the position at u0
+  /// \param u0           where the motion starts
+  /// \throws cannot_close where there is no position near the given one, or ∂F/∂x is singular
+  closed_loop(F constraints, const X& position, const P& u0,
+              const closed_loop_options& options = {})
+      : constraints_(std::move(constraints)), u_(u0), options_(options),
+        start_(assembled(position)) {}
+
+  /// The u that all others are reached from, and the position there.
+  [[nodiscard]] const P& parameter() const { return u_; }
+  [[nodiscard]] const X& position() const { return start_.x; }
+
+  /// x(u), over any scalar of duet; real values are in double precision.
+  /// \throws cannot_close where the loop does not close on the straight way to u: there is a dead
+  /// point; invalid_input for a u that is not finite
+  template <class U>
+  [[nodiscard]] auto operator()(const U& u) const {
+    const P target = map_scalars([](const auto& s) { return double(innermost(s)); }, u);
+    return detail::with_infinitesimals(constraints_, followed(target), u);
+  }
+
+  /// The same loop, started from u: other positions are found faster the nearer it starts.
+  /// \throws as evaluation
+  [[nodiscard]] closed_loop moved_to(const P& u) const {
+    closed_loop result = *this;
+    result.start_ = followed(u);
+    result.u_ = u;
+    return result;
+  }
+
+private:
+  [[nodiscard]] static coordinates numbers(const P& u) {
+    coordinates result;
+    Eigen::Index i = 0;
+    static_cast<void>(map_scalars([&](double x) { return result[i++] = x; }, u));
+    return result;
+  }
+
+  [[nodiscard]] static std::string text(const P& u) {
+    std::string result;
+    for (const double x : numbers(u)) {
+      result += (result.empty() ? "" : ", ") + to_text(x);
+    }
+    return size == 1 ? result : "(" + result + ")";
+  }
+
+  [[noreturn]] static void fail(const std::string& what, const P& u) {
+    const coordinates x = numbers(u);
+    throw cannot_close("duet: closed_loop: " + what, {x.begin(), x.end()});
+  }
+
+  [[nodiscard]] solution assembled(const X& position) const {
+    const solution result(constraints_, position, u_, {});
+    if (!result.has_converged()) {
+      fail("no position near the given one at u = " + text(u_), u_);
+    }
+    return result;
+  }
+
+  /// dx of a du, by the implicit function theorem.
+  [[nodiscard]] tangent rate(const solution& at, const P& u, const coordinates& du) const {
+    using D = dual<double, 1, tag>;
+    Eigen::Matrix<D, size, 1> delta;
+    for (int i = 0; i < size; ++i) {
+      delta[i] = D(0, du[i]);
+    }
+    return at.lu.solve(-residual(at.x, manifold<P>::plus(u, delta), 1));
+  }
+
+  template <class U>
+  [[nodiscard]] tangent residual(const X& x, const U& u, int part) const {
+    const auto r = detail::residuals<tangent::SizeAtCompileTime>(constraints_(x, u));
+    tangent result;
+    for (Eigen::Index i = 0; i < result.size(); ++i) {
+      result[i] = innermost(detail::part<tag>(r[std::size_t(i)], part));
+    }
+    return result;
+  }
+
+  /// The position at `next`, on the way from `u`; nothing where it may have left the way.
+  [[nodiscard]] std::optional<solution> step(const solution& from, const P& u,
+                                             const P& next) const {
+    const coordinates du = numbers(next) - numbers(u);
+    const tangent before = rate(from, u, du);
+    const solution to(constraints_, manifold<X>::plus(from.x, before), next, {10});
+    const double change = to.lu.determinant() / from.lu.determinant();
+    if (!to.has_converged() || !(change > .25 && change < 4)) {
+      return std::nullopt;
+    }
+    // Do the rates at both ends explain how far it went, and did it not turn back, as it would
+    // beyond a gap?
+    const tangent after = rate(to, next, du);
+    const double fastest = std::max(before.norm(), after.norm());
+    const X explained = manifold<X>::plus(from.x, tangent((before + after) / 2));
+    const double missing = to.lu.solve(residual(explained, next, 0)).norm();
+    const double rounding = 1e-12 * std::max(1.0, to.magnitude());
+    if (missing <= fastest / 16 + rounding &&
+        (after - before).norm() <= 1.25 * fastest + rounding) {
+      return to;
+    }
+    return std::nullopt;
+  }
+
+  /// The position at `target`, reached from where the motion starts.
+  [[nodiscard]] solution followed(const P& target) const {
+    const coordinates way = numbers(target) - numbers(u_);
+    if (!way.allFinite()) {
+      throw invalid_input("duet: closed_loop: u = " + text(target) + " is not finite");
+    }
+    solution here = start_;
+    P u = u_;
+    const double limit = options_.largest_step / way.norm();
+    double done = way.isZero(0) ? 1 : 0;
+    for (double largest = limit; done < 1;) {
+      const bool is_last = 1 - done <= largest;
+      const double to = is_last ? 1 : done + largest;
+      const P next = is_last ? target : P(manifold<P>::plus(u_, coordinates(to * way)));
+      const double length = to - done;
+      if (const auto there = step(here, u, next)) {
+        here = *there;
+        u = next;
+        done = to;
+        largest = std::min(limit, 2 * length);
+      } else if (length <= 1e-6 * (1 - done)) {
+        fail("cannot close beyond u = " + text(u) + " on the way from " + text(u_) + " to " +
+                 text(target),
+             u);
+      } else {
+        largest = length / 2;
+      }
+    }
+    return here;
+  }
+
+  F constraints_;
+  P u_;
+  closed_loop_options options_;
+  solution start_;
+};
+
+template <class F, class X, class P>
+closed_loop(F, X, P, closed_loop_options = {}) -> closed_loop<F, X, detail::differentiable_t<P>>;
+
+} // namespace duet

@@ -1,0 +1,78 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/parallel_for.hpp>
+#include <duet/derivative/seed.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/inverse_kinematics_search.hpp>
+#include <duet/quaternion/norm.hpp>
+
+#include <cstddef>
+#include <span>
+#include <sstream>
+#include <string>
+
+/// \file
+/// Joint coordinates for poses of the tip.
+
+namespace duet {
+namespace detail {
+
+inline void require_goal(const dual_quaternion<double>& goal, const std::string& name) {
+  if (!is_unit(goal, 1e-6)) {
+    const auto square = norm2(goal);
+    std::ostringstream message;
+    message << "duet: inverse_kinematics: " << name
+            << " is no unit dual quaternion: |p|^2 = " << square.value()
+            << ", p.q = " << square.epsilon() / 2;
+    throw invalid_input(message.str());
+  }
+}
+
+} // namespace detail
+
+/// Joint coordinates within the limits of a chain that take its tip to the pose `goal`, either sign
+/// of it.
+///
+/// Levenberg and Marquardt's method on the exact twist e = 2 log(A_goal A*) in `frame::hybrid`,
+/// Δ = Jᵀ(J Jᵀ + λ)⁻¹ e with λ growing with |e|² after Sugihara, joints that would leave their
+/// limits being held there; from the given start and, once the error stops falling, from random
+/// configurations. These are the same in every call with the same seed.
+///
+/// \param start  put within the limits; joints whose range holds a whole turn by turning them back
+/// \return the joints; where `reason` is not `reached`, the nearest to the goal that were met with.
+/// `out_of_reach` is certain, that the others mean there is no solution is not: `joint_limit`,
+/// `singular` and `no_progress` say what is in the way there, `iteration_limit` that nothing is
+/// \throws invalid_input for a start that is not finite or of another size, for a goal that is no
+/// pose, and for bad options
+template <SerialChain C, VectorLike Start>
+[[nodiscard]] inverse_kinematics_result<C::joints>
+inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
+                   const inverse_kinematics_options& options = {}) {
+  const detail::inverse_kinematics_search<C> search(chain, start, options);
+  detail::require_goal(goal, "the goal");
+  return search(normalized(goal));
+}
+
+/// out[i] = inverse_kinematics(chain, goals[i], start, options), with the same results on any
+/// number of cores.
+/// \throws invalid_input where the sizes differ, for the first goal that is no pose, and as above
+template <SerialChain C, VectorLike Start>
+void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
+                        const Start& start, std::span<inverse_kinematics_result<C::joints>> out,
+                        const inverse_kinematics_options& options = {}, execution how = one_core) {
+  if (goals.size() != out.size()) {
+    throw invalid_input("duet: inverse_kinematics: " + std::to_string(goals.size()) +
+                        " goals, but room for " + std::to_string(out.size()) + " results");
+  }
+  const detail::inverse_kinematics_search<C> search(chain, start, options);
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    detail::require_goal(goals[i], "goal " + std::to_string(i));
+  }
+  parallel_for(
+      goals.size(), [&](std::size_t i) { out[i] = search(normalized(goals[i])); }, how);
+}
+
+} // namespace duet

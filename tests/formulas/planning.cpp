@@ -1,0 +1,271 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "formulas/by_hand.hpp"
+#include "formulas/parts.hpp"
+#include "formulas/table.hpp"
+
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/resolved_motion.hpp>
+#include <duet/quaternion/exponential.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+// N22–N24: motion planning, with the table of a Panda.
+
+namespace by_hand {
+namespace {
+
+constexpr std::size_t joints = 7;
+template <class T>
+using joint_vector = std::array<T, joints>;
+template <class T>
+using six = std::array<T, 6>;
+
+/// x with M x = b, by Gauss.
+template <class T>
+six<T> solved(std::array<six<T>, 6> m, six<T> b) {
+  using std::abs;
+  for (std::size_t k = 0; k < 6; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < 6; ++i) {
+      pivot = abs(m[i][k]) > abs(m[pivot][k]) ? i : pivot;
+    }
+    std::swap(m[k], m[pivot]);
+    std::swap(b[k], b[pivot]);
+    for (std::size_t i = k + 1; i < 6; ++i) {
+      const T factor = m[i][k] / m[k][k];
+      for (std::size_t j = k; j < 6; ++j) {
+        m[i][j] -= factor * m[k][j];
+      }
+      b[i] -= factor * b[k];
+    }
+  }
+  for (std::size_t k = 6; k-- > 0;) {
+    for (std::size_t j = k + 1; j < 6; ++j) {
+      b[k] -= m[k][j] * b[j];
+    }
+    b[k] /= m[k][k];
+  }
+  return b;
+}
+
+/// The arm at θ, and its rates along dθ: γ = [t; α] of the flange and the joints' screws.
+template <class T>
+struct arm {
+  v3<T> t, dt;
+  q4<T> alpha, dalpha;
+  std::array<six<T>, joints> columns, dcolumns; ///< [v; ω], v at the origin
+
+  arm(const joint_vector<T>& theta, const joint_vector<T>& dtheta) {
+    using std::cos;
+    using std::sin;
+    using std::sqrt;
+    const double lengths[] = {0, 0, 0, .0825, -.0825, 0, .088};
+    const double offsets[] = {.333, 0, .316, 0, .384, 0, 0};
+    const int twists[] = {0, -1, 1, 1, -1, 1, 1}; // quarter turns
+    const T root = sqrt(T(0.5));
+    const auto shifted = [&](double x, double z) {
+      return plus(t, vec(product(product(alpha, pure(v3<T>{T(x), T(0), T(z)})), conj(alpha))));
+    };
+    t = dt = {T(0), T(0), T(0)};
+    alpha = {T(1), T(0), T(0), T(0)};
+    v3<T> v = t, w = t; // of the link before, the velocity at the origin and the angular velocity
+    for (std::size_t i = 0; i < joints; ++i) {
+      t = shifted(lengths[i], 0);
+      if (twists[i] != 0) {
+        alpha = product(alpha, q4<T>{root, T(twists[i] * root), T(0), T(0)});
+      }
+      t = shifted(0, offsets[i]);
+      const v3<T> z = vec(product(product(alpha, q4<T>{T(0), T(0), T(0), T(1)}), conj(alpha)));
+      const v3<T> m = cross(t, z);
+      columns[i] = {m[0], m[1], m[2], z[0], z[1], z[2]};
+      const v3<T> dz = cross(w, z), dm = plus(cross(w, m), cross(v, z));
+      dcolumns[i] = {dm[0], dm[1], dm[2], dz[0], dz[1], dz[2]};
+      v = plus(v, times(dtheta[i], m));
+      w = plus(w, times(dtheta[i], z));
+      const T half = theta[i] / 2;
+      alpha = product(alpha, q4<T>{T(cos(half)), T(0), T(0), T(sin(half))});
+    }
+    t = shifted(0, .107);
+    dt = plus(v, cross(w, t));
+    dalpha = times(T(0.5), product(pure(w), alpha));
+  }
+
+  /// Σ a bᵀ of columns.
+  static std::array<six<T>, 6> gram(const std::array<six<T>, joints>& a,
+                                    const std::array<six<T>, joints>& b) {
+    std::array<six<T>, 6> result;
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t j = 0; j < 6; ++j) {
+        result[i][j] = T(0);
+        for (std::size_t k = 0; k < joints; ++k) {
+          result[i][j] += a[k][i] * b[k][j];
+        }
+      }
+    }
+    return result;
+  }
+};
+
+/// N22 at γ̇ = [u; p], and its derivative.
+template <class T>
+std::pair<joint_vector<T>, joint_vector<T>>
+resolved(const arm<T>& a, const v3<T>& u, const q4<T>& p, const v3<T>& du, const q4<T>& dp) {
+  const v3<T> w = times(T(2), vec(product(p, conj(a.alpha))));
+  const v3<T> dw = times(T(2), vec(plus(product(dp, conj(a.alpha)), product(p, conj(a.dalpha)))));
+  const v3<T> v = plus(u, cross(a.t, w));
+  const v3<T> dv = plus(du, plus(cross(a.dt, w), cross(a.t, dw)));
+  const auto gram = a.gram(a.columns, a.columns);
+  const auto half = a.gram(a.dcolumns, a.columns);
+  const six<T> y = solved(gram, six<T>{v[0], v[1], v[2], w[0], w[1], w[2]});
+  six<T> right{dv[0], dv[1], dv[2], dw[0], dw[1], dw[2]};
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j < 6; ++j) {
+      right[i] -= (half[i][j] + half[j][i]) * y[j];
+    }
+  }
+  const six<T> dy = solved(gram, right);
+  std::pair<joint_vector<T>, joint_vector<T>> result;
+  for (std::size_t k = 0; k < joints; ++k) {
+    result.first[k] = dot(a.columns[k], y);
+    result.second[k] = dot(a.dcolumns[k], y) + dot(a.columns[k], dy);
+  }
+  return result;
+}
+
+} // namespace
+} // namespace by_hand
+
+namespace duet_formulas {
+namespace {
+
+constexpr auto vector = argument::vector;
+constexpr auto number = argument::number;
+constexpr auto rotation_vector = argument::rotation;
+/// (J Jᵀ)⁻¹ squares the condition of J, which is up to about 20 here.
+constexpr bounds of_normal_equations{32, 64};
+
+constexpr auto robot = duet::robots::panda().table();
+
+template <class T>
+Eigen::Matrix<T, 7, 1> joints_of(const numbers<T>& x) {
+  return Eigen::Map<const Eigen::Matrix<T, 7, 1>>(x.data());
+}
+template <class T>
+duet::quaternion<T> unit_of(const numbers<T>& x, std::size_t i) {
+  return duet::exp(duet::vector3<T>(x[i] / 2, x[i + 1] / 2, x[i + 2] / 2));
+}
+template <class V>
+auto as_numbers(const V& v) {
+  return numbers<typename V::Scalar>(v.data(), v.data() + v.size());
+}
+
+/// Σ 1/σ² of the Jacobian's singular values below 100, so all of them above a tenth: (J Jᵀ)⁻¹
+/// amplifies errors by their squares.
+bool is_regular(const numbers<double>& x) {
+  by_hand::joint_vector<double> none{};
+  const by_hand::arm<double> a(by_hand::part<7>(x, 0), none);
+  double sum = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    by_hand::six<double> unit{};
+    unit[i] = 1;
+    sum += by_hand::solved(a.gram(a.columns, a.columns), unit)[i];
+  }
+  return sum > 0 && sum < 100 && joints_of(x).cwiseAbs().maxCoeff() < 7;
+}
+
+formula least_rates() {
+  return make_formula(
+      "N22", R"(\dot\Theta = B\dot\gamma,\; B = J^\top(JJ^\top)^{-1}J_2)", "resolved_rate_matrix",
+      "planning/resolved_motion.hpp", {vector, vector, number, vector, argument::quaternion},
+      []<class T>(const numbers<T>& x) {
+        duet::vector7<T> rate;
+        rate << v_of(x, 7), x[10], x[11], x[12], x[13];
+        const Eigen::Matrix<T, 7, 1> y = duet::resolved_rate_matrix(robot, joints_of(x)) * rate;
+        return as_numbers(y);
+      },
+      []<class T>(const numbers<T>& x, const numbers<T>& d) {
+        using namespace by_hand;
+        const arm<T> a(part<7>(x, 0), part<7>(d, 0));
+        const auto [y, dy] =
+            resolved(a, part<3>(x, 7), part<4>(x, 10), part<3>(d, 7), part<4>(d, 10));
+        return row<T>(y, dy);
+      },
+      of_normal_equations, is_regular);
+}
+
+formula joint_step() {
+  return make_formula(
+      "N23", R"(\Theta(t+h) = \Theta(t) + \beta B\,(\gamma(t+h) - \gamma(t)))", "resolved_step",
+      "planning/resolved_motion.hpp", {vector, vector, number, rotation_vector, vector},
+      []<class T>(const numbers<T>& x) {
+        return as_numbers(
+            duet::resolved_step(robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .5));
+      },
+      []<class T>(const numbers<T>& x, const numbers<T>& d) {
+        using namespace by_hand;
+        const arm<T> a(part<7>(x, 0), part<7>(d, 0));
+        const unit<T> u(part<3>(x, 7), part<3>(d, 7));
+        const T sign(dot(u.q, a.alpha) < 0 ? -1 : 1), minus(-1);
+        const auto [y, dy] = resolved(a, plus(part<3>(x, 10), times(minus, a.t)),
+                                      plus(times(sign, u.q), times(minus, a.alpha)),
+                                      plus(part<3>(d, 10), times(minus, a.dt)),
+                                      plus(times(sign, u.dq), times(minus, a.dalpha)));
+        return row<T>(plus(part<7>(x, 0), times(T(0.5), y)),
+                      plus(part<7>(d, 0), times(T(0.5), dy)));
+      },
+      of_normal_equations,
+      [](const numbers<double>& x) {
+        return is_regular(x) &&
+               std::abs(dot(unit_of(x, 7), duet::rotation(robot.pose(joints_of(x))))) > 1e-3;
+      });
+}
+
+formula planning_step() {
+  auto f = make_formula(
+      "N24",
+      R"(\Theta \mapsto \Theta + B\,(\gamma(A\,(A^*A_g)^\tau) - \gamma(A)),\; A = A(\Theta))",
+      "sclerp, resolved_step", "planning/printed_plan.hpp",
+      {vector, vector, number, rotation_vector, vector, argument::fraction},
+      []<class T>(const numbers<T>& x) {
+        numbers<duet::real_type_t<T>> still; // all but τ
+        for (const T& each : x) {
+          still.push_back(duet::innermost(each));
+        }
+        const auto theta = joints_of(still);
+        const auto goal = duet::pose(unit_of(still, 7), v_of(still, 10));
+        return as_numbers(
+            duet::resolved_step(robot, theta, sclerp(robot.pose(theta), goal, x[13]), 1));
+      },
+      []<class T>(const numbers<T>& x, const numbers<T>& d) {
+        using namespace by_hand;
+        const v3<T> none{};
+        const T minus(-1);
+        const arm<T> a(part<7>(x, 0), part<7>(d, 0));
+        const screw_way<T> c(a.alpha, a.t, unit<T>(part<3>(x, 7), none).q, part<3>(x, 10), x[13],
+                             d[13]);
+        const auto [y, dy] = resolved(a, plus(c.place, times(minus, a.t)),
+                                      plus(c.alpha, times(minus, a.alpha)), c.dplace, c.dalpha);
+        return row<T>(plus(part<7>(x, 0), y), dy);
+      },
+      of_normal_equations,
+      [](const numbers<double>& x) {
+        return is_regular(x) &&
+               std::abs(dot(unit_of(x, 7), duet::rotation(robot.pose(joints_of(x))))) > 1e-3;
+      });
+  f.only_last_moves = true;
+  return f;
+}
+
+} // namespace
+
+std::vector<formula> planning_formulas() { return {least_rates(), joint_step(), planning_step()}; }
+
+} // namespace duet_formulas

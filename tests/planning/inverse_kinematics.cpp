@@ -1,0 +1,308 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+#include "support/allocations.hpp"
+
+#include <duet/planning/inverse_kinematics.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace test_planning_inverse_kinematics {
+namespace {
+
+using namespace duet;
+/// Of any number of joints, so that the search is compiled once.
+using chain = serial_chain<-16>;
+using result = inverse_kinematics_result<-16>;
+using vector = detail::joint_vector<double, -16>;
+constexpr double pi = std::numbers::pi;
+
+std::vector<chain> arms() {
+  return {robots::panda().table(), robots::iiwa14().table(), robots::ur5e().table(),
+          robots::baxter_left().table()};
+}
+
+vector configuration(const chain& arm, duet_test::random_source& random) {
+  vector theta(arm.size());
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] =
+        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
+  }
+  return theta;
+}
+
+bool is_within_limits(const chain& arm, const vector& theta) {
+  bool is_inside = theta.size() == arm.size();
+  for (int i = 0; i < arm.size(); ++i) {
+    is_inside = is_inside && arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper;
+  }
+  return is_inside;
+}
+
+/// How far the tip is from the goal, by matrices: of a turn by φ, |R − 1| = 2√2 |sin φ/2|.
+pose_deviation deviation_by_matrices(const chain& arm, const vector& theta,
+                                     const dual_quaternion<double>& goal) {
+  const Eigen::Matrix4d gap = transform_matrix(arm.pose(theta)) - transform_matrix(goal);
+  const double chord = gap.topLeftCorner<3, 3>().norm() / std::sqrt(8);
+  return {gap.topRightCorner<3, 1>().norm(), 2 * std::asin(std::min(1.0, chord))};
+}
+
+/// Is this a solution, and what it says about itself true?
+bool is_solution(const chain& arm, const result& found, const dual_quaternion<double>& goal,
+                 double tolerance = 1e-6) {
+  const pose_deviation left = deviation_by_matrices(arm, found.joints, goal);
+  const double rounding = 1e-15 * std::max(10.0, translation(goal).norm());
+  return found.reason == stop_reason::reached && is_within_limits(arm, found.joints) &&
+         left.length <= tolerance + rounding && left.angle <= tolerance + rounding &&
+         std::abs(left.length - found.deviation.length) < rounding &&
+         std::abs(left.angle - found.deviation.angle) < rounding;
+}
+
+bool are_identical(const result& a, const result& b) {
+  return a.joints == b.joints && a.deviation.length == b.deviation.length &&
+         a.deviation.angle == b.deviation.angle && a.iterations == b.iterations &&
+         a.restarts == b.restarts && a.reason == b.reason;
+}
+
+/// Three sliding and three turning joints, all through one point.
+chain gantry(double lower, double upper) {
+  std::array<joint<>, 6> joints;
+  for (std::size_t i = 0; i < 6; ++i) {
+    joints[i].kind = i < 3 ? joint_kind::prismatic : joint_kind::revolute;
+    joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
+  }
+  joints[0].limits = {lower, upper};
+  return serial_chain<6>(joints);
+}
+
+dual_quaternion<double> at(double x, double y, double z, const Eigen::Vector3d& turn = {0, 0, 0}) {
+  return pose(from_rotation_vector(turn), Eigen::Vector3d(x, y, z));
+}
+
+} // namespace
+
+TEST_CASE("reachable poses of four arms, from anywhere") {
+  const std::uint64_t seed = 31;
+  CAPTURE(seed);
+  duet_test::random_source random(seed);
+  for (const chain& arm : arms()) {
+    CAPTURE(&arm - arms().data());
+    int solved = 0;
+    for (int k = 0; k < 100; ++k) {
+      const auto goal = arm.pose(configuration(arm, random));
+      const auto found = inverse_kinematics(arm, goal, configuration(arm, random));
+      solved += is_solution(arm, found, goal);
+    }
+    CHECK(solved == 100);
+  }
+}
+
+TEST_CASE("goals and starts at singularities and limits") {
+  duet_test::random_source random(32);
+  for (const chain& arm : arms()) {
+    const vector lower = lower_limits(arm), upper = upper_limits(arm);
+    const vector zero = vector::Zero(arm.size());
+    vector folded = zero;
+    folded[2] = pi / 2;
+    for (const vector& special : {lower, upper, zero, folded}) {
+      const vector inside = special.cwiseMax(lower).cwiseMin(upper);
+      const auto goal = arm.pose(inside);
+      CHECK(is_solution(arm, inverse_kinematics(arm, goal, configuration(arm, random)), goal));
+      const auto next = arm.pose(configuration(arm, random));
+      CHECK(is_solution(arm, inverse_kinematics(arm, next, special), next));
+      // Already there.
+      const auto same = inverse_kinematics(arm, goal, inside);
+      CHECK(same.iterations == 0);
+      CHECK(same.joints == inside);
+    }
+  }
+}
+
+TEST_CASE("either sign of the goal, and small tolerances") {
+  const chain arm = robots::panda().table();
+  duet_test::random_source random(33);
+  const vector start = configuration(arm, random);
+  const auto goal = arm.pose(configuration(arm, random));
+  const auto found = inverse_kinematics(arm, goal, start);
+  CHECK(are_identical(found, inverse_kinematics(arm, -goal, start)));
+  const auto close = inverse_kinematics(arm, goal, start, {.tolerance = 1e-13});
+  CHECK(is_solution(arm, close, goal, 1e-13));
+}
+
+TEST_CASE("every kind of joint, without limits; turning joints are turned back into theirs") {
+  const chain arm = duet_test::every_joint();
+  duet_test::random_source random(34);
+  for (int k = 0; k < 20; ++k) {
+    const auto goal = arm.pose(configuration(arm, random));
+    CHECK(is_solution(arm, inverse_kinematics(arm, goal, configuration(arm, random)), goal));
+  }
+  const chain far = gantry(-INFINITY, INFINITY);
+  const auto goal = at(1000, -2000, .5, {0, 1, 2});
+  CHECK(is_solution(far, inverse_kinematics(far, goal, vector::Zero(6).eval(), {.restarts = 0}),
+                    goal));
+
+  const chain ur5e = robots::ur5e().table();
+  vector theta(6);
+  theta << 3, -1, 1.5, -2, 1, 6;
+  vector turned = theta;
+  turned[0] += 6 * pi;
+  turned[5] -= 10 * pi;
+  const auto same = inverse_kinematics(ur5e, ur5e.pose(theta), turned);
+  CHECK(same.iterations == 0);
+  CHECK(is_solution(ur5e, same, ur5e.pose(theta)));
+  // Through the limit at 2π, which is none.
+  vector beyond = theta;
+  beyond[5] = 6.5;
+  CHECK(is_solution(ur5e, inverse_kinematics(ur5e, ur5e.pose(beyond), theta, {.restarts = 0}),
+                    ur5e.pose(beyond)));
+}
+
+TEST_CASE("units of length do not matter") {
+  const auto in_units = [](double unit) {
+    std::array<joint<>, 6> joints;
+    for (std::size_t i = 0; i < 6; ++i) {
+      joints[i].origin.translation = {.25 * unit, .125 * unit, 0};
+      joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
+    }
+    return chain(serial_chain<6>(joints));
+  };
+  const chain metres = in_units(1), units = in_units(1024);
+  const vector theta = vector::LinSpaced(6, -1, 1);
+  const vector start = vector::Constant(6, .1);
+  const inverse_kinematics_options few{.tolerance = 1e-15, .restarts = 0, .iterations = 5};
+  const auto found = inverse_kinematics(units, units.pose(theta), start, few);
+  CHECK(found.iterations == 5);
+  CHECK(found.joints == inverse_kinematics(metres, metres.pose(theta), start, few).joints);
+}
+
+TEST_CASE("what cannot be reached, and why") {
+  const chain panda = robots::panda().table();
+  const vector middle = (lower_limits(panda) + upper_limits(panda)) / 2;
+  const auto far = inverse_kinematics(panda, at(1.3, 0, .3), middle);
+  CHECK(far.reason == stop_reason::out_of_reach);
+  CHECK(std::string(to_text(far.reason)) == "out_of_reach");
+  CHECK(far.iterations == 0);
+  CHECK(far.joints == middle);
+  CHECK(far.deviation.length ==
+        doctest::Approx(translation(panda.pose(middle) - at(1.3, 0, .3)).norm()).epsilon(1));
+
+  // Three tenths of the way are missing.
+  const chain stretched = gantry(-1, .5);
+  const vector zero = vector::Zero(6);
+  const auto slid = inverse_kinematics(stretched, at(.8, 0, .3), zero);
+  CHECK(slid.reason == stop_reason::joint_limit);
+  CHECK(slid.restarts == 100);
+  CHECK(slid.joints[0] == .5);
+  CHECK(slid.deviation.length == doctest::Approx(.3).epsilon(1e-6));
+  CHECK(is_within_limits(stretched, slid.joints));
+
+  const chain ur5e = robots::ur5e().table();
+  // The hand turned away from the base, where it would have to be stretched to it.
+  const auto turned = inverse_kinematics(ur5e, at(.85, .2, .1, {0, -pi / 2, 0}), zero);
+  CHECK(turned.reason == stop_reason::singular);
+
+  const std::array<dh_row<>, 4> rows{
+      {{.4, .2, 0}, {.3, 0, pi}, {0, 0, 0, 0, {0, .2}, joint_kind::prismatic}, {0, 0, 0}}};
+  const chain scara = from_dh(rows);
+  vector theta(4);
+  theta << .3, .9, .1, -2;
+  const vector start = vector::Constant(4, .05);
+  const auto goal = scara.pose(theta);
+  CHECK(is_solution(scara, inverse_kinematics(scara, goal, start), goal));
+  const auto tilted = goal * at(0, 0, 0, {.1, 0, 0});
+  CHECK(inverse_kinematics(scara, tilted, start).reason == stop_reason::no_progress);
+
+  duet_test::random_source random(35);
+  const auto hurried = inverse_kinematics(panda, panda.pose(configuration(panda, random)), middle,
+                                          {.restarts = 0, .iterations = 2});
+  CHECK(hurried.reason == stop_reason::iteration_limit);
+  CHECK(hurried.iterations == 2);
+  CHECK(hurried.restarts == 0);
+}
+
+TEST_CASE("many goals: as one by one, on any number of cores") {
+  const chain arm = robots::baxter_left().table();
+  duet_test::random_source random(36);
+  const vector start = configuration(arm, random);
+  std::vector<dual_quaternion<double>> goals;
+  for (int k = 0; k < 20; ++k) {
+    goals.push_back(arm.pose(configuration(arm, random)));
+  }
+  goals[3] = at(.9, .2, .9);
+  const inverse_kinematics_options options{.restarts = 10, .seed = 5};
+  std::vector<result> one_by_one, out(goals.size());
+  for (const auto& goal : goals) {
+    one_by_one.push_back(inverse_kinematics(arm, goal, start, options));
+  }
+  for (const unsigned threads : {1U, 2U, 3U}) {
+    std::fill(out.begin(), out.end(), result{});
+    inverse_kinematics(arm, goals, start, out, options, execution{threads});
+    CHECK(std::equal(out.begin(), out.end(), one_by_one.begin(), are_identical));
+  }
+  CHECK_THROWS_WITH_AS(
+      inverse_kinematics(arm, goals, start, std::span(out).first(7), {}, all_cores),
+      "duet: inverse_kinematics: 20 goals, but room for 7 results", invalid_input);
+  goals[17] = at(0, 0, 0) * 2.0;
+  goals[18] = goals[18] * std::nan("");
+  out[0].iterations = -1;
+  CHECK_THROWS_WITH_AS(inverse_kinematics(arm, goals, start, out, {}, all_cores),
+                       "duet: inverse_kinematics: goal 17 is no unit dual quaternion: |p|^2 = 4, "
+                       "p.q = 0",
+                       invalid_input);
+  CHECK(out[0].iterations == -1); // nothing was begun
+}
+
+TEST_CASE("bad problems") {
+  const chain arm = robots::panda().table();
+  const vector start = (lower_limits(arm) + upper_limits(arm)) / 2;
+  const auto goal = arm.pose(start);
+  const auto half = make_dual_quaternion(quaternion<double>(1), quaternion<double>(.5));
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, half, start),
+                       "duet: inverse_kinematics: the goal is no unit dual quaternion: |p|^2 = 1, "
+                       "p.q = 0.5",
+                       invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal * std::nan(""), start), invalid_input);
+  CHECK(inverse_kinematics(arm, at(1e200, 0, 0), start).reason == stop_reason::out_of_reach);
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, vector::Zero(6).eval()),
+                       "duet: a chain of 7 moving joints, but 6 coordinates", invalid_input);
+  vector broken = start;
+  broken[4] = INFINITY;
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, broken),
+                       "duet: inverse_kinematics: the start has inf for joint 4", invalid_input);
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = 0}),
+                       "duet: inverse_kinematics: tolerance is 0, must be positive", invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = std::nan("")}),
+                  invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.restarts = -1}), invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.iterations = 0}), invalid_input);
+}
+
+TEST_CASE("nothing is allocated, restarts included") {
+  std::array<joint<>, 16> joints;
+  for (std::size_t i = 0; i < 16; ++i) {
+    joints[i].origin.translation = {.1, 0, .05};
+    joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
+    joints[i].limits = {-.5, 1};
+  }
+  const chain arm = serial_chain<16>(joints);
+  duet_test::random_source random(37);
+  const vector theta = configuration(arm, random), start = configuration(arm, random);
+  const auto goal = arm.pose(theta), none = at(-1, 0, 0);
+  const std::size_t before = duet_test::allocations;
+  const auto found = inverse_kinematics(arm, goal, start);
+  const auto tried = inverse_kinematics(arm, none, start, {.restarts = 5});
+  const std::size_t during = duet_test::allocations - before;
+  CHECK(during == 0);
+  CHECK(is_solution(arm, found, goal));
+  CHECK(tried.restarts == 5);
+}
+
+} // namespace test_planning_inverse_kinematics
