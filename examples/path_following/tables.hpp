@@ -74,14 +74,15 @@ inline std::string picture_script(int joints) {
          "'path.csv' using 2:3:4 skip 1 with lines lw 1.5 lc rgb '#20639b' title 'tip'\n"
          "unset xtics\nunset ytics\nset xtics\nset ytics\nset grid\n"
          "set size .44,.5\nset origin .56,.5\nset key outside bottom center horizontal\n"
-         "set xlabel 'turns'\nset ylabel 'joints'\n"
+         "set xlabel 'turns'\nset ylabel 'joints'\nset ytics 1\n"
          "plot for [i=0:" +
          std::to_string(joints - 1) +
          "] 'path.csv' using 1:(column(11+i)) skip 1 with lines lw 2 title sprintf('%d', i)\n"
-         "set origin .56,0\nset ylabel 'deviation of waypoints'\nset logscale y\n"
-         "set format y '10^{%T}'\n"
-         "plot 'path.csv' using 1:($9 > 1e-17 ? $9 : 1e-17) skip 1 with lines lw 2 title 'm', "
-         "'' using 1:($10 > 1e-17 ? $10 : 1e-17) skip 1 with lines lw 2 title 'rad'\n"
+         "set origin .56,0\nset ytics autofreq\nset ylabel 'deviation of waypoints'\nset logscale "
+         "y\n"
+         "set format y '%.0e'\n"
+         "plot 'path.csv' using 1:($9 > 1e-13 ? $9 : 1e-13) skip 1 with lines lw 2 title 'm', "
+         "'' using 1:($10 > 1e-13 ? $10 : 1e-13) skip 1 with lines lw 2 title 'rad'\n"
          "unset multiplot\n";
 }
 

@@ -45,6 +45,8 @@
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/planning/printed_plan.hpp>
+#include <duet/planning/save_plan.hpp>
+#include <duet/planning/time_parametrised.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/domain.hpp>

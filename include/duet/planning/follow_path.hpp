@@ -6,11 +6,11 @@
 #include <duet/quaternion/norm.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <span>
 #include <sstream>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -22,10 +22,10 @@ namespace duet {
 namespace detail {
 
 /// A plan along a path that is known to hold unit poses.
-template <class C, class Start, class Objective>
+template <class C, class Start, class Objective, class Scene>
 [[nodiscard]] motion_plan<C::joints>
 follow(const C& chain, const Start& start, const path_function& target, std::vector<double> stops,
-       const plan_options& options, const Objective& objective) {
+       const plan_options& options, const Objective& objective, const Scene& around) {
   require_options(options);
   joint_vector<double, C::joints> theta(chain.size());
   for (int i = 0; i < chain.size(); ++i) {
@@ -38,8 +38,8 @@ follow(const C& chain, const Start& start, const path_function& target, std::vec
             << gap.angle << " rad away from the tip at the start";
     throw invalid_input(message.str());
   }
-  return path_follower<C, Objective>(chain, target, std::move(stops), options, objective)
-      .plan(theta);
+  require_clearance(chain, theta, around, options.tolerance);
+  return path_follower(chain, target, std::move(stops), options, objective, around).plan(theta);
 }
 
 /// \throws invalid_input
@@ -62,56 +62,69 @@ template <class Path>
 
 } // namespace detail
 
+/// Poses by a parameter.
+template <class P>
+concept PosePath = requires(const P& path) {
+  { path(0.0) } -> std::convertible_to<dual_quaternion<double>>;
+};
+
 /// Joint coordinates that take the tip of a chain along a path from where it is at `start` (N25,
 /// note 1).
 ///
 /// Waypoints are within `tolerance` of the path, the straight joint paths between them within about
 /// `deviation`, both in length and angle, at the same parameter. Each waypoint is met by Newton's
 /// method on the exact twist 2 log(A_target A*), with steps of least norm that keep the limits and
-/// are damped where the smallest singular value is small. What freedom is left lowers
-/// the objectives. Where the joints get stuck and one or more are redundant, those configurations
+/// are damped where the smallest singular value is small. What freedom is left lowers the
+/// objectives. Where the joints get stuck and one or more are redundant, those configurations
 /// are searched that can be reached by moving in place, too.
 ///
 /// \param path         poses by a parameter, from `first` to `last`, which increases
-/// \param objective    a function of θ, generic over scalars, which the joints lower as long as
-/// that
+/// \param objective    a function of θ, generic over scalars, which the joints lower where that
 ///                     leaves the tip in place; or something with a member `gradient(theta)` too
+/// \param around       a `scene`: bodies of the chain keep its margin from obstacles, at waypoints
+///                     to `tolerance`, half way between them to `deviation`
 /// \return the plan, its `tau` the parameter; where `reason` is not `reached`, the part up to there
 /// \throws invalid_input for a start outside the limits or of another size, a path that does not
-///         begin at the tip or goes nowhere, what is no pose, and options out of range
-template <SerialChain C, VectorLike Start, class Path, class Objective = no_objective>
-  requires std::is_invocable_r_v < dual_quaternion<double>,
-const Path&, double > [[nodiscard]] motion_plan<C::joints>
-                      follow_path(const C& chain, const Start& start, const Path& path,
-                                  double first, double last, const plan_options& options = {},
-                                  const Objective& objective = {}) {
+///         begin at the tip or goes nowhere, what is no pose, options out of range, a
+///         `scene` that is none and one that is too close at the start
+template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_objective,
+          class Scene = no_scene>
+[[nodiscard]] motion_plan<C::joints>
+follow_path(const C& chain, const Start& start, const Path& path, double first, double last,
+            const plan_options& options = {}, const Objective& objective = {},
+            const Scene& around = {}) {
   detail::require_start(chain, start);
   if (!(first < last && last - first < std::numeric_limits<double>::infinity())) {
     std::ostringstream message;
     message << "duet: follow_path: the path's parameter goes from " << first << " to " << last;
     throw invalid_input(message.str());
   }
-  return detail::follow(chain, start, detail::checked(path), {first, last}, options, objective);
+  return detail::follow(chain, start, detail::checked(path), {first, last}, options, objective,
+                        around);
 }
 
 /// The same along a spline of poses, over all of its domain.
-template <SerialChain C, VectorLike Start, class Spline, class Objective = no_objective>
+template <SerialChain C, VectorLike Start, class Spline, class Objective = no_objective,
+          class Scene = no_scene>
   requires requires(const Spline& s) { s.breaks().front(); }
 [[nodiscard]] motion_plan<C::joints> follow_path(const C& chain, const Start& start,
                                                  const Spline& spline,
                                                  const plan_options& options = {},
-                                                 const Objective& objective = {}) {
+                                                 const Objective& objective = {},
+                                                 const Scene& around = {}) {
   detail::require_start(chain, start);
   const auto& breaks = spline.breaks();
   return detail::follow(chain, start, detail::checked(spline),
-                        std::vector<double>(breaks.begin(), breaks.end()), options, objective);
+                        std::vector<double>(breaks.begin(), breaks.end()), options, objective,
+                        around);
 }
 
 /// The same along screw motions from pose to pose (N19), pose i at the parameter i.
-template <SerialChain C, VectorLike Start, class Objective = no_objective>
+template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] motion_plan<C::joints>
 follow_path(const C& chain, const Start& start, std::span<const dual_quaternion<double>> poses,
-            const plan_options& options = {}, const Objective& objective = {}) {
+            const plan_options& options = {}, const Objective& objective = {},
+            const Scene& around = {}) {
   detail::require_start(chain, start);
   if (poses.empty()) {
     throw invalid_input("duet: follow_path: the list of poses is empty");
@@ -126,7 +139,7 @@ follow_path(const C& chain, const Start& start, std::span<const dual_quaternion<
     const std::size_t next = std::min(i + 1, poses.size() - 1);
     return sclerp(normalized(poses[i]), normalized(poses[next]), u - double(i));
   };
-  return detail::follow(chain, start, target, std::move(stops), options, objective);
+  return detail::follow(chain, start, target, std::move(stops), options, objective, around);
 }
 
 } // namespace duet

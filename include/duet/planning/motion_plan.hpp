@@ -22,6 +22,7 @@ enum class stop_reason {
   reached,         ///< the tip is at the goal
   joint_limit,     ///< the way on leads beyond the limits of a joint
   singular,        ///< the way on leads through a singularity
+  obstacle,        ///< the way on leads too close to an obstacle
   no_progress,     ///< steps became too small, for neither of these reasons
   iteration_limit, ///< the number of iterations that was allowed is used up
   out_of_reach     ///< the goal is farther away than the links reach
@@ -35,6 +36,8 @@ enum class stop_reason {
     return "joint_limit";
   case stop_reason::singular:
     return "singular";
+  case stop_reason::obstacle:
+    return "obstacle";
   case stop_reason::no_progress:
     return "no_progress";
   case stop_reason::iteration_limit:
@@ -71,6 +74,8 @@ struct motion_plan {
   double smallest_singular_value = std::numeric_limits<double>::infinity();
   /// Of any joint, at any waypoint, to its nearer limit; in coordinates.
   double smallest_limit_margin = std::numeric_limits<double>::infinity();
+  /// Of the bodies of the chain from obstacles, at any waypoint; infinite without.
+  double smallest_clearance = std::numeric_limits<double>::infinity();
   int iterations = 0;
   stop_reason reason = stop_reason::no_progress;
 };

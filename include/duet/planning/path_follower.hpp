@@ -20,8 +20,7 @@
 namespace duet::detail {
 
 /// Plans along a path, first without stopping; where that comes to an end, with motions in place.
-///
-template <class C, class Objective>
+template <class C, class Objective, class Scene>
 class path_follower {
 public:
   using vector = typename chain_state<C>::vector;
@@ -30,10 +29,10 @@ public:
   /// \param stops   parameters that become waypoints, increasing; the first and the last are the
   ///                ends of the path
   path_follower(const C& chain, const path_function& target, std::vector<double> stops,
-                const plan_options& options, const Objective& objective)
-      : solver_(chain, options.tolerance), target_(target), stops_(std::move(stops)),
-        options_(options), objective_(objective), length_(stops_.back() - stops_.front()),
-        iterations_left_(options.iterations) {}
+                const plan_options& options, const Objective& objective, const Scene& around)
+      : around_(around), solver_(chain, options.tolerance, around), target_(target),
+        stops_(std::move(stops)), options_(options), objective_(objective),
+        length_(stops_.back() - stops_.front()), iterations_left_(options.iterations) {}
 
   [[nodiscard]] motion_plan<C::joints> plan(const vector& start) {
     route best({chain_state<C>(solver_.chain(), start), stops_.front(), {}, 0});
@@ -99,7 +98,7 @@ private:
     result.waypoints.assign(before.waypoints.begin(),
                             before.waypoints.begin() + std::ptrdiff_t(first) + 1);
     result.reason = before.reason;
-    self_motion_search<C> search(solver_, target_, options_.self_motion_step, iterations_left_);
+    self_motion_search search(solver_, target_, options_.self_motion_step, iterations_left_);
     const auto way = search.run(result.back().state, search_parameters(result.back().u));
     iterations_left_ = search.iterations_left();
     for (std::size_t i = 1; i < way.size(); ++i) {
@@ -154,7 +153,9 @@ private:
         const vector middle = (here.state.theta + there.state.theta) / 2;
         const pose_deviation half_way =
             deviation_between(solver_.chain().pose(middle), target_((here.u + u) / 2));
-        const double excess = std::max(half_way.length, half_way.angle) / options_.deviation;
+        const double excess =
+            std::max({half_way.length, half_way.angle, solver_.shortfall(middle)}) /
+            options_.deviation;
         // Between waypoints the deviation grows with the square of the step.
         change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
         if (excess <= .95) { // half way is not quite where it is largest
@@ -165,7 +166,9 @@ private:
       x.step = std::min(options_.largest_step, x.step * change);
       if (way < 1 && (iterations_left_ <= 0 || x.step < options_.smallest_step)) {
         x.reason = iterations_left_ <= 0 ? stop_reason::iteration_limit
-                   : there.is_bounded    ? stop_reason::joint_limit
+                   : there.is_blocked || there.shortfall > options_.tolerance
+                       ? stop_reason::obstacle
+                   : there.is_bounded ? stop_reason::joint_limit
                    : there.smallest_singular_value < 10 * damped_gram::threshold
                        ? stop_reason::singular
                        : stop_reason::no_progress;
@@ -179,6 +182,10 @@ private:
     motion_plan<C::joints> result;
     for (const waypoint& w : x.waypoints) {
       add_waypoint(result, solver_.chain(), w.state.theta, w.state.pose, w.u, w.left);
+      if constexpr (!std::same_as<Scene, no_scene>) {
+        result.smallest_clearance = std::min(
+            result.smallest_clearance, clearance(solver_.chain(), w.state.theta, around_).distance);
+      }
       if (&w != &x.waypoints.front()) {
         result.smallest_singular_value =
             std::min(result.smallest_singular_value, w.smallest_singular_value);
@@ -191,7 +198,8 @@ private:
     return result;
   }
 
-  pose_solver<C> solver_;
+  const Scene& around_;
+  pose_solver<C, Scene> solver_;
   const path_function& target_;
   std::vector<double> stops_;
   plan_options options_;

@@ -5,9 +5,11 @@
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/planning/bounded_step.hpp>
 #include <duet/planning/motion_plan.hpp>
+#include <duet/planning/obstacle_steps.hpp>
 #include <duet/quaternion/exponential.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <functional>
 #include <limits>
 
@@ -70,43 +72,45 @@ struct attempt {
   /// Of the Jacobians on the way, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
   bool is_bounded = false; ///< did a limit hold a joint back?
+  bool is_blocked = false; ///< did obstacles leave no step?
+  double shortfall = 0;    ///< of the margin to obstacles
   int iterations = 0;
 
   [[nodiscard]] bool is_within(double tolerance) const {
-    return left.length <= tolerance && left.angle <= tolerance;
+    return left.length <= tolerance && left.angle <= tolerance && shortfall <= tolerance;
   }
 };
 
 /// Brings the tip of a chain to poses nearby.
-template <class C>
+///
+/// \tparam Scene  `scene` or `no_scene`
+template <class C, class Scene = no_scene>
 class pose_solver {
 public:
   using vector = typename chain_state<C>::vector;
 
-  pose_solver(const C& chain, double tolerance)
-      : chain_(chain), lower_(lower_limits(chain)), upper_(upper_limits(chain)),
+  pose_solver(const C& chain, double tolerance, const Scene& around)
+      : chain_(chain), around_(around), lower_(lower_limits(chain)), upper_(upper_limits(chain)),
         tolerance_(tolerance) {}
 
   [[nodiscard]] const C& chain() const { return chain_; }
   [[nodiscard]] const vector& lower() const { return lower_; }
   [[nodiscard]] const vector& upper() const { return upper_; }
   [[nodiscard]] double tolerance() const { return tolerance_; }
+  /// How much is missing to the margin to obstacles.
+  [[nodiscard]] double shortfall(const vector& theta) const {
+    return margin_shortfall(chain_, theta, around_);
+  }
 
   /// From a state nearby, the step nearest to `wish` that takes the tip to the target to first
   /// order, and then Newton's method by least steps. None leaves the limits.
   [[nodiscard]] attempt<C> approach(const chain_state<C>& from,
                                     const dual_quaternion<double>& target,
                                     const vector& wish) const {
-    const vector aim = (from.theta + wish).cwiseMax(lower_).cwiseMin(upper_);
-    const vector6<double> rest =
-        error_twist(from.pose, target) - from.jacobian * (aim - from.theta);
-    const auto first =
-        bounded_step(from.jacobian, rest, vector(lower_ - aim), vector(upper_ - aim));
-    attempt<C> result{chain_state<C>(chain_, within(aim + first.step)), {}};
-    result.smallest_singular_value = first.smallest_singular_value;
-    result.is_bounded = first.is_bounded;
-    result.iterations = 1;
-    correct(result, target);
+    attempt<C> result{from, {}};
+    if (move(result, error_twist(from.pose, target), wish)) {
+      correct(result, target);
+    }
     return result;
   }
 
@@ -121,24 +125,50 @@ private:
     for (;;) {
       const vector6<double> error = error_twist(x.state.pose, target);
       x.left = {error.head<3>().norm(), error.tail<3>().norm()};
-      const double size = std::max(x.left.length, x.left.angle);
+      x.shortfall = shortfall(x.state.theta);
+      const double size = std::max({x.left.length, x.left.angle, x.shortfall});
       // What does not at least halve the error will not get there.
-      if (size <= tolerance_ || x.iterations == most || size > before / 2) {
+      if (size <= tolerance_ || x.iterations == most || size > before / 2 ||
+          !move(x, error, vector(vector::Zero(lower_.size())))) {
         return;
       }
       before = size;
-      const auto step = bounded_step(x.state.jacobian, error, vector(lower_ - x.state.theta),
-                                     vector(upper_ - x.state.theta));
-      x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
-      x.is_bounded = x.is_bounded || step.is_bounded;
-      x.state = chain_state<C>(chain_, within(x.state.theta + step.step));
-      ++x.iterations;
     }
+  }
+
+  /// The step nearest to `wish` that moves the tip by `e` to first order; false where obstacles
+  /// leave none.
+  [[nodiscard]] bool move(attempt<C>& x, const vector6<double>& e, const vector& wish) const {
+    ++x.iterations;
+    const chain_state<C>& from = x.state;
+    if constexpr (!std::same_as<Scene, no_scene>) {
+      const auto beside =
+          step_beside(chain_, from.theta, from.jacobian, e, wish, lower_, upper_, around_);
+      x.smallest_singular_value =
+          std::min(x.smallest_singular_value, beside.result.smallest_singular_value);
+      if (beside.result.step) {
+        x.state = chain_state<C>(chain_, within(from.theta + *beside.result.step));
+        return true;
+      }
+      if (!beside.is_free) {
+        x.is_blocked = true;
+        x.left.length = std::numeric_limits<double>::infinity();
+        return false;
+      }
+    }
+    const vector aim = within(from.theta + wish);
+    const vector6<double> rest = e - from.jacobian * (aim - from.theta);
+    const auto step = bounded_step(from.jacobian, rest, vector(lower_ - aim), vector(upper_ - aim));
+    x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
+    x.is_bounded = x.is_bounded || step.is_bounded;
+    x.state = chain_state<C>(chain_, within(aim + step.step));
+    return true;
   }
 
   static constexpr int most = 12;
 
   const C& chain_;
+  const Scene& around_;
   vector lower_, upper_;
   double tolerance_;
 };

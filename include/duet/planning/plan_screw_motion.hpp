@@ -20,10 +20,11 @@ namespace duet {
 /// \return the plan; where `reason` is not `reached`, the part of it up to there
 /// \throws invalid_input for a start outside the limits and for a goal that is no pose, and as
 ///         `follow_path`
-template <SerialChain C, VectorLike Start, class Objective = no_objective>
+template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] motion_plan<C::joints>
 plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<double>& goal,
-                  const plan_options& options = {}, const Objective& objective = {}) {
+                  const plan_options& options = {}, const Objective& objective = {},
+                  const Scene& around = {}) {
   detail::require_problem(chain, start, goal);
   const auto first = chain.pose(start);
   auto between = conj(first) * normalized(goal);
@@ -35,7 +36,7 @@ plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<doub
     return dual_quaternion<double>(first *
                                    exp(dual_vector<double>(half * screw_dual<double>(tau))));
   };
-  return detail::follow(chain, start, target, {0, 1}, options, objective);
+  return detail::follow(chain, start, target, {0, 1}, options, objective, around);
 }
 
 } // namespace duet

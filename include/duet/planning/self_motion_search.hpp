@@ -50,13 +50,13 @@ struct reachable {
 /// from all its points one step is taken to the next parameter, where those pieces are followed
 /// that are new. With several joints to spare one curve of the manifold is, with none a piece is a
 /// point.
-template <class C>
+template <class C, class Scene>
 class self_motion_search {
 public:
   using vector = typename chain_state<C>::vector;
 
-  self_motion_search(const pose_solver<C>& solver, const path_function& target, double spacing,
-                     int iterations)
+  self_motion_search(const pose_solver<C, Scene>& solver, const path_function& target,
+                     double spacing, int iterations)
       : solver_(solver), target_(target), spacing_(spacing), left_(iterations) {}
 
   /// The way from a state at u.front() to u.back(), or as far as it goes, each configuration a step
@@ -182,7 +182,7 @@ private:
     return false;
   }
 
-  const pose_solver<C>& solver_;
+  const pose_solver<C, Scene>& solver_;
   const path_function& target_;
   double spacing_;
   int left_;

@@ -1,0 +1,116 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// A robot arm's way to a goal: the tip along a screw motion, the joints within limits and away from
+// obstacles, and when they are where under limits of velocity and acceleration. The arm is one of
+// duet's or read from a URDF file.
+
+#include "options.hpp"
+#include "pictures.hpp"
+#include "tables.hpp"
+
+#include "../support/gnuplot.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <future>
+#include <iostream>
+#include <string>
+
+namespace motion_plan_example {
+namespace {
+
+/// Says every second that it is still at work.
+plan_type plan(const problem& p) {
+  auto result = std::async(std::launch::async, [&] {
+    return duet::plan_screw_motion(p.arm, p.start, p.goal, {}, {}, p.around);
+  });
+  for (int seconds = 1; result.wait_for(std::chrono::seconds(1)) != std::future_status::ready;
+       ++seconds) {
+    std::cerr << "\rplanning for " << seconds << " s" << std::flush;
+  }
+  return result.get();
+}
+
+/// The limits given, and those of the joints where they are lower.
+Eigen::VectorXd velocities(const problem& p) {
+  Eigen::VectorXd result(p.arm.size());
+  for (int i = 0; i < p.arm.size(); ++i) {
+    const double own = p.arm.limits(i).velocity;
+    result[i] = own > 0 ? std::min(p.velocity, own) : p.velocity;
+  }
+  return result;
+}
+
+std::string tip_csv(const problem& p, const duet::joint_trajectory<-16>& trajectory) {
+  std::string text = "x,y,z\n";
+  for (int i = 0; i <= 200; ++i) {
+    const double t = trajectory.duration() * i / 200;
+    const auto x = duet::translation(p.arm.pose(trajectory(t).value));
+    text += duet::csv_line({x[0], x[1], x[2]});
+  }
+  return text;
+}
+
+/// Whether the goal was reached.
+bool run(const problem& p) {
+  const plan_type found = plan(p);
+  const Eigen::VectorXd acceleration = Eigen::VectorXd::Constant(p.arm.size(), p.acceleration);
+  const auto trajectory = duet::time_parametrised(found, velocities(p), acceleration);
+  std::filesystem::create_directories(p.out);
+  std::string deviations;
+  const worst_case worst = deviations_csv(p, found, deviations);
+  duet::save_plan(p.out + "/plan.csv", found);
+  duet::save_trajectory(p.out + "/trajectory.csv", trajectory,
+                        trajectory.duration() > 0 ? trajectory.duration() / 500 : 1);
+  duet::write_file(p.out + "/deviations.csv", deviations);
+  duet::write_file(p.out + "/arms.csv", arms_csv(p, found));
+  duet::write_file(p.out + "/tip.csv", tip_csv(p, trajectory));
+  duet::write_file(p.out + "/obstacles.csv", obstacles_csv(p));
+
+  const bool has_obstacles = !p.around.obstacles.empty();
+  std::printf("%s: %zu waypoints, %d iterations\n", duet::to_text(found.reason),
+              found.joints.size(), found.iterations);
+  std::printf("from the screw motion        %.2g m and %.2g rad at most\n", worst.deviation.length,
+              worst.deviation.angle);
+  std::printf("smallest singular value      %.3g\n", found.smallest_singular_value);
+  std::printf("nearest to a joint's limit   %.3g\n", found.smallest_limit_margin);
+  if (has_obstacles) {
+    std::printf("nearest to an obstacle       %.4g m\n", worst.clearance);
+  }
+  std::printf("duration                     %.3f s\n", trajectory.duration());
+  const bool drawn =
+      found.joints.size() > 1 &&
+      example::draw(p.out, "joints", "900,900", joints_script(p.arm.size())) &&
+      example::draw(p.out, "deviation", "900,600", deviation_script(has_obstacles)) &&
+      example::draw(p.out, "arm", "900,800", arm_script(has_obstacles));
+  std::cout << "Tables" << (drawn ? " and pictures (SVG, PNG)" : "") << " are in " << p.out << "\n";
+  if (!drawn) {
+    std::cout << "No pictures: gnuplot is not installed or failed, or nothing moves\n";
+  }
+  std::printf("motion plan: reason=%s tau=%.4f waypoints=%zu deviation_m=%.2g deviation_rad=%.2g "
+              "duration=%.4g\n",
+              duet::to_text(found.reason), found.tau.back(), found.joints.size(),
+              worst.deviation.length, worst.deviation.angle, trajectory.duration());
+  if (found.reason != duet::stop_reason::reached) {
+    std::fflush(stdout);
+    std::cerr << "motion_plan: the goal is not reached: " << duet::to_text(found.reason)
+              << " after " << duet::to_text(std::floor(1000 * found.tau.back()) / 10)
+              << " % of the way\n";
+  }
+  return found.reason == duet::stop_reason::reached;
+}
+
+} // namespace
+} // namespace motion_plan_example
+
+int main(int argc, char** argv) {
+  try {
+    const auto given = motion_plan_example::parse(argc, argv);
+    return !given || motion_plan_example::run(*given) ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::cerr << "motion_plan: " << error.what() << "\n";
+    return 1;
+  }
+}

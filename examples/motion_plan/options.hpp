@@ -1,0 +1,169 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "../support/arms.hpp"
+#include "../support/command_line.hpp"
+#include "../support/numbers.hpp"
+
+#include <duet/duet.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// \file
+/// The command line, and the problem that it describes.
+
+namespace motion_plan_example {
+
+using pose_type = duet::dual_quaternion<double>;
+using point = Eigen::Vector3d;
+
+struct problem {
+  example::arm_chain arm;
+  Eigen::VectorXd start;
+  pose_type goal;
+  duet::scene around;
+  double velocity = 1, acceleration = 2;
+  std::string out = "motion_plan_out";
+};
+
+/// Somewhere in the middle of what a known arm can do, its hand pointing down.
+inline std::optional<std::vector<double>> usual_posture(const std::string& robot) {
+  const double quarter = std::acos(-1.0) / 4;
+  if (robot == "panda") {
+    return std::vector<double>{0, -quarter, 0, -3 * quarter, 0, 2 * quarter, quarter};
+  }
+  if (robot == "iiwa14") {
+    return std::vector<double>{0, .6, 0, -1.5, 0, 1, 0};
+  }
+  if (robot == "ur5e") {
+    return std::vector<double>{0, -1.3, 1.9, -2.2, -1.57, 0};
+  }
+  if (robot == "baxter_left") {
+    return std::vector<double>{0, -.6, 0, 1.3, 0, .9, 0};
+  }
+  return std::nullopt;
+}
+
+/// A capsule along each link, from its frame to that of the next one.
+inline std::vector<duet::link_body> bodies(const example::arm_chain& arm, double radius) {
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.size());
+  std::vector<duet::link_body> result;
+  for (int link = 1; link <= arm.size(); ++link) {
+    const pose_type here = arm.pose(zero, link);
+    const pose_type next = link < arm.size() ? arm.pose(zero, link + 1) : arm.pose(zero);
+    const point end = duet::transform_point(conj(here), point(duet::translation(next)));
+    result.push_back({link, duet::capsule<>(point(0, 0, 0), end, radius)});
+  }
+  return result;
+}
+
+/// \throws std::runtime_error with the option's name
+inline std::vector<double> numbers(const std::string& option, const std::string& text,
+                                   std::size_t count) {
+  std::vector<double> result = example::parse_numbers(option, text);
+  if (result.size() != count) {
+    throw std::runtime_error(option + ": " + std::to_string(count) + " numbers expected, got " +
+                             std::to_string(result.size()));
+  }
+  return result;
+}
+
+/// `x, y, z, qw, qx, qy, qz`.
+inline pose_type pose_of(const std::string& option, const std::string& text) {
+  const auto x = numbers(option, text, 7);
+  const duet::quaternion<double> q(x[3], x[4], x[5], x[6]);
+  if (!(std::abs(norm(q) - 1) <= duet::unit_norm_tolerance)) {
+    throw std::runtime_error(option + ": the quaternion has norm " + duet::to_text(norm(q)) +
+                             ", not 1");
+  }
+  return duet::pose(normalized(q), point(x[0], x[1], x[2]));
+}
+
+/// Half a metre to the side and turned about the vertical: round the obstacle, if there is one.
+inline pose_type usual_goal(const pose_type& start) {
+  const auto turn = duet::from_rotation_vector(point(0, 0, .8));
+  return duet::pose(turn * duet::rotation(start),
+                    point(duet::rotate(turn, duet::translation(start)) + point(0, 0, .1)));
+}
+
+inline example::po::options_description description() {
+  namespace po = example::po;
+  po::options_description result(
+      "Moves the tip of an arm along the screw motion to a goal, around obstacles, and says when "
+      "it is where.\nA pose is x,y,z,qw,qx,qy,qz (scalar first); metres, radians, seconds, axes of "
+      "the base. Options");
+  const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
+  const auto texts = [](const char* what) {
+    return po::value<std::vector<std::string>>()->value_name(what);
+  };
+  result.add_options()("help", "print this and stop");
+  example::add_arm_options(result);
+  auto add = result.add_options();
+  add("start", text("X,X,..."), "joint coordinates (default: hand down, or the middle of limits)");
+  add("goal", text("POSE"), "of the tip (default: to the side)");
+  add("goal-joints", text("X,X,..."), "the tip's pose at these coordinates instead");
+  add("sphere", texts("X,Y,Z,R"), "an obstacle; this and the next may be repeated");
+  add("box", texts("X,Y,Z,A,B,C"), "an obstacle by its centre and half sizes");
+  add("floor", po::value<double>()->value_name("Z"), "everything below is an obstacle");
+  add("radius", po::value<double>()->value_name("R"), "of the arm's links (default: 0.05)");
+  add("margin", po::value<double>()->value_name("D"), "to obstacles (default: 0.02)");
+  add("velocity", po::value<double>()->value_name("V"),
+      "limit of all joints, besides their own (default: 1)");
+  add("acceleration", po::value<double>()->value_name("A"), "limit of all joints (default: 2)");
+  add("out", text("DIR"), "folder for tables and pictures (default: motion_plan_out)");
+  return result;
+}
+
+/// Nothing where only help was asked for.
+/// \throws std::exception with a one-line message
+inline std::optional<problem> parse(int argc, char** argv) {
+  const auto given = example::command_line::parse(argc, argv, description());
+  if (!given) {
+    return std::nullopt;
+  }
+  problem result{example::arm_of(*given), {}, {}, {}};
+  const auto usual =
+      given->has("urdf") ? std::nullopt : usual_posture(given->text("robot").value_or("panda"));
+  result.start = usual && !given->has("start") ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                                                     usual->data(), Eigen::Index(usual->size())))
+                                               : example::coordinates(result.arm, *given, "start");
+  const auto goal = given->text("goal"), goal_joints = given->text("goal-joints");
+  if (goal && goal_joints) {
+    throw std::runtime_error("--goal and --goal-joints exclude each other");
+  }
+  result.goal = goal ? pose_of("--goal", *goal)
+                : goal_joints
+                    ? result.arm.pose(example::coordinates(result.arm, *given, "goal-joints"))
+                    : usual_goal(result.arm.pose(result.start));
+
+  const auto each = [&](const char* name, std::size_t count, const auto& add) {
+    for (const auto& text :
+         given->get<std::vector<std::string>>(name).value_or(std::vector<std::string>{})) {
+      add(numbers(std::string("--") + name, text, count));
+    }
+  };
+  auto& obstacles = result.around.obstacles;
+  each("sphere", 4, [&](const auto& x) {
+    obstacles.push_back(duet::sphere<>{point(x[0], x[1], x[2]), x[3]});
+  });
+  each("box", 6, [&](const auto& x) {
+    obstacles.push_back(duet::box<>{
+        duet::pose(duet::quaternion<double>(1), point(x[0], x[1], x[2])), point(x[3], x[4], x[5])});
+  });
+  if (const auto z = given->get<double>("floor")) {
+    obstacles.push_back(duet::half_space<>{point(0, 0, 1), *z});
+  }
+  result.around.margin = given->get<double>("margin").value_or(.02);
+  result.around.bodies = bodies(result.arm, given->get<double>("radius").value_or(.05));
+  result.velocity = given->get<double>("velocity").value_or(result.velocity);
+  result.acceleration = given->get<double>("acceleration").value_or(result.acceleration);
+  result.out = given->text("out").value_or(result.out);
+  return result;
+}
+
+} // namespace motion_plan_example

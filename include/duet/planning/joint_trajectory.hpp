@@ -1,0 +1,95 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Joint coordinates over time.
+
+namespace duet {
+
+/// Joint coordinates with their rates.
+template <class V>
+struct joint_motion {
+  V value;
+  V velocity;
+  V acceleration;
+};
+
+namespace detail {
+
+/// c0 + c1 s + c2 s² + c3 s³, 0 ≤ s ≤ length.
+template <class V>
+struct joint_cubic {
+  V c0, c1, c2, c3;
+  double length;
+
+  [[nodiscard]] V value(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
+  [[nodiscard]] V first(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
+  [[nodiscard]] V second(double s) const { return 2 * c2 + 6 * s * c3; }
+  /// The same curve from s on.
+  [[nodiscard]] joint_cubic part(double s, double its_length) const {
+    return {value(s), first(s), V(second(s) / 2), c3, its_length};
+  }
+};
+
+/// A part of a path, and when it is where: s = ṡ t + ½ s̈ t² from its beginning on.
+template <class V>
+struct timed_piece {
+  double time;
+  double speed;        ///< ṡ
+  double acceleration; ///< s̈
+  joint_cubic<V> path;
+};
+
+} // namespace detail
+
+/// Joint coordinates as a function of time, once continuously differentiable, at rest at both ends.
+///
+/// \tparam N  as of `serial_chain`
+template <int N>
+class joint_trajectory {
+public:
+  using vector = detail::joint_vector<double, N>;
+
+  joint_trajectory(std::vector<detail::timed_piece<vector>> pieces, std::vector<double> times)
+      : pieces_(std::move(pieces)), times_(std::move(times)) {}
+
+  /// In seconds, if limits are per second.
+  [[nodiscard]] double duration() const { return times_.back(); }
+  /// When it passes each of the waypoints.
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  /// Coordinates, rates and accelerations at time t; where the acceleration jumps, one of the two.
+  /// \throws invalid_input for t outside 0 … duration()
+  [[nodiscard]] joint_motion<vector> operator()(double t) const {
+    if (!(t >= 0 && t <= duration())) {
+      std::ostringstream message;
+      message << "duet: joint_trajectory: t is " << t << ", outside 0 to " << duration();
+      throw invalid_input(message.str());
+    }
+    const auto next = std::upper_bound(pieces_.begin() + 1, pieces_.end(), t,
+                                       [](double a, const auto& piece) { return a < piece.time; });
+    const auto& piece = *(next - 1);
+    const double since = t - piece.time;
+    const double s =
+        std::clamp(since * (piece.speed + since * piece.acceleration / 2), 0.0, piece.path.length);
+    const double s_dot = std::max(0.0, piece.speed + since * piece.acceleration);
+    const vector slope = piece.path.first(s);
+    return {piece.path.value(s), vector(s_dot * slope),
+            vector(piece.acceleration * slope + s_dot * s_dot * piece.path.second(s))};
+  }
+
+private:
+  std::vector<detail::timed_piece<vector>> pieces_;
+  std::vector<double> times_; ///< of the waypoints
+};
+
+} // namespace duet

@@ -1,0 +1,131 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The point nearest to the origin that keeps linear inequalities.
+
+namespace duet::detail {
+
+/// normal·x ≥ bound.
+template <class V>
+struct inequality {
+  V normal;
+  double bound;
+};
+
+/// f − Σ z_i column_i and the z for which that is least. The second round takes care of the first
+/// one's rounding: a Gram matrix has the squared condition.
+template <class V>
+[[nodiscard]] std::pair<V, V> least_squares_on(const std::vector<V>& columns, const V& f) {
+  const auto count = Eigen::Index(columns.size());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, V::MaxRowsAtCompileTime,
+                V::MaxRowsAtCompileTime>
+      gram(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      gram(i, j) = columns[std::size_t(i)].dot(columns[std::size_t(j)]);
+    }
+  }
+  const Eigen::LLT<decltype(gram)> factors(gram);
+  V z = V::Zero(count), left(count), residual = f;
+  for (int twice = 0; twice < 2; ++twice) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      left[i] = columns[std::size_t(i)].dot(residual);
+    }
+    z += factors.solve(left);
+    residual = f;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      residual -= z[i] * columns[std::size_t(i)];
+    }
+  }
+  return {residual, z};
+}
+
+/// The least f − Σ u_i column_i with all u_i ≥ 0, by Lawson and Hanson's active sets.
+template <class V>
+[[nodiscard]] V nonnegative_residual(const std::vector<V>& columns, const V& f) {
+  struct share {
+    std::size_t column;
+    double u;
+  };
+  std::vector<share> active;
+  V residual = f;
+  for (std::size_t round = 0; round < 3 * columns.size(); ++round) {
+    const auto gain = [&](const V& column) { return column.dot(residual); };
+    const auto best = std::max_element(columns.begin(), columns.end(),
+                                       [&](const V& a, const V& b) { return gain(a) < gain(b); });
+    if (!(gain(*best) > 1e-12)) {
+      break;
+    }
+    active.push_back({std::size_t(best - columns.begin()), 0});
+    for (bool is_settled = false; !is_settled && !active.empty();) {
+      std::vector<V> chosen;
+      for (const share& each : active) {
+        chosen.push_back(columns[each.column]);
+      }
+      const auto [rest, z] = least_squares_on(chosen, f);
+      // Towards z as far as all stay positive; who gets to zero first leaves.
+      double way = 1;
+      std::size_t first = active.size();
+      for (std::size_t i = 0; i < active.size(); ++i) {
+        const double u = active[i].u, goal = z[Eigen::Index(i)];
+        if (goal <= 0 && u <= way * (u - goal)) {
+          way = u / (u - goal);
+          first = i;
+        }
+      }
+      for (std::size_t i = 0; i < active.size(); ++i) {
+        active[i].u += way * (z[Eigen::Index(i)] - active[i].u);
+      }
+      is_settled = first == active.size();
+      if (is_settled) {
+        residual = rest;
+      } else {
+        active.erase(active.begin() + std::ptrdiff_t(first));
+      }
+    }
+  }
+  return residual;
+}
+
+/// The least x that keeps all inequalities; nothing where no x does. With normals and bounds below
+/// each other as columns, and f = (0, …, 0, 1), x is a multiple of the residual of the nonnegative
+/// least squares (Lawson and Hanson, Solving Least Squares Problems, chapter 23).
+template <class V>
+[[nodiscard]] std::optional<V> least_distance(const std::vector<inequality<V>>& inequalities,
+                                              Eigen::Index n) {
+  constexpr int capacity = V::MaxRowsAtCompileTime;
+  using column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, capacity + 1, 1>;
+  std::vector<column> columns;
+  columns.reserve(inequalities.size());
+  for (const inequality<V>& each : inequalities) {
+    const double length = each.normal.norm();
+    if (length > 1e-12) {
+      columns.emplace_back(n + 1);
+      columns.back().head(n) = each.normal / length;
+      columns.back()[n] = each.bound / length;
+    } else if (each.bound > 1e-9) {
+      return std::nullopt; // no x has a say in it
+    }
+  }
+  if (columns.empty()) {
+    return V(V::Zero(n));
+  }
+  const column residual = nonnegative_residual(columns, column(column::Unit(n + 1, n)));
+  // It is 1 / (1 + |x|²).
+  if (!(residual[n] > 1e-8)) {
+    return std::nullopt;
+  }
+  return V(-residual.head(n) / residual[n]);
+}
+
+} // namespace duet::detail

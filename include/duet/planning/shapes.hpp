@@ -1,0 +1,117 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <Eigen/Core>
+
+#include <sstream>
+#include <string>
+
+/// \file
+/// The shapes that arms and obstacles are made of.
+
+namespace duet {
+
+/// All points no further than `radius` from `centre`.
+template <class T = double>
+struct sphere {
+  vector3<T> centre;
+  T radius;
+};
+
+/// All points no further than `radius` from the line between two points, which may be one.
+template <class T = double>
+struct capsule {
+  vector3<T> from;
+  vector3<T> to;
+  T radius;
+
+  constexpr capsule(const vector3<T>& a, const vector3<T>& b, const T& r)
+      : from(a), to(b), radius(r) {}
+  constexpr capsule(const sphere<T>& s) : capsule(s.centre, s.centre, s.radius) {}
+};
+
+/// All points whose coordinates in the frame `placed` are, each, between ± `half_sizes`.
+template <class T = double>
+struct box {
+  dual_quaternion<T> placed;
+  vector3<T> half_sizes;
+};
+
+/// All points with normal·x ≤ offset: the unit normal points out of what is solid.
+template <class T = double>
+struct half_space {
+  vector3<T> normal;
+  T offset;
+};
+
+/// A capsule carried along.
+template <class T, class U>
+[[nodiscard]] capsule<promote_t<T, U>> transformed(const dual_quaternion<T>& a,
+                                                   const capsule<U>& c) {
+  return {transform_point(a, c.from), transform_point(a, c.to), promote_t<T, U>(c.radius)};
+}
+
+namespace detail {
+
+template <class T>
+[[nodiscard]] bool all_finite(const vector3<T>& x) {
+  return innermost(x[0] - x[0]) == 0 && innermost(x[1] - x[1]) == 0 && innermost(x[2] - x[2]) == 0;
+}
+
+/// \throws invalid_input unless 0 ≤ x < ∞
+template <class T>
+void require_extent(const std::string& of, const T& x) {
+  if (!(innermost(x) >= 0 && innermost(x - x) == 0)) {
+    std::ostringstream message;
+    message << "duet: " << of << " is " << innermost(x) << ", not a number from 0 up";
+    throw invalid_input(message.str());
+  }
+}
+
+inline void require_finite_point(const std::string& of, bool is_finite) {
+  if (!is_finite) {
+    throw invalid_input("duet: " + of + " is not finite");
+  }
+}
+
+} // namespace detail
+
+/// Looks whether a shape is one: finite, of no negative size, with unit quaternions and normals.
+/// \param name  for the message
+/// \throws invalid_input
+template <class T>
+void require_shape(const sphere<T>& s, const std::string& name) {
+  detail::require_finite_point("the centre of " + name, detail::all_finite(s.centre));
+  detail::require_extent("the radius of " + name, s.radius);
+}
+template <class T>
+void require_shape(const capsule<T>& c, const std::string& name) {
+  detail::require_finite_point("an end of " + name,
+                               detail::all_finite(c.from) && detail::all_finite(c.to));
+  detail::require_extent("the radius of " + name, c.radius);
+}
+template <class T>
+void require_shape(const box<T>& b, const std::string& name) {
+  if (!is_unit(b.placed, 1e-6)) {
+    throw invalid_input("duet: the pose of " + name + " is no unit dual quaternion");
+  }
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    detail::require_extent("half size " + std::to_string(i) + " of " + name, b.half_sizes[i]);
+  }
+}
+template <class T>
+void require_shape(const half_space<T>& h, const std::string& name) {
+  detail::require_finite_point("the offset of " + name, innermost(h.offset - h.offset) == 0);
+  const auto square = innermost(h.normal.squaredNorm());
+  if (!(square - 1 <= 1e-6 && 1 - square <= 1e-6)) {
+    throw invalid_input("duet: the normal of " + name + " is no unit vector");
+  }
+}
+
+} // namespace duet

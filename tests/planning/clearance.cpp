@@ -1,0 +1,91 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/planning/clearance.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <variant>
+#include <vector>
+
+namespace test_planning_clearance {
+namespace {
+
+using namespace duet;
+using point = Eigen::Vector3d;
+
+/// A capsule along every link of the Panda, a ball at its wrist, and obstacles around it.
+scene cage() {
+  return {{{0, capsule<>({0, 0, 0}, {0, 0, .2}, .06)},
+           {1, capsule<>({0, 0, -.2}, {0, 0, 0}, .06)},
+           {3, capsule<>({0, 0, -.2}, {.08, 0, 0}, .06)},
+           {5, capsule<>({0, .05, -.3}, {0, 0, 0}, .05)},
+           {6, sphere<>{{.08, 0, 0}, .07}},
+           {7, capsule<>({0, 0, 0}, {0, 0, .1}, .04)}},
+          {sphere<>{{.4, .3, .5}, .1},
+           box<>{pose(from_rotation_vector(point(.3, -.2, 1)), point(-.4, .2, .4)), {.1, .2, .3}},
+           half_space<>{{0, 0, 1}, -.1}}};
+}
+
+} // namespace
+
+TEST_CASE("the least distance, and its gradient: nᵀ J at the closest point") {
+  const auto arm = robots::panda().table();
+  const scene s = cage();
+  require_scene(arm, s);
+  double least = INFINITY, most = -INFINITY;
+  for (const auto& theta : duet_test::configurations(arm, 20)) {
+    const auto c = clearance(arm, theta, s);
+    least = std::min(least, c.distance);
+    most = std::max(most, c.distance);
+    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+      for (std::size_t o = 0; o < s.obstacles.size(); ++o) {
+        const auto p = closest_points(arm, theta, s.bodies[b], s.obstacles[o]);
+        CHECK(p.distance >= c.distance);
+        CHECK((p.distance == c.distance) == (b == c.body && o == c.obstacle));
+        const auto [d, g] = distance_and_gradient(arm, theta, s.bodies[b], s.obstacles[o]);
+        CHECK(std::abs(d - p.distance) < 1e-14);
+        const bool is_edge_inside = o == 1 && d < 0; // there one face takes over from another
+        if (!is_edge_inside) {
+          const auto j = jacobian(arm, theta, frame::spatial, s.bodies[b].link);
+          for (Eigen::Index i = 0; i < 7; ++i) {
+            const point v = j.col(i).head<3>(), w = j.col(i).tail<3>();
+            CHECK(std::abs(g[i] - p.normal.dot(v + w.cross(p.on_body))) < 1e-12);
+          }
+        }
+      }
+    }
+    CHECK(c.points.distance == c.distance);
+    // The same over dual numbers throughout.
+    const auto whole =
+        gradient([&](const auto& x) { return clearance(arm, x, s).distance; }, theta);
+    CHECK(whole.gradient ==
+          distance_and_gradient(arm, theta, s.bodies[c.body], s.obstacles[c.obstacle]).gradient);
+  }
+  // Both sides were seen.
+  CHECK(least < -.05);
+  CHECK(most > 0);
+}
+
+TEST_CASE("nothing to touch; what is no scene") {
+  const auto arm = robots::panda().table();
+  const duet_test::coordinates<7> theta = duet_test::coordinates<7>::Zero();
+  scene s = cage();
+  CHECK(clearance(arm, theta, scene{s.bodies, {}}).distance == INFINITY);
+  CHECK(clearance(arm, theta, scene{{}, s.obstacles}).distance == INFINITY);
+  std::get<sphere<>>(s.obstacles[0]).radius = std::nan("");
+  CHECK_THROWS_WITH_AS(require_scene(arm, s),
+                       "duet: the radius of obstacle 0 is nan, not a number from 0 up",
+                       invalid_input);
+  s.bodies[4].link = 8;
+  CHECK_THROWS_WITH_AS(require_scene(arm, s),
+                       "duet: serial_chain: no link 8 in a chain of 7 joints", invalid_input);
+}
+
+} // namespace test_planning_clearance

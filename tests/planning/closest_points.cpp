@@ -1,0 +1,241 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/gradient.hpp>
+#include <duet/planning/closest_points.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace test_planning_closest_points {
+namespace {
+
+using namespace duet;
+using duet_test::real_50;
+using vector = Eigen::Vector3d;
+
+vector point(duet_test::random_source& random, double size) {
+  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
+}
+
+dual_quaternion<double> placed(duet_test::random_source& random) {
+  return pose(from_rotation_vector(point(random, 3)), point(random, 1));
+}
+
+// Signed distances of a point, each written another way than in the library.
+
+double reference(const sphere<>& s, const vector& x) { return (x - s.centre).norm() - s.radius; }
+double reference(const half_space<>& h, const vector& x) {
+  return (x - h.offset * h.normal).dot(h.normal);
+}
+double reference(const box<>& b, const vector& x) {
+  const Eigen::Matrix3d r = rotation_matrix(rotation(b.placed));
+  const vector local = r.transpose() * (x - translation(b.placed));
+  const vector inside = local.cwiseMin(b.half_sizes).cwiseMax(-b.half_sizes);
+  if (inside != local) {
+    return (local - inside).norm();
+  }
+  // To the planes of the six faces.
+  return -std::min((b.half_sizes - local).minCoeff(), (b.half_sizes + local).minCoeff());
+}
+
+/// The least of a convex function on [0, 1], by ternary search.
+template <class F>
+double least(F&& f) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 90; ++i) {
+    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+    (f(a) < f(b) ? high : low) = f(a) < f(b) ? b : a;
+  }
+  return std::min({f(0), f(1), f((low + high) / 2)});
+}
+
+template <class Obstacle>
+void check(const capsule<>& c, const Obstacle& obstacle) {
+  const auto p = closest_points(c, obstacle);
+  const vector along = c.to - c.from;
+  const double expected =
+      least([&](double t) { return reference(obstacle, vector(c.from + t * (c.to - c.from))); }) -
+      c.radius;
+  const double scale = 1 + c.from.norm() + along.norm();
+  CHECK(std::abs(p.distance - expected) < 1e-14 * scale);
+  CHECK(std::abs(p.normal.norm() - 1) < 1e-14);
+  CHECK((p.on_obstacle + p.distance * p.normal - p.on_body).norm() < 1e-14 * scale);
+  CHECK(std::abs(reference(obstacle, p.on_obstacle)) < 1e-14 * scale);
+  // The body's point is one radius from its axis.
+  const vector x = p.on_body + c.radius * p.normal;
+  const double t = along.norm() == 0 ? 0 : (x - c.from).dot(along) / along.squaredNorm();
+  CHECK((c.from + std::clamp(t, 0.0, 1.0) * along - x).norm() < 1e-14 * scale);
+}
+
+template <class F>
+void for_each_obstacle(duet_test::random_source& random, F&& f) {
+  f(sphere<>{point(random, 1), random.uniform(0, 1)});
+  f(box<>{placed(random), point(random, 1).cwiseAbs()});
+  f(box<>{placed(random), vector(random.uniform(0, 1), 0, random.uniform(0, .01))}); // a plate
+  f(half_space<>{point(random, 1).normalized(), random.uniform(-1, 1)});
+}
+
+} // namespace
+
+TEST_CASE("capsules and obstacles, apart, touching and overlapping, by search") {
+  duet_test::random_source random(1);
+  for (int k = 0; k < 150; ++k) {
+    const double length = k % 3 == 0 ? 3 : random.magnitude(1e-9, 1);
+    const vector from = point(random, 1.5);
+    const capsule<> c(from, vector(from + point(random, length)), k % 2 == 0 ? 0 : .2);
+    for_each_obstacle(random, [&](const auto& obstacle) { check(c, obstacle); });
+  }
+}
+
+TEST_CASE("axes along edges, through corners, in faces, and of no length") {
+  duet_test::random_source random(2);
+  for (const auto& where : {pose(quaternion<double>(1), vector(0, 0, 0)), placed(random)}) {
+    const box<> b{where, vector(.5, 1, 2)};
+    const auto at = [&](double x, double y, double z) {
+      return transform_point(where, vector(x, y, z));
+    };
+    const auto run = [&](const vector& from, const vector& to) {
+      check(capsule<>(from, to, .1), b);
+      check(capsule<>(to, from, .1), b);
+      check(capsule<>(from, from, 0), b);
+    };
+    run(at(1, 0, -1), at(1, 0, 1));             // parallel to a face
+    run(at(1, -3, 0), at(1, 5, 0));             // and longer than it
+    run(at(1, 1.5, -1), at(1, 1.5, 3));         // parallel to an edge
+    run(at(.5, 1, -1), at(.5, 1, 1));           // on an edge
+    run(at(.5, -.3, 0), at(.5, .3, 1));         // in a face
+    run(at(0, 0, 0), at(.5, 1, 2));             // from the centre to a corner
+    run(at(-.5, -1, -2), at(.5, 1, 2));         // from corner to corner
+    run(at(1, 2, 4), at(.5, 1, 2));             // to a corner
+    run(at(.1, -5, .2), at(.1, 5, .2));         // right through
+    run(at(0, 0, -1), at(0, 0, 1));             // as near to two faces all along
+    run(at(.5 + 1e-12, -9, 0), at(.5, 9, 0));   // grazing
+    run(at(1e4, 0, 0), at(1, 1e-9, 0));         // long
+    run(at(.3, .2, .1), at(.3, .2, .1 + 1e-9)); // inside, tiny
+  }
+  const box<> nothing{pose(quaternion<double>(1), vector(1, 2, 3)), vector::Zero()};
+  check(capsule<>(vector(1, 2, 0), vector(1, 2, 5), .3), nothing);
+  const sphere<> ball{vector(0, 0, 0), 1};
+  check(capsule<>(vector(-1, 0, 0), vector(1, 0, 0), .1), ball);
+  check(capsule<>(ball.centre, ball.centre, .1), ball);
+  CHECK(closest_points(sphere<>{ball.centre, .1}, ball).distance == -1.1);
+  check(capsule<>(vector(-1, 0, 1), vector(1, 0, 1), .1), half_space<>{vector::UnitZ(), 0});
+}
+
+TEST_CASE("50 digits, and the rounding of double") {
+  duet_test::random_source random(3);
+  for (int k = 0; k < 15; ++k) {
+    const vector from = point(random, 1.2);
+    const capsule<> c(from, vector(from + point(random, 2)), .1);
+    for_each_obstacle(random, [&](auto obstacle) {
+      if constexpr (requires { obstacle.placed; }) {
+        // The unit of double is none of 50 digits.
+        const dual_quaternion<real_50> exact =
+            normalized(dual_quaternion<real_50>(obstacle.placed));
+        const box<real_50> b{exact, obstacle.half_sizes.template cast<real_50>()};
+        const capsule<real_50> d(c.from.cast<real_50>(), c.to.cast<real_50>(), c.radius);
+        const auto p = closest_points(d, b);
+        CHECK(abs(real_50(closest_points(c, obstacle).distance - p.distance)) < 2e-15);
+        // At 50 digits the nearest point is on the box to 50 digits, and no sample is nearer.
+        CHECK(abs(closest_points(sphere<real_50>{p.on_obstacle, 0}, b).distance) < 1e-48);
+        for (int i = 0; i <= 20; ++i) {
+          const vector3<real_50> x = d.from + real_50(i) / 20 * (d.to - d.from);
+          CHECK(closest_points(sphere<real_50>{x, d.radius}, b).distance - p.distance > -1e-48);
+        }
+      }
+    });
+  }
+}
+
+TEST_CASE("the gradient by dual numbers is the normal, shared by the ends as the point is") {
+  duet_test::random_source random(4);
+  for (int k = 0; k < 100; ++k) {
+    const vector from = point(random, 1.5);
+    const capsule<> c(from, vector(from + point(random, 2)), .1);
+    for_each_obstacle(random, [&](const auto& obstacle) {
+      const auto p = closest_points(c, obstacle);
+      Eigen::Matrix<double, 6, 1> ends;
+      ends << c.from, c.to;
+      const auto slope = gradient(
+          [&](const auto& x) {
+            using T = std::decay_t<decltype(x[0])>;
+            return closest_points(
+                       capsule<T>(x.template head<3>(), x.template tail<3>(), T(c.radius)),
+                       obstacle)
+                .distance;
+          },
+          ends);
+      const vector along = c.to - c.from;
+      const double t = (p.on_body + c.radius * p.normal - c.from).dot(along) / along.squaredNorm();
+      CHECK(std::abs(slope.value - p.distance) < 1e-15);
+      const vector first = slope.gradient.template head<3>(),
+                   second = slope.gradient.template tail<3>();
+      // In a box where one face takes over from another the gradient is that of the edge.
+      CHECK((first + second).norm() <= 1 + 1e-12);
+      if (p.distance + c.radius > 0) {
+        CHECK((first - (1 - t) * p.normal).norm() < 1e-9);
+        CHECK((second - t * p.normal).norm() < 1e-9);
+      }
+      // Against a difference quotient, where the nearest face stays the same.
+      const vector step = 1e-6 * point(random, 1);
+      const auto moved = [&](double sign) {
+        return closest_points(
+                   capsule<>(vector(c.from + sign * step), vector(c.to - sign * step), c.radius),
+                   obstacle)
+            .distance;
+      };
+      const double change = (moved(1) - moved(-1)) / 2;
+      CHECK(std::abs(change - step.dot(first - second)) < 1e-9);
+    });
+  }
+}
+
+TEST_CASE("touching and coinciding: finite gradients that lead out") {
+  const auto slope = [](const auto& obstacle, const vector& x) {
+    return gradient(
+               [&](const auto& y) {
+                 using T = std::decay_t<decltype(y[0])>;
+                 return closest_points(sphere<T>{y, T(0)}, obstacle).distance;
+               },
+               x)
+        .gradient;
+  };
+  const box<> b{pose(quaternion<double>(1), vector(0, 0, 0)), vector(1, 1, 1)};
+  CHECK(slope(b, vector(1, .2, 0)) == vector(1, 0, 0));
+  CHECK(slope(b, vector(-1, .2, 0)) == vector(-1, 0, 0));
+  CHECK(slope(b, vector(1, 1, 1)).norm() == 1);
+  CHECK(slope(sphere<>{vector::Zero(), 1}, vector::Zero()).norm() == 1);
+  CHECK(closest_points(sphere<>{vector(1, .2, 0), 0}, b).distance == 0);
+}
+
+TEST_CASE("what is no shape") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto here = pose(quaternion<double>(1), vector(0, 0, 0));
+  require_shape(sphere<>{vector::Zero(), 0}, "it");
+  CHECK_THROWS_WITH_AS(require_shape(sphere<>{vector::Zero(), -1}, "obstacle 2"),
+                       "duet: the radius of obstacle 2 is -1, not a number from 0 up",
+                       invalid_input);
+  CHECK_THROWS_WITH_AS(require_shape(sphere<>{vector(0, nan, 0), 1}, "obstacle 2"),
+                       "duet: the centre of obstacle 2 is not finite", invalid_input);
+  CHECK_THROWS_AS(require_shape(capsule<>(vector::Zero(), vector(0, 0, nan), 1), "it"),
+                  invalid_input);
+  CHECK_THROWS_AS(require_shape(capsule<>(vector::Zero(), vector::Zero(), nan), "it"),
+                  invalid_input);
+  CHECK_THROWS_WITH_AS(require_shape(box<>{here, vector(1, -.5, 1)}, "it"),
+                       "duet: half size 1 of it is -0.5, not a number from 0 up", invalid_input);
+  CHECK_THROWS_AS(require_shape(box<>{here * 2.0, vector(1, 1, 1)}, "it"), invalid_input);
+  CHECK_THROWS_AS(require_shape(half_space<>{vector(0, 0, 2), 1}, "it"), invalid_input);
+  CHECK_THROWS_AS(require_shape(half_space<>{vector(0, 0, 1), nan}, "it"), invalid_input);
+}
+
+} // namespace test_planning_closest_points

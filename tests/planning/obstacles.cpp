@@ -1,0 +1,145 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+
+#include <duet/planning/plan_screw_motion.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace test_planning_obstacles {
+namespace {
+
+using namespace duet;
+using vector = duet_test::coordinates<7>;
+using point = Eigen::Vector3d;
+
+const auto arm = robots::panda().table();
+
+vector gripper_down() {
+  const double quarter = std::numbers::pi / 4;
+  vector theta;
+  theta << 0, -quarter, 0, -3 * quarter, 0, 2 * quarter, quarter;
+  return theta;
+}
+
+/// The Panda's upper arm, elbow, forearm and flange.
+scene arm_among(std::vector<obstacle> obstacles) {
+  return {{{2, capsule<>({0, 0, 0}, {0, -.316, 0}, .06)},
+           {3, sphere<>{{.0825, 0, 0}, .06}},
+           {4, capsule<>({0, 0, 0}, {-.0825, .384, 0}, .06)},
+           {7, capsule<>({0, 0, -.05}, {0, 0, .05}, .05)}},
+          std::move(obstacles),
+          .01};
+}
+
+/// Checks that a plan keeps to the screw, the limits and the margin, also between waypoints.
+template <class Plan>
+void check(const Plan& plan, const dual_quaternion<double>& goal, const scene& around) {
+  for (std::size_t k = 1; k < plan.joints.size(); ++k) {
+    for (int part = 1; part <= 2; ++part) {
+      const double x = part / 2.0;
+      const vector theta = (1 - x) * plan.joints[k - 1] + x * plan.joints[k];
+      for (int i = 0; i < 7; ++i) {
+        CHECK(theta[i] >= arm.limits(i).lower);
+        CHECK(theta[i] <= arm.limits(i).upper);
+      }
+      const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
+      const pose_deviation d = deviation_between(arm.pose(theta), sclerp(plan.poses[0], goal, tau));
+      CHECK(d.length < 1e-5);
+      CHECK(d.angle < 1e-5);
+      CHECK(clearance(arm, theta, around).distance > around.margin - (part == 2 ? 1e-6 : 1.1e-5));
+    }
+  }
+  CHECK(plan.smallest_clearance >= around.margin - 1e-6);
+}
+
+} // namespace
+
+TEST_CASE("the elbow makes way for an obstacle, the tip stays on the screw") {
+  for (const int seed : {354, 373, 903}) {
+    duet_test::random_source random{std::uint64_t(seed)};
+    vector end;
+    for (int i = 0; i < 7; ++i) {
+      end[i] = gripper_down()[i] + random.uniform(-.6, .6);
+    }
+    const auto goal = arm.pose(end);
+    // Near where the elbow would be.
+    const auto plain = plan_screw_motion(arm, gripper_down(), goal);
+    const vector late = plain.joints[plain.joints.size() * 2 / 3];
+    const auto aside = random.direction<3>();
+    const point centre = translation(arm.pose(late, 4)) + .15 * point(aside[0], aside[1], aside[2]);
+    const auto turned = pose(from_rotation_vector(point(.5, 1, 0)), centre);
+    const scene around = arm_among({seed % 2 == 0 ? obstacle(sphere<>{centre, .1})
+                                                  : obstacle(box<>{turned, point(.09, .07, .08)})});
+    REQUIRE(clearance(arm, gripper_down(), around).distance > .01);
+    REQUIRE(clearance(arm, late, around).distance < -.01);
+    const auto plan = plan_screw_motion(arm, gripper_down(), goal, {}, {}, around);
+    CHECK(plan.reason == stop_reason::reached);
+    CHECK(plan.smallest_clearance < .0101); // it does touch the margin
+    check(plan, goal, around);
+  }
+}
+
+TEST_CASE("an obstacle in the way of the tip: as far as the margin, and why") {
+  const auto start = gripper_down();
+  const point from = translation(arm.pose(start));
+  const auto goal = pose(rotation(arm.pose(start)), point(from + point(.1, 0, -.2)));
+  // The flange's capsule ends 0.007 above the tip, which goes down by 0.2; the plate begins 0.1
+  // below.
+  const auto plate = pose(quaternion<double>(1), point(from + point(.1, 0, -.12)));
+  const scene around = arm_among({box<>{plate, {.15, .2, .02}}});
+  const auto plan = plan_screw_motion(arm, start, goal, {.search_step = 0}, {}, around);
+  CHECK(plan.reason == stop_reason::obstacle);
+  CHECK(std::string(to_text(plan.reason)) == "obstacle");
+  CHECK(plan.tau.back() == doctest::Approx((.1 + .007 - .01) / .2).epsilon(1e-3));
+  CHECK(plan.smallest_clearance == doctest::Approx(.01).epsilon(1e-3));
+  check(plan, goal, around);
+}
+
+TEST_CASE("obstacles far away change nothing") {
+  const auto start = gripper_down();
+  vector end = start;
+  end[1] += .3;
+  end[5] -= .4;
+  const auto goal = arm.pose(end);
+  const scene around = arm_among({sphere<>{{5, 5, 5}, 1}, half_space<>{{0, 0, 1}, -3}});
+  const auto plan = plan_screw_motion(arm, start, goal, {}, {}, around);
+  const auto plain = plan_screw_motion(arm, start, goal);
+  CHECK(plan.reason == stop_reason::reached);
+  CHECK(plan.joints == plain.joints);
+  CHECK(plan.smallest_clearance > 2);
+  CHECK(plain.smallest_clearance == INFINITY);
+}
+
+TEST_CASE("limits are no obstacles; bad scenes") {
+  const auto start = gripper_down();
+  // Out of reach, beside a wall that is near but not in the way.
+  const auto far = pose(rotation(arm.pose(start)), point(2, 0, .3));
+  const scene wall = arm_among({half_space<>{{0, 0, 1}, .2}});
+  const auto stopped = plan_screw_motion(arm, start, far, {.search_step = 0}, {}, wall);
+  CHECK(stopped.reason != stop_reason::reached);
+  CHECK(stopped.reason != stop_reason::obstacle);
+
+  CHECK_THROWS_WITH_AS(
+      (void)plan_screw_motion(arm, start, far, {}, {}, arm_among({half_space<>{{0, 0, 1}, .6}})),
+      doctest::Contains("from obstacle 0, closer than the margin of 0.01"), invalid_input);
+  scene bad = wall;
+  bad.margin = -1;
+  CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, far, {}, {}, bad),
+                       "duet: the margin of a scene is -1, not a number from 0 up", invalid_input);
+  bad = arm_among({half_space<>{{0, 0, 2}, 0}});
+  CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, far, {}, {}, bad),
+                       "duet: the normal of obstacle 0 is no unit vector", invalid_input);
+}
+
+} // namespace test_planning_obstacles
