@@ -17,7 +17,8 @@ inline constexpr const char* labels[] = {"N1",  "N2",  "N3",  "N4",  "N5",  "N6"
 
 inline std::vector<reference> references() {
   return {
-      {"N25", "given paths, inverse kinematics", "", "not in duet yet"},
+      {"N25", "given paths, inverse kinematics", "`follow_path`, `inverse_kinematics`",
+       "`planning/follow_path`, `planning/inverse_kinematics`"},
       {"P1", "basis functions", "`bspline_basis`", "`examples/printed_formulas`, `spline/basis`"},
       {"P2", "cumulative curve", "`cumulative_bspline`",
        "`examples/printed_formulas`, `spline/curve`"},

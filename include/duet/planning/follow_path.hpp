@@ -6,11 +6,12 @@
 #include <duet/planning/path_follower.hpp>
 #include <duet/quaternion/norm.hpp>
 
-#include <cmath>
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <sstream>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -53,19 +54,24 @@ template <class Path>
 
 } // namespace detail
 
+/// Poses by a parameter.
+template <class P>
+concept PosePath = requires(const P& path) {
+  { path(0.0) } -> std::convertible_to<dual_quaternion<double>>;
+};
+
 /// Joint coordinates that take the tip of a chain along a path from where it is at `start` (N25,
 /// note 1).
 ///
 /// Waypoints are within `tolerance` of the path, the straight joint paths between them within about
 /// `deviation`, both in length and angle, at the same parameter. Each waypoint is met by Newton's
 /// method on the exact twist 2 log(A_target A*), with steps of least norm that keep the limits and
-/// are damped where the smallest singular value is small. What freedom is left lowers
-/// the objectives. Where the joints get stuck and one or more are redundant, those configurations
+/// are damped where the smallest singular value is small. What freedom is left lowers the
+/// objectives. Where the joints get stuck and one or more are redundant, those configurations
 /// are searched that can be reached by moving in place, too.
 ///
 /// \param path         poses by a parameter, from `first` to `last`, which increases
-/// \param objective    a function of θ, generic over scalars, which the joints lower as long as
-/// that
+/// \param objective    a function of θ, generic over scalars, which the joints lower where that
 ///                     leaves the tip in place; or something with a member `gradient(theta)` too
 /// \param around       a `scene`: bodies of the chain keep its margin from obstacles, at waypoints
 ///                     to `tolerance`, half way between them to `deviation`
@@ -73,13 +79,12 @@ template <class Path>
 /// \throws invalid_input for a start outside the limits or of another size, a path that does not
 ///         begin at the tip or goes nowhere, what is no pose, options out of range, a
 ///         `scene` that is none and one that is too close at the start
-template <SerialChain C, VectorLike Start, class Path, class Objective = no_objective,
+template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_objective,
           class Scene = no_scene>
-  requires std::is_invocable_r_v < dual_quaternion<double>,
-const Path&, double > [[nodiscard]] motion_plan<C::joints>
-                      follow_path(const C& chain, const Start& start, const Path& path,
-                                  double first, double last, const plan_options& options = {},
-                                  const Objective& objective = {}, const Scene& around = {}) {
+[[nodiscard]] motion_plan<C::joints>
+follow_path(const C& chain, const Start& start, const Path& path, double first, double last,
+            const plan_options& options = {}, const Objective& objective = {},
+            const Scene& around = {}) {
   detail::require_start(chain, start);
   if (!(first < last && last - first < std::numeric_limits<double>::infinity())) {
     std::ostringstream message;
@@ -93,14 +98,14 @@ const Path&, double > [[nodiscard]] motion_plan<C::joints>
 /// The same along a spline of poses, over all of its domain.
 template <SerialChain C, VectorLike Start, class Spline, class Objective = no_objective,
           class Scene = no_scene>
-  requires requires(const Spline& s) { s.spans().breaks().front(); }
+  requires requires(const Spline& s) { s.breaks().front(); }
 [[nodiscard]] motion_plan<C::joints> follow_path(const C& chain, const Start& start,
                                                  const Spline& spline,
                                                  const plan_options& options = {},
                                                  const Objective& objective = {},
                                                  const Scene& around = {}) {
   detail::require_start(chain, start);
-  const auto& breaks = spline.spans().breaks();
+  const auto& breaks = spline.breaks();
   return detail::follow(chain, start, detail::checked(spline),
                         std::vector<double>(breaks.begin(), breaks.end()), options, objective,
                         around);

@@ -20,7 +20,6 @@
 namespace duet::detail {
 
 /// Plans along a path, first without stopping; where that comes to an end, with motions in place.
-///
 template <class C, class Objective, class Scene>
 class path_follower {
 public:

@@ -26,7 +26,7 @@ struct plan_options {
   /// Between the places where the tip may stop for the joints to move in place; 0: nowhere.
   double search_step = .02;
   /// How far the joints then move from one configuration to the next, in coordinates.
-  double self_motion_step = .15;
+  double self_motion_step = .1;
   /// Of Newton's method, in all.
   int iterations = 1000000;
 };

@@ -70,7 +70,7 @@ public:
       const std::size_t end = found_.size();
       const auto target = target_(u[k]);
       for (std::size_t i = first; i < end && left_ > 0; ++i) {
-        const auto next = go(found_[i].state, found_[i].u, u[k], 1);
+        const auto next = go(found_[i].state, found_[i].u, u[k], 3);
         if (next.is_within(solver_.tolerance()) && !is_known(next.state.theta, end)) {
           found_.push_back({next.state, u[k], std::ptrdiff_t(i)});
           follow(found_.size() - 1, target);

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <type_traits>
+#include <vector>
 
 /// \file
 /// What curves made of pieces have in common: how they are evaluated.
@@ -27,6 +28,8 @@ namespace duet {
 template <class Curve, class R>
 class piecewise_curve {
 public:
+  /// Where the pieces meet, and the ends of the domain: increasing parameters.
+  [[nodiscard]] const std::vector<R>& breaks() const { return curve().spans().breaks(); }
   /// What the curve does outside its domain: `outside::error` until told otherwise.
   [[nodiscard]] outside outside_domain() const { return outside_; }
   void set_outside_domain(outside way) { outside_ = way; }

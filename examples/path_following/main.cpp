@@ -1,0 +1,68 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// The tip of an arm draws a helix without turning: follow_path along a function. Writes the joint
+// path as a table, and draws it. The arm is one of duet's or read from a URDF file.
+
+#include "../support/gnuplot.hpp"
+#include "options.hpp"
+#include "tables.hpp"
+
+#include <duet/core/csv.hpp>
+#include <duet/planning/follow_path.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+
+namespace path_following {
+namespace {
+
+int run(const options& given) {
+  const auto first = given.arm.pose(given.start);
+  const auto helix = [&](double u) {
+    const double angle = 2 * duet::constant::pi<double>() * u;
+    const Eigen::Vector3d shift(given.radius * (std::cos(angle) - 1),
+                                given.radius * std::sin(angle), given.pitch * u);
+    return duet::pose(duet::quaternion<double>(1), shift) * first;
+  };
+  const auto plan = duet::follow_path(given.arm, given.start, helix, 0, given.turns);
+
+  std::filesystem::create_directories(given.out);
+  duet::write_file(given.out + "/path.csv", path_csv(plan));
+  duet::write_file(given.out + "/arm.csv", arm_csv(given.arm, plan));
+  duet::write_file(given.out + "/helix.csv", helix_csv(helix, given.turns));
+  const bool drawn = example::draw(given.out, "path", "1000,760", picture_script(given.arm.size()));
+  std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
+            << "\n";
+  if (!drawn) {
+    std::cout << "No picture: gnuplot is not installed or failed\n";
+  }
+  duet::pose_deviation largest;
+  for (const duet::pose_deviation& d : plan.deviations) {
+    largest = {std::max(largest.length, d.length), std::max(largest.angle, d.angle)};
+  }
+  std::printf("path following: reason=%s turns=%.4g waypoints=%zu length=%.1e angle=%.1e "
+              "limit_margin=%.4g singular_value=%.4g\n",
+              to_text(plan.reason), plan.tau.back(), plan.tau.size(), largest.length, largest.angle,
+              plan.smallest_limit_margin, plan.smallest_singular_value);
+  if (plan.reason != duet::stop_reason::reached) {
+    std::cout << "The arm cannot draw all of it: it stops after " << plan.tau.back() << " of "
+              << given.turns << " turns\n";
+  }
+  return 0;
+}
+
+} // namespace
+} // namespace path_following
+
+int main(int argc, char** argv) {
+  try {
+    const auto given = path_following::parse_options(argc, argv);
+    return given ? path_following::run(*given) : 0;
+  } catch (const std::exception& error) {
+    std::cerr << "path_following: " << error.what() << "\n";
+    return 1;
+  }
+}

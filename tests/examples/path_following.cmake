@@ -1,0 +1,28 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Runs the path following on good and bad input.
+#
+# cmake -Dprogram=<path_following> -Dfolder=<for files> -P path_following.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+run(0 "reason=reached turns=0.1 waypoints=" --turns 0.1)
+file(STRINGS ${folder}/out/path.csv lines)
+list(GET lines 0 header)
+if(NOT header MATCHES "^turns,x,y,z,qw,qx,qy,qz,deviation_m,deviation_rad,joint_0,.*,joint_6$")
+  message(FATAL_ERROR "path.csv begins with ${header}")
+endif()
+run(0 "reason=reached turns=0.1 " --robot ur5e --turns 0.1 --radius 0.02)
+run(0 "reason=[a-z_]+ .*stops after [0-9.]+ of 0.2 turns" --turns 0.2 --radius 3 --robot ur5e)
+run(0 "--pitch" --help)
+
+run(1 "--robot: 'r2d2' is none of panda, iiwa14" --robot r2d2)
+run(1 "--joints: 7 numbers expected, got 2" --joints 1,2)
+run(1 "--joints: 'nan' is not a finite number" --joints 0,0,0,nan,0,1,0)
+run(1 "the start has 1 for joint 3, whose limits are" --joints 0,0,0,1,0,1,0)
+run(1 "--radius: a number from 0 up" --radius -1)
+run(1 "--turns: a number above 0" --turns 0)
+run(1 "--pitch: a finite number" --pitch inf)
+run(1 "unrecognised option '--bogus'" --bogus)
