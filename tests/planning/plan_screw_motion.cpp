@@ -86,6 +86,8 @@ TEST_CASE("from the gripper-down pose to near goals, along the screw") {
     const pose_deviation left = deviation_between(plan.poses.back(), goal);
     CHECK(std::max(left.length, left.angle) <= 1e-6);
     CHECK(plan.tau.back() == 1);
+    CHECK(plan.iterations <
+          2.3 * double(plan.joints.size())); // a step to first order, and Newton's
     double margin = 10, smallest = 10;
     for (const vector& theta : plan.joints) {
       for (int i = 0; i < 7; ++i) {
@@ -100,6 +102,15 @@ TEST_CASE("from the gripper-down pose to near goals, along the screw") {
       CHECK(plan.smallest_singular_value == doctest::Approx(smallest).epsilon(.05));
     }
   }
+}
+
+TEST_CASE("centring moves joints away from their limits") {
+  const vector lower = lower_limits(arm), upper = upper_limits(arm);
+  const vector middle = (lower + upper) / 2;
+  const vector theta = middle + .45 * (upper - lower);
+  const vector step = detail::towards_middle(theta, lower, upper, .1);
+  CHECK((step + vector::Constant(.1 * .9 * .9 * .9)).norm() < 1e-14);
+  CHECK(detail::towards_middle(middle, lower, upper, .1).norm() < 1e-14);
 }
 
 TEST_CASE("where an arm gets stuck, motions in place go on") {
