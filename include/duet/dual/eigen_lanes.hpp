@@ -74,8 +74,8 @@ template <int W, class M, class Get>
   requires std::derived_from<M, Eigen::DenseBase<M>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const M& pattern,
                                                    const Get& get) {
-  using S = std::decay_t<decltype(joined_lanes(
-      lane_width<W>{}, pattern(0, 0), [&](int k) DUET_INLINE_LAMBDA { return get(k)(0, 0); }))>;
+  const auto first = [&](int k) DUET_INLINE_LAMBDA { return get(k)(0, 0); };
+  using S = std::decay_t<decltype(joined_lanes(lane_width<W>{}, pattern(0, 0), first))>;
   return detail::filled_matrix<detail::matrix_over<M, S>>(
       pattern.rows(), pattern.cols(), [&](Eigen::Index i, Eigen::Index j) DUET_INLINE_LAMBDA {
         return joined_lanes(lane_width<W>{}, pattern(i, j),

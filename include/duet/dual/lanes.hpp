@@ -63,11 +63,11 @@ template <int W, Infinitesimal D, class Get>
   const auto joined = [](const auto& part_of) DUET_INLINE_LAMBDA {
     return joined_lanes(lane_width<W>{}, part_of(0), part_of);
   };
-  using part = decltype(joined_lanes(lane_width<W>{}, pattern.value(),
-                                     [&](int i) DUET_INLINE_LAMBDA { return get(i).value(); }));
+  const auto value = [&](int i) DUET_INLINE_LAMBDA { return get(i).value(); };
+  using part = decltype(joined_lanes(lane_width<W>{}, pattern.value(), value));
   using R = over<D, part>;
   if constexpr (requires { pattern.partials(); }) {
-    R result(joined([&](int i) DUET_INLINE_LAMBDA { return get(i).value(); }));
+    R result(joined(value));
     for (int k = 0; k < pattern.size(); ++k) {
       result.set_partial(k, joined([&](int i) DUET_INLINE_LAMBDA { return get(i).partial(k); }));
     }
@@ -82,7 +82,7 @@ template <int W, Infinitesimal D, class Get>
                     joined([&](int i) DUET_INLINE_LAMBDA { return get(i).second_partial(k, j); }));
       }
     }
-    return R(joined([&](int i) DUET_INLINE_LAMBDA { return get(i).value(); }), gradient, hessian);
+    return R(joined(value), gradient, hessian);
   } else {
     R result;
     for (int k = 0; k <= scalar_traits<D>::order - scalar_traits<typename D::value_type>::order;

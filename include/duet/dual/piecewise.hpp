@@ -8,6 +8,8 @@
 #include <duet/dual/promotion.hpp>
 
 #include <cmath>
+#include <concepts>
+#include <type_traits>
 
 /// \file
 /// The functions of `<cmath>` that are linear, constant or chosen piece by piece, over dual and
@@ -18,7 +20,12 @@ namespace duet {
 template <RealInfinitesimal D>
 [[nodiscard]] auto signbit(const D& x) {
   using std::signbit;
-  return signbit(innermost(x));
+  const auto is_negative = signbit(innermost(x));
+  if constexpr (std::integral<std::remove_cvref_t<decltype(is_negative)>>) {
+    return bool(is_negative != 0); // of Boost.Multiprecision an int
+  } else {
+    return is_negative;
+  }
 }
 template <RealInfinitesimal D>
 [[nodiscard]] auto isfinite(const D& x) {

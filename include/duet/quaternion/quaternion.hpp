@@ -178,8 +178,9 @@ template <int W, class T, class Get>
   const auto joined = [](const T& example, const auto& part_of) DUET_INLINE_LAMBDA {
     return joined_lanes(lane_width<W>{}, example, part_of);
   };
-  using S = decltype(joined(pattern.w(), [&](int i) DUET_INLINE_LAMBDA { return get(i).w(); }));
-  return quaternion<S>(joined(pattern.w(), [&](int i) DUET_INLINE_LAMBDA { return get(i).w(); }),
+  const auto first = [&](int i) DUET_INLINE_LAMBDA { return get(i).w(); };
+  using S = decltype(joined(pattern.w(), first));
+  return quaternion<S>(joined(pattern.w(), first),
                        joined(pattern.x(), [&](int i) DUET_INLINE_LAMBDA { return get(i).x(); }),
                        joined(pattern.y(), [&](int i) DUET_INLINE_LAMBDA { return get(i).y(); }),
                        joined(pattern.z(), [&](int i) DUET_INLINE_LAMBDA { return get(i).z(); }));
