@@ -45,7 +45,7 @@ while(TRUE)
   set(program ${folder}/snippet_${count})
   file(WRITE ${program}.cpp "${code}")
   set(include "")
-  if(code MATCHES "^\n*#include <duet/duet.hpp>\n")
+  if(precompiled AND code MATCHES "^\n*#include <duet/duet.hpp>\n")
     set(include -include ${precompiled})
   endif()
   execute_process(

@@ -81,25 +81,25 @@ template <Term A>
   return a;
 }
 
-template <class A, class B, auto Tag = [] {}>
+template <class A, class B, class Tag = decltype([] {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto operator+(const A& a, const B& b) {
-  return apply<op::sum>(detail::term<decltype(Tag)>(a), detail::term<decltype(Tag)>(b));
+  return apply<op::sum>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <class A, class B, auto Tag = [] {}>
+template <class A, class B, class Tag = decltype([] {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto operator-(const A& a, const B& b) {
-  return apply<op::difference>(detail::term<decltype(Tag)>(a), detail::term<decltype(Tag)>(b));
+  return apply<op::difference>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <class A, class B, auto Tag = [] {}>
+template <class A, class B, class Tag = decltype([] {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto operator*(const A& a, const B& b) {
-  return apply<op::product>(detail::term<decltype(Tag)>(a), detail::term<decltype(Tag)>(b));
+  return apply<op::product>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <class A, class B, auto Tag = [] {}>
+template <class A, class B, class Tag = decltype([] {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto operator/(const A& a, const B& b) {
-  return apply<op::quotient>(detail::term<decltype(Tag)>(a), detail::term<decltype(Tag)>(b));
+  return apply<op::quotient>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 
 /// Whether a product has the number a as its first factor.

@@ -96,19 +96,19 @@ struct lerp : detail::function_of_many<lerp> {
 } // namespace op
 
 /// The angle of the point (x, y), in (−π, π].
-template <class Y, class X, auto Tag = [] {}>
+template <class Y, class X, class Tag = decltype([] {})>
   requires Operands<Y, X>
 [[nodiscard]] constexpr auto atan2(const Y& y, const X& x) {
-  return apply<op::atan2>(detail::term<decltype(Tag)>(y), detail::term<decltype(Tag)>(x));
+  return apply<op::atan2>(detail::term<Tag>(y), detail::term<Tag>(x));
 }
 /// √(x² + y²)
-template <class X, class Y, auto Tag = [] {}>
+template <class X, class Y, class Tag = decltype([] {})>
   requires Operands<X, Y>
 [[nodiscard]] constexpr auto hypot(const X& x, const Y& y) {
-  return apply<op::hypot>(detail::term<decltype(Tag)>(x), detail::term<decltype(Tag)>(y));
+  return apply<op::hypot>(detail::term<Tag>(x), detail::term<Tag>(y));
 }
 /// √(x² + y² + z²)
-template <class X, class Y, class Z, auto Tag = [] {}>
+template <class X, class Y, class Z, class Tag = decltype([] {})>
   requires(Operands<X, Y>&& Term<Z>)
 [[nodiscard]] constexpr auto hypot(const X& x, const Y& y, const Z& z) {
   return hypot(hypot<X, Y, Tag>(x, y), z);
@@ -119,10 +119,10 @@ template <Term X, Term Y, Term Z>
   return apply<op::fma>(x, y, z);
 }
 /// a + t (b − a) of scalars, exact at t = 0 and t = 1.
-template <class A, class B, class T, auto TagA = [] {}, auto TagB = [] {}>
+template <class A, class B, class T, class TagA = decltype([] {}), class TagB = decltype([] {})>
   requires(Operands<A, B, T>&& Term<T>)
 [[nodiscard]] constexpr auto lerp(const A& a, const B& b, const T& t) {
-  return apply<op::lerp>(detail::term<decltype(TagA)>(a), detail::term<decltype(TagB)>(b), t);
+  return apply<op::lerp>(detail::term<TagA>(a), detail::term<TagB>(b), t);
 }
 
 } // namespace duet::expression

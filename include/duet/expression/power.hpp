@@ -148,10 +148,10 @@ struct power {
 } // namespace op
 
 /// x^p of scalars. Exponents that the compiler knows, as `c<2>`, are simplified.
-template <class X, class P, auto Tag = [] {}>
+template <class X, class P, class Tag = decltype([] {})>
   requires Operands<X, P> &&(!QuaternionTerm<X> && !PoseTerm<X>)
       [[nodiscard]] constexpr auto pow(const X& x, const P& p) {
-    return apply<op::power>(detail::term<decltype(Tag)>(x), detail::term<decltype(Tag)>(p));
+    return apply<op::power>(detail::term<Tag>(x), detail::term<Tag>(p));
   }
 
 } // namespace duet::expression

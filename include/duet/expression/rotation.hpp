@@ -245,23 +245,23 @@ template <detail::QuaternionOrPose Q>
   return apply<op::log_quaternion>(q);
 }
 /// N5: q^ρ.
-template <detail::QuaternionOrPose Q, class S, auto Tag = [] {}>
+template <detail::QuaternionOrPose Q, class S, class Tag = decltype([] {})>
   requires Operands<Q, S>
 [[nodiscard]] constexpr auto pow(const Q& q, const S& exponent) {
-  return apply<op::power_of_quaternion>(q, detail::term<decltype(Tag)>(exponent));
+  return apply<op::power_of_quaternion>(q, detail::term<Tag>(exponent));
 }
 /// N9: a (a* b)^τ the shorter way round.
-template <class A, class B, class S, auto TagA = [] {}, auto TagB = [] {}, auto TagS = [] {}>
+template <class A, class B, class S, class TagA = decltype([] {}), class TagB = decltype([] {}),
+          class TagS = decltype([] {})>
   requires Operands<A, B, S>
 [[nodiscard]] constexpr auto slerp(const A& a, const B& b, const S& tau) {
-  return apply<op::slerp>(detail::term<decltype(TagA)>(a), detail::term<decltype(TagB)>(b),
-                          detail::term<decltype(TagS)>(tau));
+  return apply<op::slerp>(detail::term<TagA>(a), detail::term<TagB>(b), detail::term<TagS>(tau));
 }
 /// q v q*, v turned by the rotation; a line, screw or twist carried along by a rigid motion.
-template <class Q, class V, auto Tag = [] {}>
+template <class Q, class V, class Tag = decltype([] {})>
   requires Operands<Q, V>
 [[nodiscard]] constexpr auto rotate(const Q& q, const V& v) {
-  return apply<op::rotate>(detail::term<decltype(Tag)>(q), detail::term<decltype(Tag)>(v));
+  return apply<op::rotate>(detail::term<Tag>(q), detail::term<Tag>(v));
 }
 
 } // namespace duet::expression

@@ -171,11 +171,11 @@ template <Node N, Node Angle>
 /// The rigid motion by the angle θ about and along a screw n + ε(m + h n): a unit direction n, the
 /// moment m = point × n and the pitch h, in units of length per radian. exp(½θ(n + …)) with sine
 /// and cosine instead of exponentials. Directions of other lengths give garbage.
-template <class L, class Angle, auto Tag = [] {}>
+template <class L, class Angle, class Tag = decltype([] {})>
   requires Operands<L, Angle>
 [[nodiscard]] constexpr auto screw(const L& line, const Angle& angle) {
-  const auto l = detail::term<decltype(Tag)>(line);
-  const auto a = detail::term<decltype(Tag)>(angle);
+  const auto l = detail::term<Tag>(line);
+  const auto a = detail::term<Tag>(angle);
   static_assert(detail::kind_of_term<std::remove_cvref_t<decltype(l)>>() == kind::dual_vector,
                 "duet: screw(line, angle) takes a dual vector n + εm, made by axis_through or "
                 "make_dual_vector");
@@ -183,25 +183,25 @@ template <class L, class Angle, auto Tag = [] {}>
                       merged(detail::held_of(l), detail::held_of(a)));
 }
 /// The rotation by θ about a unit vector n; other lengths give garbage.
-template <class N, class Angle, auto Tag = [] {}>
+template <class N, class Angle, class Tag = decltype([] {})>
   requires Operands<N, Angle>
 [[nodiscard]] constexpr auto turn(const N& n, const Angle& angle) {
-  const auto axis = detail::term<decltype(Tag)>(n);
-  const auto a = detail::term<decltype(Tag)>(angle);
+  const auto axis = detail::term<Tag>(n);
+  const auto a = detail::term<Tag>(angle);
   static_assert(detail::kind_of_term<std::remove_cvref_t<decltype(axis)>>() == kind::vector,
                 "duet: turn(n, angle) takes a unit vector; for lines there is screw(line, angle)");
   return make_formula(detail::turn_about(detail::node_of(axis), detail::node_of(a)),
                       merged(detail::held_of(axis), detail::held_of(a)));
 }
 /// The translation by d along a unit vector or line, a prismatic joint.
-template <class N, class D, auto Tag = [] {}>
+template <class N, class D, class Tag = decltype([] {})>
   requires Operands<N, D>
 [[nodiscard]] constexpr auto slide(const N& n, const D& d) {
-  const auto direction = detail::term<decltype(Tag)>(n);
+  const auto direction = detail::term<Tag>(n);
   if constexpr (DualVectorTerm<std::remove_cvref_t<decltype(direction)>>) {
-    return apply<op::slide>(apply<op::part<false>>(direction), detail::term<decltype(Tag)>(d));
+    return apply<op::slide>(apply<op::part<false>>(direction), detail::term<Tag>(d));
   } else {
-    return apply<op::slide>(direction, detail::term<decltype(Tag)>(d));
+    return apply<op::slide>(direction, detail::term<Tag>(d));
   }
 }
 /// The coordinate axes, lines through the origin, known to the compiler: `screw(axis::z, theta)`,
@@ -222,10 +222,10 @@ inline constexpr coordinate<2> z{};
   return make_dual_vector(n, vector3<double>(point.cross(n)));
 }
 /// N17: the pose x ↦ q x q* + t.
-template <class Q, class T, auto Tag = [] {}>
+template <class Q, class T, class Tag = decltype([] {})>
   requires Operands<Q, T>
 [[nodiscard]] constexpr auto pose(const Q& q, const T& t) {
-  return apply<op::make_pose>(detail::term<decltype(Tag)>(q), detail::term<decltype(Tag)>(t));
+  return apply<op::make_pose>(detail::term<Tag>(q), detail::term<Tag>(t));
 }
 /// The rotation of a pose.
 template <PoseTerm A>
@@ -238,12 +238,13 @@ template <PoseTerm A>
   return apply<op::translation>(a);
 }
 /// The point x carried along by a pose: R x + t.
-template <PoseTerm A, class X, auto Tag = [] {}>
+template <PoseTerm A, class X, class Tag = decltype([] {})>
 [[nodiscard]] constexpr auto transform_point(const A& a, const X& x) {
-  return rotate(rotation(a), detail::term<decltype(Tag)>(x)) + translation(a);
+  return rotate(rotation(a), detail::term<Tag>(x)) + translation(a);
 }
 /// N19: a (a* b)^τ of poses.
-template <class A, class B, class S, auto TagA = [] {}, auto TagB = [] {}, auto TagS = [] {}>
+template <class A, class B, class S, class TagA = decltype([] {}), class TagB = decltype([] {}),
+          class TagS = decltype([] {})>
   requires Operands<A, B, S>
 [[nodiscard]] constexpr auto sclerp(const A& a, const B& b, const S& tau) {
   return slerp<A, B, S, TagA, TagB, TagS>(a, b, tau);

@@ -194,16 +194,16 @@ concept VectorOperands = Operands<A, B> &&
 } // namespace detail
 
 /// a · b
-template <class A, class B, auto Tag = [] {}>
+template <class A, class B, class Tag = decltype([] {})>
   requires detail::VectorOperands<A, B>
 [[nodiscard]] constexpr auto dot(const A& a, const B& b) {
-  return apply<op::dot>(detail::term<decltype(Tag)>(a), detail::term<decltype(Tag)>(b));
+  return apply<op::dot>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 /// a × b
-template <class A, class B, auto Tag = [] {}>
+template <class A, class B, class Tag = decltype([] {})>
   requires detail::VectorOperands<A, B>
 [[nodiscard]] constexpr auto cross(const A& a, const B& b) {
-  return apply<op::cross>(detail::term<decltype(Tag)>(a), detail::term<decltype(Tag)>(b));
+  return apply<op::cross>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 /// |v|, without overflow. Not differentiable at 0.
 template <VectorTerm V>
@@ -217,11 +217,11 @@ template <int I, VectorTerm V>
   return apply<op::component<I>>(v);
 }
 /// The vector of three scalars.
-template <class X, class Y, class Z, auto TagX = [] {}, auto TagY = [] {}, auto TagZ = [] {}>
+template <class X, class Y, class Z, class TagX = decltype([] {}), class TagY = decltype([] {}),
+          class TagZ = decltype([] {})>
   requires Operands<X, Y, Z>
 [[nodiscard]] constexpr auto column(const X& x, const Y& y, const Z& z) {
-  return apply<op::column>(detail::term<decltype(TagX)>(x), detail::term<decltype(TagY)>(y),
-                           detail::term<decltype(TagZ)>(z));
+  return apply<op::column>(detail::term<TagX>(x), detail::term<TagY>(y), detail::term<TagZ>(z));
 }
 
 } // namespace duet::expression
