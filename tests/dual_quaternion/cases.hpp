@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "support/gap.hpp"
 #include "support/random.hpp"
 
 #include <duet/dual_quaternion/dual_quaternion.hpp>
@@ -53,11 +54,6 @@ inline double gap(const pose_type& a, const pose_type& b) {
     }
   }
   return largest;
-}
-
-template <class A, class B>
-double gap(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
-  return (a - b).cwiseAbs().maxCoeff();
 }
 
 } // namespace duet_test

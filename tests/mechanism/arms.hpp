@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "support/gap.hpp"
 #include "support/random.hpp"
 
 #include <duet/derivative/frame.hpp>
@@ -39,15 +40,16 @@ void for_each_frame(F&& f) {
 template <class Chain>
 std::vector<coordinates<Chain::joints>> configurations(const Chain& chain, int count) {
   constexpr int n = Chain::joints;
-  using vector = coordinates<n>;
-  std::vector<vector> result = {vector::Zero(), vector::Constant(1e-8), vector::Constant(1e-160),
-                                vector::Constant(3.141592653589793)};
-  vector elbow = vector::Zero();
+  using joint_vector = coordinates<n>;
+  std::vector<joint_vector> result = {joint_vector::Zero(), joint_vector::Constant(1e-8),
+                                      joint_vector::Constant(1e-160),
+                                      joint_vector::Constant(3.141592653589793)};
+  joint_vector elbow = joint_vector::Zero();
   elbow[n / 2] = -1.5707963267948966;
   result.push_back(elbow);
   random_source random(11);
   for (int k = 0; k < count; ++k) {
-    vector theta;
+    joint_vector theta;
     for (int i = 0; i < n; ++i) {
       const double bound = std::min(3.5, chain.limits(i).upper);
       theta[i] = random.uniform(-bound, bound);
@@ -100,11 +102,6 @@ void for_each_known_arm(F&& f) {
   f(duet::robots::iiwa14());
   f(duet::robots::baxter_left());
   f(duet::robots::ur5e());
-}
-
-template <class A, class B>
-double gap(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
-  return (a - b).cwiseAbs().maxCoeff();
 }
 
 } // namespace duet_test
