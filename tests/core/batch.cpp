@@ -30,7 +30,10 @@ namespace {
 
 template <class B>
 B counted(double first, double step = 1) {
-  return B::from_lanes([=](int i) { return typename B::value_type(first + step * i); });
+  // Unknown to the compiler, which would round functions of it in its own way.
+  volatile double unknown = first;
+  const double begin = unknown;
+  return B::from_lanes([=](int i) { return typename B::value_type(begin + step * i); });
 }
 
 /// f over batches is f over numbers, bit for bit.
