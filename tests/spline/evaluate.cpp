@@ -87,6 +87,29 @@ TEST_CASE_TEMPLATE("many parameters give what each gives, on any number of threa
   }
 }
 
+TEST_CASE("what is done of a cancelled run is known") {
+  const auto s = some_spline<cumulative>();
+  const auto u = many_parameters();
+  std::vector<pose_type> all(u.size()), out(u.size());
+  duet::evaluate(s, u, all);
+  const auto half = [](const duet::progress& p) { return p.share() < 0.5; };
+  for (const unsigned threads : {1U, 3U}) {
+    std::size_t completed = 0;
+    try {
+      duet::evaluate(s, u, out, {threads, half});
+    } catch (const duet::cancelled& early) {
+      completed = early.completed();
+    }
+    CHECK(completed >= u.size() / 2);
+    CHECK(completed < u.size());
+    bool are_same = true;
+    for (std::size_t i = 0; i < completed; ++i) {
+      are_same = are_same && out[i] == all[i];
+    }
+    CHECK(are_same);
+  }
+}
+
 TEST_CASE("bad sizes and parameters are named") {
   const auto s = some_spline<cumulative>();
   const auto message = [&](std::vector<double> u, std::size_t room, duet::execution how) {
