@@ -166,6 +166,28 @@ TEST_CASE("a run that was asked to end when everything was done has not been can
   CHECK(calls == 50);
 }
 
+TEST_CASE("who has asked for the end is told no more, while blocks in work are finished") {
+  for (int run = 0; run < 20; ++run) {
+    std::atomic<int> begun = 0;
+    int calls = 0;
+    const auto report = [&](const duet::progress&) {
+      ++calls;
+      return false;
+    };
+    duet::parallel_for_blocks(
+        2,
+        [&](std::size_t, std::size_t) {
+          ++begun;
+          while (begun < 2) {
+            std::this_thread::yield();
+          }
+        },
+        duet::execution{2, report}, 1);
+    CHECK(begun == 2);
+    CHECK(calls == 1);
+  }
+}
+
 TEST_CASE("another thread cancels") {
   std::atomic<bool> stop = false;
   std::atomic<int> begun = 0;

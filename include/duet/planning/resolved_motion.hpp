@@ -16,7 +16,7 @@ namespace duet {
 
 /// N22: B = Jᵀ(J Jᵀ)⁻¹ J2 of a chain's tip, n × 7: Θ̇ = B γ̇ are the least joint rates that move the
 /// tip with the rate γ̇ of γ = [t; α]. J is the spatial Jacobian, and "least" is |Θ̇|.
-/// \throws invalid_input where J is not of full row rank, and as `jacobian`
+/// \throws invalid_input where J is not of full row rank, in any lane of batches, and as `jacobian`
 template <SerialChain C, VectorLike X>
 [[nodiscard]] auto resolved_rate_matrix(const C& chain, const X& theta) {
   using S = detail::chain_scalar<C, X>;

@@ -89,6 +89,7 @@ void evaluate_blocks(const char* function, std::span<const R> parameters, std::s
 /// the lanes of batches.
 /// \throws invalid_input where the sizes differ; invalid_row for the first parameter outside the
 /// domain of s
+/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
 template <class Spline>
 void evaluate(const Spline& s, std::span<const typename Spline::real_type> parameters,
               std::span<quaternion<typename Spline::scalar_type>> out, execution how = one_core) {
