@@ -121,8 +121,8 @@ template <class T>
   }
 }
 
-/// A row of more packets than this is masked only where a slope turns out not to be finite. Masks of
-/// 512-bit packets cost more than those of others; clang does better without that branch.
+/// A row of more packets than this is masked only where a slope turns out not to be finite. Masks
+/// of 512-bit packets cost more than those of others; clang does better without that branch.
 inline constexpr int branch_limit = DUET_VECTOR_BYTES < 64 ? 2 : 1;
 #ifdef __clang__
 inline constexpr int mask_limit = std::numeric_limits<int>::max();
