@@ -59,11 +59,10 @@ auto power(const A& a, const S& place_rate, const P& rotation_rate) {
   const auto omega = c<2> * vec(rotation_rate * conj(rotation(a)));
   return dot(y, place_rate + cross(translation(a), omega)) + dot(m, omega);
 }
-/// And against the twist of a joint that stands at a.
-template <class A>
-auto power_of_joint(const A& a) {
-  const auto line = rotate(a, axis::z);
-  return dot(y, dual_part(line)) + dot(m, real_part(line));
+/// And against a twist ω + εv.
+template <class V>
+auto power(const V& twist) {
+  return dot(y, dual_part(twist)) + dot(m, real_part(twist));
 }
 
 template <class F>
@@ -95,9 +94,10 @@ auto jacobian_of_joints() {
 }
 auto jacobian_rate() {
   const auto [a1, a2, a3, a4, a5, a6, a7, tip] = panda_frames();
-  const auto f = x1 * power_of_joint(a1) + x2 * power_of_joint(a2) + x3 * power_of_joint(a3) +
-                 x4 * power_of_joint(a4) + x5 * power_of_joint(a5) + x6 * power_of_joint(a6) +
-                 x7 * power_of_joint(a7) + c<0> * theta7;
+  const auto line = [](const auto& a) { return rotate(a, axis::z); };
+  const auto twist = x1 * line(a1) + x2 * line(a2) + x3 * line(a3) + x4 * line(a4) + x5 * line(a5) +
+                     x6 * line(a6) + x7 * line(a7);
+  const auto f = power(twist) + c<0> * theta7;
   return gradient(along_joints(f), wrt(x1, x2, x3, x4, x5, x6, x7, y, m));
 }
 
@@ -133,7 +133,7 @@ constexpr const char* by = "`jacobian`, `gradient`, and Eigen's Cholesky decompo
 std::string text_of_power(const std::string& place_rate, const std::string& rotation_rate) {
   return "`dot(y, " + place_rate + " + cross(translation(A), w)) + dot(m, w)`, `w = 2 * vec(" +
          rotation_rate + " * conj(rotation(A)))`, and of every joint, where it stands, " + "`" +
-         to_text(power_of_joint(pose_symbol<"A">{})) + "`";
+         to_text(power(rotate(pose_symbol<"A">{}, axis::z))) + "`";
 }
 
 expression_route rates_of_joints() {
