@@ -147,7 +147,7 @@ public:
       }
     }();
     static_assert(is_right_kind, "duet: a symbol is given a value of another kind; scalar, vector, "
-                                 "quaternion and pose symbols take just that");
+                                 "quaternion, dual vector and pose symbols take just that");
     if constexpr (is_right_kind) {
       using held_type_of_value = typename detail::constant_traits<T>::held_type;
       return detail::argument<NodeType, held_type_of_value>{static_cast<held_type_of_value>(value)};
