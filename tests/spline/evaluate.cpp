@@ -9,6 +9,7 @@
 #include <duet/spline/evaluate.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/location.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -107,6 +109,26 @@ TEST_CASE("bad sizes and parameters are named") {
     CHECK(message(u, u.size(), how)
               .starts_with("duet: row 700: spline evaluated at 99, outside its domain [0, "));
   }
+}
+
+TEST_CASE("an error that does not come again one by one is passed on as it was") {
+  const std::vector<double> u = {0, 1, 2};
+  const auto error_after = [&](const auto& f) {
+    try {
+      try {
+        throw duet::invalid_input("duet: of several at once");
+      } catch (const duet::invalid_input&) {
+        duet::detail::rethrow_with_row(std::span<const double>(u), 1, f);
+      }
+    } catch (const duet::invalid_input& error) {
+      return std::string(error.what());
+    }
+  };
+  const auto at_two = [](double x, duet::span_hint&) {
+    return x < 2 ? x : throw duet::invalid_input("duet: too far");
+  };
+  CHECK(error_after([](double x, duet::span_hint&) { return x; }) == "duet: of several at once");
+  CHECK(error_after(at_two) == "duet: row 2: too far");
 }
 
 } // namespace test_spline_evaluate

@@ -111,14 +111,14 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
           result.jacobian(i, first + j) = detail::part<tag>(columns[i], j + 1);
         }
       }
-      return;
-    }
-    for (int j = 0; j < count; ++j) {
-      const auto column = target::velocity(result.value, detail::parts<tag>(y, j + 1), frame);
-      if (first + j == 0) {
-        result.jacobian.resize(column.size(), manifold<X>::dimension);
+    } else {
+      for (int j = 0; j < count; ++j) {
+        const auto column = target::velocity(result.value, detail::parts<tag>(y, j + 1), frame);
+        if (first + j == 0) {
+          result.jacobian.resize(column.size(), manifold<X>::dimension);
+        }
+        result.jacobian.col(first + j) = column;
       }
-      result.jacobian.col(first + j) = column;
     }
   });
   return result;

@@ -24,7 +24,7 @@ enum class stop_reason {
   joint_limit,     ///< the way on leads beyond the limits of a joint
   singular,        ///< the way on leads through a singularity
   obstacle,        ///< the way on leads too close to an obstacle
-  no_progress,     ///< steps became too small, for neither of these reasons
+  no_progress,     ///< steps became too small, for none of these reasons
   iteration_limit, ///< the number of iterations that was allowed is used up
   out_of_reach     ///< the goal is farther away than the links reach
 };
@@ -96,6 +96,16 @@ void add_waypoint(motion_plan<C::joints>& plan, const C& chain,
     plan.smallest_limit_margin =
         std::min({plan.smallest_limit_margin, theta[i] - limits.lower, limits.upper - theta[i]});
   }
+}
+
+/// Coordinates of a chain's joints, as a vector of just their number.
+template <class C, class X>
+[[nodiscard]] joint_vector<double, C::joints> joint_vector_of(const C& chain, const X& x) {
+  joint_vector<double, C::joints> theta(chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    theta[i] = vector_argument<X>::get(x, i);
+  }
+  return theta;
 }
 
 /// \throws invalid_input for a start that is not finite or outside the limits
