@@ -111,7 +111,7 @@ TEST_CASE("what is wrong is said with file and element") {
   CHECK(message("a", "z") == file + "no link \"z\"");
   CHECK(message("z", "c") == file + "no link \"z\"");
   CHECK(message("c", "a") ==
-        file + "the link \"a\" does not hang on \"c\": above \"a\" there is no joint");
+        file + "the tip \"a\" is an ancestor of the base \"c\": exchange them");
   CHECK_THROWS_WITH_AS((void)read_urdf<1>(path, "a", "c"),
                        (file + "2 moving joints from \"a\" to \"c\": use read_urdf<2>").c_str(),
                        invalid_input);

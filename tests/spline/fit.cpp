@@ -211,7 +211,8 @@ TEST_CASE("bad input is named") {
   const auto rows = rows_of(truth, u);
   CHECK(message(steps(8, 39), rows) == "duet: fit: 40 parameters and 41 elements");
   CHECK(message(steps(9, 40), rows) ==
-        "duet: row 36: parameter 8.1 is outside the knots' domain, 0 to 8");
+        "duet: row 36: parameter 8.1 is outside the knots' domain, 0 to 8: clamped_knots of "
+        "parameters from 0 to 9 hold all rows");
   auto bad = rows;
   bad[3] = rotation(0.0);
   CHECK(message(u, bad) == "duet: row 3: quaternion (0, 0, 0, 0) has norm 0, not 1");
