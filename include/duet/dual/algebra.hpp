@@ -216,20 +216,20 @@ template <class A, class B>
 }
 
 template <class A, class B>
-requires detail::DifferentSizes<A, B> detail::different_numbers_of_partials_or_orders
-operator+(const A&, const B&) = delete;
+  requires detail::DifferentSizes<A, B>
+auto operator+(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
 template <class A, class B>
-requires detail::DifferentSizes<A, B> detail::different_numbers_of_partials_or_orders
-operator-(const A&, const B&) = delete;
+  requires detail::DifferentSizes<A, B>
+auto operator-(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
 template <class A, class B>
-requires detail::DifferentSizes<A, B> detail::different_numbers_of_partials_or_orders
-operator*(const A&, const B&) = delete;
+  requires detail::DifferentSizes<A, B>
+auto operator*(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
 template <class A, class B>
-requires detail::DifferentSizes<A, B> detail::different_numbers_of_partials_or_orders
-operator/(const A&, const B&) = delete;
+  requires detail::DifferentSizes<A, B>
+auto operator/(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
 } // namespace duet
 
