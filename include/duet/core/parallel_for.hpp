@@ -21,7 +21,9 @@ struct execution {
   unsigned threads = 1; ///< 0: as many as the machine has cores
 };
 
+/// All in the calling thread.
 inline constexpr execution one_core{1};
+/// As many threads as the machine has cores.
 inline constexpr execution all_cores{0};
 
 namespace detail {

@@ -20,6 +20,7 @@
 
 namespace duet {
 
+/// The type of a constant in namespace `frame`.
 template <class Frame>
 concept FrameConstant = std::same_as<Frame, spatial_frame> || std::same_as<Frame, body_frame> ||
     std::same_as<Frame, hybrid_frame>;

@@ -23,6 +23,7 @@ namespace duet {
 /// [v; ω]: linear, then angular.
 template <class T>
 using vector6 = Eigen::Matrix<T, 6, 1>;
+/// What twists [v; ω] are multiplied by.
 template <class T>
 using matrix6 = Eigen::Matrix<T, 6, 6>;
 

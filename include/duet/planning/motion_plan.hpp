@@ -29,6 +29,7 @@ enum class stop_reason {
   out_of_reach     ///< the goal is farther away than the links reach
 };
 
+/// Its name.
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
   switch (reason) {
   case stop_reason::reached:
@@ -53,6 +54,7 @@ struct pose_deviation {
   double length = 0;
   double angle = 0;
 };
+/// Of a from b, or of b from a: the same.
 [[nodiscard]] inline pose_deviation deviation_between(const dual_quaternion<double>& a,
                                                       const dual_quaternion<double>& b) {
   return {(translation(b) - translation(a)).norm(),
