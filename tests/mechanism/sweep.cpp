@@ -2,6 +2,7 @@
 
 #include "mechanism/arms.hpp"
 #include "support/lanes.hpp"
+#include "support/message.hpp"
 
 #include <duet/mechanism/jacobian_rate.hpp>
 #include <duet/mechanism/sweep.hpp>
@@ -15,6 +16,7 @@
 namespace test_mechanism_sweep {
 
 using namespace duet;
+using duet_test::message_of;
 using duet_test::ulps_apart;
 
 namespace {
@@ -38,16 +40,6 @@ std::vector<angles> configurations(std::size_t count) {
     result[3][2] = 1e7; // beyond the vector sine
   }
   return result;
-}
-
-template <class F>
-std::string message_of(const F& f) {
-  try {
-    f();
-  } catch (const invalid_input& error) {
-    return error.what();
-  }
-  return "";
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "mechanism/arms.hpp"
+#include "support/message.hpp"
 #include "support/skip.hpp"
 
 #include <duet/mechanism/jacobian.hpp>
@@ -25,12 +26,7 @@ void write(const std::string& inside) {
 }
 
 std::string message(const std::string& base = "a", const std::string& tip = "c") {
-  try {
-    (void)read_urdf(path, base, tip);
-  } catch (const invalid_input& e) {
-    return e.what();
-  }
-  return "nothing thrown";
+  return duet_test::message_of([&] { (void)read_urdf(path, base, tip); });
 }
 
 const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n";

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curves.hpp"
+#include "support/message.hpp"
 
 #include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
@@ -17,6 +18,7 @@ namespace test_spline_basis_domain {
 
 using duet::bspline_basis;
 using duet::invalid_input;
+using duet_test::message_of;
 
 namespace {
 
@@ -48,17 +50,6 @@ double sum_of_all(const numbers& t, int order, F&& value) {
     sum += value(i);
   }
   return sum;
-}
-
-/// The message of the exception that f throws.
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const invalid_input& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
 }
 
 template <int Order>

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
 #include "support/random.hpp"
 
 #include <duet/dual_quaternion/distance.hpp>
@@ -200,12 +201,8 @@ TEST_CASE("bad input is named") {
   const auto knots = truth.basis().knots();
   const auto message = [&](std::vector<double> u, std::vector<rotation> rows,
                            const duet::fit_options& options = {}) {
-    try {
-      static_cast<void>(duet::fit<curve<rotation>>(u, rows, knots, options));
-    } catch (const duet::invalid_input& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
+    return duet_test::message_of(
+        [&] { static_cast<void>(duet::fit<curve<rotation>>(u, rows, knots, options)); });
   };
   const auto u = steps(8, 40);
   const auto rows = rows_of(truth, u);
