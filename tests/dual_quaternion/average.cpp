@@ -7,6 +7,7 @@
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/domain.hpp>
+#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 
