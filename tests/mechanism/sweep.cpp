@@ -2,6 +2,7 @@
 
 #include "mechanism/arms.hpp"
 #include "support/lanes.hpp"
+#include "support/message.hpp"
 
 #include <duet/mechanism/analytic_jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
@@ -18,6 +19,7 @@
 namespace test_mechanism_sweep {
 
 using namespace duet;
+using duet_test::message_of;
 using duet_test::ulps_apart;
 
 namespace {
@@ -41,16 +43,6 @@ std::vector<angles> configurations(std::size_t count) {
     result[3][2] = 1e7; // beyond the vector sine
   }
   return result;
-}
-
-template <class F>
-std::string message_of(const F& f) {
-  try {
-    f();
-  } catch (const invalid_input& error) {
-    return error.what();
-  }
-  return "";
 }
 
 } // namespace

@@ -290,7 +290,8 @@ TEST_CASE("bad problems") {
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, broken),
                        "duet: inverse_kinematics: the start has inf for joint 4", invalid_input);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = 0}),
-                       "duet: inverse_kinematics: tolerance is 0, must be positive", invalid_input);
+                       "duet: inverse_kinematics: tolerance is 0, not a number above 0",
+                       invalid_input);
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = std::nan("")}),
                   invalid_input);
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.restarts = -1}), invalid_input);

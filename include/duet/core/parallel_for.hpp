@@ -26,7 +26,9 @@ struct execution {
   progress_callback report = {};
 };
 
+/// All in the calling thread.
 inline constexpr execution one_core{1};
+/// As many threads as the machine has cores.
 inline constexpr execution all_cores{0};
 
 namespace detail {

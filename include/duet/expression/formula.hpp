@@ -114,6 +114,7 @@ concept Constant = !std::is_array_v<T> && detail::constant_traits<T>::is_constan
 template <class... T>
 concept Operands = (Term<T> || ...) && ((Term<T> || Constant<T>)&&...);
 
+/// A formula: its type is the tree of its operations, its members are its constants alone.
 template <Node NodeType, class Held>
 class formula {
 public:
