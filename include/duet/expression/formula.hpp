@@ -114,9 +114,9 @@ concept Operands = (Term<T> || ...) && ((Term<T> || Constant<T>)&&...);
 
 /// A term and a constant, in either order.
 template <class A, class B>
-concept TermAndConstant = Term<A>
-!= Term<B>&& Operands<A, B>;
+concept TermAndConstant = Operands<A, B> && !(Term<A> && Term<B>);
 
+/// A formula: its type is the tree of its operations, its members are its constants alone.
 template <Node NodeType, class Held>
 class formula {
 public:
@@ -150,7 +150,7 @@ public:
       }
     }();
     static_assert(is_right_kind, "duet: a symbol is given a value of another kind; scalar, vector, "
-                                 "quaternion and pose symbols take just that");
+                                 "quaternion, dual vector and pose symbols take just that");
     if constexpr (is_right_kind) {
       using held_type_of_value = typename detail::constant_traits<T>::held_type;
       return detail::argument<NodeType, held_type_of_value>{static_cast<held_type_of_value>(value)};

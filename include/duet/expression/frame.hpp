@@ -54,7 +54,7 @@ struct slots {
   using type = different_slots<Places, T...>;
 };
 template <class Places, class T, class... Rest>
-  requires(std::is_same_v<T, Rest>&&...)
+  requires std::is_same_v<mp11::mp_list<T, Rest...>, mp11::mp_list<Rest..., T>>
 struct slots<Places, T, Rest...> {
   using type = equal_slots<T, int(Places::size())>;
 };
@@ -175,7 +175,8 @@ struct work<List, Stage, applied_node<op::cos, X>> {
 
 template <class Slots, class... Instructions>
 DUET_ALWAYS_INLINE constexpr void run(Slots& s, mp11::mp_list<Instructions...>) {
-  (Instructions::run(s), ...);
+  // No fold: clang lets them nest 256 deep.
+  [[maybe_unused]] const bool done[] = {true, (Instructions::run(s), true)...};
 }
 template <bool AtOnce, class Slots, int... I, int... Sine, int... Cosine>
 DUET_ALWAYS_INLINE constexpr void take_sines(Slots& s,

@@ -100,8 +100,9 @@ template <class F, class Variables, class Frame>
 /// f and the matrix ∂f/∂(u, w …), a function to be called by name:
 /// `auto [x, J] = jacobian(f, wrt(u, w), frame::spatial)(u = 0.3, w = w0)`.
 ///
-/// Columns are of the variables in their order: a scalar has one, a vector three, a rotation three
-/// and a pose six, in which it moves along its tangent coordinates. Rows: the components of a
+/// Columns are of the variables in their order: a scalar has one, a vector three, a dual vector n +
+/// εm six in the order [m; n], a rotation three and a pose six, in which it moves along its tangent
+/// coordinates. Rows: the components of a
 /// vector; the angular velocity of a rotation (N7); the twist [v; ω] of a pose (N18). Rotations and
 /// poses, on both sides, are taken as unit, and in `frame::spatial` or `frame::body`.
 template <Formula F, class... Symbols, class Frame>
