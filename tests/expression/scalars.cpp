@@ -167,6 +167,11 @@ TEST_CASE("simplification, by type") {
   static_assert(is_number<decltype(1.5_c / c<2>)::node_type>);
   static_assert(!is_number<decltype(c<1> / c<3>)::node_type>);
   static_assert(!is_number<decltype(c<1> / c<0>)::node_type>);
+  static_assert(have_same_node(c<3> * x / c<6>, 0.5_c * x));
+  static_assert(have_same_node((c<3> - c<6> * x) / c<6>, 0.5_c - x));
+  static_assert(!have_same_node((c<1> + c<6> * x) / c<6>, c<1> / c<6> + x)); // 1/6 is rounded
+  static_assert(!have_same_node((x + c<6>) / c<6>, x / c<6> + c<1>));
+  static_assert(have_same_node(derivative(x * x * x / c<6>, x), 0.5_c * pow(x, c<2>)));
   static_assert(have_same_node(derivative(sin(y), x), c<0>));
   CHECK((x * c<0>)(x = 2.0) == 0);
   CHECK(derivative(sin(y), x)(y = 2.0) == 0);

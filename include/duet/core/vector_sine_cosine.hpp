@@ -45,6 +45,24 @@ template <VectorOfDoubles V>
   }
 }
 
+/// The same of r + tail, |r| ≤ π/4 and the tail what r rounded off.
+template <VectorOfDoubles V>
+[[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V>
+vector_sine_and_cosine_of_reduced(const V& r, const V& tail) {
+  // Minimax polynomials on |r| ≤ π/4, relative errors 3.5e-18 and 5e-20.
+  const V z = r * r, z2 = z * z, cube = z * r;
+  const V s =
+      (0x1.111111110f8a5p-7 - z * 0x1.a01a019c15e6dp-13) +
+      z2 * ((0x1.71de357ae42b6p-19 - z * 0x1.ae5e686c75808p-26) + z2 * 0x1.5d93942c9fa1ap-33);
+  const V c = (0x1.555555555554cp-5 - z * 0x1.6c16c16c1521ep-10) +
+              z2 * ((0x1.a01a019cbf387p-16 - z * 0x1.27e4f8128eacfp-22) +
+                    z2 * (0x1.1ee9f1327a1fap-29 - z * 0x1.8fb11e2c1d83cp-37));
+  const V half = 0.5 * z;
+  const V rounded = 1.0 - half;
+  return {r - ((z * (0.5 * tail - cube * s) - tail) + cube * 0x1.5555555555549p-3),
+          rounded + (((1.0 - rounded) - half) + (z2 * c - r * tail))};
+}
+
 /// The same of a vector all lanes of which are below `vector_sine_limit`; others give garbage.
 template <VectorOfDoubles V>
 [[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V>
@@ -63,18 +81,7 @@ vector_sine_and_cosine_of_moderate(const V& x) {
   const V r = r3 - lost;
   const V tail = (r3 - r) - lost;
 
-  // Minimax polynomials on |r| ≤ π/4, relative errors 3.5e-18 and 5e-20.
-  const V z = r * r, z2 = z * z, cube = z * r;
-  const V s =
-      (0x1.111111110f8a5p-7 - z * 0x1.a01a019c15e6dp-13) +
-      z2 * ((0x1.71de357ae42b6p-19 - z * 0x1.ae5e686c75808p-26) + z2 * 0x1.5d93942c9fa1ap-33);
-  const V c = (0x1.555555555554cp-5 - z * 0x1.6c16c16c1521ep-10) +
-              z2 * ((0x1.a01a019cbf387p-16 - z * 0x1.27e4f8128eacfp-22) +
-                    z2 * (0x1.1ee9f1327a1fap-29 - z * 0x1.8fb11e2c1d83cp-37));
-  const V sine = r - ((z * (0.5 * tail - cube * s) - tail) + cube * 0x1.5555555555549p-3);
-  const V half = 0.5 * z;
-  const V rounded = 1.0 - half;
-  const V cosine = rounded + (((1.0 - rounded) - half) + (z2 * c - r * tail));
+  const auto [sine, cosine] = vector_sine_and_cosine_of_reduced(r, tail);
 
   // The quadrant: odd ones swap; the second bit of n is the sign of the sine, that of n + 1 the
   // cosine's.
@@ -87,6 +94,16 @@ vector_sine_and_cosine_of_moderate(const V& x) {
           V(bits(swapped ? sine : cosine) ^ cosine_sign)};
 }
 
+template <VectorOfDoubles V>
+[[nodiscard]] DUET_ALWAYS_INLINE bool are_all_below(const V& x, double limit) {
+  const auto below = x < limit;
+  auto all = below[0];
+  for (std::size_t i = 1; i < sizeof(V) / sizeof(double); ++i) {
+    all &= below[i];
+  }
+  return all != 0;
+}
+
 /// sin x and cos x, lane by lane: within one unit of the last place of the truth.
 template <VectorOfDoubles V>
 [[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V> vector_sine_and_cosine(const V& x) {
@@ -97,14 +114,14 @@ template <VectorOfDoubles V>
     y.cosine[i] = std::cos(x[i]);
   }
 #else
-  vector_sines_and_cosines<V> y = vector_sine_and_cosine_of_moderate(x);
   const V size = x < 0 ? -x : x;
-  const auto moderate = size < vector_sine_limit;
-  auto all = moderate[0];
-  for (std::size_t i = 1; i < sizeof(V) / sizeof(double); ++i) {
-    all &= moderate[i];
+  if (are_all_below(size, 0x1.921fb54442d18p-1)) { // π/4: nothing to reduce
+    // Compilers leave out a subtracted 0, but not −0, and then fuse other products with sums than
+    // above: a lane would depend on its neighbours in the last bit.
+    return vector_sine_and_cosine_of_reduced(x, -V{});
   }
-  if (!all) [[unlikely]] {
+  vector_sines_and_cosines<V> y = vector_sine_and_cosine_of_moderate(x);
+  if (!are_all_below(size, vector_sine_limit)) [[unlikely]] {
     replace_sines_of_large(x, y);
   }
 #endif

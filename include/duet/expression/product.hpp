@@ -8,6 +8,7 @@
 #include <duet/expression/number.hpp>
 #include <duet/expression/printed.hpp>
 
+#include <cstdint>
 #include <string>
 #include <type_traits>
 
@@ -54,6 +55,29 @@ template <class T>
 inline constexpr bool is_inverse = false;
 template <class X>
 inline constexpr bool is_inverse<applied_node<op::quotient, number_node<bits_of(1)>, X>> = true;
+
+/// a/b is a double without rounding.
+[[nodiscard]] constexpr bool is_quotient_exact(double a, double b) {
+  const double ratio = b == 0 ? 0 : a / b;
+  return b != 0 && ratio * b == a && is_product_exact(ratio, b);
+}
+
+/// A number, a product with one, or a sum of such, all of whose numbers are divided by Divisor
+/// without rounding.
+template <class T, class Divisor>
+inline constexpr bool is_divided_exactly = false;
+template <std::uint64_t Bits, class Divisor>
+inline constexpr bool is_divided_exactly<number_node<Bits>, Divisor> =
+    is_quotient_exact(number_node<Bits>::value, Divisor::value);
+template <std::uint64_t Bits, class B, class Divisor>
+inline constexpr bool is_divided_exactly<applied_node<op::product, number_node<Bits>, B>, Divisor> =
+    is_divided_exactly<number_node<Bits>, Divisor>;
+template <class A, class B, class Divisor>
+inline constexpr bool is_divided_exactly<applied_node<op::sum, A, B>, Divisor> =
+    is_divided_exactly<A, Divisor>&& is_divided_exactly<B, Divisor>;
+template <class A, class B, class Divisor>
+inline constexpr bool is_divided_exactly<applied_node<op::difference, A, B>, Divisor> =
+    is_divided_exactly<A, Divisor>&& is_divided_exactly<B, Divisor>;
 
 [[nodiscard]] constexpr bool is_product_of_kinds(kind a, kind b) {
   return a == kind::scalar || b == kind::scalar ||
@@ -152,10 +176,8 @@ struct quotient {
     if constexpr (is_zero<A> || is_one<B>) {
       return a;
     } else if constexpr (is_number<A> && is_number<B>) {
-      constexpr double ratio = B::value == 0 ? 0 : A::value / B::value;
-      if constexpr (B::value != 0 && ratio * B::value == A::value &&
-                    detail::is_product_exact(ratio, B::value)) {
-        return number_node<detail::bits_of(ratio)>{};
+      if constexpr (detail::is_divided_exactly<A, B>) {
+        return number_node<detail::bits_of(A::value / B::value)>{};
       } else {
         return applied_node<quotient, A, B>{};
       }
@@ -163,6 +185,8 @@ struct quotient {
       return -(-a / b);
     } else if constexpr (detail::starts_with_minus<B>()) {
       return -(a / -b);
+    } else if constexpr (is_number<B>) {
+      return divided(a, b);
     } else {
       return applied_node<quotient, A, B>{};
     }
@@ -186,6 +210,21 @@ struct quotient {
     }
     return {a.inside(precedence::product) + " / " + b.inside(precedence::power),
             precedence::product};
+  }
+
+private:
+  /// By a number: the polynomials of a derivative lose the divisor of what was differentiated.
+  template <class A, class B>
+  static constexpr auto divided(A a, B b) {
+    if constexpr (!detail::is_divided_exactly<A, B>) {
+      return applied_node<quotient, A, B>{};
+    } else if constexpr (is_applied<A, sum>) {
+      return operand<0>(a) / b + operand<1>(a) / b;
+    } else if constexpr (is_applied<A, difference>) {
+      return operand<0>(a) / b - operand<1>(a) / b;
+    } else {
+      return (operand<0>(a) / b) * operand<1>(a);
+    }
   }
 };
 
