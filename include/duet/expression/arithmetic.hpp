@@ -7,6 +7,8 @@
 #include <duet/expression/number.hpp>
 #include <duet/expression/printed.hpp>
 
+#include <Eigen/Core>
+
 #include <concepts>
 #include <type_traits>
 
@@ -15,6 +17,13 @@
 /// exact arithmetic of numbers that the compiler knows.
 
 namespace duet::expression {
+
+namespace op {
+
+template <int Rows, int Columns, int I, int J>
+struct placed;
+
+} // namespace op
 
 namespace detail {
 
@@ -26,6 +35,8 @@ template <class T>
                                                                     [[maybe_unused]] int i) {
   if constexpr (ThreeComponents<T>) {
     return x[i];
+  } else if constexpr (requires { x.data(); }) {
+    return x.data()[i];
   } else {
     return x;
   }
@@ -40,7 +51,17 @@ template <class F, class A>
     return A(f(a));
   }
 }
-/// f(a, b), by component of vectors.
+/// A matrix over S as large as that of the two which is one.
+template <class S, class A, class B>
+struct same_size : same_size<S, B, A> {};
+template <class S, class T, int Rows, int Columns, int Options, class B>
+struct same_size<S, Eigen::Matrix<T, Rows, Columns, Options>, B> {
+  using type = Eigen::Matrix<S, Rows, Columns>;
+};
+template <class S, class A, class B>
+using same_size_t = typename same_size<S, A, B>::type;
+
+/// f(a, b), by component of vectors and matrices.
 template <class F, class A, class B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto componentwise(const F& f, const A& a, const B& b) {
   if constexpr (ThreeComponents<A> || ThreeComponents<B>) {
@@ -51,9 +72,29 @@ template <class F, class A, class B>
                       S(f(component_of(a, 2), component_of(b, 2))));
   } else if constexpr (Scalar<A> && Scalar<B>) {
     return static_cast<promote_t<A, B>>(f(a, b));
+  } else if constexpr (
+      requires { a.data(); } || requires { b.data(); }) {
+    using S = promote_t<std::remove_cvref_t<decltype(component_of(a, 0))>,
+                        std::remove_cvref_t<decltype(component_of(b, 0))>>;
+    same_size_t<S, A, B> result;
+    for (int i = 0; i < int(result.size()); ++i) {
+      result.data()[i] = S(f(component_of(a, i), component_of(b, i)));
+    }
+    return result;
   } else {
     return f(a, b);
   }
+}
+
+/// A matrix that is 0 but for a block.
+template <class T>
+inline constexpr bool is_placed = false;
+template <int Rows, int Columns, int I, int J, class X>
+inline constexpr bool is_placed<applied_node<op::placed<Rows, Columns, I, J>, X>> = true;
+/// Another block in the same place.
+template <int Rows, int Columns, int I, int J, class X, class Y>
+[[nodiscard]] constexpr auto placed_like(applied_node<op::placed<Rows, Columns, I, J>, X>, Y y) {
+  return apply<op::placed<Rows, Columns, I, J>>(y);
 }
 
 /// A number below zero, or a product with one.
@@ -135,6 +176,8 @@ struct negative {
       return operand<1>(a) - operand<0>(a);
     } else if constexpr (has_number<A>) {
       return -operand<0>(a) * operand<1>(a);
+    } else if constexpr (detail::is_placed<A>) {
+      return detail::placed_like(a, -operand<0>(a));
     } else {
       return applied_node<negative, A>{};
     }
@@ -157,8 +200,9 @@ struct sum {
   static constexpr kind kind_of(kind a, kind) { return a; }
   template <class A, class B>
   static constexpr auto simplified(A a, B b) {
-    static_assert(A::kind_of == B::kind_of,
-                  "duet: a sum of formulas of different kinds, as of a scalar and a vector");
+    static_assert(
+        A::kind_of == B::kind_of,
+        "duet: a sum of formulas of different kinds or sizes, as of a scalar and a vector");
     if constexpr (is_zero<A>) {
       return b;
     } else if constexpr (is_zero<B>) {
@@ -199,7 +243,8 @@ struct difference {
   template <class A, class B>
   static constexpr auto simplified(A a, B b) {
     static_assert(A::kind_of == B::kind_of,
-                  "duet: a difference of formulas of different kinds, as of a scalar and a vector");
+                  "duet: a difference of formulas of different kinds or sizes, as of a scalar and "
+                  "a vector");
     if constexpr (is_zero<A>) {
       return -b;
     } else if constexpr (is_zero<B>) {
