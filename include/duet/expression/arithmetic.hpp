@@ -30,12 +30,16 @@ namespace detail {
 // Results are held in numbers and vectors of their own, no expression templates. Of vectors this is
 // done by component: Eigen would put three together in packets, which are slower to take apart.
 
+/// A matrix of Eigen, among the values of formulas.
+template <class T>
+concept EigenMatrix = requires {
+  T::SizeAtCompileTime;
+};
+
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr const auto& component_of(const T& x,
                                                                     [[maybe_unused]] int i) {
-  if constexpr (ThreeComponents<T>) {
-    return x[i];
-  } else if constexpr (requires { x.data(); }) {
+  if constexpr (EigenMatrix<T>) {
     return x.data()[i];
   } else {
     return x;
@@ -51,16 +55,6 @@ template <class F, class A>
     return A(f(a));
   }
 }
-/// A matrix over S as large as that of the two which is one.
-template <class S, class A, class B>
-struct same_size : same_size<S, B, A> {};
-template <class S, class T, int Rows, int Columns, int Options, class B>
-struct same_size<S, Eigen::Matrix<T, Rows, Columns, Options>, B> {
-  using type = Eigen::Matrix<S, Rows, Columns>;
-};
-template <class S, class A, class B>
-using same_size_t = typename same_size<S, A, B>::type;
-
 /// f(a, b), by component of vectors and matrices.
 template <class F, class A, class B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto componentwise(const F& f, const A& a, const B& b) {
@@ -72,11 +66,11 @@ template <class F, class A, class B>
                       S(f(component_of(a, 2), component_of(b, 2))));
   } else if constexpr (Scalar<A> && Scalar<B>) {
     return static_cast<promote_t<A, B>>(f(a, b));
-  } else if constexpr (
-      requires { a.data(); } || requires { b.data(); }) {
+  } else if constexpr (EigenMatrix<A> || EigenMatrix<B>) {
     using S = promote_t<std::remove_cvref_t<decltype(component_of(a, 0))>,
                         std::remove_cvref_t<decltype(component_of(b, 0))>>;
-    same_size_t<S, A, B> result;
+    using matrix = std::conditional_t<EigenMatrix<A>, A, B>;
+    Eigen::Matrix<S, matrix::RowsAtCompileTime, matrix::ColsAtCompileTime> result;
     for (int i = 0; i < int(result.size()); ++i) {
       result.data()[i] = S(f(component_of(a, i), component_of(b, i)));
     }

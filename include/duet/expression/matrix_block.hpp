@@ -47,7 +47,7 @@ struct placed {
   }
   template <class X>
   static auto value(const X& x) {
-    if constexpr (requires { x.data(); }) {
+    if constexpr (detail::EigenMatrix<X>) {
       using T = typename X::Scalar;
       Eigen::Matrix<T, Rows, Columns> m = Eigen::Matrix<T, Rows, Columns>::Zero();
       m.template block<X::RowsAtCompileTime, X::ColsAtCompileTime>(I, J) = x;
