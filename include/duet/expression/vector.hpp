@@ -62,6 +62,9 @@ template <kind K, int I, class Held>
 
 namespace op {
 
+template <int I, int J, int Rows, int Columns>
+struct block;
+
 /// The sum of the products of components, of vectors and quaternions.
 struct dot {
   static constexpr kind kind_of(kind, kind) { return kind::scalar; }
@@ -158,13 +161,16 @@ struct component {
   }
   template <class V, class DV>
   static constexpr auto differential(V, DV dv) {
-    return apply<component>(dv);
+    if constexpr (is_sized_matrix(DV::kind_of)) {
+      return apply<block<I, 0, 1, 1>>(dv);
+    } else {
+      return apply<component>(dv);
+    }
   }
   static printed print(notation style, const printed& v) {
     const std::string i = std::to_string(I);
-    return style == notation::latex
-               ? printed{v.inside(precedence::atom) + "_{" + std::to_string(I + 1) + "}"}
-               : printed{v.inside(precedence::atom) + "[" + i + "]"};
+    return style == notation::latex ? detail::with_index(v, std::to_string(I + 1))
+                                    : printed{v.inside(precedence::atom) + "[" + i + "]"};
   }
   template <kind K, int J>
   static constexpr auto simplified(unit_vector_node<K, J>) {
@@ -198,9 +204,9 @@ struct column {
 namespace detail {
 
 template <class A, class B>
-concept VectorOperands = Operands<A, B> &&
-    (VectorTerm<A> || DualVectorTerm<A> || !Term<A>)&&(VectorTerm<B> || DualVectorTerm<B> ||
-                                                       !Term<B>);
+concept VectorOperands =
+    Operands<A, B> && !SizedOperands<A, B> && (VectorTerm<A> || DualVectorTerm<A> || !Term<A>)&&(
+                                                  VectorTerm<B> || DualVectorTerm<B> || !Term<B>);
 
 } // namespace detail
 
