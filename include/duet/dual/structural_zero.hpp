@@ -121,12 +121,13 @@ template <class T>
   }
 }
 
-/// A row of more packets than this is masked only where a slope turns out not to be finite. clang
-/// does better without that branch.
+/// A row of more packets than this is masked only where a slope turns out not to be finite. Masks
+/// of 512-bit packets cost more than those of others; clang does better without that branch.
+inline constexpr int branch_limit = DUET_VECTOR_BYTES < 64 ? 2 : 1;
 #ifdef __clang__
 inline constexpr int mask_limit = std::numeric_limits<int>::max();
 #else
-inline constexpr int mask_limit = 2;
+inline constexpr int mask_limit = branch_limit;
 #endif
 
 // How partials are combined: `kernel(product, p…)` for each of them, where product(slope, p) is
@@ -169,7 +170,7 @@ template <class T>
 struct chain_of_quotient {
   // Two masks cost more than a branch.
   static constexpr bool masks_numbers = false;
-  static constexpr int masked_packets = 2;
+  static constexpr int masked_packets = branch_limit;
   T ratio, inverse;
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_finite() const {
