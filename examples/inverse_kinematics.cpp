@@ -102,7 +102,13 @@ void solve(const example::command_line& given) {
     poses.push_back(g.pose);
   }
   std::vector<solution> found(goals.size());
-  inverse_kinematics(arm, poses, start, found, options, all_cores);
+  const bool is_long = goals.size() >= 1000;
+  const auto report = [is_long](const progress& p) {
+    if (is_long) {
+      std::fprintf(stderr, "\r%zu of %zu goals%s", p.done, p.count, p.share() == 1 ? "\n" : "");
+    }
+  };
+  inverse_kinematics(arm, poses, start, found, options, {.threads = 0, .report = report});
   if (goals.size() == 1 && found[0].reason != stop_reason::reached) {
     throw std::runtime_error(why_not(goals[0], found[0]));
   }

@@ -2,7 +2,8 @@
 
 // Where a robot arm moves well: manipulability in many random configurations within its limits, as
 // a histogram and over the distance from the vertical axis and the height of the tip. Samples are
-// computed several at a time on all cores; the same ones whatever the machine.
+// computed several at a time on all cores; the same ones whatever the machine. Ctrl-C ends the
+// sweep: the figures are then of the configurations up to there.
 
 #include "support/arms.hpp"
 #include "support/command_line.hpp"
@@ -17,13 +18,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <numbers>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -69,22 +70,39 @@ double manipulability_of(const matrix& m) {
   return std::sqrt(std::max(0.0, square.determinant()));
 }
 
+volatile std::sig_atomic_t is_interrupted = 0;
+
+/// As many samples as asked for, or until Ctrl-C as there are by then.
 std::vector<sample> sweep(const chain& arm, std::size_t count) {
-  constexpr std::size_t piece = 16384;
   std::vector<sample> samples(count);
-  std::vector<coordinates> theta(piece);
-  std::vector<result> results(piece, result{{}, matrix(6, arm.size())});
-  for (std::size_t first = 0; first < count; first += piece) {
-    const std::size_t size = std::min(piece, count - first);
-    parallel_for(size, [&](std::size_t i) { theta[i] = configuration(arm, first + i); });
-    poses_and_jacobians(arm, std::span(theta).first(size), frame::hybrid,
-                        std::span(results).first(size), all_cores);
-    parallel_for(size, [&](std::size_t i) {
-      const auto t = translation(results[i].value);
-      samples[first + i] = {std::hypot(t[0], t[1]), t[2], manipulability_of(results[i].jacobian)};
-    });
-    std::fprintf(stderr, "\r%zu of %zu configurations", first + size, count);
+  const auto sweep_block = [&](std::size_t first, std::size_t last) {
+    std::vector<coordinates> theta;
+    for (std::size_t i = first; i < last; ++i) {
+      theta.push_back(configuration(arm, i));
+    }
+    std::vector<result> results(theta.size(), result{{}, matrix(6, arm.size())});
+    poses_and_jacobians(arm, theta, frame::hybrid, results);
+    for (std::size_t i = first; i < last; ++i) {
+      const auto& [pose, jacobian] = results[i - first];
+      const auto t = translation(pose);
+      samples[i] = {std::hypot(t[0], t[1]), t[2], manipulability_of(jacobian)};
+    }
+  };
+  int percent = -1;
+  const auto report = [&](const progress& p) {
+    if (const int now = int(100 * p.share()); now > percent) {
+      percent = now;
+      std::fprintf(stderr, "\r%zu of %zu configurations", p.done, p.count);
+    }
+    return is_interrupted == 0;
+  };
+  std::signal(SIGINT, [](int) { is_interrupted = 1; });
+  try {
+    parallel_for_blocks(count, sweep_block, {.threads = 0, .report = report}, 1024);
+  } catch (const cancelled& early) {
+    samples.resize(early.completed());
   }
+  std::signal(SIGINT, SIG_DFL);
   std::fprintf(stderr, "\n");
   return samples;
 }
@@ -139,8 +157,9 @@ const char* const picture = "set datafile separator ','\nset multiplot layout 1,
                             "plot 'workspace_sweep_histogram.csv' skip 1 using 1:2 with boxes "
                             "lc rgb '#1f77b4' notitle\nunset multiplot\n";
 
-void run(const chain& arm, std::size_t count, const std::string& folder) {
-  const std::vector<sample> samples = sweep(arm, count);
+void run(const chain& arm, std::size_t wanted, const std::string& folder) {
+  const std::vector<sample> samples = sweep(arm, wanted);
+  const std::size_t count = samples.size();
   double sum = 0, largest = 0;
   std::size_t best = 0;
   for (std::size_t i = 0; i < count; ++i) {

@@ -112,7 +112,8 @@ inline std::string rows_csv(const recording& r, const smoothed& s) {
   return text;
 }
 
-inline std::string picture_script(double start, double duration, double outlier) {
+/// \param rows  their number: more than some thousand would hide the curve, so they are left out
+inline std::string picture_script(double start, double duration, double outlier, std::size_t rows) {
   const std::string t = "($1-(" + duet::to_text(start) + "))";
   const std::string rows_t = "($2-(" + duet::to_text(start) + "))";
   std::string text =
@@ -122,13 +123,17 @@ inline std::string picture_script(double start, double duration, double outlier)
       duet::to_text(duration) + "]\nset ylabel 'position / m'\nplot ";
   const char* const colours[] = {"#d62728", "#2ca02c", "#1f77b4"};
   const char* const axes[] = {"x", "y", "z"};
+  if (rows <= 5000) {
+    for (int k = 0; k < 3; ++k) {
+      text += "'rows.csv' using " + rows_t + ":" + std::to_string(3 + k) +
+              " skip 1 with points pt 7 ps 0.5 lc rgb '#888888' " +
+              (k < 2 ? "notitle, \\\n" : "title 'rows', \\\n");
+    }
+  }
   for (int k = 0; k < 3; ++k) {
-    const std::string column = std::to_string(3 + k);
-    text +=
-        "'rows.csv' using " + rows_t + ":" + column +
-        " skip 1 with points pt 7 ps 0.3 lc rgb '#999999' notitle, \\\n'trajectory.csv' using " +
-        t + ":" + std::to_string(2 + k) + " skip 1 with lines lw 1.5 lc rgb '" + colours[k] +
-        "' title '" + axes[k] + "'" + (k < 2 ? ", \\\n" : "\n");
+    text += "'trajectory.csv' using " + t + ":" + std::to_string(2 + k) +
+            " skip 1 with lines lw 1.5 lc rgb '" + colours[k] + "' title '" + axes[k] + "'" +
+            (k < 2 ? ", \\\n" : "\n");
   }
   const auto panel = [&](const char* label, int column) {
     text += std::string("set ylabel '") + label + "'\nplot ";

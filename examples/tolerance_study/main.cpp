@@ -23,7 +23,6 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -41,44 +40,36 @@ std::vector<double> heights(const options& given) {
 }
 
 /// Says every two seconds how far it is.
-class progress {
+class progress_line {
 public:
-  explicit progress(std::size_t blocks) : blocks_(blocks) {}
-
-  void advance() {
-    const std::lock_guard lock(mutex_);
-    ++done_;
+  void operator()(const duet::progress& p) {
     const auto now = std::chrono::steady_clock::now();
     if (now - spoke_ > std::chrono::seconds(2)) {
-      std::cout << done_ << " of " << blocks_ << " blocks\n" << std::flush;
+      std::cout << p.done << " of " << p.count << " blocks\n" << std::flush;
       spoke_ = now;
     }
   }
 
 private:
-  std::mutex mutex_;
-  std::size_t blocks_, done_ = 0;
   std::chrono::steady_clock::time_point spoke_ = std::chrono::steady_clock::now();
 };
 
 /// Of the missing blocks, every size-th is this process's.
 void compute_share(const block_store& blocks, const toleranced_carrier& mechanism,
                    const std::vector<std::size_t>& missing, const processes& all,
-                   duet::execution threads) {
+                   unsigned threads) {
   std::vector<std::size_t> share;
   for (std::size_t i = all.rank(); i < missing.size(); i += all.size()) {
     share.push_back(missing[i]);
   }
-  progress told(share.size());
+  progress_line line;
+  duet::execution how{threads};
+  if (all.rank() == 0) {
+    how.report = line;
+  }
   duet::parallel_for_blocks(
-      share.size(),
-      [&](std::size_t i, std::size_t) {
-        blocks.compute(mechanism, share[i]);
-        if (all.rank() == 0) {
-          told.advance();
-        }
-      },
-      threads, 1);
+      share.size(), [&](std::size_t i, std::size_t) { blocks.compute(mechanism, share[i]); }, how,
+      1);
 }
 
 void summarise(const options& given, const hardpoints& points, const toleranced_carrier& mechanism,
@@ -130,7 +121,7 @@ int run(const options& given, const processes& all) {
   if (!given.summary_only) {
     try {
       const unsigned threads = given.threads.value_or(all.size() > 1 ? 1 : 0);
-      compute_share(blocks, mechanism, *missing, all, {threads});
+      compute_share(blocks, mechanism, *missing, all, threads);
     } catch (...) {
       error = std::current_exception();
     }

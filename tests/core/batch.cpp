@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -48,7 +49,8 @@ void check_lanes(const F& f, const B& x, const B& y) {
 } // namespace
 
 TEST_CASE_TEMPLATE("arithmetic and comparisons are those of the lanes", B, batch<double>,
-                   batch<double, 1>, batch<double, 8>, batch<float, 4>, batch<long double, 2>) {
+                   batch<double, 1>, batch<double, 8>, batch<float, 4>, batch<float, 16>,
+                   batch<long double, 2>) {
   const B x = counted<B>(-1.3, 0.7), y = counted<B>(0.9, 0.25);
   check_lanes([](auto a, auto b) { return a + b; }, x, y);
   check_lanes([](auto a, auto b) { return a - b; }, x, y);
@@ -94,8 +96,8 @@ TEST_CASE_TEMPLATE("select takes each lane from its side", B, batch<double>, bat
 }
 
 TEST_CASE_TEMPLATE("functions are those of the lanes", B, batch<double>, batch<double, 8>,
-                   batch<float, 4>, batch<long double, 2>) {
-  const B x = counted<B>(0.2, 0.09), y = counted<B>(-0.7, 0.3);
+                   batch<float, 16>, batch<long double, 2>) {
+  const B x = counted<B>(0.2, 0.7 / B::lanes), y = counted<B>(-0.7, 0.3);
 #define DUET_CHECK_FUNCTION(f)                                                                     \
   check_lanes(                                                                                     \
       [](auto a, auto) {                                                                           \
@@ -104,18 +106,40 @@ TEST_CASE_TEMPLATE("functions are those of the lanes", B, batch<double>, batch<d
       },                                                                                           \
       x, y)
   DUET_CHECK_FUNCTION(sqrt);
+  DUET_CHECK_FUNCTION(cbrt);
   DUET_CHECK_FUNCTION(exp);
+  DUET_CHECK_FUNCTION(exp2);
+  DUET_CHECK_FUNCTION(expm1);
   DUET_CHECK_FUNCTION(log);
+  DUET_CHECK_FUNCTION(log2);
+  DUET_CHECK_FUNCTION(log10);
+  DUET_CHECK_FUNCTION(log1p);
   DUET_CHECK_FUNCTION(tan);
+  DUET_CHECK_FUNCTION(asin);
   DUET_CHECK_FUNCTION(acos);
+  DUET_CHECK_FUNCTION(atan);
+  DUET_CHECK_FUNCTION(sinh);
+  DUET_CHECK_FUNCTION(cosh);
+  DUET_CHECK_FUNCTION(tanh);
+  DUET_CHECK_FUNCTION(asinh);
   DUET_CHECK_FUNCTION(atanh);
   DUET_CHECK_FUNCTION(erf);
+  DUET_CHECK_FUNCTION(erfc);
   DUET_CHECK_FUNCTION(tgamma);
-  DUET_CHECK_FUNCTION(round);
+  DUET_CHECK_FUNCTION(lgamma);
   DUET_CHECK_FUNCTION(abs);
+  DUET_CHECK_FUNCTION(fabs);
   DUET_CHECK_FUNCTION(floor);
+  DUET_CHECK_FUNCTION(ceil);
+  DUET_CHECK_FUNCTION(trunc);
+  DUET_CHECK_FUNCTION(round);
+  DUET_CHECK_FUNCTION(rint);
+  DUET_CHECK_FUNCTION(nearbyint);
+  DUET_CHECK_FUNCTION(logb);
 #undef DUET_CHECK_FUNCTION
-  using std::abs, std::atan2, std::copysign, std::fmax, std::fmod, std::hypot, std::pow;
+  using std::abs, std::acosh, std::atan2, std::copysign, std::fdim, std::fma, std::fmax, std::fmin,
+      std::fmod, std::hypot, std::ldexp, std::lerp, std::midpoint, std::nextafter, std::pow,
+      std::remainder;
   check_lanes([](auto, auto b) { return abs(b); }, x, y);
   check_lanes([](auto a, auto b) { return atan2(a, b); }, x, y);
   check_lanes([](auto a, auto b) { return copysign(a, b); }, x, y);
@@ -123,9 +147,24 @@ TEST_CASE_TEMPLATE("functions are those of the lanes", B, batch<double>, batch<d
   check_lanes([](auto a, auto b) { return fmod(a, b); }, x, y);
   check_lanes([](auto a, auto b) { return hypot(a, b); }, x, y);
   check_lanes([](auto a, auto b) { return pow(a, b); }, x, y);
+  check_lanes([](auto a, auto) { return acosh(a + 1); }, x, y);
+  check_lanes([](auto a, auto b) { return fmin(a, b); }, x, y);
+  check_lanes([](auto a, auto b) { return fdim(a, b); }, x, y);
+  check_lanes([](auto a, auto b) { return remainder(b, a); }, x, y);
+  check_lanes([](auto a, auto b) { return nextafter(a, b); }, x, y);
+  check_lanes([](auto a, auto b) { return fma(a, b, a); }, x, y);
+  check_lanes([](auto a, auto b) { return lerp(a, b, a); }, x, y);
+  check_lanes([](auto a, auto b) { return midpoint(a, b); }, x, y);
+  check_lanes([](auto a, auto) { return ldexp(a, 3); }, x, y);
+  check_lanes([](auto a, auto b) { return hypot(a, b, a); }, x, y);
   for (int i = 0; i < B::lanes; ++i) {
     CHECK(signbit(y)[i] == std::signbit(y[i]));
     CHECK(isnan(y / 0 * 0)[i]);
+    CHECK(isfinite(x / (x - x[0]))[i] == (i > 0));
+    CHECK(isinf(x / (x - x[0]))[i] == (i == 0));
+    CHECK(isnormal(x - x[0])[i] == (i > 0));
+    CHECK(max(x, B(0.5))[i] == std::max(x[i], typename B::value_type(0.5)));
+    CHECK(min(x, B(0.5))[i] == std::min(x[i], typename B::value_type(0.5)));
   }
 }
 

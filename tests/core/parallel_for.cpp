@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -91,6 +92,143 @@ TEST_CASE("the exception of the first block that fails is the one the caller see
       CHECK(message == "300");
     }
   }
+}
+
+TEST_CASE("progress grows up to everything, told by one thread at a time") {
+  for (const std::size_t count : {1, 3, 127, 1000, 10007}) {
+    for (const unsigned threads : {1U, 2U, 5U}) {
+      std::vector<int> visits(count, 0);
+      std::vector<std::size_t> told; // not guarded: ThreadSanitizer watches
+      const auto report = [&](const duet::progress& p) {
+        CHECK(p.count == count);
+        told.push_back(p.done);
+        if (told.size() > 1) {
+          CHECK(told[told.size() - 2] < p.done);
+        }
+        CHECK((p.share() == 1) == (p.done == count));
+      };
+      duet::parallel_for(
+          count, [&](std::size_t i) { ++visits[i]; }, duet::execution{threads, report});
+      CHECK(told.back() == count);
+      CHECK(told.size() >= std::min<std::size_t>(count, 128));
+      CHECK(visits == std::vector<int>(count, 1));
+    }
+  }
+  const auto never = [](const duet::progress&) { FAIL("told"); };
+  duet::parallel_for(
+      0, [](std::size_t) {}, duet::execution{2, never});
+}
+
+TEST_CASE("a run is cancelled between blocks, and what is done has no gaps") {
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    for (const std::size_t wanted : {1U, 30U, 500U}) {
+      std::vector<int> visits(1000, 0);
+      std::size_t calls_after = 0;
+      bool asked = false;
+      const auto report = [&](const duet::progress& p) {
+        calls_after += asked;
+        asked = asked || p.done >= wanted;
+        return !asked;
+      };
+      std::size_t completed = 0;
+      try {
+        duet::parallel_for_blocks(
+            visits.size(),
+            [&](std::size_t first, std::size_t last) {
+              for (std::size_t i = first; i < last; ++i) {
+                ++visits[i];
+              }
+            },
+            duet::execution{threads, report}, 10);
+      } catch (const duet::cancelled& error) {
+        completed = error.completed();
+        CHECK(std::string(error.what()) ==
+              "duet: cancelled with " + std::to_string(completed) + " of 1000 elements done");
+      }
+      CHECK(calls_after == 0);
+      CHECK(completed >= wanted);
+      CHECK((threads > 1 || completed == (wanted + 9) / 10 * 10));
+      for (std::size_t i = 0; i < visits.size(); ++i) {
+        CHECK(visits[i] == (i < completed ? 1 : 0));
+      }
+    }
+  }
+}
+
+TEST_CASE("a run that was asked to end when everything was done has not been cancelled") {
+  int calls = 0;
+  const auto report = [&](const duet::progress& p) {
+    ++calls;
+    return p.done < p.count;
+  };
+  duet::parallel_for(
+      50, [](std::size_t) {}, duet::execution{1, report});
+  CHECK(calls == 50);
+}
+
+TEST_CASE("who has asked for the end is told no more, while blocks in work are finished") {
+  for (int run = 0; run < 20; ++run) {
+    std::atomic<int> begun = 0;
+    int calls = 0;
+    const auto report = [&](const duet::progress&) {
+      ++calls;
+      return false;
+    };
+    duet::parallel_for_blocks(
+        2,
+        [&](std::size_t, std::size_t) {
+          ++begun;
+          while (begun < 2) {
+            std::this_thread::yield();
+          }
+        },
+        duet::execution{2, report}, 1);
+    CHECK(begun == 2);
+    CHECK(calls == 1);
+  }
+}
+
+TEST_CASE("another thread cancels") {
+  std::atomic<bool> stop = false;
+  std::atomic<int> begun = 0;
+  const auto report = [&](const duet::progress&) { return !stop; };
+  std::thread other([&] {
+    while (begun < 3) {
+      std::this_thread::yield();
+    }
+    stop = true;
+  });
+  const auto wait = [&](std::size_t i) {
+    ++begun;
+    while (i == 5 && !stop) {
+      std::this_thread::yield();
+    }
+  };
+  CHECK_THROWS_AS(duet::parallel_for(100000, wait, duet::execution{1, report}), duet::cancelled);
+  other.join();
+}
+
+TEST_CASE("exceptions of the callback end the run") {
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    std::atomic<int> visits = 0;
+    int calls = 0;
+    const auto report = [&](const duet::progress&) -> bool {
+      ++calls;
+      throw std::runtime_error("enough");
+    };
+    CHECK_THROWS_WITH_AS(
+        duet::parallel_for_blocks(
+            1000, [&](std::size_t, std::size_t) { ++visits; }, duet::execution{threads, report}, 1),
+        "enough", std::runtime_error);
+    CHECK(calls == 1);
+    CHECK(visits < 1000);
+  }
+}
+
+TEST_CASE("an error of the work goes before a wish to end") {
+  const auto report = [](const duet::progress&) { return false; };
+  const auto fail = [](std::size_t) { throw std::logic_error("broken"); };
+  CHECK_THROWS_AS(duet::parallel_for(100, fail, duet::execution{2, report}), std::logic_error);
 }
 
 } // namespace test_core_parallel_for

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual/eigen_problems.hpp"
+#include "support/message.hpp"
 
 #include <duet/derivative/least_squares.hpp>
 
@@ -80,12 +81,7 @@ void check(const fit& f) {
 
 template <class A, class B>
 std::string message(const A& a, const B& b) {
-  try {
-    static_cast<void>(least_squares(a, b));
-  } catch (const duet::invalid_input& e) {
-    return e.what();
-  }
-  return "";
+  return duet_test::message_of([&] { static_cast<void>(least_squares(a, b)); });
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual/eigen_problems.hpp"
+#include "support/message.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/linear_solve.hpp>
@@ -56,12 +57,7 @@ MatrixXd hilbert(int n) {
 
 template <class A, class B>
 std::string message(const A& a, const B& b) {
-  try {
-    static_cast<void>(solve(a, b));
-  } catch (const duet::invalid_input& e) {
-    return e.what();
-  }
-  return "";
+  return duet_test::message_of([&] { static_cast<void>(solve(a, b)); });
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
 #include "support/random.hpp"
 
 #include <duet/derivative/jacobian.hpp>
@@ -135,12 +136,7 @@ double worst_part(const A& a, const E& e) {
 
 template <class A>
 std::string message(const A& a) {
-  try {
-    static_cast<void>(symmetric_eigen(a));
-  } catch (const duet::invalid_input& e) {
-    return e.what();
-  }
-  return "";
+  return duet_test::message_of([&] { static_cast<void>(symmetric_eigen(a)); });
 }
 
 } // namespace

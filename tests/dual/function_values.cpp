@@ -1,12 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual/function_cases.hpp"
+#include "support/identical.hpp"
 
 #include <doctest/doctest.h>
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -16,6 +15,7 @@ using duet::dual;
 using duet::taylor;
 using duet_test::domain;
 using duet_test::for_each_function;
+using duet_test::identical;
 
 namespace {
 
@@ -23,11 +23,6 @@ struct outer_tag;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-/// The same bits, or both NaN.
-bool identical(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (a != a && b != b);
-}
 
 } // namespace
 

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/identical.hpp"
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 #include "support/ulp.hpp"
@@ -9,9 +10,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,16 +18,13 @@
 namespace test_dual_functions_of_many {
 
 using duet::dual;
+using duet_test::identical;
 using duet_test::real_100;
 using duet_test::ulps;
 using duet_test::worst_error;
 using std::atan2, std::fma, std::fmod, std::hypot, std::lerp, std::pow, std::remainder;
 
 namespace {
-
-bool identical(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (a != a && b != b);
-}
 
 /// f of M arguments: values against <cmath>, partials against `slopes` in 100 digits. One ulp is
 /// that of |f_i| + Σ_j |f_ij x_j|. Every argument in turn is also given as a constant.

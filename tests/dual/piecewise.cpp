@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/identical.hpp"
+
 #include <duet/dual/math.hpp>
 
 #include <doctest/doctest.h>
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -14,6 +14,7 @@ namespace test_dual_piecewise {
 
 using duet::dual;
 using duet::taylor;
+using duet_test::identical;
 
 namespace {
 
@@ -21,10 +22,6 @@ struct outer_tag;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-bool identical(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (a != a && b != b);
-}
 
 const std::vector<double> inputs{0.0,       -0.0,
                                  0.3,       -0.3,

@@ -1,11 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual_quaternion/cases.hpp"
+#include "support/message.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/domain.hpp>
+#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 
@@ -52,12 +54,7 @@ std::vector<duet::quaternion<T>> rotations_of(const std::vector<duet::dual_quate
 
 template <class Q>
 std::string message(const std::vector<Q>& q, const std::vector<double>& weights) {
-  try {
-    static_cast<void>(average(q, weights));
-  } catch (const std::exception& e) {
-    return e.what();
-  }
-  return "";
+  return duet_test::message_of<std::exception>([&] { static_cast<void>(average(q, weights)); });
 }
 
 double gap_of_poses(const dual_quaternion& a, const dual_quaternion& b) {

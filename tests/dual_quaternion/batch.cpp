@@ -1,14 +1,21 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include <duet/dual_quaternion/distance.hpp>
+#include <duet/dual_quaternion/exponential_jacobian.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
+#include <duet/dual_quaternion/wrench.hpp>
 
 #include "support/lanes.hpp"
 #include "support/random.hpp"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <type_traits>
 #include <vector>
 
 namespace test_dual_quaternion_batch {
@@ -60,6 +67,65 @@ TEST_CASE("motions over batches are those of the lanes") {
   check_lanes<4>(
       [](const auto& tau) { return sclerp(displacements()[5], displacements()[6], tau); },
       2 * limit, std::vector<dual<double>>{{0.0, 1.0}, {0.3, 1.0}, {1.0, 2.0}});
+}
+
+TEST_CASE("what is made of motions") {
+  const auto a = displacements();
+  auto b = a;
+  std::rotate(b.begin(), b.begin() + 4, b.end());
+  std::vector<vector3<double>> points;
+  std::vector<vector6<double>> twists;
+  std::vector<dual_vector<double>> lines;
+  std::vector<vector7<double>> coordinates;
+  for (const auto& p : b) {
+    points.push_back(translation(p) + vector3<double>(1, 0, 0));
+    const vector3<double> turn = rotation_vector(rotation(p));
+    twists.emplace_back();
+    twists.back() << translation(p), turn;
+    lines.push_back(dual_vector_of(twists.back()));
+    coordinates.push_back(pose_coordinates(p));
+  }
+  check_lanes<4>([](const auto& p, const auto& x) { return transform_point(p, x); }, limit, a,
+                 points);
+  check_lanes<4>([](const auto& p, const auto& x) { return transform_direction(p, x); }, limit, a,
+                 points);
+  check_lanes<4>([](const auto& p, const auto& x) { return transform_line(p, x); }, limit, a,
+                 lines);
+  check_lanes<4>([](const auto& p) { return dual_conj(p) * point_conj(p); }, limit, a);
+  check_lanes<4>([](const auto& p) { return translation(p); }, limit, a);
+  check_lanes<4>([](const auto& p) { return Ad(p); }, limit, a);
+  check_lanes<4>([](const auto& p) { return coAd(p); }, limit, a);
+  check_lanes<4>([](const auto& x) { return ad(x); }, limit, twists);
+  check_lanes<4>([](const auto& x) { return coad(x); }, limit, twists);
+  check_lanes<4>([](const auto& x) { return exp(dual_vector_of(x)); }, limit, twists);
+  check_lanes<4>([](const auto& x) { return left_jacobian(x); }, limit, twists);
+  check_lanes<4>([](const auto& x) { return right_jacobian(x); }, limit, twists);
+  check_lanes<4>([](const auto& x) { return left_jacobian_inverse(x); }, 2 * limit, twists);
+  check_lanes<4>([](const auto& x) { return right_jacobian_inverse(x); }, 2 * limit, twists);
+  check_lanes<4>([](const auto& p, const auto& x) { return pose_rate(p, x, frame::body); }, limit,
+                 a, twists);
+  check_lanes<4>([](const auto& p) { return pose_coordinates(p); }, limit, a);
+  check_lanes<4>([](const auto& x) { return from_pose_coordinates(x); }, limit, coordinates);
+  check_lanes<4>([](const auto& p) { return pose_rate_matrix(p); }, limit, a);
+  check_lanes<4>([](const auto& p, const auto& x) { return pose_coordinates_rate(p, x); }, limit, a,
+                 twists);
+  check_lanes<4>([](const auto& p, const auto& q) { return squared_distance(p, q, 0.5); }, limit, a,
+                 b);
+  check_lanes<4>([](const auto& p, const auto& q) { return distance(p, q, 0.5); }, limit, a, b);
+  check_lanes<4>(
+      [](const auto& angle, const auto& shift) {
+        using T = std::decay_t<decltype(angle)>;
+        return from_screw(vector3<T>(T(0), T(0.6), T(0.8)), vector3<T>(T(1), T(0.4), T(-0.3)),
+                          angle, shift);
+      },
+      limit, std::vector<double>{0, 1e-9, 0.3, 3.1, -2}, std::vector<double>{0, 0.5, -1});
+  using B = batch<double, 4>;
+  const auto unit = is_unit(joined_lanes(lane_width<4>{}, a[0], [&](int i) {
+    return i == 2 ? dual_quaternion<double>(a[2] * screw_dual<double>(1.1)) : a[std::size_t(i)];
+  }));
+  for (int i = 0; i < B::lanes; ++i) {
+    CHECK(unit[i] == (i != 2));
+  }
 }
 
 } // namespace test_dual_quaternion_batch

@@ -6,10 +6,12 @@
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/expression/derivative.hpp>
+#include <duet/expression/dual_parts.hpp>
 #include <duet/expression/jacobian.hpp>
 #include <duet/expression/motion.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/text.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/robots.hpp>
 
@@ -17,6 +19,7 @@
 
 #include <cmath>
 #include <tuple>
+#include <type_traits>
 
 namespace test_expression_poses {
 namespace {
@@ -57,6 +60,11 @@ auto with_all(const F& f) {
   return f + c<0> * (u * dot(v, translation(A) + translation(B)) * f);
 }
 
+template <class F, class G>
+constexpr bool have_same_node(const F&, const G&) {
+  return std::is_same_v<typename F::node_type, typename G::node_type>;
+}
+
 /// A line with a pitch of 0.2 per radian.
 const auto helix = duet::make_dual_vector(
     vector3<double>(0, 0.6, 0.8),
@@ -74,6 +82,40 @@ TEST_CASE("N14-N19: derivatives of rigid motions are those of numbers") {
   check_formula("N17 back", with_all(translation(A * screw(helix, u) * B)));
   check_formula("N19", with_all(sclerp(A, B, u)));
   check_formula("points", with_all(transform_point(A * screw(line, u) * B, v)));
+}
+
+TEST_CASE("N10-N16: parts and conjugates of what is made of dual numbers") {
+  constexpr dual_vector_symbol<"l"> l;
+  static_assert(have_same_node(dual_conj(dual_conj(A)), A));
+  static_assert(have_same_node(dual_part(axis::x), v - v));
+  const auto l0 = duet::rotate(a0, helix);
+  // The product of two lines: the cosine of their angle, and minus their distance times its sine.
+  const auto product = dot(rotate(A, l), axis_through({0, 0, 0}, {1, 0, 0}));
+  const auto expected = (duet::rotate(b0, l0))[0];
+  CHECK(real_part(product)(A = b0, l = l0) == expected.value());
+  CHECK(dual_part(product)(A = b0, l = l0) == expected.epsilon());
+  CHECK(dual_conj(product)(A = b0, l = l0).epsilon() == -expected.epsilon());
+  // Real numbers have no dual part.
+  CHECK(real_part(u)(u = 3) == 3);
+  CHECK(dual_part(u)(u = 3) == 0);
+  CHECK(dual_conj(u)(u = 3) == 3);
+  CHECK(to_text(point_conj(A)) == "dual_conj(conj(A))");
+  CHECK(to_latex(dual_conj(A)) == "\\overline{A}");
+  CHECK(norm(A)(A = a0) == norm(a0));
+  CHECK(dot(A, B)(A = a0, B = b0) == dot(a0, b0));
+}
+
+TEST_CASE("a Jacobian by the coordinates of a screw") {
+  constexpr dual_vector_symbol<"l"> l;
+  const auto f = A * screw(l, u) * B;
+  const auto J = jacobian(f, wrt(l), duet::frame::body)(A = a0, B = b0, u = 0.7, l = helix);
+  const auto expected = duet::jacobian(
+      [&](const auto& x) {
+        using T = std::decay_t<decltype(x[0])>;
+        return f(A = a0, B = b0, u = 0.7, l = duet::dual_vector_of(duet::vector6<T>(x)));
+      },
+      duet::vector6<double>(duet::twist_of(helix)), duet::frame::body);
+  CHECK((J.jacobian - expected.jacobian).norm() < 1e-14);
 }
 
 TEST_CASE("a screw is the exponential of its line") {

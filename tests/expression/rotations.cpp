@@ -77,6 +77,8 @@ TEST_CASE("N1-N9: derivatives of formulas are those of numbers") {
   check_formula("rotated", with_all(rotate(q * turning * p * wobbling, v + u * w)));
   check_formula("turns", with_all(rotate(turn(vector3<double>(0, 0.6, 0.8), u * u) * q, v)));
   check_formula("vectors", with_all(cross(rotate(turning, v), u * w) / (2 + dot(w, w) * u)));
+  check_formula("N3", with_all(conj(turning + p) / dot(turning + p, turning + p)));
+  check_formula("lengths", norm(turning + wobbling * p) * dot(q, wobbling));
   check_formula("column", with_all(column(u, sin(u), norm(w + u * v + rotate(q, w)))));
   check_formula("scalar", dot(rotate(turning, v), w) * component<1>(rotate(conj(q) * wobbling, v)) +
                               c<0> * dot(vec(q), vec(p)));

@@ -7,6 +7,8 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/norm.hpp>
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <cmath>
 

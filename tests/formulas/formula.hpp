@@ -10,12 +10,14 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 /// \file
-/// A formula of the documents by three routes: duet over duals, Taylor numbers and nested duals,
-/// the textbook's closed form, and that closed form in 50 digits, which is taken as the truth.
+/// A formula of the documents by four routes: duet over duals, Taylor numbers and nested duals, an
+/// expression, the textbook's closed form, and that closed form in 50 digits, which is taken as the
+/// truth.
 
 namespace duet_formulas {
 
@@ -34,8 +36,9 @@ enum class argument {
 
 /// How far a route may be from the truth.
 struct bounds {
-  double value = 4;  ///< of the formula, in ulp
-  double slope = 16; ///< of its first derivative, in ulp
+  double value = 4;          ///< of the formula, in ulp
+  double slope = 16;         ///< of its first derivative, in ulp
+  double expression = slope; ///< of both, where it is written as an expression
 };
 
 /// One row of the table.
@@ -58,6 +61,50 @@ struct formula {
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> dual;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> taylor;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> nested;
+};
+
+/// A row by a further route: written as an expression over symbols, which the compiler
+/// differentiates.
+class expression_route {
+public:
+  std::string label;
+  std::string function;   ///< the two name the row
+  std::string text;       ///< the expression
+  std::string derivative; ///< what differentiates it
+
+  expression_route(std::string row_label, std::string row_function)
+      : label(std::move(row_label)), function(std::move(row_function)) {}
+  /// A route of its own way to a row's result.
+  template <class Values>
+  expression_route(std::string row_label, std::string row_function, std::string expression,
+                   std::string differentiated_by, const Values& values)
+      : label(std::move(row_label)), function(std::move(row_function)), text(std::move(expression)),
+        derivative(std::move(differentiated_by)), all_(values) {}
+
+  /// Adds a formula to the result: its value, and its derivative along all that moves.
+  template <class F, class Moves, class Stands = std::tuple<>>
+  expression_route part(const F& f, const Moves& moves, const Stands& stands = {}) &&;
+
+  /// Value and first derivative along a direction, in a row.
+  numbers<double> operator()(const numbers<double>& x, const numbers<double>& d) const {
+    if (all_) {
+      return all_(x, d);
+    }
+    numbers<double> y;
+    for (const auto& value : values_) {
+      value(y, x);
+    }
+    for (const auto& slope : slopes_) {
+      slope(y, x, d);
+    }
+    return y;
+  }
+
+private:
+  std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> all_;
+  std::vector<std::function<void(numbers<double>&, const numbers<double>&)>> values_;
+  std::vector<std::function<void(numbers<double>&, const numbers<double>&, const numbers<double>&)>>
+      slopes_;
 };
 
 /// A row of which another test is the proof.

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "formulas/arm_by_hand.hpp"
 #include "formulas/by_hand.hpp"
 #include "formulas/parts.hpp"
 #include "formulas/table.hpp"
@@ -26,7 +27,7 @@ constexpr std::size_t joints = 7;
 template <class T>
 using joint_vector = std::array<T, joints>;
 template <class T>
-using six = std::array<T, 6>;
+using panda = arm<T, joints>;
 
 /// x with M x = b, by Gauss.
 template <class T>
@@ -56,68 +57,10 @@ six<T> solved(std::array<six<T>, 6> m, six<T> b) {
   return b;
 }
 
-/// The arm at θ, and its rates along dθ: γ = [t; α] of the flange and the joints' screws.
-template <class T>
-struct arm {
-  v3<T> t, dt;
-  q4<T> alpha, dalpha;
-  std::array<six<T>, joints> columns, dcolumns; ///< [v; ω], v at the origin
-
-  arm(const joint_vector<T>& theta, const joint_vector<T>& dtheta) {
-    using std::cos;
-    using std::sin;
-    using std::sqrt;
-    const double lengths[] = {0, 0, 0, .0825, -.0825, 0, .088};
-    const double offsets[] = {.333, 0, .316, 0, .384, 0, 0};
-    const int twists[] = {0, -1, 1, 1, -1, 1, 1}; // quarter turns
-    const T root = sqrt(T(0.5));
-    const auto shifted = [&](double x, double z) {
-      return plus(t, vec(product(product(alpha, pure(v3<T>{T(x), T(0), T(z)})), conj(alpha))));
-    };
-    t = dt = {T(0), T(0), T(0)};
-    alpha = {T(1), T(0), T(0), T(0)};
-    v3<T> v = t, w = t; // of the link before, the velocity at the origin and the angular velocity
-    for (std::size_t i = 0; i < joints; ++i) {
-      t = shifted(lengths[i], 0);
-      if (twists[i] != 0) {
-        alpha = product(alpha, q4<T>{root, T(twists[i] * root), T(0), T(0)});
-      }
-      t = shifted(0, offsets[i]);
-      const v3<T> z = vec(product(product(alpha, q4<T>{T(0), T(0), T(0), T(1)}), conj(alpha)));
-      const v3<T> m = cross(t, z);
-      columns[i] = {m[0], m[1], m[2], z[0], z[1], z[2]};
-      const v3<T> dz = cross(w, z), dm = plus(cross(w, m), cross(v, z));
-      dcolumns[i] = {dm[0], dm[1], dm[2], dz[0], dz[1], dz[2]};
-      v = plus(v, times(dtheta[i], m));
-      w = plus(w, times(dtheta[i], z));
-      const T half = theta[i] / 2;
-      alpha = product(alpha, q4<T>{T(cos(half)), T(0), T(0), T(sin(half))});
-    }
-    t = shifted(0, .107);
-    dt = plus(v, cross(w, t));
-    dalpha = times(T(0.5), product(pure(w), alpha));
-  }
-
-  /// Σ a bᵀ of columns.
-  static std::array<six<T>, 6> gram(const std::array<six<T>, joints>& a,
-                                    const std::array<six<T>, joints>& b) {
-    std::array<six<T>, 6> result;
-    for (std::size_t i = 0; i < 6; ++i) {
-      for (std::size_t j = 0; j < 6; ++j) {
-        result[i][j] = T(0);
-        for (std::size_t k = 0; k < joints; ++k) {
-          result[i][j] += a[k][i] * b[k][j];
-        }
-      }
-    }
-    return result;
-  }
-};
-
 /// N22 at γ̇ = [u; p], and its derivative.
 template <class T>
 std::pair<joint_vector<T>, joint_vector<T>>
-resolved(const arm<T>& a, const v3<T>& u, const q4<T>& p, const v3<T>& du, const q4<T>& dp) {
+resolved(const panda<T>& a, const v3<T>& u, const q4<T>& p, const v3<T>& du, const q4<T>& dp) {
   const v3<T> w = times(T(2), vec(product(p, conj(a.alpha))));
   const v3<T> dw = times(T(2), vec(plus(product(dp, conj(a.alpha)), product(p, conj(a.dalpha)))));
   const v3<T> v = plus(u, cross(a.t, w));
@@ -150,7 +93,7 @@ constexpr auto vector = argument::vector;
 constexpr auto number = argument::number;
 constexpr auto rotation_vector = argument::rotation;
 /// The condition of J is up to about 20 here.
-constexpr bounds of_least_rates{8, 16};
+constexpr bounds of_least_rates{8, 16, 32};
 
 constexpr auto robot = duet::robots::panda().table();
 
@@ -171,7 +114,7 @@ auto as_numbers(const V& v) {
 /// amplifies errors by their squares.
 bool is_regular(const numbers<double>& x) {
   by_hand::joint_vector<double> none{};
-  const by_hand::arm<double> a(by_hand::part<7>(x, 0), none);
+  const by_hand::panda<double> a(by_hand::panda_table, by_hand::part<7>(x, 0), none);
   double sum = 0;
   for (std::size_t i = 0; i < 6; ++i) {
     by_hand::six<double> unit{};
@@ -193,7 +136,7 @@ formula least_rates() {
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        const arm<T> a(part<7>(x, 0), part<7>(d, 0));
+        const panda<T> a(panda_table, part<7>(x, 0), part<7>(d, 0));
         const auto [y, dy] =
             resolved(a, part<3>(x, 7), part<4>(x, 10), part<3>(d, 7), part<4>(d, 10));
         return row<T>(y, dy);
@@ -211,7 +154,7 @@ formula joint_step() {
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        const arm<T> a(part<7>(x, 0), part<7>(d, 0));
+        const panda<T> a(panda_table, part<7>(x, 0), part<7>(d, 0));
         const unit<T> u(part<3>(x, 7), part<3>(d, 7));
         const T sign(dot(u.q, a.alpha) < 0 ? -1 : 1), minus(-1);
         const auto [y, dy] = resolved(a, plus(part<3>(x, 10), times(minus, a.t)),
@@ -248,7 +191,7 @@ formula planning_step() {
         using namespace by_hand;
         const v3<T> none{};
         const T minus(-1);
-        const arm<T> a(part<7>(x, 0), part<7>(d, 0));
+        const panda<T> a(panda_table, part<7>(x, 0), part<7>(d, 0));
         const screw_way<T> c(a.alpha, a.t, unit<T>(part<3>(x, 7), none).q, part<3>(x, 10), x[13],
                              d[13]);
         const auto [y, dy] = resolved(a, plus(c.place, times(minus, a.t)),

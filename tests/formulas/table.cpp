@@ -135,12 +135,18 @@ struct exact_values {
 
   /// Errors of a route in ulp; negative where it does not have the block.
   [[nodiscard]] double ulps(const numbers<double>& route, std::size_t block) const {
+    return ulps(route, values, block);
+  }
+  /// How far a route is from another, in the same ulp.
+  template <class T>
+  [[nodiscard]] double ulps(const numbers<double>& route, const numbers<T>& other,
+                            std::size_t block) const {
     wide error = 0;
     for (std::size_t i = block * size; i < (block + 1) * size; ++i) {
       if (!std::isfinite(route[i])) {
         return std::numeric_limits<double>::infinity();
       }
-      error = std::max<wide>(error, abs(wide(route[i] - values[i])));
+      error = std::max<wide>(error, abs(wide(route[i] - wide(other[i]))));
     }
     return error == 0 ? 0 : double(wide(error / (scales[block] * wide(0x1p-53))));
   }
@@ -175,6 +181,9 @@ struct worst_errors {
   double nested = 0; ///< and over nested duals
   double highest = -1;
   std::string input;
+  double expression = 0; ///< of the row as an expression, value and first derivative
+  double from_dual = 0;  ///< of its first derivative from that over a dual
+  std::string input_of_expression;
 };
 
 std::string text_of(const numbers<double>& x) {
@@ -209,8 +218,9 @@ numbers<double> direction(const formula& f, const numbers<double>& x,
   return d;
 }
 
-worst_errors measured(const formula& f) {
+worst_errors measured(const formula& f, const expression_route& expression) {
   worst_errors worst;
+  worst.expression = -1;
   duet_test::random_source random(9);
   const auto inputs = inputs_of(f);
   CHECK(inputs.size() >= 4);
@@ -230,6 +240,15 @@ worst_errors measured(const formula& f) {
     worst.dual = std::max(worst.dual, slope);
     worst.taylor = std::max(worst.taylor, series);
     worst.nested = std::max(worst.nested, nests);
+    const auto as_expression = expression(x, d);
+    CHECK(as_expression.size() == dual.size());
+    const double of_expression =
+        std::max(exact.ulps(as_expression, 0), exact.ulps(as_expression, 1));
+    worst.from_dual = std::max(worst.from_dual, exact.ulps(as_expression, dual, 1));
+    if (of_expression > worst.expression) {
+      worst.expression = of_expression;
+      worst.input_of_expression = text_of(x);
+    }
     const double highest = std::max({value, slope, series, nests});
     if (highest > worst.highest) {
       worst.highest = highest;
@@ -253,10 +272,24 @@ std::string ulp_text(double x) {
   return text.str();
 }
 
+/// The one way in which a row is written as an expression.
+expression_route expression_of(const formula& f, const std::vector<expression_route>& all) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const expression_route& e) {
+    return e.label == f.label && e.function == f.function;
+  });
+  CAPTURE(f.label);
+  CAPTURE(f.function);
+  REQUIRE(found != all.end());
+  return *found;
+}
+
 /// The part of a row that does not depend on a measurement.
 std::string row_of(const formula& f) {
   return "| " + f.label + " | $" + f.text + "$ | [`" + f.function + "`](../include/duet/" +
          f.header + ") |";
+}
+std::string row_of(const expression_route& e) {
+  return "| " + e.label + " | " + e.text + " | " + e.derivative + " |";
 }
 std::string row_of(const reference& r) {
   return "| " + r.label + " | " + r.text + " | " + r.function + " | " + r.test + " |";
@@ -270,30 +303,49 @@ TEST_CASE("every formula is as close to 50 digits as promised, and is in the tab
   page << file.rdbuf();
   std::ostringstream table;
   std::map<std::string, int> rows;
-  const auto add = [&](const std::string& label, const std::string& row, const std::string& rest) {
-    ++rows[label];
-    table << row << rest << "\n";
+  const auto require_row = [&](const std::string& row) {
     INFO("the page has no row ", row);
     CHECK(page.str().find("\n" + row) != std::string::npos);
   };
+  const auto add = [&](const std::string& label, const std::string& row, const std::string& rest) {
+    ++rows[label];
+    table << row << rest << "\n";
+    require_row(row);
+  };
 
-  table << "| | formula | by | value | closed form | dual | Taylor | nested | worst input |\n"
-           "|---|---|---|---|---|---|---|---|---|\n";
-  for (const auto& group :
-       {quaternion_formulas(), dual_formulas(), rigid_motion_formulas(), planning_formulas()}) {
+  std::vector<expression_route> expressions;
+  for (const auto& group : {quaternion_expressions(), dual_quaternion_expressions(),
+                            planning_expressions(), motion_expressions()}) {
+    expressions.insert(expressions.end(), group.begin(), group.end());
+  }
+  std::ostringstream written;
+  table << "| | formula | by | value | closed form | dual | Taylor | nested | expression | worst "
+           "input |\n"
+           "|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const auto& group : {quaternion_formulas(), dual_formulas(), rigid_motion_formulas(),
+                            planning_formulas(), motion_formulas()}) {
     for (const formula& f : group) {
-      const worst_errors worst = measured(f);
+      const expression_route expression = expression_of(f, expressions);
+      const worst_errors worst = measured(f, expression);
       add(f.label, row_of(f),
           " " + ulp_text(worst.value) + " | " + ulp_text(worst.closed) + " | " +
               ulp_text(worst.dual) + " | " + ulp_text(worst.taylor) + " | " +
-              ulp_text(worst.nested) + " | " + worst.input + " |");
+              ulp_text(worst.nested) + " | " + ulp_text(worst.expression) + " | " + worst.input +
+              " |");
+      require_row(row_of(expression));
+      written << row_of(expression) << " " << ulp_text(worst.from_dual) << " | "
+              << worst.input_of_expression << " |\n";
       CAPTURE(f.label);
       CHECK(worst.value <= f.limits.value);
       CHECK(worst.dual <= f.limits.slope);
       CHECK(worst.taylor <= second_derivative_limit);
       CHECK(worst.nested <= second_derivative_limit);
+      CHECK(worst.expression <= f.limits.expression);
     }
   }
+  table << "\n| | as an expression | its derivative by | from the dual | worst input |\n"
+           "|---|---|---|---|---|\n"
+        << written.str();
   table << "\n| | formula | by | proof |\n|---|---|---|---|\n";
   for (const reference& r : references()) {
     add(r.label, row_of(r), "");

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
+
 #include <duet/core/constants.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/jacobian.hpp>
@@ -67,12 +69,7 @@ double rocker_error(const Loop& loop, const four_bar& bars, double theta, double
 
 template <class F>
 std::string message(const F& f) {
-  try {
-    f();
-  } catch (const cannot_close& e) {
-    return e.what();
-  }
-  return "nothing thrown";
+  return duet_test::message_of<cannot_close>(f);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "mechanism/arms.hpp"
+#include "support/message.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
@@ -203,14 +204,7 @@ TEST_CASE("a chain whose number of joints is no more in its type is the same cha
 }
 
 TEST_CASE("what is wrong with a chain is said in one line") {
-  const auto message = [](const auto& make) -> std::string {
-    try {
-      make();
-    } catch (const invalid_input& e) {
-      return e.what();
-    }
-    return "nothing thrown";
-  };
+  const auto message = [](const auto& make) { return duet_test::message_of(make); };
   std::array<joint<>, 2> joints;
   joints[1].axis = {0, 0, 2};
   CHECK(message([&] { serial_chain chain(joints); }) ==

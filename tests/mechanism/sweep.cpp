@@ -2,8 +2,12 @@
 
 #include "mechanism/arms.hpp"
 #include "support/lanes.hpp"
+#include "support/message.hpp"
 
+#include <duet/mechanism/analytic_jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
+#include <duet/mechanism/joint_efforts.hpp>
+#include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/sweep.hpp>
 
 #include <doctest/doctest.h>
@@ -15,6 +19,7 @@
 namespace test_mechanism_sweep {
 
 using namespace duet;
+using duet_test::message_of;
 using duet_test::ulps_apart;
 
 namespace {
@@ -38,16 +43,6 @@ std::vector<angles> configurations(std::size_t count) {
     result[3][2] = 1e7; // beyond the vector sine
   }
   return result;
-}
-
-template <class F>
-std::string message_of(const F& f) {
-  try {
-    f();
-  } catch (const invalid_input& error) {
-    return error.what();
-  }
-  return "";
 }
 
 } // namespace
@@ -77,6 +72,30 @@ TEST_CASE("a range gives what each configuration gives, on any number of cores")
     duet_test::for_each_frame([&](const auto& frame) { check(known, frame); });
     check(table, frame::body);
     check(unsized, frame::hybrid);
+  }
+}
+
+TEST_CASE("a sweep tells how far it is, and is cancelled with what is done known") {
+  const auto arm = robots::panda();
+  const auto theta = configurations(1000);
+  for (const unsigned threads : {1U, 3U}) {
+    std::vector<dual_quaternion<double>> a(theta.size());
+    std::size_t done = 0;
+    const auto report = [&](const progress& p) {
+      done = p.done;
+      return p.share() < 0.4;
+    };
+    try {
+      poses(arm, theta, a, execution{threads, report});
+      FAIL("not cancelled");
+    } catch (const cancelled& error) {
+      CHECK(done >= 400);
+      REQUIRE(error.completed() >= done);
+      CHECK(error.completed() < theta.size());
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        CHECK((ulps_apart(a[i], arm.pose(theta[i])) <= limit) == (i < error.completed()));
+      }
+    }
   }
 }
 
@@ -127,6 +146,38 @@ TEST_CASE("rates and derivatives over batches are those of the lanes") {
     }
   }
   duet_test::check_lanes<4>([&](const auto& x) { return table.pose(x); }, 4 * limit, moving);
+}
+
+TEST_CASE("what else there is of a chain, over batches") {
+  const auto chain = robots::panda();
+  const auto theta = configurations(7);
+  std::vector<vector6<double>> wrenches;
+  duet_test::random_source random(3);
+  for (int k = 0; k < 5; ++k) {
+    wrenches.emplace_back();
+    for (int i = 0; i < 6; ++i) {
+      wrenches.back()[i] = k == 1 ? 0 : random.uniform(-1, 1);
+    }
+  }
+  duet_test::check_lanes<4>(
+      [&](const auto& x) {
+        const auto h = kinematic_hessian(chain, x, frame::body);
+        return (h[0] + h[3] + h[6]).eval();
+      },
+      limit, theta);
+  duet_test::check_lanes<4>(
+      [&](const auto& x, const auto& w) { return joint_efforts(chain, x, w, frame::hybrid); },
+      limit, theta, wrenches);
+  duet_test::check_lanes<4>([&](const auto& x) { return pose_coordinates_jacobian(chain, x); },
+                            limit, theta);
+  const std::vector<angles> regular(theta.begin() + 3, theta.end());
+  duet_test::check_lanes<4>([&](const auto& x) { return euler_jacobian<zyx>(chain, x); },
+                            16 * limit, regular);
+  duet_test::check_lanes<4>([&](const auto& x) { return manipulability(chain, x); }, 16 * limit,
+                            regular);
+  duet_test::check_lanes<4>(
+      [&](const auto& x) { return manipulability_gradient(chain, x).gradient; }, 64 * limit,
+      regular);
 }
 
 } // namespace test_mechanism_sweep

@@ -246,6 +246,18 @@ TEST_CASE("many goals: as one by one, on any number of cores") {
     std::fill(out.begin(), out.end(), result{});
     inverse_kinematics(arm, goals, start, out, options, execution{threads});
     CHECK(std::equal(out.begin(), out.end(), one_by_one.begin(), are_identical));
+    std::fill(out.begin(), out.end(), result{});
+    const auto enough = [](const progress& p) { return p.done < 4; };
+    std::size_t completed = 0;
+    try {
+      inverse_kinematics(arm, goals, start, out, options, {threads, enough});
+    } catch (const cancelled& early) {
+      completed = early.completed();
+    }
+    CHECK(completed >= 4);
+    CHECK(completed < 4 + threads);
+    CHECK(std::equal(out.begin(), out.begin() + std::ptrdiff_t(completed), one_by_one.begin(),
+                     are_identical));
   }
   CHECK_THROWS_WITH_AS(
       inverse_kinematics(arm, goals, start, std::span(out).first(7), {}, all_cores),
@@ -278,7 +290,8 @@ TEST_CASE("bad problems") {
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, broken),
                        "duet: inverse_kinematics: the start has inf for joint 4", invalid_input);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = 0}),
-                       "duet: inverse_kinematics: tolerance is 0, must be positive", invalid_input);
+                       "duet: inverse_kinematics: tolerance is 0, not a number above 0",
+                       invalid_input);
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = std::nan("")}),
                   invalid_input);
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.restarts = -1}), invalid_input);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "mechanism/arms.hpp"
+#include "support/lanes.hpp"
 
 #include <duet/mechanism/analytic_jacobian.hpp>
 #include <duet/planning/resolved_motion.hpp>
@@ -67,6 +68,54 @@ TEST_CASE("where the Jacobian is not of full rank there is no B") {
   CHECK_THROWS_AS((void)resolved_rate_matrix(serial_chain<6>(joints),
                                              Eigen::Matrix<double, 6, 1>::Zero().eval()),
                   invalid_input);
+}
+
+TEST_CASE("N22, N23: lanes are what they are alone, where the Jacobian is nearly singular too") {
+  const auto arm = robots::panda();
+  auto all = duet_test::configurations(arm.table(), 8);
+  all.erase(all.begin(), all.begin() + 5); // those of no full rank
+  all.push_back(all[0]);
+  all.back()[3] = -1e-3; // the elbow nearly stretched
+  std::vector<dual_quaternion<double>> next;
+  std::vector<Eigen::Matrix<dual<double>, 7, 1>> moving;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const vector6<double> small = 1e-2 * vector6<double>(1, -.5, .3, .8, -.2, double(i) - 4);
+    const auto pose = arm.pose(all[i]);
+    next.push_back(manifold<dual_quaternion<double>>::plus(pose, small, frame::body));
+    if (i % 3 == 0) { // the sign further away
+      next.back() = dual_quaternion<double>(-next.back());
+    }
+    moving.emplace_back();
+    for (int j = 0; j < 7; ++j) {
+      moving.back()[j] = dual<double>(all[i][j], 1 - .3 * j);
+    }
+  }
+  // J Jᵀ is badly conditioned at the last: the more do the last places of sines count.
+  const double limit = 1e4;
+  duet_test::check_lanes<4>([&](const auto& x) { return resolved_rate_matrix(arm, x); }, limit,
+                            all);
+  duet_test::check_lanes<4>(
+      [&](const auto& x, const auto& a) { return resolved_step(arm, x, a, .7); }, limit, all, next);
+  duet_test::check_lanes<8>(
+      [&](const auto& x, const auto& a) { return resolved_step(arm.table(), x, a, .7); }, limit,
+      all, next);
+  duet_test::check_lanes<4>(
+      [&](const auto& x, const auto& a) { return resolved_step(arm, x, a, .7); }, limit, moving,
+      next);
+}
+
+TEST_CASE("N22: where the Jacobian of one lane is not of full rank there is no B") {
+  using B = batch<double, 4>;
+  const auto arm = robots::panda();
+  Eigen::Matrix<B, 7, 1> theta;
+  for (int j = 0; j < 7; ++j) {
+    theta[j] = B(.2 - .3 * j);
+  }
+  CHECK_NOTHROW((void)resolved_rate_matrix(arm, theta));
+  for (int j = 0; j < 7; ++j) {
+    theta[j].set(1, 0);
+  }
+  CHECK_THROWS_AS((void)resolved_rate_matrix(arm, theta), invalid_input);
 }
 
 } // namespace test_planning_resolved_motion

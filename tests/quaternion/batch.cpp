@@ -1,8 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/printed_euler_rate.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
@@ -12,6 +15,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -174,6 +179,70 @@ TEST_CASE("the zero quaternion in one lane is an error") {
   const quaternion<B> q(B::from_lanes([](int i) { return i - 2.0; }), B(0), B(0), B(0));
   CHECK_THROWS_AS(static_cast<void>(normalized(q)), duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(log(q)), duet::invalid_input);
+}
+
+TEST_CASE("curves, Euler angles, rates and Jacobians of exp") {
+  std::vector<quaternion<double>> q;
+  for (const auto& a : orientations<double>()) {
+    q.push_back(normalized(a));
+  }
+  auto p = q;
+  std::rotate(p.begin(), p.begin() + 4, p.end());
+  const std::vector<double> numbers{0, 0.3, 1, 1e-9, 0.8};
+  const std::vector<double> angles{0, 0.4, -3.1, 1e-9, 1.5707963267948966, 2};
+  auto turns = vectors<double>();
+  turns[3] /= 1000; // J⁻¹ is as uncertain as its argument is large
+  const auto left = [&](const auto& a, const auto& b) { return squad_control(a, b, a); };
+  check_lanes<4>(left, 2 * limit, q, p);
+  check_lanes<4>(
+      [](const auto& a, const auto& b, const auto& tau) { return squad(a, b, a * b, a, tau); },
+      4 * limit, std::vector(q.begin() + 10, q.end()), std::vector(p.begin() + 9, p.end()),
+      numbers);
+  check_lanes<4>(
+      [](const auto& a, const auto& b, const auto& tau) {
+        return duet::bezier(std::array{a, b, a}, tau);
+      },
+      2 * limit, q, p, numbers);
+  check_lanes<4>(
+      [](const auto& a, const auto& b) { return duet::from_euler<duet::zyx>(a, b, 0.3); }, limit,
+      angles, numbers);
+  check_lanes<4>(
+      [](const auto& a, const auto& b) { return duet::euler_rate_matrix<duet::zxz>(a, b); }, limit,
+      angles, numbers);
+  check_lanes<4>([](const auto& a, const auto& b) { return duet::printed_euler_rate_matrix(a, b); },
+                 limit, angles, numbers);
+  check_lanes<4>([](const auto& v, const auto& a) { return duet::from_axis_angle(v, a); }, limit,
+                 std::vector<vector3<double>>{{0, 0.6, 0.8}, {1, 0, 0}, {0, 0, -1}}, angles);
+  check_lanes<4>([](const auto& a) { return rate_matrix(a, duet::frame::body); }, limit, q);
+  check_lanes<4>(
+      [](const auto& a, const auto& v) { return quaternion_rate(a, v, duet::frame::spatial); },
+      limit, q, vectors<double>());
+  check_lanes<4>([](const auto& a, const auto& b) { return dot(a, b) + norm2(a); }, limit, q, p);
+  check_lanes<4>([](const auto& r) { return duet::left_jacobian(r); }, limit, turns);
+  check_lanes<4>([](const auto& r) { return duet::right_jacobian(r); }, limit, turns);
+  check_lanes<4>([](const auto& r) { return duet::left_jacobian_inverse(r); }, 2 * limit, turns);
+  check_lanes<4>([](const auto& r) { return duet::right_jacobian_inverse(r); }, 2 * limit, turns);
+}
+
+TEST_CASE("eight and sixteen lanes, in as many registers as the machine needs for them") {
+  const auto q = orientations<double>();
+  check_lanes<8>([](const auto& v) { return duet::exp(v); }, limit, vectors<double>());
+  check_lanes<8>([](const auto& a) { return log(normalized(a)); }, limit, q);
+  check_lanes<8>([](const auto& a, const auto& b) { return slerp(a, b, 0.3); }, 2 * limit,
+                 std::vector(q.begin() + 9, q.end()), std::vector(q.begin() + 10, q.end()));
+  std::vector<quaternion<float>> single;
+  std::vector<vector3<float>> half_turns;
+  for (const auto& a : q) {
+    const quaternion<double> unit = normalized(a);
+    single.emplace_back(float(unit.w()), float(unit.x()), float(unit.y()), float(unit.z()));
+    half_turns.push_back(log(unit).vec().cast<float>());
+  }
+  const double float_limit = limit * 0x1p29;
+  check_lanes<16>([](const auto& v) { return duet::exp(v); }, float_limit, half_turns);
+  check_lanes<16>([](const auto& a) { return log(normalized(a)); }, float_limit, single);
+  check_lanes<16>([](const auto& a) { return rotation_matrix(a); }, float_limit, single);
+  check_lanes<16>([](const auto& a, const auto& b) { return slerp(a, b, 0.25F); }, float_limit,
+                  single, std::vector(single.rbegin(), single.rend()));
 }
 
 } // namespace test_quaternion_batch

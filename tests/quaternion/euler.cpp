@@ -97,6 +97,7 @@ TEST_CASE("from_euler is the product of elementary rotations in the letters' ord
   CHECK(
       (rotate(pitched, duet::vector3<double>(1, 0, 0)) - duet::vector3<double>(0, 0, -1)).norm() <=
       1e-15);
+  CHECK((duet::from_euler<duet::zyx>(1, 0, 2) == duet::from_euler<duet::zyx>(1.0, 0.0, 2.0)));
 }
 
 TEST_CASE("angles survive the way there and back") {

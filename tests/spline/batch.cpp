@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
@@ -57,6 +59,30 @@ TEST_CASE_TEMPLATE("lanes on different spans, at knots and beyond the ends", Spl
     check_lanes<4>(value, limit, all);
     check_lanes<4>(velocity, limit, all);
   }
+}
+
+TEST_CASE("curves of poses, through rows with rates, and derivatives") {
+  duet_test::random_source random(6);
+  std::vector<double> u;
+  std::vector<dual_quaternion<double>> rows;
+  std::vector<vector6<double>> velocities;
+  const auto number = [&] { return random.uniform(-1, 1); };
+  for (int i = 0; i <= 8; ++i) {
+    u.push_back(i + 0.2 * std::sin(i));
+    const vector3<double> turn(number(), number(), i == 3 ? 0 : number());
+    rows.push_back(pose(from_rotation_vector(turn), vector3<double>(number(), number(), i)));
+    velocities.push_back(vector6<double>::Constant(i == 4 ? 0 : number()));
+  }
+  const std::vector<double> at{0, 2.3, u[3], 8 + 0.2 * std::sin(8), u[4], 5.5, 1e-9};
+  const auto check = [&](const auto& s) {
+    check_lanes<4>([&](const auto& x) { return s(x); }, limit, at);
+    check_lanes<8>([&](const auto& x) { return s(x); }, limit, at);
+    check_lanes<4>([&](const auto& x) { return s.motion(x, frame::hybrid).acceleration; },
+                   4 * limit, at);
+    check_lanes<4>([&](const auto& x) { return s.derivatives(x); }, 4 * limit, at);
+  };
+  check(interpolate<cumulative_bspline<screw_dual<double>>>(u, rows, natural{}));
+  check(hermite_spline(u, rows, velocities, frame::body));
 }
 
 } // namespace test_spline_batch

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curves.hpp"
+#include "support/message.hpp"
 
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
@@ -19,6 +20,7 @@ namespace test_spline_curve {
 using duet::cumulative_bspline;
 using duet_test::distance;
 using duet_test::knot_vectors;
+using duet_test::message_of;
 using duet_test::parameters_on;
 using duet_test::random_orientations;
 
@@ -39,16 +41,6 @@ void for_each_order(F&& f) {
 template <int Order>
 cumulative_bspline<double, Order> random_curve(const std::vector<double>& knots, double step) {
   return {knots, random_orientations(knots.size() - std::size_t(Order), step)};
-}
-
-template <class Exception, class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const Exception& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
 }
 
 } // namespace

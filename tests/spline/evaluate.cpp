@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/lanes.hpp"
+#include "support/message.hpp"
 #include "support/random.hpp"
 
 #include <duet/derivative/frame.hpp>
@@ -9,6 +10,7 @@
 #include <duet/spline/evaluate.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/location.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -87,16 +90,34 @@ TEST_CASE_TEMPLATE("many parameters give what each gives, on any number of threa
   }
 }
 
+TEST_CASE("what is done of a cancelled run is known") {
+  const auto s = some_spline<cumulative>();
+  const auto u = many_parameters();
+  std::vector<pose_type> all(u.size()), out(u.size());
+  duet::evaluate(s, u, all);
+  const auto half = [](const duet::progress& p) { return p.share() < 0.5; };
+  for (const unsigned threads : {1U, 3U}) {
+    std::size_t completed = 0;
+    try {
+      duet::evaluate(s, u, out, {threads, half});
+    } catch (const duet::cancelled& early) {
+      completed = early.completed();
+    }
+    CHECK(completed >= u.size() / 2);
+    CHECK(completed < u.size());
+    bool are_same = true;
+    for (std::size_t i = 0; i < completed; ++i) {
+      are_same = are_same && out[i] == all[i];
+    }
+    CHECK(are_same);
+  }
+}
+
 TEST_CASE("bad sizes and parameters are named") {
   const auto s = some_spline<cumulative>();
   const auto message = [&](std::vector<double> u, std::size_t room, duet::execution how) {
     std::vector<pose_type> out(room);
-    try {
-      duet::evaluate(s, u, out, how);
-    } catch (const duet::invalid_input& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
+    return duet_test::message_of([&] { duet::evaluate(s, u, out, how); });
   };
   CHECK(message({0, 1}, 3, duet::one_core) ==
         "duet: evaluate: 2 parameters, but room for 3 results");
@@ -107,6 +128,24 @@ TEST_CASE("bad sizes and parameters are named") {
     CHECK(message(u, u.size(), how)
               .starts_with("duet: row 700: spline evaluated at 99, outside its domain [0, "));
   }
+}
+
+TEST_CASE("an error that does not come again one by one is passed on as it was") {
+  const std::vector<double> u = {0, 1, 2};
+  const auto error_after = [&](const auto& f) {
+    return duet_test::message_of([&] {
+      try {
+        throw duet::invalid_input("duet: of several at once");
+      } catch (const duet::invalid_input&) {
+        duet::detail::rethrow_with_row(std::span<const double>(u), 1, f);
+      }
+    });
+  };
+  const auto at_two = [](double x, duet::span_hint&) {
+    return x < 2 ? x : throw duet::invalid_input("duet: too far");
+  };
+  CHECK(error_after([](double x, duet::span_hint&) { return x; }) == "duet: of several at once");
+  CHECK(error_after(at_two) == "duet: row 2: too far");
 }
 
 } // namespace test_spline_evaluate

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
 #include "support/random.hpp"
 
 #include <duet/dual_quaternion/distance.hpp>
@@ -200,18 +201,15 @@ TEST_CASE("bad input is named") {
   const auto knots = truth.basis().knots();
   const auto message = [&](std::vector<double> u, std::vector<rotation> rows,
                            const duet::fit_options& options = {}) {
-    try {
-      static_cast<void>(duet::fit<curve<rotation>>(u, rows, knots, options));
-    } catch (const duet::invalid_input& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
+    return duet_test::message_of(
+        [&] { static_cast<void>(duet::fit<curve<rotation>>(u, rows, knots, options)); });
   };
   const auto u = steps(8, 40);
   const auto rows = rows_of(truth, u);
   CHECK(message(steps(8, 39), rows) == "duet: fit: 40 parameters and 41 elements");
   CHECK(message(steps(9, 40), rows) ==
-        "duet: row 36: parameter 8.1 is outside the knots' domain, 0 to 8");
+        "duet: row 36: parameter 8.1 is outside the knots' domain, 0 to 8: clamped_knots of "
+        "parameters from 0 to 9 hold all rows");
   auto bad = rows;
   bad[3] = rotation(0.0);
   CHECK(message(u, bad) == "duet: row 3: quaternion (0, 0, 0, 0) has norm 0, not 1");

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/distance.hpp>
 #include <duet/dual_quaternion/pose.hpp>
@@ -107,12 +109,8 @@ TEST_CASE("rotations are the rotations of poses") {
 TEST_CASE("bad rows are named") {
   rows r(5, duet::frame::body);
   const auto message = [&](const std::vector<vector6<double>>& twists) {
-    try {
-      static_cast<void>(duet::hermite_spline(r.u, r.poses, twists, duet::frame::body));
-    } catch (const duet::invalid_input& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
+    return duet_test::message_of(
+        [&] { static_cast<void>(duet::hermite_spline(r.u, r.poses, twists, duet::frame::body)); });
   };
   auto twists = r.twists;
   twists[2][4] = std::numeric_limits<double>::quiet_NaN();

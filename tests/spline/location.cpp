@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curves.hpp"
+#include "support/message.hpp"
 
 #include <duet/dual/taylor.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
@@ -33,12 +34,7 @@ spline that(outside way) {
 }
 
 std::string message_of(const spline& t, double u) {
-  try {
-    static_cast<void>(t.motion(u, duet::frame::body));
-  } catch (const duet::invalid_input& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
+  return duet_test::message_of([&] { static_cast<void>(t.motion(u, duet::frame::body)); });
 }
 
 } // namespace

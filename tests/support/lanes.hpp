@@ -67,11 +67,11 @@ template <class X>
 template <int W, class F, class X, class... Rest>
 void check_lanes(const F& f, double limit, const std::vector<X>& x,
                  const std::vector<Rest>&... rest) {
+  using duet::lane;
   for (std::size_t shift = 0; shift < x.size(); shift += W / 2) {
     const auto joined = [&](const auto& from) {
-      return duet::joined_lanes(duet::lane_width<W>{}, from[0], [&](int i) {
-        return from[(shift + 3 * std::size_t(i)) % from.size()];
-      });
+      return joined_lanes(duet::lane_width<W>{}, from[0],
+                          [&](int i) { return from[(shift + 3 * std::size_t(i)) % from.size()]; });
     };
     const auto result = f(joined(x), joined(rest)...);
     for (int i = 0; i < W; ++i) {
@@ -80,7 +80,7 @@ void check_lanes(const F& f, double limit, const std::vector<X>& x,
       };
       CAPTURE(shift);
       CAPTURE(i);
-      CHECK(ulps_apart(duet::lane(result, i), f(at(x), at(rest)...)) <= limit);
+      CHECK(ulps_apart(lane(result, i), f(at(x), at(rest)...)) <= limit);
     }
   }
 }

@@ -24,6 +24,7 @@
 
 namespace duet {
 
+/// Settings of `compare`.
 struct comparison_options {
   std::size_t samples = 1000; ///< special points, points of the caller and random ones together
   std::uint64_t seed = 1;     ///< of the random points; the same seed gives the same result

@@ -27,6 +27,7 @@ enum class verdict {
   disagrees     ///< the formulas are not the same
 };
 
+/// In words, as reports have it.
 [[nodiscard]] inline std::string_view to_text(verdict v) {
   switch (v) {
   case verdict::agrees:

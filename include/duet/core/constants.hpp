@@ -12,6 +12,7 @@
 
 namespace duet::constant {
 
+/// π
 template <Real T>
 [[nodiscard]] T pi() {
   if constexpr (std::floating_point<lane_type_t<T>>) {
@@ -21,6 +22,7 @@ template <Real T>
   }
 }
 
+/// The natural logarithm of 2.
 template <Real T>
 [[nodiscard]] T ln2() {
   if constexpr (std::floating_point<lane_type_t<T>>) {
@@ -30,6 +32,7 @@ template <Real T>
   }
 }
 
+/// The natural logarithm of 10.
 template <Real T>
 [[nodiscard]] T ln10() {
   if constexpr (std::floating_point<lane_type_t<T>>) {

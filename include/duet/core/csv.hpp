@@ -27,6 +27,7 @@ public:
       : std::runtime_error(path + ":" + std::to_string(line) + ": " + reason) {}
 };
 
+/// A row of a file, as numbers.
 struct csv_row {
   std::size_t line;
   std::string name; ///< the first cell where it is not a number, else empty

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/progress.hpp>
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -16,31 +18,42 @@
 
 namespace duet {
 
-/// How many threads work on a range.
+/// How many threads work on a range, and who is told how far they are.
 struct execution {
   unsigned threads = 1; ///< 0: as many as the machine has cores
+  /// Called after every block, by one thread at a time, with more done each time, at last with all:
+  /// see `parallel_for_blocks`.
+  progress_callback report = {};
 };
 
+/// All in the calling thread.
 inline constexpr execution one_core{1};
+/// As many threads as the machine has cores.
 inline constexpr execution all_cores{0};
 
 namespace detail {
 
 /// Blocks are handed out from the first to the last, so that when one throws all before it are
-/// finished or in work: the exception that is kept, the first block's, does not depend on timing.
+/// finished or in work: the exception that is kept, the first block's, does not depend on timing,
+/// and what is done when a run is cancelled has no gaps.
 class block_queue {
 public:
-  block_queue(std::size_t count, std::size_t block) : count_(count), block_(block) {}
+  block_queue(std::size_t count, std::size_t block, progress_callback report)
+      : count_(count), block_(block), report_(report) {}
 
   template <class Body>
   void work(const Body& body) {
-    while (!has_failed_) {
+    while (!has_stopped_) {
       const std::size_t first = next_.fetch_add(block_);
       if (first >= count_) {
         return;
       }
+      const std::size_t last = std::min(first + block_, count_);
       try {
-        body(first, std::min(first + block_, count_));
+        body(first, last);
+        if (report_) {
+          tell(last - first);
+        }
       } catch (...) {
         keep(first, std::current_exception());
         return;
@@ -48,15 +61,26 @@ public:
     }
   }
 
-  void rethrow() const {
+  /// Once all threads have ended.
+  void finish() const {
     if (error_) {
       std::rethrow_exception(error_);
+    }
+    if (report_ && done_ < count_) {
+      throw cancelled({done_, count_});
     }
   }
 
 private:
+  void tell(std::size_t size) {
+    const std::lock_guard lock(mutex_);
+    done_ += size;
+    if (!has_stopped_ && !report_({done_, count_})) {
+      has_stopped_ = true;
+    }
+  }
   void keep(std::size_t first, std::exception_ptr error) {
-    has_failed_ = true;
+    has_stopped_ = true;
     const std::lock_guard lock(mutex_);
     if (!error_ || first < failed_) {
       error_ = std::move(error);
@@ -66,9 +90,11 @@ private:
 
   std::size_t count_;
   std::size_t block_;
+  progress_callback report_;
   std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> has_failed_ = false;
+  std::atomic<bool> has_stopped_ = false;
   std::mutex mutex_;
+  std::size_t done_ = 0;
   std::exception_ptr error_;
   std::size_t failed_ = 0;
 };
@@ -81,15 +107,24 @@ private:
 /// What the blocks write must not overlap. Results then do not depend on the number of threads. Of
 /// exceptions, the one of the first block that throws is rethrown once all threads have ended;
 /// blocks behind it may not have been called.
-/// \param block  the most elements a block has; 0: an eighth of a thread's share, of one thread all
+///
+/// `how.report` is called after each block with what is done so far, until it returns `false` or
+/// throws: blocks in work are then finished, and no more begun. Its exceptions are rethrown like
+/// those of `body`.
+/// \param block  the most elements a block has; 0: an eighth of a thread's share, of one thread
+/// all, and with `how.report` no more than a 128th of all
+/// \throws cancelled where `how.report` returned `false` before everything was done: it says how
+/// many elements are, from the first on
 template <class Body>
 void parallel_for_blocks(std::size_t count, const Body& body, execution how = all_cores,
                          std::size_t block = 0) {
   const std::size_t wanted =
       how.threads > 0 ? how.threads : std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t share = wanted == 1 ? count : count / (8 * wanted);
-  const std::size_t size = block > 0 ? block : std::max<std::size_t>(1, share);
-  detail::block_queue queue(count, size);
+  const std::size_t blocks_for_threads = wanted == 1 ? 1 : 8 * wanted;
+  const std::size_t least =
+      how.report ? std::max<std::size_t>(128, blocks_for_threads) : blocks_for_threads;
+  const std::size_t size = block > 0 ? block : std::max<std::size_t>(1, count / least);
+  detail::block_queue queue(count, size, how.report);
   std::vector<std::thread> helpers;
   const std::size_t blocks = count / size + (count % size > 0 ? 1 : 0);
   try {
@@ -102,7 +137,7 @@ void parallel_for_blocks(std::size_t count, const Body& body, execution how = al
   for (std::thread& helper : helpers) {
     helper.join();
   }
-  queue.rethrow();
+  queue.finish();
 }
 
 /// Calls `body(i)` for i = 0 … count − 1, as `parallel_for_blocks`.

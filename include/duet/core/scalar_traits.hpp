@@ -11,6 +11,7 @@
 
 namespace duet {
 
+/// A built-in number, integers and `bool` among them.
 template <class T>
 concept Arithmetic = std::is_arithmetic_v<T>;
 
@@ -54,6 +55,7 @@ concept Field = Real<T> || field_traits<T>::is_field;
 template <class T>
 concept Scalar = Field<T> || Infinitesimal<T>;
 
+/// The number at the bottom of T.
 template <class T>
 using real_type_t = typename scalar_traits<T>::real_type;
 

@@ -14,6 +14,7 @@
 
 namespace duet {
 
+/// What `derivative` returns: y = f(x), and dy/dx of the same shape.
 template <class Y, class DY>
 struct value_and_derivative {
   Y value;

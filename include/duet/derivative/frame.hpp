@@ -8,8 +8,11 @@
 
 namespace duet {
 
+/// Type of `frame::spatial`.
 struct spatial_frame {};
+/// Type of `frame::body`.
 struct body_frame {};
+/// Type of `frame::hybrid`.
 struct hybrid_frame {};
 
 namespace frame {

@@ -15,12 +15,14 @@
 
 namespace duet {
 
+/// What `gradient` returns: f(x), and ∇f as a column.
 template <class Y, class G>
 struct value_and_gradient {
   Y value;
   G gradient;
 };
 
+/// What `hessian` returns: f(x), ∇f as a column, and the symmetric matrix of second derivatives.
 template <class Y, class G, class H>
 struct value_gradient_and_hessian {
   Y value;

@@ -23,6 +23,7 @@ concept HasOwnJacobian = requires {
   typename std::remove_cvref_t<F>::own_jacobian;
 };
 
+/// What `jacobian` returns: y = f(x), and ∂y/∂x, a row for each component of y.
 template <class Y, class J>
 struct value_and_jacobian {
   Y value;

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
+#include <duet/derivative/lane_lu.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
 #include <Eigen/Core>
@@ -36,7 +39,7 @@ void require_regular(const LU& lu) {
     for (Eigen::Index j = 0; j < k; ++j) {
       terms += R(abs(R(factors(k, j) * factors(j, k))));
     }
-    if (pivot <= R(R(4 * n) * std::numeric_limits<R>::epsilon() * terms)) {
+    if (any(pivot <= R(R(4 * n) * std::numeric_limits<R>::epsilon() * terms))) {
       std::ostringstream message;
       message << "duet: solve: A is singular: of pivot " << k + 1 << " of " << n
               << " nothing but rounding remains, " << factors(k, k);
@@ -44,6 +47,9 @@ void require_regular(const LU& lu) {
     }
   }
 }
+
+template <class M>
+using lu_of = std::conditional_t<Batched<typename M::Scalar>, lane_lu<M>, Eigen::PartialPivLU<M>>;
 
 /// \throws invalid_input where no solution of A x = b can be asked for.
 template <class A, class B>
@@ -72,8 +78,8 @@ void require_square(const A& a, const B& b) {
 /// \param a  A, square
 /// \param b  a vector, or a matrix of right-hand sides
 ///
-/// The values are those of `Eigen::PartialPivLU` over real numbers, to the last bit. The
-/// derivatives follow from the equation itself,
+/// The values are those of `Eigen::PartialPivLU` over real numbers, to the last bit; over batches
+/// each lane has the pivots it would have alone. The derivatives follow from the equation itself,
 ///
 ///   dx = A⁻¹(db − dA x),
 ///
@@ -94,7 +100,7 @@ template <class A, class B>
   detail::require_square(a, b);
   const auto matrix = detail::real_values<R>(a);
   detail::require_finite("solve", matrix);
-  const Eigen::PartialPivLU<std::remove_const_t<decltype(matrix)>> lu(matrix);
+  const detail::lu_of<std::remove_const_t<decltype(matrix)>> lu(matrix);
   detail::require_regular(lu);
   const auto values = lu.solve(detail::real_values<R>(b)).eval();
   if constexpr (scalar_traits<S>::order == 0) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/select.hpp>
 #include <duet/derivative/structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/parts.hpp>
@@ -60,7 +61,7 @@ template <class Derived>
       for (Eigen::Index i = 0; i < a.rows(); ++i) {
         bool is_value = true;
         auto check = [&](const real_type_t<S>& part) {
-          result = result && (is_value || part == 0);
+          result = result && (is_value || all(part == 0));
           is_value = false;
           return part;
         };
@@ -101,7 +102,11 @@ void correct_infinitesimals(X& x, const Map& map, const Residual& r) {
     }
     for (int k = 0; k < count; ++k) {
       column = parts.col(k);
-      if (column.cwiseEqual(R(0)).all()) {
+      bool is_zero = true;
+      for (const R& part : column) {
+        is_zero = is_zero && all(part == 0);
+      }
+      if (is_zero) {
         corrections.col(k).setZero();
       } else {
         corrections.col(k) = map(column);
@@ -138,7 +143,7 @@ template <class Derived>
 void require_finite(const char* function, const Eigen::MatrixBase<Derived>& a) {
   for (Eigen::Index j = 0; j < a.cols(); ++j) {
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
-      if (!is_all_finite(a(i, j))) {
+      if (!all(is_all_finite(a(i, j)))) {
         std::ostringstream message;
         message << "duet: " << function << ": entry (" << i << ", " << j << ") of A is not finite";
         throw invalid_input(message.str());

@@ -17,6 +17,7 @@
 
 namespace duet {
 
+/// f(x), ∇f, and the product of the Hessian with a vector.
 template <class Y, class G>
 struct value_gradient_and_product {
   Y value;
@@ -55,6 +56,7 @@ template <class Tag = void, class F, VectorLike X, VectorLike V>
       value, slope, detail::parts<along>(g, 1)};
 }
 
+/// f(x, y), and the block ∂²f/∂xᵢ∂yⱼ of its Hessian.
 template <class Y, class M>
 struct value_and_mixed_hessian {
   Y value;

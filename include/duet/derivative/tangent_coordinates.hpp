@@ -22,6 +22,7 @@
 
 namespace duet {
 
+/// The type of a constant in namespace `frame`.
 template <class Frame>
 concept FrameConstant = std::same_as<Frame, spatial_frame> || std::same_as<Frame, body_frame> ||
     std::same_as<Frame, hybrid_frame>;
@@ -114,14 +115,14 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
           result.jacobian(i, first + j) = detail::part<tag>(columns[i], j + 1);
         }
       }
-      return;
-    }
-    for (int j = 0; j < count; ++j) {
-      const auto column = target::velocity(result.value, detail::parts<tag>(y, j + 1), frame);
-      if (first + j == 0) {
-        result.jacobian.resize(column.size(), manifold<X>::dimension);
+    } else {
+      for (int j = 0; j < count; ++j) {
+        const auto column = target::velocity(result.value, detail::parts<tag>(y, j + 1), frame);
+        if (first + j == 0) {
+          result.jacobian.resize(column.size(), manifold<X>::dimension);
+        }
+        result.jacobian.col(first + j) = column;
       }
-      result.jacobian.col(first + j) = column;
     }
   });
   return result;

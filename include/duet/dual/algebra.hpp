@@ -132,6 +132,14 @@ concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& 
                             !std::is_same_v<A, B> && Promotable<A, B> && !ConstantOf<A, B> &&
                             !ConstantOf<B, A>;
 
+/// Of one differentiation, but of different numbers of partials or different orders.
+template <class A, class B>
+concept DifferentSizes = Infinitesimal<A> && Infinitesimal<B> && !Promotable<A, B> &&
+                         Promotable<real_type_t<A>, real_type_t<B>>;
+
+/// Stands in the declaration of deleted operators, for compilers to quote.
+struct different_numbers_of_partials_or_orders {};
+
 /// The value of x for a comparison of A and B. Fields other than the reals need not compare with
 /// every arithmetic type; to built-in reals an integer is converted here, as a literal would be,
 /// because of -Wconversion.
@@ -206,6 +214,22 @@ template <class A, class B>
   using common = promote_t<A, B>;
   return static_cast<common>(a) / static_cast<common>(b);
 }
+
+template <class A, class B>
+  requires detail::DifferentSizes<A, B>
+auto operator+(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, class B>
+  requires detail::DifferentSizes<A, B>
+auto operator-(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, class B>
+  requires detail::DifferentSizes<A, B>
+auto operator*(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, class B>
+  requires detail::DifferentSizes<A, B>
+auto operator/(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
 } // namespace duet
 

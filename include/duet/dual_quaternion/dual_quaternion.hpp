@@ -25,6 +25,7 @@ using dual_vector = vector3<screw_dual<T>>;
 template <class T>
 using dual_quaternion = quaternion<screw_dual<T>>;
 
+/// a + εb
 template <class T>
 [[nodiscard]] dual_vector<T> make_dual_vector(const vector3<T>& a, const vector3<T>& b) {
   using D = screw_dual<T>;
@@ -48,10 +49,12 @@ template <class T>
 [[nodiscard]] constexpr quaternion<T> dual_part(const dual_quaternion<T>& a) {
   return {a.w().epsilon(), a.x().epsilon(), a.y().epsilon(), a.z().epsilon()};
 }
+/// a of a + εb.
 template <class T>
 [[nodiscard]] vector3<T> real_part(const dual_vector<T>& v) {
   return {v[0].value(), v[1].value(), v[2].value()};
 }
+/// b of a + εb.
 template <class T>
 [[nodiscard]] vector3<T> dual_part(const dual_vector<T>& v) {
   return {v[0].epsilon(), v[1].epsilon(), v[2].epsilon()};

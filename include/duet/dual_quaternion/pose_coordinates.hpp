@@ -13,6 +13,7 @@
 
 namespace duet {
 
+/// [t; α]: a place, then a quaternion, scalar first.
 template <class T>
 using vector7 = Eigen::Matrix<T, 7, 1>;
 

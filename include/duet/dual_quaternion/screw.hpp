@@ -22,6 +22,7 @@ template <class A, class B, class S>
   return slerp(a, b, tau, round);
 }
 
+/// What a rigid displacement consists of.
 enum class screw_kind {
   none,        ///< no motion
   translation, ///< along the axis, which stands nowhere in particular
@@ -78,6 +79,7 @@ template <class T>
   return exp(dual_vector<T>(make_dual_vector(axis, moment) *
                             screw_dual<T>(T(angle / 2), T(translation / 2))));
 }
+/// The displacement that `screw_parameters` was of, up to sign.
 template <class T>
 [[nodiscard]] dual_quaternion<T> from_screw(const screw_motion<T>& s) {
   return from_screw(s.axis, s.moment, s.angle, s.translation);

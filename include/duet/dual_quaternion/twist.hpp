@@ -8,6 +8,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 
 #include <Eigen/Core>
 
@@ -22,6 +23,7 @@ namespace duet {
 /// [v; ω]: linear, then angular.
 template <class T>
 using vector6 = Eigen::Matrix<T, 6, 1>;
+/// What twists [v; ω] are multiplied by.
 template <class T>
 using matrix6 = Eigen::Matrix<T, 6, 6>;
 
@@ -42,6 +44,18 @@ template <class T>
                           vector3<T>(twist.template head<3>()));
 }
 
+namespace detail {
+
+/// A twist of `frame::spatial` in `frame::hybrid`: v + ω × t, where t is the origin of the body.
+template <class A, class T>
+[[nodiscard]] vector6<T> hybrid_twist(const dual_quaternion<A>& a, vector6<T> spatial) {
+  spatial.template head<3>() +=
+      cross_product(vector3<T>(spatial.template tail<3>()), translation(a));
+  return spatial;
+}
+
+} // namespace detail
+
 /// N18: the twist [v; ω] of a moving pose with Ȧ = ½ V^s A = ½ A V^b, V = ω + εv.
 ///
 /// `frame::spatial`: fixed axes, v the velocity of the body point at the fixed origin,
@@ -52,12 +66,7 @@ template <class A, class B, class Frame>
                                              const dual_quaternion<B>& a_dot, Frame frame) {
   using T = promote_t<A, B>;
   if constexpr (std::same_as<Frame, hybrid_frame>) {
-    vector6<T> v = twist(a, a_dot, frame::spatial);
-    const vector3<A> t = translation(a);
-    v[0] += v[4] * t[2] - v[5] * t[1];
-    v[1] += v[5] * t[0] - v[3] * t[2];
-    v[2] += v[3] * t[1] - v[4] * t[0];
-    return v;
+    return detail::hybrid_twist(a, twist(a, a_dot, frame::spatial));
   } else {
     return twist_of<T>(angular_velocity(a, a_dot, frame));
   }

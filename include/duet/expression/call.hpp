@@ -73,4 +73,28 @@ template <class... Roots, class Held, class... Arguments>
   return evaluated_nodes<Roots...>(given<Held, Arguments...>{held, arguments...});
 }
 
+/// What is made of a formula and called by name as the formula is: `Derived::evaluate` of values
+/// that are complete.
+template <class Derived, class F>
+class called_by_name {
+public:
+  constexpr explicit called_by_name(const F& f) : f_(f) {}
+
+  template <class... Arguments>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
+    if constexpr (call_of<held>::template is_complete<Arguments...>()) {
+      return static_cast<const Derived&>(*this).evaluate(arguments...);
+    }
+  }
+
+protected:
+  using node = typename F::node_type;
+  using held = typename F::held_type;
+
+  template <class... Arguments>
+  using scalar = typename given<held, Arguments...>::scalar;
+
+  F f_;
+};
+
 } // namespace duet::expression::detail

@@ -114,6 +114,7 @@ concept Constant = !std::is_array_v<T> && detail::constant_traits<T>::is_constan
 template <class... T>
 concept Operands = (Term<T> || ...) && ((Term<T> || Constant<T>)&&...);
 
+/// A formula: its type is the tree of its operations, its members are its constants alone.
 template <Node NodeType, class Held>
 class formula {
 public:
@@ -147,7 +148,7 @@ public:
       }
     }();
     static_assert(is_right_kind, "duet: a symbol is given a value of another kind; scalar, vector, "
-                                 "quaternion and pose symbols take just that");
+                                 "quaternion, dual vector and pose symbols take just that");
     if constexpr (is_right_kind) {
       using held_type_of_value = typename detail::constant_traits<T>::held_type;
       return detail::argument<NodeType, held_type_of_value>{static_cast<held_type_of_value>(value)};

@@ -120,11 +120,12 @@ private:
   template <class Node>
   using slot_of = slot<Node, typename value_of<Node, Given>::type>;
   template <class Node>
-  static constexpr bool has = (std::is_same_v<Node, Nodes> || ...);
+  static constexpr bool has = mp11::mp_set_contains<mp11::mp_list<Nodes...>, Node>::value;
 
   template <int Stage>
   DUET_ALWAYS_INLINE constexpr void fill_from(const Given& g) {
-    (fill<Stage>(g, Nodes{}), ...);
+    // No fold: clang lets them nest 256 deep.
+    [[maybe_unused]] const bool filled[] = {(fill<Stage>(g, Nodes{}), true)...};
     if constexpr (Stage < std::max({0, stage_of<Nodes>...})) {
       take_sines(typename sines_of_stage<Stage, mp11::mp_list<>, Nodes...>::type{});
       fill_from<Stage + 1>(g);

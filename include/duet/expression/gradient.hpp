@@ -10,6 +10,7 @@
 #include <duet/expression/variables.hpp>
 
 #include <Eigen/Core>
+#include <boost/mp11/list.hpp>
 
 /// \file
 /// Gradients and Hessians of scalar formulas. Which derivatives are zero is known to the compiler.
@@ -19,79 +20,67 @@ namespace duet::expression {
 namespace detail {
 
 /// The gradient of a formula, to be called with values for its symbols.
-template <class F, class Variables>
-class gradient_of {
+template <class F, class Motions>
+class gradient_of;
+template <class F, class... Motions>
+class gradient_of<F, motion_list<Motions...>>
+    : public called_by_name<gradient_of<F, motion_list<Motions...>>, F> {
+  using base = called_by_name<gradient_of, F>;
+  using typename base::node;
+
 public:
-  constexpr explicit gradient_of(const F& f) : f_(f) {}
+  using base::base;
 
   template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
-    if constexpr (call_of<typename F::held_type>::template is_complete<Arguments...>()) {
-      return with_motions(typename Variables::motions{}, arguments...);
-    }
-  }
-
-private:
-  using node = typename F::node_type;
-
-  template <class... Motions, class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto with_motions(motion_list<Motions...>,
-                                                     const Arguments&... arguments) const {
-    using S = typename given<typename F::held_type, Arguments...>::scalar;
-    const auto values = called<node, rate_t<node, Motions>...>(f_.held(), arguments...);
+  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
+    using S = typename base::template scalar<Arguments...>;
+    const auto values = called<node, rate_t<node, Motions>...>(this->f_.held(), arguments...);
     value_and_gradient<S, Eigen::Matrix<S, int(sizeof...(Motions)), 1>> result;
     result.value = values[node{}];
     int i = 0;
     ((result.gradient[i++] = S(values[rate_t<node, Motions>{}])), ...);
     return result;
   }
+};
 
-  F f_;
+/// The second derivatives of a node by motions i ≤ j, row by row.
+template <class Node, class... Motions>
+struct upper_triangle {
+  using type = boost::mp11::mp_list<>;
+};
+template <class Node, class Motion, class... Rest>
+struct upper_triangle<Node, Motion, Rest...> {
+  using by_motion = rate_t<Node, Motion>;
+  using type = boost::mp11::mp_append<
+      boost::mp11::mp_list<rate_t<by_motion, Motion>, rate_t<by_motion, Rest>...>,
+      typename upper_triangle<Node, Rest...>::type>;
 };
 
 /// The Hessian, its upper triangle evaluated.
-template <class F, class Variables>
-class hessian_of {
+template <class F, class Motions>
+class hessian_of;
+template <class F, class... Motions>
+class hessian_of<F, motion_list<Motions...>>
+    : public called_by_name<hessian_of<F, motion_list<Motions...>>, F> {
+  using base = called_by_name<hessian_of, F>;
+  using typename base::node;
+
 public:
-  constexpr explicit hessian_of(const F& f) : f_(f) {}
+  using base::base;
 
   template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
-    if constexpr (call_of<typename F::held_type>::template is_complete<Arguments...>()) {
-      return with_motions(typename Variables::motions{}, arguments...);
-    }
+  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
+    return with_second(typename upper_triangle<node, Motions...>::type{}, arguments...);
   }
 
 private:
-  using node = typename F::node_type;
-
-  template <class Motion, class... Rest>
-  struct row {
-    using roots = boost::mp11::mp_list<rate_t<rate_t<node, Motion>, Motion>,
-                                       rate_t<rate_t<node, Motion>, Rest>...>;
-  };
-  template <class... Motions>
-  struct rows {
-    using roots = boost::mp11::mp_list<>;
-  };
-  template <class Motion, class... Rest>
-  struct rows<Motion, Rest...> {
-    using roots =
-        boost::mp11::mp_append<typename row<Motion, Rest...>::roots, typename rows<Rest...>::roots>;
-  };
-
-  template <class... Motions, class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto with_motions(motion_list<Motions...>,
-                                                     const Arguments&... arguments) const {
-    return with_second(motion_list<Motions...>{}, typename rows<Motions...>::roots{}, arguments...);
-  }
-  template <class... Motions, class... Second, class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto with_second(motion_list<Motions...>,
-                                                    boost::mp11::mp_list<Second...>,
+  template <class... Second, class... Arguments>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto with_second(boost::mp11::mp_list<Second...>,
                                                     const Arguments&... arguments) const {
     constexpr int n = int(sizeof...(Motions));
-    using S = typename given<typename F::held_type, Arguments...>::scalar;
-    const auto values = called<node, rate_t<node, Motions>..., Second...>(f_.held(), arguments...);
+    using S = typename base::template scalar<Arguments...>;
+    const auto values =
+        called<node, rate_t<node, Motions>..., Second...>(this->f_.held(), arguments...);
     value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
     result.value = values[node{}];
     int i = 0;
@@ -107,8 +96,6 @@ private:
     (write(S(values[Second{}])), ...);
     return result;
   }
-
-  F f_;
 };
 
 } // namespace detail
@@ -119,7 +106,7 @@ template <Formula F, class... Symbols>
 [[nodiscard]] constexpr auto gradient(const F& f, variables<Symbols...>) {
   static_assert(F::node_type::kind_of == kind::scalar,
                 "duet: a gradient is that of a scalar formula; others have a jacobian");
-  return detail::gradient_of<F, variables<Symbols...>>(f);
+  return detail::gradient_of<F, typename variables<Symbols...>::motions>(f);
 }
 
 /// f, its gradient and its symmetric Hessian, to be called likewise.
@@ -127,7 +114,7 @@ template <Formula F, class... Symbols>
 [[nodiscard]] constexpr auto hessian(const F& f, variables<Symbols...>) {
   static_assert(F::node_type::kind_of == kind::scalar,
                 "duet: a Hessian is that of a scalar formula");
-  return detail::hessian_of<F, variables<Symbols...>>(f);
+  return detail::hessian_of<F, typename variables<Symbols...>::motions>(f);
 }
 
 } // namespace duet::expression

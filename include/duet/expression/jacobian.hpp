@@ -47,36 +47,31 @@ DUET_ALWAYS_INLINE void write_column(T* column, const V& v) {
 }
 
 /// The Jacobian of a formula, to be called with values for its symbols.
-template <class F, class Variables, class Frame>
-class jacobian_of {
+template <class F, class Motions, class Frame>
+class jacobian_of;
+template <class F, class... Motions, class Frame>
+class jacobian_of<F, motion_list<Motions...>, Frame>
+    : public called_by_name<jacobian_of<F, motion_list<Motions...>, Frame>, F> {
+  using base = called_by_name<jacobian_of, F>;
+  using typename base::node;
+
 public:
-  constexpr explicit jacobian_of(const F& f) : f_(f) {}
+  using base::base;
 
   template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
-    if constexpr (call_of<typename F::held_type>::template is_complete<Arguments...>()) {
-      return with_motions(typename Variables::template motions_in<Frame>{}, arguments...);
-    }
-  }
-
-private:
-  using node = typename F::node_type;
-
-  template <class... Motions, class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto with_motions(motion_list<Motions...>,
-                                                     const Arguments&... arguments) const {
-    using S = typename given<typename F::held_type, Arguments...>::scalar;
+  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
+    using S = typename base::template scalar<Arguments...>;
     constexpr int rows = node::kind_of == kind::pose ? 6 : 3;
     if constexpr (is_pose_chain<node> && std::is_same_v<Frame, spatial_frame> &&
                   std::is_same_v<S, double>) {
       value_and_jacobian<dual_quaternion<double>, Eigen::Matrix<S, 6, int(sizeof...(Motions))>>
           result;
       using chain = pose_chain<typename factors<node>::type, motion_list<Motions...>>;
-      result.value = chain::evaluate(result.jacobian.data(), f_.held(), arguments...);
+      result.value = chain::evaluate(result.jacobian.data(), this->f_.held(), arguments...);
       return result;
     } else {
-      const auto values =
-          called<node, decltype(column_of<node, Motions, Frame>())...>(f_.held(), arguments...);
+      const auto values = called<node, decltype(column_of<node, Motions, Frame>())...>(
+          this->f_.held(), arguments...);
       using value = std::decay_t<decltype(values[node{}])>;
       value_and_jacobian<value, Eigen::Matrix<S, rows, int(sizeof...(Motions))>> result;
       result.value = values[node{}];
@@ -85,8 +80,6 @@ private:
       return result;
     }
   }
-
-  F f_;
 };
 
 template <class F, class Variables, class Frame>
@@ -96,7 +89,7 @@ template <class F, class Variables, class Frame>
       k == kind::vector || k == kind::quaternion || k == kind::pose,
       "duet: a Jacobian is that of a vector, a rotation or a pose; a scalar formula has a "
       "gradient");
-  return jacobian_of<F, Variables, Frame>(f);
+  return jacobian_of<F, typename Variables::template motions_in<Frame>, Frame>(f);
 }
 
 } // namespace detail
@@ -104,8 +97,9 @@ template <class F, class Variables, class Frame>
 /// f and the matrix ∂f/∂(u, w …), a function to be called by name:
 /// `auto [x, J] = jacobian(f, wrt(u, w), frame::spatial)(u = 0.3, w = w0)`.
 ///
-/// Columns are of the variables in their order: a scalar has one, a vector three, a rotation three
-/// and a pose six, in which it moves along its tangent coordinates. Rows: the components of a
+/// Columns are of the variables in their order: a scalar has one, a vector three, a dual vector n +
+/// εm six in the order [m; n], a rotation three and a pose six, in which it moves along its tangent
+/// coordinates. Rows: the components of a
 /// vector; the angular velocity of a rotation (N7); the twist [v; ω] of a pose (N18). Rotations and
 /// poses, on both sides, are taken as unit, and in `frame::spatial` or `frame::body`.
 template <Formula F, class... Symbols, class Frame>

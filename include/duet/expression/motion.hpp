@@ -27,24 +27,26 @@ struct moving_value {
 
 namespace detail {
 
+/// The motion of a formula, to be called with values for its symbols.
 template <class F, class Symbol, class Frame>
-class motion_of {
+class motion_of : public called_by_name<motion_of<F, Symbol, Frame>, F> {
+  using base = called_by_name<motion_of, F>;
+  using typename base::node;
+
 public:
-  constexpr explicit motion_of(const F& f) : f_(f) {}
+  using base::base;
 
   template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
-    if constexpr (call_of<typename F::held_type>::template is_complete<Arguments...>()) {
-      using node = typename F::node_type;
-      using by_symbol = movement_of_scalar<Symbol>;
-      using velocity_node = decltype(velocity_of<Frame, node, by_symbol>());
-      using acceleration_node = rate_t<velocity_node, by_symbol>;
-      const auto values = called<node, velocity_node, acceleration_node>(f_.held(), arguments...);
-      using S = typename given<typename F::held_type, Arguments...>::scalar;
-      const auto velocity = column<S>(values[velocity_node{}]);
-      return moving_value<std::decay_t<decltype(values[node{}])>, std::decay_t<decltype(velocity)>>{
-          values[node{}], velocity, column<S>(values[acceleration_node{}])};
-    }
+  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
+    using by_symbol = movement_of_scalar<Symbol>;
+    using velocity_node = decltype(velocity_of<Frame, node, by_symbol>());
+    using acceleration_node = rate_t<velocity_node, by_symbol>;
+    const auto values =
+        called<node, velocity_node, acceleration_node>(this->f_.held(), arguments...);
+    using S = typename base::template scalar<Arguments...>;
+    const auto velocity = column<S>(values[velocity_node{}]);
+    return moving_value<std::decay_t<decltype(values[node{}])>, std::decay_t<decltype(velocity)>>{
+        values[node{}], velocity, column<S>(values[acceleration_node{}])};
   }
 
 private:
@@ -56,8 +58,6 @@ private:
       return vector3<S>(v[0], v[1], v[2]);
     }
   }
-
-  F f_;
 };
 
 } // namespace detail

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/expression/lanes.hpp>
+#include <duet/expression/triple_and_quadruple.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 

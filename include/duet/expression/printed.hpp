@@ -8,6 +8,7 @@
 
 namespace duet::expression {
 
+/// How a formula is written.
 enum class notation {
   text, ///< as in a program, with ^ for powers
   latex

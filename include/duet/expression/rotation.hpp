@@ -224,6 +224,18 @@ template <detail::QuaternionOrPose Q>
 [[nodiscard]] constexpr auto conj(const Q& q) {
   return apply<op::conj>(q);
 }
+/// p · q, the product of quaternions as vectors of four components; of dual quaternions, as of
+/// lines, a dual number.
+template <class P, class Q, class Tag = decltype([] {})>
+  requires(Operands<P, Q> && (detail::QuaternionOrPose<P> || detail::QuaternionOrPose<Q>))
+[[nodiscard]] constexpr auto dot(const P& p, const Q& q) {
+  return apply<op::dot>(detail::term<Tag>(p), detail::term<Tag>(q));
+}
+/// N3: |q|, without overflow; of a dual quaternion a dual number (N16). Not differentiable at 0.
+template <detail::QuaternionOrPose Q>
+[[nodiscard]] constexpr auto norm(const Q& q) {
+  return apply<op::norm>(q);
+}
 /// The vector part of a quaternion.
 template <detail::QuaternionOrPose Q>
 [[nodiscard]] constexpr auto vec(const Q& q) {

@@ -4,6 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/screw.hpp>
+#include <duet/expression/dual_parts.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/formula.hpp>
 #include <duet/expression/node.hpp>
@@ -93,21 +94,6 @@ struct make_pose {
   }
 };
 
-struct rotation {
-  static constexpr kind kind_of(kind) { return kind::quaternion; }
-  template <class A>
-  static auto value(const A& a) {
-    return duet::rotation(a);
-  }
-  template <class A, class DA>
-  static constexpr auto differential(A, DA da) {
-    return apply<rotation>(da);
-  }
-  static printed print(notation style, const printed& a) {
-    return detail::printed_call(style, {"rotation", ""}, a.text);
-  }
-};
-
 struct translation {
   static constexpr kind kind_of(kind) { return kind::vector; }
   template <class A>
@@ -116,43 +102,6 @@ struct translation {
   }
   static printed print(notation style, const printed& a) {
     return detail::printed_call(style, {"translation", ""}, a.text);
-  }
-};
-
-/// Real or dual part of a dual vector.
-template <bool Dual>
-struct part {
-  static constexpr kind kind_of(kind) { return kind::vector; }
-  template <class V>
-  static auto value(const V& v) {
-    if constexpr (Dual) {
-      return duet::dual_part(v);
-    } else {
-      return duet::real_part(v);
-    }
-  }
-  template <class V, class DV>
-  static constexpr auto differential(V, DV dv) {
-    return apply<part>(dv);
-  }
-  template <int I>
-  static constexpr auto simplified(unit_vector_node<kind::dual_vector, I>) {
-    if constexpr ((I < 3) != Dual) {
-      return unit_vector_node<kind::vector, I % 3>{};
-    } else {
-      return zero_node<kind::vector>{};
-    }
-  }
-  template <class V>
-  static constexpr auto simplified(V) {
-    if constexpr (is_zero<V>) {
-      return zero_node<kind::vector>{};
-    } else {
-      return applied_node<part, V>{};
-    }
-  }
-  static printed print(notation style, const printed& v) {
-    return detail::printed_call(style, {Dual ? "dual_part" : "real_part", ""}, v.text);
   }
 };
 

@@ -49,6 +49,9 @@ using vector_symbol = detail::symbol_of_kind<kind::vector, Name>;
 /// A rotation, by a unit quaternion.
 template <name Name>
 using quaternion_symbol = detail::symbol_of_kind<kind::quaternion, Name>;
+/// A line, screw or twist n + εm, by a dual vector (N12).
+template <name Name>
+using dual_vector_symbol = detail::symbol_of_kind<kind::dual_vector, Name>;
 /// A rigid motion, by a unit dual quaternion.
 template <name Name>
 using pose_symbol = detail::symbol_of_kind<kind::pose, Name>;

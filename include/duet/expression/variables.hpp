@@ -36,6 +36,17 @@ struct directions<Symbol, Frame, kind::vector> {
                            movement<moving<Symbol, unit_vector_node<kind::vector, 2>>>>;
 };
 
+/// In the order of [m; n], that of twists.
+template <class Symbol, class Frame>
+struct directions<Symbol, Frame, kind::dual_vector> {
+  using type = motion_list<movement<moving<Symbol, unit_vector_node<kind::dual_vector, 3>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 4>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 5>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 0>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 1>>>,
+                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 2>>>>;
+};
+
 } // namespace detail
 
 /// Variables in an order; made by `wrt`.
@@ -49,7 +60,7 @@ struct variables {
 };
 
 /// With respect to u, w …: the columns of a Jacobian in this order, one for a scalar, three for a
-/// vector or a rotation, six for a pose.
+/// vector or a rotation, six for a dual vector n + εm, in the order [m; n], or a pose.
 template <Symbol... U>
 [[nodiscard]] constexpr variables<typename U::node_type...> wrt(const U&...) {
   static_assert(sizeof...(U) > 0, "duet: wrt needs at least one symbol");

@@ -11,6 +11,8 @@
 #include <duet/expression/number.hpp>
 #include <duet/expression/printed.hpp>
 #include <duet/expression/product.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/quaternion.hpp>
 
 #include <cmath>
 #include <string>
@@ -60,12 +62,17 @@ template <kind K, int I, class Held>
 
 namespace op {
 
+/// The sum of the products of components, of vectors and quaternions.
 struct dot {
   static constexpr kind kind_of(kind, kind) { return kind::scalar; }
   template <class A, class B>
   DUET_ALWAYS_INLINE static auto value(const A& a, const B& b) {
-    using T = promote_t<typename A::Scalar, typename B::Scalar>;
-    return T(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    if constexpr (detail::ThreeComponents<A>) {
+      using T = promote_t<typename A::Scalar, typename B::Scalar>;
+      return T(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    } else {
+      return duet::dot(a, b);
+    }
   }
   template <class A, class B, class DA, class DB>
   static constexpr auto differential(A a, B b, DA da, DB db) {
@@ -119,13 +126,17 @@ struct cross {
   }
 };
 
-/// |v|
+/// |v|, of vectors and quaternions
 struct norm {
   static constexpr kind kind_of(kind) { return kind::scalar; }
   template <class V>
   static auto value(const V& v) {
-    using std::hypot;
-    return duet::rule::hypot{}.value(v[0], v[1], v[2]);
+    if constexpr (detail::ThreeComponents<V>) {
+      using std::hypot;
+      return duet::rule::hypot{}.value(v[0], v[1], v[2]);
+    } else {
+      return duet::norm(v);
+    }
   }
   template <class V, class DV>
   static constexpr auto differential(V v, DV dv) {

@@ -38,6 +38,7 @@ struct placement {
   }
 };
 
+/// How a joint moves.
 enum class joint_kind {
   revolute,   ///< turns about its axis, between limits
   continuous, ///< turns about its axis, as often as it likes

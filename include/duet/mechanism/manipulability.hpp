@@ -1,16 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/derivative/gradient.hpp>
+#include <duet/dual/eigen_lanes.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
 
+#include <Eigen/Core>
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 /// \file
 /// How far a chain is from a singularity, after Yoshikawa.
@@ -36,16 +40,39 @@ template <class C, class X, class... At>
   }
 }
 
-/// |det R| of M = QR, without the squares of what is small in det(MᵀM).
-template <class QR>
-[[nodiscard]] auto volume(const QR& qr) {
+template <class S, class M>
+struct volume_and_inverse {
+  S volume;  ///< |det R| of M = QR, without the squares of what is small in det(MᵀM)
+  M inverse; ///< M⁺, where it was asked for
+};
+
+/// By QR with pivoting, which lanes of batches take one by one.
+template <bool WithInverse, class M>
+[[nodiscard]] auto decomposed(const M& m) {
   using std::abs;
-  using S = typename QR::MatrixType::Scalar;
-  S product(1);
-  for (Eigen::Index i = 0; i < qr.cols(); ++i) {
-    product *= qr.matrixQR()(i, i);
+  using S = typename M::Scalar;
+  using square = Eigen::Matrix<S, M::RowsAtCompileTime, M::RowsAtCompileTime, Eigen::ColMajor,
+                               M::MaxRowsAtCompileTime, M::MaxRowsAtCompileTime>;
+  using inverse = Eigen::Matrix<S, M::ColsAtCompileTime, M::RowsAtCompileTime, Eigen::ColMajor,
+                                M::MaxColsAtCompileTime, M::MaxRowsAtCompileTime>;
+  volume_and_inverse<S, inverse> result{S(1), {}};
+  if constexpr (Batched<S>) {
+    const auto volume = [](const auto& x) { return decomposed<false>(x).volume; };
+    result.volume = by_lane(volume, m);
+    if constexpr (WithInverse) {
+      result.inverse = by_lane([](const auto& x) { return decomposed<true>(x).inverse; }, m);
+    }
+  } else {
+    const Eigen::ColPivHouseholderQR<M> qr(m);
+    for (Eigen::Index i = 0; i < qr.cols(); ++i) {
+      result.volume *= qr.matrixQR()(i, i);
+    }
+    result.volume = S(abs(result.volume));
+    if constexpr (WithInverse) {
+      result.inverse = qr.solve(square::Identity(m.rows(), m.rows()));
+    }
   }
-  return S(abs(product));
+  return result;
 }
 
 } // namespace detail
@@ -57,8 +84,7 @@ template <class QR>
 /// Arguments as `jacobian`.
 template <SerialChain C, VectorLike X, class... At>
 [[nodiscard]] auto manipulability(const C& chain, const X& theta, const At&... at) {
-  const auto m = detail::tall_jacobian(chain, theta, at...);
-  return detail::volume(Eigen::ColPivHouseholderQR<std::remove_cv_t<decltype(m)>>(m));
+  return detail::decomposed<false>(detail::tall_jacobian(chain, theta, at...)).volume;
 }
 
 /// w and ∇w, ∂w/∂θ_j = w tr(J⁺ ∂J/∂θ_j). Arguments as `jacobian`.
@@ -67,17 +93,11 @@ template <SerialChain C, VectorLike X, class... At>
 [[nodiscard]] auto manipulability_gradient(const C& chain, const X& theta, const At&... at) {
   using S = detail::chain_scalar<C, X>;
   using vector = detail::joint_vector<S, C::joints>;
-  const auto m = detail::tall_jacobian(chain, theta, at...);
-  using matrix = std::remove_cv_t<decltype(m)>;
-  const Eigen::ColPivHouseholderQR<matrix> qr(m);
-  value_and_gradient<S, vector> result{detail::volume(qr), vector(chain.size())};
-  if (innermost(result.value) == 0) {
+  const auto [w, inverse] = detail::decomposed<true>(detail::tall_jacobian(chain, theta, at...));
+  if (any(innermost(w) == 0)) {
     throw invalid_input("duet: manipulability_gradient: the Jacobian loses rank here");
   }
-  using square =
-      Eigen::Matrix<S, matrix::RowsAtCompileTime, matrix::RowsAtCompileTime, Eigen::ColMajor,
-                    matrix::MaxRowsAtCompileTime, matrix::MaxRowsAtCompileTime>;
-  const auto inverse = qr.solve(square::Identity(m.rows(), m.rows())).eval(); // M⁺
+  value_and_gradient<S, vector> result{w, vector(chain.size())};
   const auto h = kinematic_hessian(chain, theta, frame::hybrid, at...);
   for (Eigen::Index j = 0; j < chain.size(); ++j) {
     const auto by_j = h[j];

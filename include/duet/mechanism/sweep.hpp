@@ -112,6 +112,7 @@ concept Configurations = std::ranges::contiguous_range<R> && VectorLike<detail::
 /// No heap is used on one core.
 /// \throws invalid_input where the sizes differ, and for another number of coordinates than the
 /// chain has
+/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
 template <SerialChain C, Configurations X, std::ranges::contiguous_range Out, class... At>
 void poses(const C& chain, const X& configurations, Out&& out, execution how = one_core,
            const At&... at) {

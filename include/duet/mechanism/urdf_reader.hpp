@@ -59,6 +59,10 @@ public:
     for (std::string link = tip; link != base;) {
       const auto above = joint_above_.find(link);
       if (above == joint_above_.end()) {
+        if (hangs_on(base, tip)) {
+          fail("", "the tip \"" + tip + "\" is an ancestor of the base \"" + base +
+                       "\": exchange them");
+        }
         fail("", "the link \"" + tip + "\" does not hang on \"" + base + "\": above \"" + link +
                      "\" there is no joint");
       }
@@ -199,6 +203,18 @@ private:
     if (result.limits.velocity < 0) {
       fail(place, "velocity is negative");
     }
+  }
+
+  /// Is there a way up from one link to another?
+  [[nodiscard]] bool hangs_on(std::string link, const std::string& ancestor) const {
+    for (std::size_t steps = 0; link != ancestor; ++steps) {
+      const auto above = joint_above_.find(link);
+      if (above == joint_above_.end() || steps == links_.size()) { // at the root, or in a cycle
+        return false;
+      }
+      link = above->second.get("parent.<xmlattr>.link", "");
+    }
+    return true;
   }
 
   void require_link(const std::string& where, const std::string& link) const {

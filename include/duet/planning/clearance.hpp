@@ -24,6 +24,7 @@ struct link_body {
   capsule<double> shape;
 };
 
+/// What a body can run into.
 using obstacle = std::variant<sphere<double>, box<double>, half_space<double>>;
 
 /// What a chain consists of, and what it must not touch, in the frame of its base.

@@ -30,10 +30,7 @@ template <class C, class Start, class Objective, class Scene>
                                             const plan_options& options, const Objective& objective,
                                             const Scene& around, bool is_out_of_reach = false) {
   require_options(options);
-  joint_vector<double, C::joints> theta(chain.size());
-  for (int i = 0; i < chain.size(); ++i) {
-    theta[i] = vector_argument<Start>::get(start, i);
-  }
+  const auto theta = joint_vector_of(chain, start);
   const pose_deviation gap = deviation_between(chain.pose(theta), target(stops.front()));
   if (!(gap.length <= options.tolerance && gap.angle <= options.tolerance)) {
     std::ostringstream message;
@@ -124,15 +121,17 @@ follow_path(const C& chain, const Start& start, std::span<const dual_quaternion<
   if (poses.empty()) {
     throw invalid_input("duet: follow_path: the list of poses is empty");
   }
+  std::vector<dual_quaternion<double>> unit_poses;
   std::vector<double> stops;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     detail::require_pose(poses[i], "follow_path", "pose " + std::to_string(i));
+    unit_poses.push_back(normalized(poses[i]));
     stops.push_back(double(i));
   }
   const auto target = [&](double u) {
-    const std::size_t i = std::min(std::size_t(u), poses.size() - 1);
-    const std::size_t next = std::min(i + 1, poses.size() - 1);
-    return sclerp(normalized(poses[i]), normalized(poses[next]), u - double(i));
+    const std::size_t i = std::min(std::size_t(u), unit_poses.size() - 1);
+    const std::size_t next = std::min(i + 1, unit_poses.size() - 1);
+    return sclerp(unit_poses[i], unit_poses[next], u - double(i));
   };
   return detail::follow(chain, start, target, std::move(stops), options, objective, around);
 }

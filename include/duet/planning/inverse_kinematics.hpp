@@ -45,6 +45,7 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
 /// out[i] = inverse_kinematics(chain, goals[i], start, options), with the same results on any
 /// number of cores.
 /// \throws invalid_input where the sizes differ, for the first goal that is no pose, and as above
+/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
 template <SerialChain C, VectorLike Start>
 void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
                         const Start& start, std::span<inverse_kinematics_result<C::joints>> out,

@@ -10,6 +10,7 @@
 #include <duet/planning/bounded_step.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/path_step.hpp>
+#include <duet/planning/plan_options.hpp>
 #include <duet/planning/reach.hpp>
 
 #include <Eigen/Cholesky>
@@ -55,17 +56,12 @@ struct inverse_kinematics_result {
 
 namespace detail {
 
+/// \throws invalid_input
 inline void require_options(const inverse_kinematics_options& options) {
-  const auto require = [](bool is_good, const char* name, double value, const char* rule) {
-    if (!is_good) {
-      std::ostringstream message;
-      message << "duet: inverse_kinematics: " << name << " is " << value << ", must be " << rule;
-      throw invalid_input(message.str());
-    }
-  };
-  require(options.tolerance > 0, "tolerance", options.tolerance, "positive");
-  require(options.restarts >= 0, "restarts", options.restarts, "0 or more");
-  require(options.iterations > 0, "iterations", options.iterations, "positive");
+  constexpr const char* caller = "inverse_kinematics";
+  require_positive_option(caller, "tolerance", options.tolerance);
+  require_positive_option(caller, "iterations", options.iterations);
+  require_option(options.restarts >= 0, caller, "restarts", options.restarts, "a number from 0 up");
 }
 
 /// A chain with what all searches on it have in common.
@@ -79,12 +75,11 @@ public:
   inverse_kinematics_search(const C& chain, const Start& start,
                             const inverse_kinematics_options& options)
       : chain_(chain), options_(options), reach_(chain), lower_(lower_limits(chain)),
-        upper_(upper_limits(chain)), turn_(chain.size()), beyond_(chain.size()),
-        start_(chain.size()) {
+        upper_(upper_limits(chain)), turn_(chain.size()), beyond_(chain.size()) {
     require_options(options);
     require_size(chain, start);
+    start_ = joint_vector_of(chain, start);
     for (int i = 0; i < chain.size(); ++i) {
-      start_[i] = vector_argument<Start>::get(start, i);
       if (!(start_[i] - start_[i] == 0)) {
         std::ostringstream message;
         message << "duet: inverse_kinematics: the start has " << start_[i] << " for joint " << i;

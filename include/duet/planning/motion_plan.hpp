@@ -24,11 +24,12 @@ enum class stop_reason {
   joint_limit,     ///< the way on leads beyond the limits of a joint
   singular,        ///< the way on leads through a singularity
   obstacle,        ///< the way on leads too close to an obstacle
-  no_progress,     ///< steps became too small, for neither of these reasons
+  no_progress,     ///< steps became too small, for none of these reasons
   iteration_limit, ///< the number of iterations that was allowed is used up
   out_of_reach     ///< the goal is farther away than the links reach
 };
 
+/// Its name.
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
   switch (reason) {
   case stop_reason::reached:
@@ -53,6 +54,7 @@ struct pose_deviation {
   double length = 0;
   double angle = 0;
 };
+/// Of a from b, or of b from a: the same.
 [[nodiscard]] inline pose_deviation deviation_between(const dual_quaternion<double>& a,
                                                       const dual_quaternion<double>& b) {
   return {(translation(b) - translation(a)).norm(),
@@ -96,6 +98,16 @@ void add_waypoint(motion_plan<C::joints>& plan, const C& chain,
     plan.smallest_limit_margin =
         std::min({plan.smallest_limit_margin, theta[i] - limits.lower, limits.upper - theta[i]});
   }
+}
+
+/// Coordinates of a chain's joints, as a vector of just their number.
+template <class C, class X>
+[[nodiscard]] joint_vector<double, C::joints> joint_vector_of(const C& chain, const X& x) {
+  joint_vector<double, C::joints> theta(chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    theta[i] = vector_argument<X>::get(x, i);
+  }
+  return theta;
 }
 
 /// \throws invalid_input for a start that is not finite or outside the limits

@@ -26,10 +26,8 @@ namespace duet::detail {
   if (innermost(difference.w()) < 0) {
     difference = -difference;
   }
-  vector6<double> v = 2 * twist_of(dual_vector<double>(log(difference).vec()));
-  const Eigen::Vector3d omega = v.tail<3>();
-  v.head<3>() += omega.cross(translation(from));
-  return v;
+  const auto spatial = twist_of(dual_vector<double>(log(difference).vec()));
+  return hybrid_twist(from, vector6<double>(2 * spatial));
 }
 
 /// What takes joints away from their limits: up to a `step` that grows towards them.

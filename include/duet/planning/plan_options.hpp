@@ -34,26 +34,32 @@ struct plan_options {
 namespace detail {
 
 /// \throws invalid_input
+inline void require_option(bool holds, const char* caller, const char* name, double value,
+                           const char* range) {
+  if (!holds) {
+    std::ostringstream message;
+    message << "duet: " << caller << ": " << name << " is " << value << ", not " << range;
+    throw invalid_input(message.str());
+  }
+}
+/// \throws invalid_input
+inline void require_positive_option(const char* caller, const char* name, double value) {
+  require_option(value > 0 && value - value == 0, caller, name, value, "a number above 0");
+}
+
+/// \throws invalid_input
 inline void require_options(const plan_options& options) {
-  const auto require = [](bool holds, const char* name, double value, const char* range) {
-    if (!holds) {
-      std::ostringstream message;
-      message << "duet: plan: " << name << " is " << value << ", not " << range;
-      throw invalid_input(message.str());
-    }
-  };
-  const auto require_positive = [&](const char* name, double value) {
-    require(value > 0 && value - value == 0, name, value, "a number above 0");
-  };
-  require_positive("tolerance", options.tolerance);
-  require_positive("deviation", options.deviation);
-  require_positive("largest_step", options.largest_step);
-  require_positive("smallest_step", options.smallest_step);
-  require_positive("self_motion_step", options.self_motion_step);
-  require(options.centring >= 0 && options.centring - options.centring == 0, "centring",
-          options.centring, "a number from 0 up");
-  require(options.search_step == 0 || (options.search_step >= 1e-6 && options.search_step <= 1),
-          "search_step", options.search_step, "0 or from 1e-6 to 1");
+  constexpr const char* caller = "plan";
+  require_positive_option(caller, "tolerance", options.tolerance);
+  require_positive_option(caller, "deviation", options.deviation);
+  require_positive_option(caller, "largest_step", options.largest_step);
+  require_positive_option(caller, "smallest_step", options.smallest_step);
+  require_positive_option(caller, "self_motion_step", options.self_motion_step);
+  require_option(options.centring >= 0 && options.centring - options.centring == 0, caller,
+                 "centring", options.centring, "a number from 0 up");
+  require_option(options.search_step == 0 ||
+                     (options.search_step >= 1e-6 && options.search_step <= 1),
+                 caller, "search_step", options.search_step, "0 or from 1e-6 to 1");
 }
 
 } // namespace detail

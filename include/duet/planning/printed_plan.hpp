@@ -34,10 +34,7 @@ template <SerialChain C, VectorLike Start>
                                       const printed_plan_options& options = {}) {
   detail::require_problem(chain, start, goal);
   motion_plan<C::joints> plan;
-  detail::joint_vector<double, C::joints> theta(chain.size());
-  for (int i = 0; i < chain.size(); ++i) {
-    theta[i] = detail::vector_argument<Start>::get(start, i);
-  }
+  auto theta = detail::joint_vector_of(chain, start);
   const dual_quaternion<double> first = chain.pose(theta);
   const auto motion = screw_parameters(conj(first) * goal);
   const auto keep = [&](const dual_quaternion<double>& here) {

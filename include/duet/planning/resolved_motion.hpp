@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/select.hpp>
 #include <duet/derivative/linear_solve.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/mechanism/jacobian.hpp>
@@ -15,8 +16,8 @@ namespace duet {
 
 /// N22: B = Jᵀ(J Jᵀ)⁻¹ J2 of a chain's tip, n × 7: Θ̇ = B γ̇ are the least joint rates that move the
 /// tip with the rate γ̇ of γ = [t; α]. J is the spatial Jacobian, and "least" is |Θ̇|. Relative
-/// errors are about cond(J) ε, as long as cond(J)² ε is small. \throws invalid_input where J is not
-/// of full row rank, and as `jacobian`
+/// errors are about cond(J) ε, as long as cond(J)² ε is small.
+/// \throws invalid_input where J is not of full row rank, in any lane of batches, and as `jacobian`
 template <SerialChain C, VectorLike X>
 [[nodiscard]] auto resolved_rate_matrix(const C& chain, const X& theta) {
   using S = detail::chain_scalar<C, X>;
@@ -42,10 +43,10 @@ template <SerialChain C, VectorLike X, class T>
   using S = promote_t<detail::chain_scalar<C, X>, T>;
   using argument = detail::vector_argument<X>;
   const dual_quaternion<S> here(chain.pose(theta));
-  dual_quaternion<S> aligned(next);
-  if (innermost(dot(rotation(here), rotation(aligned))) < 0) {
-    aligned = -aligned;
-  }
+  const dual_quaternion<S> given(next);
+  const auto aligned = select(
+      innermost(dot(rotation(here), rotation(given))) < 0,
+      [&] { return dual_quaternion<S>(-given); }, [&] { return given; });
   const vector7<S> difference = pose_coordinates(aligned) - pose_coordinates(here);
   const auto b = resolved_rate_matrix(chain, theta);
   detail::joint_vector<S, C::joints> result(chain.size());

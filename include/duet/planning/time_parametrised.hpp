@@ -141,7 +141,7 @@ struct time_options {
 /// \param waypoints  joint coordinates, equal neighbours allowed
 /// \param velocity  of each joint, in coordinates per second, positive or infinite
 /// \param acceleration  of each joint, per second², positive and finite
-/// 	hrows invalid_input for no waypoints, coordinates that are not finite, and for limits that
+/// \throws invalid_input for no waypoints, coordinates that are not finite, and for limits that
 /// are not positive or of another number than the joints
 template <class V, VectorLike Velocity, VectorLike Acceleration>
 [[nodiscard]] auto time_parametrised(const std::vector<V>& waypoints, const Velocity& velocity,

@@ -110,8 +110,8 @@ private:
 ///
 /// \param weights  wᵢ ≥ 0 in proportion, or none for equal ones
 /// \throws invalid_input for nothing to average, elements that are not finite, and weights that are
-/// negative, not finite, all
-///         zero or too many or few; no_convergence where the rotations are all over the place
+/// negative, not finite, all zero or too many or few; no_convergence where the rotations are all
+/// over the place
 template <class T>
 [[nodiscard]] quaternion<T> average(const std::vector<quaternion<T>>& q,
                                     const std::vector<double>& weights = {}) {
@@ -124,8 +124,7 @@ template <class T>
   std::vector<R> w;
   std::vector<quaternion<R>> values;
   for (std::size_t k = 0; k < q.size(); ++k) {
-    if (!(detail::is_all_finite(q[k].w()) && detail::is_all_finite(q[k].x()) &&
-          detail::is_all_finite(q[k].y()) && detail::is_all_finite(q[k].z()))) {
+    if (!detail::is_all_finite(q[k])) {
       std::ostringstream message;
       message << "duet: average: element " << k << " is not finite: " << q[k];
       throw invalid_input(message.str());

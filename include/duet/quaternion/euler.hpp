@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
+#include <type_traits>
 
 /// \file
 /// Euler angles in all twelve sequences. `zyx` means R = R_z(first) R_y(second) R_x(third): the
@@ -57,12 +59,14 @@ template <class T>
 
 } // namespace detail
 
-/// The rotation R_i(a) R_j(b) R_k(c) of the sequence ijk; angles in the letters' order, radians.
+/// The rotation R_i(a) R_j(b) R_k(c) of the sequence ijk; angles in the letters' order, radians,
+/// integers among them.
 /// Example: `from_euler<zyx>(yaw, pitch, roll)`.
 template <euler_sequence Sequence, class A, class B, class C>
   requires Promotable<A, promote_t<B, C>>
 [[nodiscard]] auto from_euler(const A& a, const B& b, const C& c) {
-  using T = promote_t<A, promote_t<B, C>>;
+  using common = promote_t<A, promote_t<B, C>>;
+  using T = std::conditional_t<std::integral<common>, double, common>;
   return detail::axis_rotation(Sequence.first, T(a)) *
          detail::axis_rotation(Sequence.second, T(b)) * detail::axis_rotation(Sequence.third, T(c));
 }

@@ -28,9 +28,10 @@ template <class T>
   if constexpr (lane_traits<T>::is_batch) {
     const auto c = detail::first_stumpff_pair(s);
     return {c[0], v[0] * c[1], v[1] * c[1], v[2] * c[1]};
+  } else {
+    const T ratio = stumpff<1>(s);
+    return {stumpff<0>(s), v[0] * ratio, v[1] * ratio, v[2] * ratio};
   }
-  const T ratio = stumpff<1>(s);
-  return {stumpff<0>(s), v[0] * ratio, v[1] * ratio, v[2] * ratio};
 }
 
 /// exp(w + v) = e^w (cos|v| + v sin|v|/|v|) (N4).

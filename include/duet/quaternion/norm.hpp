@@ -4,6 +4,7 @@
 #include <duet/core/batch_lanes.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
+#include <duet/dual/structural_zero.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <algorithm>
@@ -50,6 +51,12 @@ template <class T>
 [[nodiscard]] auto is_zero(const quaternion<T>& q) {
   return innermost(q.w()) == 0 && innermost(q.x()) == 0 && innermost(q.y()) == 0 &&
          innermost(q.z()) == 0;
+}
+
+template <class T>
+[[nodiscard]] constexpr bool is_all_finite(const quaternion<T>& q) {
+  return is_all_finite(q.w()) && is_all_finite(q.x()) && is_all_finite(q.y()) &&
+         is_all_finite(q.z());
 }
 
 /// e such that 2^−e brings a number near 1.

@@ -21,6 +21,7 @@ namespace duet {
 /// A column of three scalars.
 template <class T>
 using vector3 = Eigen::Matrix<T, 3, 1>;
+/// A 3 × 3 matrix, as of a rotation.
 template <class T>
 using matrix3 = Eigen::Matrix<T, 3, 3>;
 

@@ -21,6 +21,7 @@
 
 namespace duet {
 
+/// Settings of `adaptive_table`.
 struct table_options {
   double length = 1; ///< of poses: the distance that counts as much as a turn by one radian
   std::size_t first_rows = 9;

@@ -29,6 +29,7 @@
 
 namespace duet {
 
+/// Settings of `fit`.
 struct fit_options {
   /// Of poses: the distance that counts as much as a turn by one radian.
   double length = 1;

@@ -30,11 +30,12 @@ template <class T>
 concept QuickInLanes = std::same_as < real_type_t<T>,
 double > &&(std::same_as<T, double> || std::same_as<T, screw_dual<double>>);
 
-/// The error of f, of the first parameter from i on that has one.
+/// To be called where f threw: its error again, with the first parameter from i on that has one,
+/// taken one by one. As it was where none has.
 template <class R, class F>
 [[noreturn]] void rethrow_with_row(std::span<const R> parameters, std::size_t i, const F& f) {
   span_hint hint;
-  for (;; ++i) {
+  for (; i < parameters.size(); ++i) {
     try {
       static_cast<void>(f(parameters[i], hint));
     } catch (const invalid_input& error) {
@@ -42,6 +43,7 @@ template <class R, class F>
       throw invalid_row(i, std::string(reason.substr(std::string_view("duet: ").size())));
     }
   }
+  throw;
 }
 
 /// out[i] = f(parameters[i], hint) with a hint for every block.
@@ -89,6 +91,7 @@ void evaluate_blocks(const char* function, std::span<const R> parameters, std::s
 /// the lanes of batches.
 /// \throws invalid_input where the sizes differ; invalid_row for the first parameter outside the
 /// domain of s
+/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
 template <class Spline>
 void evaluate(const Spline& s, std::span<const typename Spline::real_type> parameters,
               std::span<quaternion<typename Spline::scalar_type>> out, execution how = one_core) {

@@ -96,7 +96,8 @@ template <class Spline, class R, class T>
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i] < basis.front() || parameters[i] > basis.back()) {
       message << "parameter " << parameters[i] << " is outside the knots' domain, " << basis.front()
-              << " to " << basis.back();
+              << " to " << basis.back() << ": clamped_knots of parameters from "
+              << parameters.front() << " to " << parameters.back() << " hold all rows";
       throw invalid_row(i, message.str());
     }
   }

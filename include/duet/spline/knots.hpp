@@ -26,7 +26,8 @@ void check_knots(const std::vector<R>& knots, int order) {
   };
   const auto k = std::size_t(order);
   if (knots.size() < 2 * k) {
-    fail("order ", order, " needs at least ", 2 * k, " of them, got ", knots.size());
+    fail("order ", order, " needs at least ", 2 * k, " of them, got ", knots.size(),
+         ": clamped_knots(parameters, ", order, ") makes enough");
   }
   for (std::size_t i = 0; i < knots.size(); ++i) {
     if (!(knots[i] - knots[i] == 0)) {

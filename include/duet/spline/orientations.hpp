@@ -3,7 +3,6 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/structural_zero.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -76,8 +75,7 @@ template <class T>
   using std::abs;
   for (std::size_t i = 0; i < q.size(); ++i) {
     const auto length = norm(detail::innermost_of(q[i]));
-    const bool is_finite = detail::is_all_finite(q[i].w()) && detail::is_all_finite(q[i].x()) &&
-                           detail::is_all_finite(q[i].y()) && detail::is_all_finite(q[i].z());
+    const bool is_finite = detail::is_all_finite(q[i]);
     if (!is_finite || !(abs(length - 1) <= unit_norm_tolerance)) {
       std::ostringstream reason;
       reason << "quaternion " << q[i];

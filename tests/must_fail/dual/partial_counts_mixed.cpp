@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: no match for .?operator|invalid operands
+// expect: use of deleted function .*different_numbers_of_partials|selected deleted operator '\*'
 
 #include <duet/dual/math.hpp>
 

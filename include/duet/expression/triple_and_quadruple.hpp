@@ -15,14 +15,14 @@ namespace duet::expression::detail {
 
 typedef double four_lanes __attribute__((vector_size(32)));
 
-struct lanes {
+struct four_doubles {
   four_lanes v;
   DUET_ALWAYS_INLINE double operator[](int i) const { return v[i]; }
 };
 
-struct triple : lanes {
-  DUET_ALWAYS_INLINE triple(double x, double y, double z) : lanes{{x, y, z, 0}} {}
-  DUET_ALWAYS_INLINE explicit triple(const four_lanes& a) : lanes{a} {}
+struct triple : four_doubles {
+  DUET_ALWAYS_INLINE triple(double x, double y, double z) : four_doubles{{x, y, z, 0}} {}
+  DUET_ALWAYS_INLINE explicit triple(const four_lanes& a) : four_doubles{a} {}
 
   friend DUET_ALWAYS_INLINE triple operator*(const triple& a, double x) { return triple(a.v * x); }
   friend DUET_ALWAYS_INLINE triple operator+(const triple& a, const triple& b) {
@@ -40,9 +40,10 @@ struct triple : lanes {
 }
 
 /// A quaternion, scalar first.
-struct quadruple : lanes {
-  DUET_ALWAYS_INLINE quadruple(double w, double x, double y, double z) : lanes{{w, x, y, z}} {}
-  DUET_ALWAYS_INLINE explicit quadruple(const four_lanes& a) : lanes{a} {}
+struct quadruple : four_doubles {
+  DUET_ALWAYS_INLINE quadruple(double w, double x, double y, double z)
+      : four_doubles{{w, x, y, z}} {}
+  DUET_ALWAYS_INLINE explicit quadruple(const four_lanes& a) : four_doubles{a} {}
 
   /// Times s times the I-th unit vector.
   template <int I>

@@ -1,0 +1,73 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+/// \file
+/// How far a long run is, and how to end it early.
+
+namespace duet {
+
+/// How much of a range is done.
+struct progress {
+  std::size_t done;
+  std::size_t count; ///< of the whole range
+
+  /// From 0 to exactly 1.
+  [[nodiscard]] double share() const { return double(done) / double(count); }
+};
+
+/// What a long run tells its progress: a reference to a callable object that takes a `progress`.
+/// Where that returns `false`, it asks the run to end.
+///
+/// It refers to a variable, which must live as long as the run does; a lambda is given a name.
+class progress_callback {
+public:
+  /// Nobody is told.
+  constexpr progress_callback() = default;
+  template <class F>
+    requires(std::is_object_v<F> && !std::is_same_v<std::remove_cv_t<F>, progress_callback> &&
+             std::invocable<F&, const progress&>)
+  constexpr progress_callback(F& f) : object_(std::addressof(f)), call_(&call<F>) {}
+
+  [[nodiscard]] constexpr explicit operator bool() const { return call_ != nullptr; }
+  /// Shall the run go on?
+  [[nodiscard]] bool operator()(const progress& p) const { return call_(object_, p); }
+
+private:
+  template <class F>
+  [[nodiscard]] static bool call(const void* object, const progress& p) {
+    F& f = *static_cast<F*>(const_cast<void*>(object));
+    if constexpr (std::is_void_v<std::invoke_result_t<F&, const progress&>>) {
+      f(p);
+      return true;
+    } else {
+      return static_cast<bool>(f(p));
+    }
+  }
+
+  const void* object_ = nullptr;
+  bool (*call_)(const void*, const progress&) = nullptr;
+};
+
+/// A run that ended early because its progress callback asked for that.
+class cancelled : public std::runtime_error {
+public:
+  explicit cancelled(const progress& p)
+      : runtime_error("duet: cancelled with " + std::to_string(p.done) + " of " +
+                      std::to_string(p.count) + " elements done"),
+        completed_(p.done) {}
+
+  /// So many elements from the first on are done, and none behind them was begun.
+  [[nodiscard]] std::size_t completed() const noexcept { return completed_; }
+
+private:
+  std::size_t completed_;
+};
+
+} // namespace duet

@@ -1,0 +1,109 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "formulas/formula.hpp"
+#include "formulas/parts.hpp"
+
+#include <duet/expression/derivative.hpp>
+#include <duet/expression/formula.hpp>
+#include <duet/expression/node.hpp>
+#include <duet/expression/symbol.hpp>
+#include <duet/expression/text.hpp>
+
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+/// \file
+/// How rows of the table are written as expressions.
+
+namespace duet_formulas {
+
+/// Where a dual number stands in the arguments.
+struct dual_at {
+  std::size_t first;
+};
+
+/// In place of what is 0.
+struct zero {};
+
+/// What moves: a symbol, the symbol of its rate, and where its components stand in the arguments.
+template <class Symbol, class Rate, class Place>
+struct moving {
+  Symbol symbol;
+  Rate rate;
+  Place place;
+};
+template <class Symbol, class Rate>
+moving(Symbol, Rate, int) -> moving<Symbol, Rate, std::size_t>;
+template <class Symbol, class Rate>
+moving(Symbol, Rate, dual_at) -> moving<Symbol, Rate, dual_at>;
+/// What stands still, and a parameter that is 0.
+template <class Symbol, class Place>
+struct still {
+  Symbol symbol;
+  Place place;
+};
+template <class Symbol>
+still(Symbol, int) -> still<Symbol, std::size_t>;
+template <class Symbol>
+still(Symbol, zero) -> still<Symbol, zero>;
+
+template <class Symbol>
+auto read(const numbers<double>& x, std::size_t i) {
+  using duet::expression::kind;
+  constexpr kind k = Symbol::node_type::kind_of;
+  if constexpr (k == kind::scalar) {
+    return x[i];
+  } else if constexpr (k == kind::vector) {
+    return v_of(x, i);
+  } else if constexpr (k == kind::quaternion) {
+    return q_of(x, i);
+  } else if constexpr (k == kind::dual_vector) {
+    return duet::make_dual_vector(v_of(x, i), v_of(x, i + 3));
+  } else {
+    return duet::make_dual_quaternion(q_of(x, i), q_of(x, i + 4));
+  }
+}
+template <class Symbol>
+auto read(const numbers<double>& x, dual_at place) {
+  return duet::screw_dual<double>(x[place.first], x[place.first + 1]);
+}
+
+template <class Symbol>
+double read(const numbers<double>&, zero) {
+  return 0;
+}
+
+/// The values of the symbols, for a call by name.
+template <class... Inputs>
+auto read_all(const numbers<double>& x, const Inputs&... in) {
+  return std::tuple((in.symbol = read<decltype(in.symbol)>(x, in.place))...);
+}
+template <class... Inputs>
+auto read_rates(const numbers<double>& d, const Inputs&... in) {
+  return std::tuple((in.rate = read<decltype(in.rate)>(d, in.place))...);
+}
+
+template <class F, class Moves, class Stands>
+expression_route expression_route::part(const F& f, const Moves& moves, const Stands& stands) && {
+  const auto rate = std::apply(
+      [&](const auto&... m) { return directional_derivative(f, along(m.symbol, m.rate)...); },
+      moves);
+  text += (text.empty() ? "`" : ", `") + to_text(f) + "`";
+  derivative = "`directional_derivative`";
+  const auto symbols_at = [=](const numbers<double>& x) {
+    return std::apply([&](const auto&... in) { return read_all(x, in...); },
+                      std::tuple_cat(moves, stands));
+  };
+  values_.push_back([=](numbers<double>& y, const numbers<double>& x) {
+    append(y, std::apply(f, symbols_at(x)));
+  });
+  slopes_.push_back([=](numbers<double>& y, const numbers<double>& x, const numbers<double>& d) {
+    const auto rates = std::apply([&](const auto&... in) { return read_rates(d, in...); }, moves);
+    append(y, std::apply(rate, std::tuple_cat(symbols_at(x), rates)));
+  });
+  return std::move(*this);
+}
+
+} // namespace duet_formulas

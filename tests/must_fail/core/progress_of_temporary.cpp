@@ -1,0 +1,15 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+// expect: cannot bind non-const lvalue|no viable conversion
+
+#include <duet/core/parallel_for.hpp>
+
+const auto proceed = [](const duet::progress&) { return true; };
+
+#ifdef DUET_MUST_FAIL
+// What it refers to is gone when the run begins.
+const duet::execution how{2, [](const duet::progress&) { return true; }};
+#else
+const duet::execution how{2, proceed};
+#endif
+
+int main() { return how.report ? 0 : 1; }

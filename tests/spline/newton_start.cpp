@@ -1,0 +1,110 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/derivative/frame.hpp>
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/end_conditions.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/interpolation_equations.hpp>
+#include <duet/spline/rotation_vector_equations.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
+#include <duet/spline/spline_newton.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+namespace test_spline_newton_start {
+namespace {
+
+using cumulative = duet::cumulative_bspline<double>;
+template <int Order>
+using rotation_vector = duet::rotation_vector_spline<double, Order>;
+
+struct rows {
+  std::vector<double> parameters;
+  std::vector<duet::quaternion<double>> orientations;
+};
+
+/// A smooth motion that ends where it began, in steps of less than 0.024 rad.
+rows small_steps() {
+  constexpr int count = 400;
+  rows result;
+  for (int i = 0; i <= count; ++i) {
+    const double u = 2 * std::numbers::pi * i / count;
+    result.parameters.push_back(u);
+    result.orientations.push_back(duet::from_euler<duet::zyx>(
+        .8 * std::sin(u), .5 * std::cos(2 * u), .3 * std::sin(3 * u + 1)));
+  }
+  return result;
+}
+
+template <class Ends>
+auto equations(const cumulative*, const rows& data, const Ends& ends) {
+  return duet::detail::cubic_equations<double, Ends>(data.parameters, data.orientations, ends);
+}
+template <int Order, class Ends>
+auto equations(const rotation_vector<Order>*, const rows& data, const Ends& ends) {
+  const auto& q = data.orientations;
+  return duet::detail::rotation_vector_equations<double, Order>(
+      data.parameters, q,
+      duet::detail::rotation_vector_ends<double, Order>(ends, q.front(), q.back()));
+}
+
+/// How far Newton's method starts from where it ends, in relation to the largest unknown, and how
+/// many iterations there are between.
+struct way {
+  double length;
+  int iterations;
+};
+template <class Spline, class Ends>
+way way_of_newton(const rows& data, const Ends& ends) {
+  const auto f = equations(static_cast<const Spline*>(nullptr), data, ends);
+  const duet::detail::spline_newton newton(f);
+  const auto start = f.start();
+  double difference = 0, size = 0;
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    difference = std::max(difference, (start[k] - newton.solution()[k]).norm());
+    size = std::max(size, newton.solution()[k].norm());
+  }
+  return {difference / size, newton.iterations()};
+}
+
+/// \param most  of the way's length and iterations, with all ends
+template <class Spline>
+void check_all_ends(const way& most) {
+  const rows data = small_steps();
+  const auto free = duet::interpolate<Spline>(data.parameters, data.orientations);
+  const auto first = free.motion(data.parameters.front(), duet::frame::spatial);
+  const auto last = free.motion(data.parameters.back(), duet::frame::spatial);
+  const auto check = [&](const char* name, const auto& ends) {
+    CAPTURE(name);
+    const way found = way_of_newton<Spline>(data, ends);
+    CHECK(found.length <= most.length);
+    CHECK(found.iterations <= most.iterations);
+  };
+  check("natural", duet::natural{});
+  check("clamped", duet::clamped{first.velocity, last.velocity});
+  check("end_acceleration", duet::end_acceleration{first.acceleration, last.acceleration});
+  check("not_a_knot", duet::not_a_knot{});
+  check("periodic", duet::periodic{});
+}
+
+} // namespace
+
+TEST_CASE("cumulative cubic: Newton's method starts next to its solution where turns are small") {
+  check_all_ends<cumulative>({2e-4, 2});
+}
+
+TEST_CASE("rotation vectors: Newton's method starts near its solution where turns are small") {
+  check_all_ends<rotation_vector<4>>({.02, 3});
+  check_all_ends<rotation_vector<6>>({.07, 4});
+}
+
+} // namespace test_spline_newton_start
