@@ -77,7 +77,7 @@ template <int Rows, int Columns, class Tag, std::size_t... I, class... X>
 
 /// The Rows x Columns matrix of scalars, written row by row: `matrix<2, 2>(a, b, c, d)` has a and b
 /// in its first row. 1 to 6 rows and columns.
-template <int Rows, int Columns, class... X, class Tag = decltype([] {})>
+template <int Rows, int Columns, class... X, class Tag = decltype([](op::entries<1, 2>*) {})>
   requires Operands<X...>
 [[nodiscard]] constexpr auto matrix(const X&... x) {
   static_assert(1 <= Rows && Rows <= 6 && 1 <= Columns && Columns <= 6 && Rows * Columns > 1,

@@ -200,7 +200,8 @@ constexpr void require_square_matrix() {
 } // namespace detail
 
 /// Σ A_ij B_ij of two matrices of one size: xᵀ y of columns, tr(Aᵀ B) of others.
-template <class A, class B, class TagA = decltype([] {}), class TagB = decltype([] {})>
+template <class A, class B, class TagA = decltype([](op::inverse*) {}),
+          class TagB = decltype([](op::inverse*) {})>
   requires detail::SizedOperands<A, B>
 [[nodiscard]] constexpr auto dot(const A& a, const B& b) {
   static_assert(detail::kind_of_operand<A>() == detail::kind_of_operand<B>(),
@@ -242,7 +243,8 @@ template <detail::ScalarOrMatrix M>
 /// The x with A x = b, of a square matrix and a vector or matrix b of as many rows, with the
 /// derivative A⁻¹(db − dA x). Its evaluation throws `invalid_input` where A is singular or not
 /// finite, as `duet::solve` does.
-template <class A, class B, class TagA = decltype([] {}), class TagB = decltype([] {})>
+template <class A, class B, class TagA = decltype([](op::inverse*) {}),
+          class TagB = decltype([](op::inverse*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto solve(const A& a, const B& b) {
   const auto matrix = detail::term<TagA>(a);

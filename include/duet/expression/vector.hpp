@@ -211,13 +211,13 @@ concept VectorOperands =
 } // namespace detail
 
 /// a · b
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::cross*) {})>
   requires detail::VectorOperands<A, B>
 [[nodiscard]] constexpr auto dot(const A& a, const B& b) {
   return apply<op::dot>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 /// a × b
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::cross*) {})>
   requires detail::VectorOperands<A, B>
 [[nodiscard]] constexpr auto cross(const A& a, const B& b) {
   return apply<op::cross>(detail::term<Tag>(a), detail::term<Tag>(b));
@@ -234,8 +234,8 @@ template <int I, VectorTerm V>
   return apply<op::component<I>>(v);
 }
 /// The vector of three scalars.
-template <class X, class Y, class Z, class TagX = decltype([] {}), class TagY = decltype([] {}),
-          class TagZ = decltype([] {})>
+template <class X, class Y, class Z, class TagX = decltype([](op::cross*) {}),
+          class TagY = decltype([](op::cross*) {}), class TagZ = decltype([](op::cross*) {})>
   requires Operands<X, Y, Z>
 [[nodiscard]] constexpr auto column(const X& x, const Y& y, const Z& z) {
   return apply<op::column>(detail::term<TagX>(x), detail::term<TagY>(y), detail::term<TagZ>(z));
