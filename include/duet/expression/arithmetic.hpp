@@ -116,23 +116,39 @@ template <Term A>
   return a;
 }
 
+template <Term A, Term B>
+[[nodiscard]] constexpr auto operator+(const A& a, const B& b) {
+  return apply<op::sum>(a, b);
+}
 template <class A, class B, class Tag = decltype([] {})>
-  requires Operands<A, B>
+  requires TermAndConstant<A, B>
 [[nodiscard]] constexpr auto operator+(const A& a, const B& b) {
   return apply<op::sum>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
+template <Term A, Term B>
+[[nodiscard]] constexpr auto operator-(const A& a, const B& b) {
+  return apply<op::difference>(a, b);
+}
 template <class A, class B, class Tag = decltype([] {})>
-  requires Operands<A, B>
+  requires TermAndConstant<A, B>
 [[nodiscard]] constexpr auto operator-(const A& a, const B& b) {
   return apply<op::difference>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
+template <Term A, Term B>
+[[nodiscard]] constexpr auto operator*(const A& a, const B& b) {
+  return apply<op::product>(a, b);
+}
 template <class A, class B, class Tag = decltype([] {})>
-  requires Operands<A, B>
+  requires TermAndConstant<A, B>
 [[nodiscard]] constexpr auto operator*(const A& a, const B& b) {
   return apply<op::product>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
+template <Term A, Term B>
+[[nodiscard]] constexpr auto operator/(const A& a, const B& b) {
+  return apply<op::quotient>(a, b);
+}
 template <class A, class B, class Tag = decltype([] {})>
-  requires Operands<A, B>
+  requires TermAndConstant<A, B>
 [[nodiscard]] constexpr auto operator/(const A& a, const B& b) {
   return apply<op::quotient>(detail::term<Tag>(a), detail::term<Tag>(b));
 }

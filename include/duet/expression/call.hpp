@@ -7,7 +7,6 @@
 #include <duet/expression/held.hpp>
 #include <duet/expression/node.hpp>
 
-#include <concepts>
 #include <type_traits>
 
 /// \file
@@ -40,7 +39,7 @@ template <class Item, class... Arguments>
 template <class Argument, class Held, class... Arguments>
 [[nodiscard]] constexpr bool require_known_once() {
   using symbol = typename Argument::symbol_type;
-  constexpr bool is_known = std::derived_from<Held, holding<symbol>>;
+  constexpr bool is_known = std::is_base_of_v<holding<symbol>, Held>;
   constexpr bool is_single = times_given<symbol, Arguments...> == 1;
   static_assert(is_known, "duet: a value is given for a symbol that the formula does not have");
   static_assert(is_single, "duet: two values are given for one symbol");

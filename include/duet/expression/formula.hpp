@@ -34,9 +34,7 @@ inline constexpr bool is_formula<formula<NodeType, Held>> = true;
 
 /// A formula, or a symbol.
 template <class T>
-concept Formula = requires(const T& f) {
-  []<class N, class H>(const formula<N, H>&) {}(f);
-};
+concept Formula = is_formula<std::remove_cv_t<T>>;
 
 /// A node by itself, as in the rules of derivatives, or a formula.
 template <class T>
@@ -124,6 +122,10 @@ concept Constant = !std::is_array_v<T> && detail::constant_traits<T>::is_constan
 template <class... T>
 concept Operands = (Term<T> || ...) && ((Term<T> || Constant<T>)&&...);
 
+/// A term and a constant, in either order.
+template <class A, class B>
+concept TermAndConstant = Operands<A, B> && !(Term<A> && Term<B>);
+
 namespace detail {
 
 /// Of a term or a constant.
@@ -159,7 +161,7 @@ public:
   template <class... Arguments>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator()(const Arguments&... arguments) const {
     if constexpr (detail::call_of<Held>::template is_complete<Arguments...>()) {
-      return detail::called<NodeType>(held_, arguments...)[NodeType{}];
+      return detail::called<NodeType>(held_, arguments...).template get<0>();
     }
   }
 
@@ -215,14 +217,17 @@ template <class Tag, Constant T>
   return make_formula(node{}, held<held_constant<node, value>>{{static_cast<value>(x)}});
 }
 
-template <Node T>
-[[nodiscard]] constexpr T node_of(const T& x) {
-  return x;
-}
-template <Formula T>
-[[nodiscard]] constexpr auto node_of(const T&) {
-  return typename T::node_type{};
-}
+template <class T>
+struct node_of {
+  using type = T;
+};
+template <class N, class Held>
+struct node_of<formula<N, Held>> {
+  using type = N;
+};
+template <class T>
+using node_t = typename node_of<T>::type;
+
 template <Node T>
 [[nodiscard]] constexpr held<> held_of(const T&) {
   return {};
@@ -232,23 +237,28 @@ template <Formula T>
   return x.held();
 }
 
+template <class Operation, Node... N>
+[[nodiscard]] constexpr auto simplified() {
+  if constexpr (requires { Operation::simplified(N{}...); }) {
+    return Operation::simplified(N{}...);
+  } else {
+    return applied_node<Operation, N...>{};
+  }
+}
+
 } // namespace detail
 
 /// The operation applied to terms, simplified. Nodes give a node, formulas a formula.
+template <class Operation, Node... N>
+[[nodiscard]] constexpr auto apply(N...) {
+  return decltype(detail::simplified<Operation, N...>()){};
+}
 template <class Operation, Term... T>
+  requires(Formula<T> || ...)
 [[nodiscard]] constexpr auto apply(const T&... x) {
-  const auto node = [] {
-    if constexpr (requires { Operation::simplified(detail::node_of(x)...); }) {
-      return decltype(Operation::simplified(detail::node_of(x)...)){};
-    } else {
-      return applied_node<Operation, decltype(detail::node_of(x))...>{};
-    }
-  }();
-  if constexpr ((Node<T> && ...)) {
-    return node;
-  } else {
-    return make_formula(node, merged(detail::held_of(x)...));
-  }
+  using held = decltype(merged(detail::held_of(x)...));
+  using node = decltype(detail::simplified<Operation, detail::node_t<T>...>());
+  return formula<node, held>(merged(detail::held_of(x)...));
 }
 
 } // namespace duet::expression

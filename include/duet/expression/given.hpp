@@ -104,9 +104,13 @@ template <class Real, class T>
                        constant_over<Real>(q.y()), constant_over<Real>(q.z()));
 }
 
+/// In what a formula holds: it wants the sines of the C library.
+struct library_sines {};
+
 /// Arguments and constants of a formula.
 template <class Held, class... Arguments>
 struct given : Held, Arguments... {
+  static constexpr bool has_library_sines = std::is_base_of_v<holding<library_sines>, Held>;
   using real = typename common_real<typename Arguments::value_type...>::type;
   using scalar = typename common_scalar<real, typename Arguments::value_type...>::type;
 };
@@ -121,22 +125,16 @@ value_in(const holding<held_constant<Node, T>>& x) {
   return x.value;
 }
 
-/// How a node that is no operation is evaluated.
+/// What numbers in a formula are made of.
+template <class Real>
+struct numbers_as {
+  using real = Real;
+};
+
+/// The value of a node that is neither an operation nor given.
 template <class Node, class Given>
 struct leaf;
 
-template <kind K, char... Letters, class Given>
-struct leaf<symbol_node<K, Letters...>, Given> {
-  DUET_ALWAYS_INLINE static constexpr auto value(const Given& g) {
-    return value_in<symbol_node<K, Letters...>>(g);
-  }
-};
-template <kind K, class Tag, class Given>
-struct leaf<constant_node<K, Tag>, Given> {
-  DUET_ALWAYS_INLINE static constexpr auto value(const Given& g) {
-    return constant_over<typename Given::real>(value_in<constant_node<K, Tag>>(g));
-  }
-};
 template <std::uint64_t Bits, class Given>
 struct leaf<number_node<Bits>, Given> {
   DUET_ALWAYS_INLINE static constexpr auto value(const Given&) {
@@ -161,9 +159,20 @@ struct leaf<zero_node<K>, Given> {
   }
 };
 
+/// In what the value of a node is held.
 template <class Node, class Given>
 struct value_of {
-  using type = decltype(leaf<Node, Given>::value(std::declval<const Given&>()));
+  using type = decltype(leaf<Node, numbers_as<typename Given::real>>::value({}));
+};
+template <kind K, char... Letters, class Given>
+struct value_of<symbol_node<K, Letters...>, Given> {
+  using type =
+      std::remove_cvref_t<decltype(value_in<symbol_node<K, Letters...>>(std::declval<Given>()))>;
+};
+template <kind K, class Tag, class Given>
+struct value_of<constant_node<K, Tag>, Given> {
+  using type = decltype(constant_over<typename Given::real>(
+      value_in<constant_node<K, Tag>>(std::declval<Given>())));
 };
 template <class Operation, class... Operands, class Given>
 struct value_of<applied_node<Operation, Operands...>, Given> {

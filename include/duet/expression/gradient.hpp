@@ -33,12 +33,14 @@ public:
 
   template <class... Arguments>
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
+    constexpr int n = int(sizeof...(Motions));
     using S = typename base::template scalar<Arguments...>;
     const auto values = called<node, rate_t<node, Motions>...>(this->f_.held(), arguments...);
-    value_and_gradient<S, Eigen::Matrix<S, int(sizeof...(Motions)), 1>> result;
-    result.value = values[node{}];
+    value_and_gradient<S, Eigen::Matrix<S, n, 1>> result;
+    result.value = values.template get<0>();
     int i = 0;
-    ((result.gradient[i++] = S(values[rate_t<node, Motions>{}])), ...);
+    values.template each<1, n>([&](const auto& x)
+                                   DUET_INLINE_LAMBDA { result.gradient[i++] = S(x); });
     return result;
   }
 };
@@ -82,18 +84,18 @@ private:
     const auto values =
         called<node, rate_t<node, Motions>..., Second...>(this->f_.held(), arguments...);
     value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
-    result.value = values[node{}];
+    result.value = values.template get<0>();
     int i = 0;
-    ((result.gradient[i++] = S(values[rate_t<node, Motions>{}])), ...);
+    values.template each<1, n>([&](const auto& x)
+                                   DUET_INLINE_LAMBDA { result.gradient[i++] = S(x); });
     int i_second = 0, j_second = 0;
-    const auto write = [&](const S& x) DUET_INLINE_LAMBDA {
-      result.hessian(i_second, j_second) = x;
-      result.hessian(j_second, i_second) = x;
+    values.template each<1 + n, int(sizeof...(Second))>([&](const auto& x) DUET_INLINE_LAMBDA {
+      result.hessian(i_second, j_second) = S(x);
+      result.hessian(j_second, i_second) = S(x);
       if (++j_second == n) {
         j_second = ++i_second;
       }
-    };
-    (write(S(values[Second{}])), ...);
+    });
     return result;
   }
 };

@@ -5,7 +5,8 @@
 #include <duet/core/number_text.hpp>
 #include <duet/expression/node.hpp>
 
-#include <boost/mp11/set.hpp>
+#include <boost/mp11/algorithm.hpp>
+#include <boost/mp11/list.hpp>
 
 #include <concepts>
 #include <string>
@@ -53,54 +54,42 @@ void refuse(const T& a, const T& b) {
                       ", which would be taken for one; make what changes a symbol");
 }
 
-/// An item of what either holds; instantiated for the item, not for all that is held beside it.
-template <bool IsInFirst, bool IsInSecond>
-struct chosen;
-template <>
-struct chosen<false, true> {
-  template <class Item>
-  [[nodiscard]] static constexpr const holding<Item>& of(const void*, const holding<Item>* b) {
-    return *b;
-  }
-};
-template <>
-struct chosen<true, false> {
-  template <class Item>
-  [[nodiscard]] static constexpr const holding<Item>& of(const holding<Item>* a, const void*) {
-    return *a;
-  }
-};
-template <>
-struct chosen<true, true> {
-  template <class Item>
-  [[nodiscard]] static constexpr const holding<Item>& of(const holding<Item>* a,
-                                                         const holding<Item>* b) {
-    if constexpr (!std::is_empty_v<holding<Item>>) {
-      if (!are_same_value(a->value, b->value)) {
-        refuse(a->value, b->value);
-      }
+/// Refuses another value of a constant that both hold.
+template <class Item, class A, class B>
+constexpr void require_same_value(const A& a, const B& b) {
+  if constexpr (!std::is_empty_v<holding<Item>> && std::is_base_of_v<holding<Item>, A>) {
+    const holding<Item>& first = a;
+    const holding<Item>& second = b;
+    if (!are_same_value(first.value, second.value)) {
+      refuse(first.value, second.value);
     }
-    return *a;
   }
-};
+}
 
-template <class... Items, class A, class B>
-[[nodiscard]] constexpr held<Items...> merged_into(held<Items...>*, const A& a, const B& b) {
-  return {chosen<std::is_base_of_v<holding<Items>, A>,
-                 std::is_base_of_v<holding<Items>, B>>::template of<Items>(&a, &b)...};
+/// Items if they are not held already.
+template <class A, class Item>
+using if_new = boost::mp11::mp_if_c<std::is_base_of_v<holding<Item>, A>, boost::mp11::mp_list<>,
+                                    boost::mp11::mp_list<Item>>;
+
+template <class... InA, class... InB, class... New>
+[[nodiscard]] constexpr held<InA..., New...>
+merged_with(const held<InA...>& a, const held<InB...>& b, boost::mp11::mp_list<New...>) {
+  (require_same_value<InB>(a, b), ...);
+  return {static_cast<const holding<InA>&>(a)..., static_cast<const holding<New>&>(b)...};
 }
 
 } // namespace detail
 
 /// What either holds. \throws invalid_input where one place in the code, as in a function that was
 /// called twice, made constants of different values
-template <class A, class B>
-[[nodiscard]] constexpr auto merged(const A& a, const B& b) {
-  if constexpr (std::is_same_v<A, B> && std::is_empty_v<A>) {
+template <class... InA, class... InB>
+[[nodiscard]] constexpr auto merged(const held<InA...>& a, const held<InB...>& b) {
+  if constexpr (sizeof...(InB) == 0) {
     return a;
   } else {
-    using all = boost::mp11::mp_set_union<A, B>;
-    return detail::merged_into(static_cast<all*>(nullptr), a, b);
+    using added =
+        boost::mp11::mp_append<boost::mp11::mp_list<>, detail::if_new<held<InA...>, InB>...>;
+    return detail::merged_with(a, b, added{});
   }
 }
 

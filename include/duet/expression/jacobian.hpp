@@ -73,11 +73,14 @@ public:
     } else {
       const auto values = called<node, decltype(column_of<node, Motions, Frame>())...>(
           this->f_.held(), arguments...);
-      using value = std::decay_t<decltype(values[node{}])>;
+      using value = std::decay_t<decltype(values.template get<0>())>;
       value_and_jacobian<value, Eigen::Matrix<S, rows, int(sizeof...(Motions))>> result;
-      result.value = values[node{}];
+      result.value = values.template get<0>();
       S* column = result.jacobian.data();
-      ((write_column(column, values[column_of<node, Motions, Frame>()]), column += rows), ...);
+      values.template each<1, int(sizeof...(Motions))>([&](const auto& x) DUET_INLINE_LAMBDA {
+        write_column(column, x);
+        column += rows;
+      });
       return result;
     }
   }

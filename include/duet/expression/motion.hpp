@@ -44,9 +44,10 @@ public:
     const auto values =
         called<node, velocity_node, acceleration_node>(this->f_.held(), arguments...);
     using S = typename base::template scalar<Arguments...>;
-    const auto velocity = column<S>(values[velocity_node{}]);
-    return moving_value<std::decay_t<decltype(values[node{}])>, std::decay_t<decltype(velocity)>>{
-        values[node{}], velocity, column<S>(values[acceleration_node{}])};
+    const auto velocity = column<S>(values.template get<1>());
+    return moving_value<std::decay_t<decltype(values.template get<0>())>,
+                        std::decay_t<decltype(velocity)>>{values.template get<0>(), velocity,
+                                                          column<S>(values.template get<2>())};
   }
 
 private:

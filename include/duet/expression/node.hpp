@@ -94,6 +94,11 @@ inline constexpr bool is_applied = false;
 template <class Operation, class... Operands>
 inline constexpr bool is_applied<applied_node<Operation, Operands...>, Operation> = true;
 
+template <class T>
+inline constexpr bool is_operation = false;
+template <class Operation, class... Operands>
+inline constexpr bool is_operation<applied_node<Operation, Operands...>> = true;
+
 namespace detail {
 
 template <class T>

@@ -45,68 +45,105 @@ inline constexpr bool is_pose_chain = false;
 template <class A, class B>
 inline constexpr bool is_pose_chain<applied_node<op::product, A, B>> = A::kind_of == kind::pose;
 
-/// What is asked of a factor: the nodes that it needs, its twist, and being appended.
-template <class Factor>
-struct link {
+/// Any factor, by its value and its twists.
+struct any_link {
   static constexpr bool turns = true;
+  template <bool IsFirst>
+  DUET_ALWAYS_INLINE static void append(moving_frame& f, const dual_quaternion<double>& a) {
+    f.append(a);
+  }
+  template <bool IsSet>
+  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column,
+                                       const dual_vector<double>& twist) {
+    f.write_twist_of<IsSet>(column, twist);
+  }
+};
+/// A turn about a coordinate axis, by sine and cosine of half the angle.
+template <int I>
+struct turning_link {
+  static constexpr bool turns = true;
+  template <bool IsFirst>
+  DUET_ALWAYS_INLINE static void append(moving_frame& f, double s, double c) {
+    f.turn<I, IsFirst>(s, c);
+  }
+  template <bool IsSet>
+  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column, double rate) {
+    f.write_turn<IsSet, I>(column, rate);
+  }
+};
+/// A translation along a coordinate axis.
+template <int I>
+struct sliding_link {
+  static constexpr bool turns = false;
+  template <bool IsFirst>
+  DUET_ALWAYS_INLINE static void append(moving_frame& f, double d) {
+    f.slide<I>(d);
+  }
+  template <bool IsSet>
+  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column, double rate) {
+    f.write_slide<IsSet, I>(column, rate);
+  }
+};
+
+/// How a factor is appended, and the nodes that this and its twists need.
+template <class Factor>
+struct link_of {
+  using link = any_link;
   using nodes = mp11::mp_list<Factor>;
   template <class Motion>
   using twist = decltype(velocity_of<spatial_frame, Factor, Motion>());
-
-  template <bool IsFirst, class Frame>
-  DUET_ALWAYS_INLINE static void append(moving_frame& f, const Frame& values) {
-    f.append(values[Factor{}]);
-  }
-  template <bool IsSet, class Motion, class Frame>
-  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column, const Frame& values) {
-    f.write_twist_of<IsSet>(column, values[twist<Motion>{}]);
-  }
 };
-
-/// A turn about a coordinate axis.
 template <int I, class Angle, class S, class C>
   requires(I < 3)
-struct link<applied_node<op::turn, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
-  static constexpr bool turns = true;
+struct link_of<applied_node<op::turn, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
+  using link = turning_link<I>;
   using nodes = mp11::mp_list<S, C>;
   template <class Motion>
   using twist = rate_t<Angle, Motion>;
-
-  template <bool IsFirst, class Frame>
-  DUET_ALWAYS_INLINE static void append(moving_frame& f, const Frame& values) {
-    f.turn<I, IsFirst>(values[S{}], values[C{}]);
-  }
-  template <bool IsSet, class Motion, class Frame>
-  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column, const Frame& values) {
-    f.write_turn<IsSet, I>(column, values[twist<Motion>{}]);
-  }
 };
-
-/// A translation along a coordinate axis.
 template <int I, class D>
-struct link<applied_node<op::slide, unit_vector_node<kind::vector, I>, D>> {
-  static constexpr bool turns = false;
+struct link_of<applied_node<op::slide, unit_vector_node<kind::vector, I>, D>> {
+  using link = sliding_link<I>;
   using nodes = mp11::mp_list<D>;
   template <class Motion>
   using twist = rate_t<D, Motion>;
-
-  template <bool IsFirst, class Frame>
-  DUET_ALWAYS_INLINE static void append(moving_frame& f, const Frame& values) {
-    f.slide<I>(values[D{}]);
-  }
-  template <bool IsSet, class Motion, class Frame>
-  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column, const Frame& values) {
-    f.write_slide<IsSet, I>(column, values[twist<Motion>{}]);
-  }
 };
 
-/// Those of the motions that move a factor, a short list as a rule: what a compiler spends on a
-/// chain grows with these, not with the product of factors and motions.
-template <class Factor, class... Motions>
-struct motions_of_factor {
+/// A factor, and those of the motions that move it: the ones of its symbols, a short list as a
+/// rule. What a compiler spends on a chain grows with these, not with the product of factors and
+/// motions.
+template <class Factor, class Motions>
+struct moved_factor {
+  template <class Symbol>
+  using directions_of = typename directions<Symbol, spatial_frame>::type;
+  using of_symbols = mp11::mp_apply<
+      mp11::mp_append,
+      mp11::mp_push_front<
+          mp11::mp_transform<directions_of, mp11::mp_copy_if<nodes_of<Factor>, is_symbol_node>>,
+          motion_list<>>>;
   template <class Motion>
-  using moves = mp11::mp_bool<!is_zero<typename link<Factor>::template twist<Motion>>>;
-  using type = mp11::mp_copy_if<mp11::mp_list<Motions...>, moves>;
+  using moves = mp11::mp_bool<(Motions::template place<Motion> >= 0) &&
+                              !is_zero<typename link_of<Factor>::template twist<Motion>>>;
+  using motions = mp11::mp_copy_if<of_symbols, moves>;
+  using twists = mp11::mp_transform<link_of<Factor>::template twist, motions>;
+  using roots = mp11::mp_append<typename link_of<Factor>::nodes, twists>;
+};
+
+/// What a factor does, by the places of values and the numbers of columns.
+template <class Link, bool IsFirst, class Values, class Writes>
+struct chain_step;
+template <int Column, bool IsSet, int Twist>
+struct column_write {};
+
+template <class Link, bool IsFirst, int... Values, int... Column, bool... IsSet, int... Twist>
+struct chain_step<Link, IsFirst, std::integer_sequence<int, Values...>,
+                  mp11::mp_list<column_write<Column, IsSet, Twist>...>> {
+  template <class Slots>
+  DUET_ALWAYS_INLINE static void run(moving_frame& f, [[maybe_unused]] double* jacobian,
+                                     const Slots& s) {
+    (Link::template write<IsSet>(f, jacobian + 6 * Column, value_at<Twist>(s)), ...);
+    Link::template append<IsFirst>(f, value_at<Values>(s)...);
+  }
 };
 
 template <class Factors, class Motions,
@@ -114,64 +151,69 @@ template <class Factors, class Motions,
 struct pose_chain;
 template <class... Factors, class... Motions, std::size_t... K>
 struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index_sequence<K...>> {
-  template <class Factor>
-  using moved_by = typename motions_of_factor<Factor, Motions...>::type;
-
-  template <class Factor, class List>
-  struct twists_of;
-  template <class Factor, class... M>
-  struct twists_of<Factor, mp11::mp_list<M...>> {
-    using type = mp11::mp_list<typename link<Factor>::template twist<M>...>;
-  };
-  using roots = mp11::mp_append<typename link<Factors>::nodes...,
-                                typename twists_of<Factors, moved_by<Factors>>::type...>;
-
   /// The pose; its Jacobian is written into 6 × n doubles, column by column.
   template <class Held, class... Arguments>
   [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double>
   evaluate(double* jacobian, const Held& held, const Arguments&... arguments) {
-    const auto values = values_of(roots{}, held, arguments...);
+    const auto values = evaluated(nodes{}, given<Held, Arguments...>{held, arguments...});
     moving_frame f;
-    (step<K, Factors>(moved_by<Factors>{}, f, jacobian, values), ...);
-    (clear_column<Motions>(jacobian), ...);
+    run(f, jacobian, values,
+        typename step<K, Factors, typename link_of<Factors>::nodes,
+                      typename moved_factor<Factors, motions>::motions>::type{}...);
+    if constexpr (std::find(first_moved.begin(), first_moved.end(), count) != first_moved.end()) {
+      for (std::size_t i = 0; i < first_moved.size(); ++i) {
+        if (first_moved[i] == count) {
+          std::fill_n(jacobian + 6 * i, 6, 0.0);
+        }
+      }
+    }
     return f.pose();
   }
 
 private:
-  using moving = mp11::mp_append<moved_by<Factors>...>;
-  static constexpr std::array<std::size_t, sizeof...(Factors)> moved_counts = {
-      mp11::mp_size<moved_by<Factors>>::value...};
+  using motions = node_list<Motions...>;
+  using nodes =
+      mp11::mp_apply<nodes_of, mp11::mp_append<typename moved_factor<Factors, motions>::roots...>>;
+  static constexpr std::size_t count = sizeof...(Factors);
 
-  /// Whether a motion moves one of the factors before the K-th.
-  template <std::size_t At, class Motion>
-  static constexpr bool moves_before = [] {
-    std::size_t before = 0;
-    for (std::size_t i = 0; i < At; ++i) {
-      before += moved_counts[i];
-    }
-    return mp11::mp_find<moving, Motion>::value < before;
+  /// Of each motion the first factor that it moves.
+  using firsts = std::array<std::size_t, sizeof...(Motions)>;
+  template <class... M>
+  static constexpr void note(firsts& first, [[maybe_unused]] std::size_t factor,
+                             motion_list<M...>) {
+    ((first[std::size_t(motions::template place<M>)] =
+          std::min(first[std::size_t(motions::template place<M>)], factor)),
+     ...);
+  }
+  static constexpr firsts first_moved = [] {
+    firsts first;
+    first.fill(count);
+    (note(first, K, typename moved_factor<Factors, motions>::motions{}), ...);
+    return first;
+  }();
+  static constexpr std::size_t first_turn = [] {
+    std::size_t first = count;
+    ((first = link_of<Factors>::link::turns ? std::min(first, K) : first), ...);
+    return first;
   }();
 
-  template <class Motion>
-  static constexpr int column = 6 * int(mp11::mp_find<mp11::mp_list<Motions...>, Motion>::value);
+  template <std::size_t At, class Factor, class Values, class Moved>
+  struct step;
+  template <std::size_t At, class Factor, class... Values, class... M>
+  struct step<At, Factor, mp11::mp_list<Values...>, motion_list<M...>> {
+    template <class Motion>
+    static constexpr int column = motions::template place<Motion>;
+    using type =
+        chain_step<typename link_of<Factor>::link, At <= first_turn,
+                   std::integer_sequence<int, nodes::template place<Values>...>,
+                   mp11::mp_list<column_write<
+                       column<M>, first_moved[std::size_t(column<M>)] == At,
+                       nodes::template place<typename link_of<Factor>::template twist<M>>>...>>;
+  };
 
-  template <class... Roots, class Held, class... Arguments>
-  DUET_ALWAYS_INLINE static auto values_of(mp11::mp_list<Roots...>, const Held& held,
-                                           const Arguments&... arguments) {
-    return called<Roots...>(held, arguments...);
-  }
-  template <std::size_t At, class Factor, class... M, class Frame>
-  DUET_ALWAYS_INLINE static void step(mp11::mp_list<M...>, moving_frame& f,
-                                      [[maybe_unused]] double* jacobian, const Frame& values) {
-    (link<Factor>::template write<!moves_before<At, M>, M>(f, jacobian + column<M>, values), ...);
-    constexpr bool is_first = ((K >= At || !link<Factors>::turns) && ...);
-    link<Factor>::template append<is_first>(f, values);
-  }
-  template <class Motion>
-  DUET_ALWAYS_INLINE static void clear_column(double* jacobian) {
-    if constexpr (!moves_before<sizeof...(Factors), Motion>) {
-      std::fill_n(jacobian + column<Motion>, 6, 0.0);
-    }
+  template <class... Steps, class Slots>
+  DUET_ALWAYS_INLINE static void run(moving_frame& f, double* jacobian, const Slots& s, Steps...) {
+    (Steps::run(f, jacobian, s), ...);
   }
 };
 

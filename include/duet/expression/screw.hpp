@@ -15,6 +15,7 @@
 #include <duet/expression/vector.hpp>
 
 #include <string>
+#include <type_traits>
 #include <utility>
 
 /// \file
@@ -128,7 +129,8 @@ template <class L, class Angle, class Tag = decltype([](op::turn*) {})>
   static_assert(detail::kind_of_term<std::remove_cvref_t<decltype(l)>>() == kind::dual_vector,
                 "duet: screw(line, angle) takes a dual vector n + εm, made by axis_through or "
                 "make_dual_vector");
-  return make_formula(detail::turn_about(detail::node_of(l), detail::node_of(a)),
+  return make_formula(detail::turn_about(detail::node_t<std::remove_cvref_t<decltype(l)>>{},
+                                         detail::node_t<std::remove_cvref_t<decltype(a)>>{}),
                       merged(detail::held_of(l), detail::held_of(a)));
 }
 /// The rotation by θ about a unit vector n; other lengths give garbage.
@@ -139,7 +141,8 @@ template <class N, class Angle, class Tag = decltype([](op::turn*) {})>
   const auto a = detail::term<Tag>(angle);
   static_assert(detail::kind_of_term<std::remove_cvref_t<decltype(axis)>>() == kind::vector,
                 "duet: turn(n, angle) takes a unit vector; for lines there is screw(line, angle)");
-  return make_formula(detail::turn_about(detail::node_of(axis), detail::node_of(a)),
+  return make_formula(detail::turn_about(detail::node_t<std::remove_cvref_t<decltype(axis)>>{},
+                                         detail::node_t<std::remove_cvref_t<decltype(a)>>{}),
                       merged(detail::held_of(axis), detail::held_of(a)));
 }
 /// The translation by d along a unit vector or line, a prismatic joint.

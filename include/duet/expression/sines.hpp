@@ -3,12 +3,10 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/vector_sine_cosine.hpp>
-#include <duet/expression/held.hpp>
 
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <type_traits>
 #include <utility>
 
 /// \file
@@ -16,13 +14,9 @@
 
 namespace duet::expression::detail {
 
-/// In what a formula holds: it wants the sines of the C library.
-struct library_sines {};
-
 /// Two doubles and more are taken in vectors.
-template <class Given, class... T>
-inline constexpr bool takes_sines_at_once = sizeof...(T) > 1 && (std::same_as<T, double> && ...) &&
-                                            !std::is_base_of_v<holding<library_sines>, Given>;
+template <class... T>
+inline constexpr bool takes_sines_at_once = sizeof...(T) > 1 && (std::same_as<T, double> && ...);
 
 /// Sines and cosines of Count numbers, in vectors of four, which eight would not make faster.
 template <std::size_t Count>
