@@ -1,8 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Plans of a Panda along screws: how many of 300 random problems are solved, and how long one
-/// takes. A program of its own: build/bench/bench/duet_planning_bench
+/// Plans of a Panda along screws, freely and beside a ball: how many of some hundreds of random
+/// problems are solved, and how long one takes. A program of its own:
+/// build/bench/bench/duet_planning_bench
 
 #include <duet/comparison/random_source.hpp>
 #include <duet/dual_quaternion/screw.hpp>
@@ -22,7 +23,38 @@
 namespace {
 
 using vector = Eigen::Matrix<double, 7, 1>;
+using dual_quaternion = duet::dual_quaternion<double>;
 constexpr auto arm = duet::robots::panda();
+
+vector gripper_down() {
+  const double quarter = 0.78539816339744831;
+  vector theta;
+  theta << 0, -quarter, 0, -3 * quarter, 0, 2 * quarter, quarter;
+  return theta;
+}
+
+/// In milliseconds.
+class times_of_plans {
+public:
+  template <class Plan>
+  auto of(const Plan& plan) {
+    const auto before = std::chrono::steady_clock::now();
+    auto result = plan();
+    const std::chrono::duration<double, std::milli> time =
+        std::chrono::steady_clock::now() - before;
+    times_.push_back(time.count());
+    return result;
+  }
+  bool is_empty() const { return times_.empty(); }
+  double median() {
+    const auto middle = times_.begin() + std::ptrdiff_t(times_.size() / 2);
+    std::nth_element(times_.begin(), middle, times_.end());
+    return *middle;
+  }
+
+private:
+  std::vector<double> times_;
+};
 
 struct problem {
   vector start, end;
@@ -34,9 +66,7 @@ enum class family { near_goals, unrelated_goals, from_gripper_down };
 /// from the gripper-down pose within 0.5 rad and the limits.
 std::vector<problem> problems(family kind, unsigned seed) {
   duet::random_source random(seed);
-  const double quarter = 0.78539816339744831;
-  vector down;
-  down << 0, -quarter, 0, -3 * quarter, 0, 2 * quarter, quarter;
+  const vector down = gripper_down();
   std::vector<problem> result(kind == family::from_gripper_down ? 500 : 300, {down, down});
   for (problem& p : result) {
     for (int i = 0; i < 7; ++i) {
@@ -57,8 +87,7 @@ std::vector<problem> problems(family kind, unsigned seed) {
 
 /// How far the straight joint paths between waypoints are from the screw, in metres or radians;
 /// infinite outside the limits.
-double largest_deviation(const duet::motion_plan<7>& plan,
-                         const duet::dual_quaternion<double>& goal) {
+double largest_deviation(const duet::motion_plan<7>& plan, const dual_quaternion& goal) {
   double result = 0;
   for (std::size_t k = 1; k < plan.joints.size(); ++k) {
     for (int part = 1; part <= 10; ++part) {
@@ -78,6 +107,79 @@ double largest_deviation(const duet::motion_plan<7>& plan,
   return result;
 }
 
+struct problem_beside_ball {
+  dual_quaternion goal;
+  duet::scene around;
+};
+
+/// From the gripper-down pose to goals within 0.6 rad per joint and the limits, that the plan
+/// without obstacles reaches, but comes closer to a ball than the margin: one whose centre is
+/// 0.15 m from where the elbow is two thirds of that way.
+std::vector<problem_beside_ball> problems_beside_balls(unsigned seed) {
+  duet::random_source random(seed);
+  std::vector<problem_beside_ball> result;
+  while (result.size() < 100) {
+    vector end = gripper_down();
+    for (int i = 0; i < 7; ++i) {
+      end[i] =
+          std::clamp(end[i] + random.uniform(-.6, .6), arm.limits(i).lower, arm.limits(i).upper);
+    }
+    const auto aside = random.direction<3>();
+    const auto goal = arm.pose(end);
+    const auto plain = duet::plan_screw_motion(arm, gripper_down(), goal);
+    if (plain.reason != duet::stop_reason::reached) {
+      continue;
+    }
+    const vector late = plain.joints[plain.joints.size() * 2 / 3];
+    const Eigen::Vector3d centre =
+        duet::translation(arm.pose(late, 4)) + .15 * Eigen::Vector3d(aside[0], aside[1], aside[2]);
+    const duet::scene around{{{2, duet::capsule<>({0, 0, 0}, {0, -.316, 0}, .06)},
+                              {3, duet::sphere<>{{.0825, 0, 0}, .06}},
+                              {4, duet::capsule<>({0, 0, 0}, {-.0825, .384, 0}, .06)},
+                              {7, duet::capsule<>({0, 0, -.05}, {0, 0, .05}, .05)}},
+                             {duet::sphere<>{centre, .1}},
+                             .01};
+    const auto is_too_close = [&](const vector& theta) {
+      return duet::clearance(arm, theta, around).distance < around.margin;
+    };
+    if (!is_too_close(gripper_down()) &&
+        std::any_of(plain.joints.begin(), plain.joints.end(), is_too_close)) {
+      result.push_back({goal, around});
+    }
+  }
+  return result;
+}
+
+/// One iteration plans all problems; `reached` and the least clearance, at waypoints and half way
+/// between them, are of the first.
+void plan_beside_balls(benchmark::State& state, unsigned seed) {
+  const auto all = problems_beside_balls(seed);
+  times_of_plans times;
+  int reached = 0;
+  double largest = 0, nearest = std::numeric_limits<double>::infinity();
+  for (auto _ : state) {
+    const bool is_first = times.is_empty();
+    for (const problem_beside_ball& p : all) {
+      const auto plan = times.of(
+          [&] { return duet::plan_screw_motion(arm, gripper_down(), p.goal, {}, {}, p.around); });
+      if (is_first) {
+        reached += plan.reason == duet::stop_reason::reached;
+        largest = std::max(largest, largest_deviation(plan, p.goal));
+        nearest = std::min(nearest, plan.smallest_clearance);
+        for (std::size_t k = 1; k < plan.joints.size(); ++k) {
+          const vector middle = (plan.joints[k - 1] + plan.joints[k]) / 2;
+          nearest = std::min(nearest, duet::clearance(arm, middle, p.around).distance);
+        }
+      }
+    }
+  }
+  state.counters["reached"] = reached;
+  state.counters["of"] = double(all.size());
+  state.counters["median_ms"] = times.median();
+  state.counters["deviation"] = largest;
+  state.counters["clearance"] = nearest;
+}
+
 /// One iteration plans all problems; the counters are of the first. With DUET_BENCH_FINE set what
 /// fails is tried again in ten times smaller steps, which takes minutes.
 void plan_all(benchmark::State& state, family kind, unsigned seed, bool has_search) {
@@ -92,18 +194,15 @@ void plan_all(benchmark::State& state, family kind, unsigned seed, bool has_sear
   fine.search_step /= 10;
   fine.self_motion_step /= 10;
   fine.iterations = std::numeric_limits<int>::max();
-  std::vector<double> times;
+  times_of_plans times;
   int reached = 0, reached_finely = 0;
   double largest = 0;
   for (auto _ : state) {
-    const bool is_first = times.empty();
+    const bool is_first = times.is_empty();
     for (const problem& p : all) {
       const auto goal = arm.pose(p.end);
-      const auto before = std::chrono::steady_clock::now();
-      const auto plan = duet::plan_screw_motion(arm, p.start, goal, options);
-      const std::chrono::duration<double, std::milli> time =
-          std::chrono::steady_clock::now() - before;
-      times.push_back(time.count());
+      const auto plan =
+          times.of([&] { return duet::plan_screw_motion(arm, p.start, goal, options); });
       if (is_first) {
         largest = std::max(largest, largest_deviation(plan, goal));
         if (plan.reason == duet::stop_reason::reached) {
@@ -115,10 +214,9 @@ void plan_all(benchmark::State& state, family kind, unsigned seed, bool has_sear
       }
     }
   }
-  std::nth_element(times.begin(), times.begin() + std::ptrdiff_t(times.size() / 2), times.end());
   state.counters["reached"] = reached;
   state.counters["of"] = double(all.size());
-  state.counters["median_ms"] = times[times.size() / 2];
+  state.counters["median_ms"] = times.median();
   state.counters["deviation"] = largest;
   state.counters["reached_by_finer_steps_only"] = reached_finely;
 }
@@ -135,6 +233,9 @@ const bool registered = [] {
     add("unrelated", family::unrelated_goals, true);
     add("unrelated_without_search", family::unrelated_goals, false);
     add("gripper_down", family::from_gripper_down, true);
+    benchmark::RegisterBenchmark(("beside_ball/seed:" + std::to_string(seed)).c_str(),
+                                 plan_beside_balls, seed)
+        ->Unit(benchmark::kMillisecond);
   }
   return true;
 }();

@@ -40,7 +40,9 @@
 #include <duet/expression/functions_of_many.hpp>
 #include <duet/expression/gradient.hpp>
 #include <duet/expression/jacobian.hpp>
+#include <duet/expression/matrix.hpp>
 #include <duet/expression/motion.hpp>
+#include <duet/expression/rotation_matrix.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/special_functions.hpp>
 #include <duet/expression/symbol.hpp>

@@ -36,8 +36,9 @@ enum class argument {
 
 /// How far a route may be from the truth.
 struct bounds {
-  double value = 4;  ///< of the formula, in ulp
-  double slope = 16; ///< of its first derivative, in ulp
+  double value = 4;          ///< of the formula, in ulp
+  double slope = 16;         ///< of its first derivative, in ulp
+  double expression = slope; ///< of both, where it is written as an expression
 };
 
 /// One row of the table.

@@ -92,8 +92,8 @@ namespace {
 constexpr auto vector = argument::vector;
 constexpr auto number = argument::number;
 constexpr auto rotation_vector = argument::rotation;
-/// (J Jᵀ)⁻¹ squares the condition of J, which is up to about 20 here.
-constexpr bounds of_normal_equations{32, 64};
+/// The condition of J is up to about 20 here.
+constexpr bounds of_least_rates{8, 16, 32};
 
 constexpr auto robot = duet::robots::panda().table();
 
@@ -141,7 +141,7 @@ formula least_rates() {
             resolved(a, part<3>(x, 7), part<4>(x, 10), part<3>(d, 7), part<4>(d, 10));
         return row<T>(y, dy);
       },
-      of_normal_equations, is_regular);
+      of_least_rates, is_regular);
 }
 
 formula joint_step() {
@@ -164,7 +164,7 @@ formula joint_step() {
         return row<T>(plus(part<7>(x, 0), times(T(0.5), y)),
                       plus(part<7>(d, 0), times(T(0.5), dy)));
       },
-      of_normal_equations,
+      of_least_rates,
       [](const numbers<double>& x) {
         return is_regular(x) &&
                std::abs(dot(unit_of(x, 7), duet::rotation(robot.pose(joints_of(x))))) > 1e-3;
@@ -198,7 +198,7 @@ formula planning_step() {
                                       plus(c.alpha, times(minus, a.alpha)), c.dplace, c.dalpha);
         return row<T>(plus(part<7>(x, 0), y), dy);
       },
-      of_normal_equations,
+      of_least_rates,
       [](const numbers<double>& x) {
         return is_regular(x) &&
                std::abs(dot(unit_of(x, 7), duet::rotation(robot.pose(joints_of(x))))) > 1e-3;

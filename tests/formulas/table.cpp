@@ -340,7 +340,7 @@ TEST_CASE("every formula is as close to 50 digits as promised, and is in the tab
       CHECK(worst.dual <= f.limits.slope);
       CHECK(worst.taylor <= second_derivative_limit);
       CHECK(worst.nested <= second_derivative_limit);
-      CHECK(worst.expression <= f.limits.slope);
+      CHECK(worst.expression <= f.limits.expression);
     }
   }
   table << "\n| | as an expression | its derivative by | from the dual | worst input |\n"

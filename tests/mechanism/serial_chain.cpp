@@ -4,6 +4,7 @@
 #include "support/message.hpp"
 
 #include <duet/derivative/derivative.hpp>
+#include <duet/derivative/gradient.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/interop/multiprecision.hpp>
 #include <duet/mechanism/screw_axes.hpp>
@@ -237,6 +238,49 @@ TEST_CASE("what is wrong with a chain is said in one line") {
           (void)from_dh(std::array<dh_row<>, 1>{{{0, std::nan(""), 0}}});
         }) ==
         "duet: serial_chain: joint 0: its row of parameters has a number beyond 1e6, or none");
+}
+
+TEST_CASE("sines of all joints at once: as one after the other, under derivatives of any kind") {
+  const auto arm = duet_test::every_joint();
+  const serial_chain<-9> unsized = arm;
+  // Joint 3 is beyond the vector sine; all coordinates are the same in both precisions.
+  const auto height = [&](const auto& chain, const auto& t, const auto& u) {
+    using T = std::decay_t<decltype(t + u)>;
+    std::array<T, 7> theta;
+    for (std::size_t i = 0; i < 7; ++i) {
+      theta[i] = T(double(i) / 8) + t * (1 + double(i) / 4) + u * double(i % 3);
+    }
+    theta[3] = theta[3] * 4 + 1e7;
+    const auto a = chain.pose(theta);
+    return T(translation(a)[2] + rotation(a).w());
+  };
+  const auto check = [&](const auto& chain) {
+    const auto along = [&](const auto& t) { return height(chain, t, t); };
+    const auto y = derivatives<3>(along, .5);
+    const auto expected = derivatives<3>(along, .5L);
+    for (std::size_t k = 0; k <= 3; ++k) {
+      CHECK(std::abs(double(y[k] - expected[k])) < 2e-14 * std::pow(12, double(k)));
+    }
+    const auto at = [&](const auto& x) { return height(chain, x[0], x[1]); };
+    const auto h = hessian(at, Eigen::Vector2d(.5, -.25));
+    const auto h_expected = hessian(at, Eigen::Matrix<long double, 2, 1>(.5L, -.25L));
+    CHECK(gap(h.hessian, h_expected.hessian.template cast<double>()) < 2e-12);
+    const auto slope = [&](const auto& t) {
+      return derivative<struct inner>([&](const auto& u) { return height(chain, t, u); }, t)
+          .derivative;
+    };
+    CHECK(std::abs(double(derivative(slope, .5).derivative - derivative(slope, .5L).derivative)) <
+          2e-12);
+  };
+  check(arm);
+  check(unsized);
+  const auto panda = robots::panda();
+  check(panda);
+  // What is not a number stays with the joints after it.
+  coordinates<7> broken = coordinates<7>::Constant(.5);
+  broken[5] = std::nan("");
+  CHECK(panda.pose(broken, 5) == panda.pose(coordinates<7>::Constant(.5).eval(), 5));
+  CHECK(std::isnan(panda.pose(broken).w().value()));
 }
 
 } // namespace test_mechanism_serial_chain

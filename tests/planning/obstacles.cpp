@@ -123,12 +123,20 @@ TEST_CASE("obstacles far away change nothing") {
 
 TEST_CASE("limits are no obstacles; bad scenes") {
   const auto start = gripper_down();
-  // Out of reach, beside a wall that is near but not in the way.
-  const auto far = pose(rotation(arm.pose(start)), point(2, 0, .3));
+  // Farther than the elbow can be stretched, beside a wall that is near but not in the way.
+  const auto far = pose(rotation(arm.pose(start)), point(.87, 0, .3));
   const scene wall = arm_among({half_space<>{{0, 0, 1}, .2}});
   const auto stopped = plan_screw_motion(arm, start, far, {.search_step = 0}, {}, wall);
   CHECK(stopped.reason != stop_reason::reached);
   CHECK(stopped.reason != stop_reason::obstacle);
+  CHECK(stopped.reason != stop_reason::out_of_reach);
+  CHECK(stopped.tau.back() > .5);
+  // Where no arm of that length comes nothing is tried.
+  const auto farther = pose(rotation(arm.pose(start)), point(2, 0, .3));
+  const auto stayed = plan_screw_motion(arm, start, farther, {}, {}, wall);
+  CHECK(stayed.reason == stop_reason::out_of_reach);
+  CHECK(stayed.joints.size() == 1);
+  CHECK(stayed.smallest_clearance == clearance(arm, start, wall).distance);
 
   CHECK_THROWS_WITH_AS(
       (void)plan_screw_motion(arm, start, far, {}, {}, arm_among({half_space<>{{0, 0, 1}, .6}})),

@@ -167,8 +167,8 @@ TEST_CASE("N24: the notes' planner reaches near goals too, but drifts from the s
 }
 
 TEST_CASE("why it stops") {
-  // A goal out of reach: as far as the arm goes.
-  const auto far = pose(rotation(arm.pose(gripper_down())), Eigen::Vector3d(2, 0, .3));
+  // Farther than the elbow can be stretched: as far as the arm goes.
+  const auto far = pose(rotation(arm.pose(gripper_down())), Eigen::Vector3d(.87, 0, .3));
   const auto plan = plan_screw_motion(arm, gripper_down(), far, without_search);
   CHECK(plan.reason == stop_reason::singular);
   CHECK(plan.tau.back() < 1);
@@ -193,6 +193,25 @@ TEST_CASE("why it stops") {
   CHECK(stopped.joints.back()[0] == doctest::Approx(.5).epsilon(1e-4));
   CHECK(stopped.smallest_limit_margin >= 0);
   CHECK(std::string(to_text(stopped.reason)) == "joint_limit");
+  // Farther away than the links reach: nothing is tried.
+  const auto up = [&](double distance) {
+    return plan_screw_motion(arm, gripper_down(),
+                             pose(quaternion<double>(1), Eigen::Vector3d(0, 0, .333 + distance)));
+  };
+  const double reach = .316 + 2 * .0825 + .384 + .088 + .107; // and farther than any elbow
+  const auto beyond = up(reach);
+  CHECK(beyond.reason == stop_reason::out_of_reach);
+  CHECK(beyond.iterations == 0);
+  CHECK(beyond.joints.size() == 1);
+  CHECK(beyond.joints.front() == gripper_down());
+  CHECK(beyond.tau.front() == 0);
+  CHECK(beyond.smallest_limit_margin > .1);
+  const auto short_of_it = up(.85); // the links are long enough, their joints do not bend that way
+  CHECK(short_of_it.reason != stop_reason::reached);
+  CHECK(short_of_it.reason != stop_reason::out_of_reach);
+  CHECK(short_of_it.joints.size() > 1);
+  CHECK_THROWS_AS((void)plan_screw_motion(arm, gripper_down(), beyond.poses.front() * 2.0),
+                  invalid_input);
   // A path with a gap.
   const auto jump = follow_path(
       gantry, zero,

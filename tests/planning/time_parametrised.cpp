@@ -35,6 +35,7 @@ double check(const Trajectory& q, const std::vector<vector>& waypoints, const ve
   CHECK(q(q.duration()).velocity.norm() < 1e-6);
   const int count = 2000;
   double use = 0;
+  int smooth = 0;
   vector before = q(0).value;
   for (int i = 0; i <= count; ++i) {
     const double h = q.duration() / count, t = std::min(q.duration(), i * h);
@@ -58,7 +59,14 @@ double check(const Trajectory& q, const std::vector<vector>& waypoints, const ve
       CHECK(((m.value - before) / h - middle).cwiseAbs().cwiseQuotient(a).maxCoeff() < h);
     }
     before = m.value;
+    // The acceleration is that of the velocity, save where it jumps.
+    const double e = 1e-5 * h;
+    if (t > e && t + e < q.duration()) {
+      const vector rate = (q(t + e).velocity - q(t - e).velocity) / (2 * e);
+      smooth += (rate - m.acceleration).cwiseQuotient(a).cwiseAbs().maxCoeff() < 1e-3;
+    }
   }
+  CHECK(smooth > .97 * count);
   return use;
 }
 

@@ -1,12 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/derivative/structure.hpp>
+#include <duet/dual/partials.hpp>
 
 #include <Eigen/Core>
 
@@ -36,12 +38,13 @@ namespace detail {
 
 /// The tangent coordinates of x as variables, `N` of them from `first` on.
 template <class D, int N, class X>
-[[nodiscard]] Eigen::Matrix<D, manifold<X>::dimension, 1> tangent_seeds(int first) {
+[[nodiscard]] DUET_ALWAYS_INLINE Eigen::Matrix<D, manifold<X>::dimension, 1>
+tangent_seeds(int first) {
   Eigen::Matrix<D, manifold<X>::dimension, 1> delta;
-  for (int i = 0; i < manifold<X>::dimension; ++i) {
+  unrolled<manifold<X>::dimension>([&](int i) DUET_INLINE_LAMBDA {
     const bool is_variable = i >= first && i < first + N;
     delta[i] = is_variable ? D::variable(typename D::value_type(0), i - first) : D(0);
-  }
+  });
   return delta;
 }
 

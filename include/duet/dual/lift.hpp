@@ -36,16 +36,20 @@ lift(const Rule& rule, const dual<T, N, Tag>& x, const dual<T, N, Tag>& y, const
   return {value, result};
 }
 
+/// From sine and cosine of the value to those of x.
 template <class T, int N, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const rule::sin&, const dual<T, N, Tag>& x) {
-  const auto [sine, cosine] = sine_and_cosine_of(x.value());
-  return {sine, chain(cosine, x.partials())};
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<dual<T, N, Tag>> lift(const sine_cosine<T>& y,
+                                                                   const dual<T, N, Tag>& x) {
+  return {{y.sine, chain(y.cosine, x.partials())}, {y.cosine, chain(T(-y.sine), x.partials())}};
 }
 
 template <class T, int N, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const rule::sin&, const dual<T, N, Tag>& x) {
+  return lift(sine_and_cosine_of(x.value()), x).sine;
+}
+template <class T, int N, class Tag>
 [[nodiscard]] DUET_ALWAYS_INLINE dual<T, N, Tag> lift(const rule::cos&, const dual<T, N, Tag>& x) {
-  const auto [sine, cosine] = sine_and_cosine_of(x.value());
-  return {cosine, chain(T(-sine), x.partials())};
+  return lift(sine_and_cosine_of(x.value()), x).cosine;
 }
 
 } // namespace duet::detail

@@ -30,17 +30,23 @@ template <class Rule, class T, int N, class Tag>
   return x.composed(y, slope, moving_slope.epsilon());
 }
 
+/// From sine and cosine of the value to those of x.
+template <class T, int N, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<second_dual<T, N, Tag>>
+lift(const sine_cosine<T>& y, const second_dual<T, N, Tag>& x) {
+  const T minus_sine(-y.sine);
+  return {x.composed(y.sine, y.cosine, minus_sine), x.composed(y.cosine, minus_sine, T(-y.cosine))};
+}
+
 template <class T, int N, class Tag>
 [[nodiscard]] DUET_ALWAYS_INLINE second_dual<T, N, Tag> lift(const rule::sin&,
                                                              const second_dual<T, N, Tag>& x) {
-  const auto [sine, cosine] = sine_and_cosine_of(x.value());
-  return x.composed(sine, cosine, T(-sine));
+  return lift(sine_and_cosine_of(x.value()), x).sine;
 }
 template <class T, int N, class Tag>
 [[nodiscard]] DUET_ALWAYS_INLINE second_dual<T, N, Tag> lift(const rule::cos&,
                                                              const second_dual<T, N, Tag>& x) {
-  const auto [sine, cosine] = sine_and_cosine_of(x.value());
-  return x.composed(cosine, T(-sine), T(-cosine));
+  return lift(sine_and_cosine_of(x.value()), x).cosine;
 }
 
 template <class Rule, class T, int N, class Tag, class... Rest>

@@ -27,4 +27,15 @@ template <class T>
   }
 }
 
+/// The same of an x whose innermost value has the sine and the cosine y already.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<T>
+sine_and_cosine_from(const sine_cosine<real_type_t<T>>& y, const T& x) {
+  if constexpr (Infinitesimal<T>) {
+    return lift(sine_and_cosine_from(y, x.value()), x);
+  } else {
+    return y;
+  }
+}
+
 } // namespace duet::detail

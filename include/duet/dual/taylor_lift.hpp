@@ -142,24 +142,24 @@ inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
   });
 }
 
+/// From sine and cosine of the value to those of x.
 template <class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::sin&,
-                                                        const taylor<T, K, Tag>& x) {
-  const auto [sine, cosine] = sine_and_cosine_of(x.value());
-  taylor<T, K, Tag> s(sine);
-  taylor<T, K, Tag> c(cosine);
-  sine_and_cosine<-1>(x, s, c);
-  return s;
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<taylor<T, K, Tag>> lift(const sine_cosine<T>& y,
+                                                                     const taylor<T, K, Tag>& x) {
+  sine_cosine<taylor<T, K, Tag>> result{taylor<T, K, Tag>(y.sine), taylor<T, K, Tag>(y.cosine)};
+  sine_and_cosine<-1>(x, result.sine, result.cosine);
+  return result;
 }
 
 template <class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::sin&,
+                                                        const taylor<T, K, Tag>& x) {
+  return lift(sine_and_cosine_of(x.value()), x).sine;
+}
+template <class T, int K, class Tag>
 [[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::cos&,
                                                         const taylor<T, K, Tag>& x) {
-  const auto [sine, cosine] = sine_and_cosine_of(x.value());
-  taylor<T, K, Tag> s(sine);
-  taylor<T, K, Tag> c(cosine);
-  sine_and_cosine<-1>(x, s, c);
-  return c;
+  return lift(sine_and_cosine_of(x.value()), x).cosine;
 }
 
 template <class T, int K, class Tag>

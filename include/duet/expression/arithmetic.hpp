@@ -7,6 +7,8 @@
 #include <duet/expression/number.hpp>
 #include <duet/expression/printed.hpp>
 
+#include <Eigen/Core>
+
 #include <concepts>
 #include <type_traits>
 
@@ -16,16 +18,29 @@
 
 namespace duet::expression {
 
+namespace op {
+
+template <int Rows, int Columns, int I, int J>
+struct placed;
+
+} // namespace op
+
 namespace detail {
 
 // Results are held in numbers and vectors of their own, no expression templates. Of vectors this is
 // done by component: Eigen would put three together in packets, which are slower to take apart.
 
+/// A matrix of Eigen, among the values of formulas.
+template <class T>
+concept EigenMatrix = requires {
+  T::SizeAtCompileTime;
+};
+
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr const auto& component_of(const T& x,
                                                                     [[maybe_unused]] int i) {
-  if constexpr (ThreeComponents<T>) {
-    return x[i];
+  if constexpr (EigenMatrix<T>) {
+    return x.data()[i];
   } else {
     return x;
   }
@@ -40,7 +55,7 @@ template <class F, class A>
     return A(f(a));
   }
 }
-/// f(a, b), by component of vectors.
+/// f(a, b), by component of vectors and matrices.
 template <class F, class A, class B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto componentwise(const F& f, const A& a, const B& b) {
   if constexpr (ThreeComponents<A> || ThreeComponents<B>) {
@@ -51,9 +66,29 @@ template <class F, class A, class B>
                       S(f(component_of(a, 2), component_of(b, 2))));
   } else if constexpr (Scalar<A> && Scalar<B>) {
     return static_cast<promote_t<A, B>>(f(a, b));
+  } else if constexpr (EigenMatrix<A> || EigenMatrix<B>) {
+    using S = promote_t<std::remove_cvref_t<decltype(component_of(a, 0))>,
+                        std::remove_cvref_t<decltype(component_of(b, 0))>>;
+    using matrix = std::conditional_t<EigenMatrix<A>, A, B>;
+    Eigen::Matrix<S, matrix::RowsAtCompileTime, matrix::ColsAtCompileTime> result;
+    for (int i = 0; i < int(result.size()); ++i) {
+      result.data()[i] = S(f(component_of(a, i), component_of(b, i)));
+    }
+    return result;
   } else {
     return f(a, b);
   }
+}
+
+/// A matrix that is 0 but for a block.
+template <class T>
+inline constexpr bool is_placed = false;
+template <int Rows, int Columns, int I, int J, class X>
+inline constexpr bool is_placed<applied_node<op::placed<Rows, Columns, I, J>, X>> = true;
+/// Another block in the same place.
+template <int Rows, int Columns, int I, int J, class X, class Y>
+[[nodiscard]] constexpr auto placed_like(applied_node<op::placed<Rows, Columns, I, J>, X>, Y y) {
+  return apply<op::placed<Rows, Columns, I, J>>(y);
 }
 
 /// A number below zero, or a product with one.
@@ -151,6 +186,8 @@ struct negative {
       return operand<1>(a) - operand<0>(a);
     } else if constexpr (has_number<A>) {
       return -operand<0>(a) * operand<1>(a);
+    } else if constexpr (detail::is_placed<A>) {
+      return detail::placed_like(a, -operand<0>(a));
     } else {
       return applied_node<negative, A>{};
     }
@@ -173,8 +210,9 @@ struct sum {
   static constexpr kind kind_of(kind a, kind) { return a; }
   template <class A, class B>
   static constexpr auto simplified(A a, B b) {
-    static_assert(A::kind_of == B::kind_of,
-                  "duet: a sum of formulas of different kinds, as of a scalar and a vector");
+    static_assert(
+        A::kind_of == B::kind_of,
+        "duet: a sum of formulas of different kinds or sizes, as of a scalar and a vector");
     if constexpr (is_zero<A>) {
       return b;
     } else if constexpr (is_zero<B>) {
@@ -215,7 +253,8 @@ struct difference {
   template <class A, class B>
   static constexpr auto simplified(A a, B b) {
     static_assert(A::kind_of == B::kind_of,
-                  "duet: a difference of formulas of different kinds, as of a scalar and a vector");
+                  "duet: a difference of formulas of different kinds or sizes, as of a scalar and "
+                  "a vector");
     if constexpr (is_zero<A>) {
       return -b;
     } else if constexpr (is_zero<B>) {

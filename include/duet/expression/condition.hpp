@@ -108,22 +108,22 @@ struct abs {
 
 } // namespace op
 
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto operator<(const A& a, const B& b) {
   return apply<op::less<false>>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto operator<=(const A& a, const B& b) {
   return apply<op::less<true>>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto operator>(const A& a, const B& b) {
   return apply<op::less<false>>(detail::term<Tag>(b), detail::term<Tag>(a));
 }
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto operator>=(const A& a, const B& b) {
   return apply<op::less<true>>(detail::term<Tag>(b), detail::term<Tag>(a));
@@ -131,7 +131,8 @@ template <class A, class B, class Tag = decltype([] {})>
 
 /// a where the condition holds, else b, of one kind. Both are evaluated, so both must be safe to
 /// evaluate anywhere; the derivative is that of the one chosen.
-template <Term C, class A, class B, class TagA = decltype([] {}), class TagB = decltype([] {})>
+template <Term C, class A, class B, class TagA = decltype([](op::less<true>*) {}),
+          class TagB = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto select(const C& condition, const A& a, const B& b) {
   return apply<op::select>(condition, detail::term<TagA>(a), detail::term<TagB>(b));
 }
@@ -140,14 +141,14 @@ template <ScalarTerm X>
 [[nodiscard]] constexpr auto abs(const X& x) {
   return apply<op::abs>(x);
 }
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto max(const A& a, const B& b) {
   const auto first = detail::term<Tag>(a);
   const auto second = detail::term<Tag>(b);
   return select(first < second, second, first);
 }
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto min(const A& a, const B& b) {
   const auto first = detail::term<Tag>(a);

@@ -102,14 +102,14 @@ inline constexpr bool is_symbol_formula<formula<NodeType, Held>> = is_symbol<Nod
 template <class T>
 concept Symbol = detail::is_symbol_formula<T>;
 
-/// ∂f/∂u of any formula by a scalar symbol: of a scalar, a vector componentwise, a quaternion or
-/// pose in its own algebra (N6).
+/// ∂f/∂u of any formula by a scalar symbol: of a scalar, a vector or matrix componentwise,
+/// a quaternion or pose in its own algebra (N6).
 template <Formula F, Symbol U>
 [[nodiscard]] constexpr auto derivative(const F& f, const U&) {
   using symbol_type = typename U::node_type;
   static_assert(symbol_type::kind_of == kind::scalar,
-                "duet: derivative(f, u) is by a scalar symbol; by vectors, rotations and poses "
-                "there is jacobian(f, wrt(w))");
+                "duet: derivative(f, u) is by a scalar symbol; by vectors, matrices, rotations and "
+                "poses there is jacobian(f, wrt(w))");
   return make_formula(
       detail::rate_t<typename F::node_type, detail::movement_of_scalar<symbol_type>>{}, f.held());
 }

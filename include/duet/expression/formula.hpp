@@ -59,6 +59,9 @@ concept ScalarTerm = Term<T> && detail::kind_of_term<T>()
 template <class T>
 concept VectorTerm = Term<T> && detail::kind_of_term<T>()
 == kind::vector;
+/// A matrix that is no scalar; a vector is one of 3 x 1.
+template <class T>
+concept MatrixTerm = Term<T> && is_matrix(detail::kind_of_term<T>());
 template <class T>
 concept QuaternionTerm = Term<T> && detail::kind_of_term<T>()
 == kind::quaternion;
@@ -88,12 +91,19 @@ struct constant_traits<T> {
   static constexpr kind kind_of = kind::scalar;
   using held_type = std::conditional_t<std::integral<T>, double, T>;
 };
-template <ThreeComponents T>
+template <class T>
+  requires std::derived_from<T, Eigen::MatrixBase<T>>
 struct constant_traits<T> {
+  static constexpr int rows = T::RowsAtCompileTime;
+  static constexpr int columns = T::ColsAtCompileTime;
+  static_assert(
+      1 <= rows && rows <= 6 && 1 <= columns && columns <= 6 && rows * columns > 1,
+      "duet: a matrix in a formula has 1 to 6 rows and columns, known to the compiler; of "
+      "1 x 1 it is a scalar");
   static constexpr bool is_constant = true;
   static constexpr kind kind_of =
-      is_screw_dual<typename T::Scalar> ? kind::dual_vector : kind::vector;
-  using held_type = vector3<typename T::Scalar>;
+      is_screw_dual<typename T::Scalar> ? kind::dual_vector : matrix_kind(rows, columns);
+  using held_type = Eigen::Matrix<typename T::Scalar, rows, columns>;
 };
 template <class T>
 struct constant_traits<quaternion<T>> {
@@ -104,7 +114,7 @@ struct constant_traits<quaternion<T>> {
 
 } // namespace detail
 
-/// A number, 3-vector, quaternion, dual vector or dual quaternion.
+/// A number, vector, matrix, quaternion, dual vector or dual quaternion.
 template <class T>
 concept Constant = !std::is_array_v<T> && detail::constant_traits<T>::is_constant;
 
@@ -115,6 +125,23 @@ concept Operands = (Term<T> || ...) && ((Term<T> || Constant<T>)&&...);
 /// A term and a constant, in either order.
 template <class A, class B>
 concept TermAndConstant = Operands<A, B> && !(Term<A> && Term<B>);
+
+namespace detail {
+
+/// Of a term or a constant.
+template <class T>
+[[nodiscard]] constexpr kind kind_of_operand() {
+  if constexpr (Term<T>) {
+    return kind_of_term<T>();
+  } else {
+    return constant_traits<T>::kind_of;
+  }
+}
+/// Operands of which one at least is a matrix that is neither scalar nor vector.
+template <class... T>
+concept SizedOperands = Operands<T...> &&(is_sized_matrix(kind_of_operand<T>()) || ...);
+
+} // namespace detail
 
 /// A formula: its type is the tree of its operations, its members are its constants alone.
 template <Node NodeType, class Held>
@@ -149,8 +176,13 @@ public:
         return false;
       }
     }();
-    static_assert(is_right_kind, "duet: a symbol is given a value of another kind; scalar, vector, "
-                                 "quaternion, dual vector and pose symbols take just that");
+    static_assert(
+        is_right_kind || is_sized_matrix(NodeType::kind_of),
+        "duet: a symbol is given a value of another kind; scalar, vector, quaternion, dual "
+        "vector and pose symbols take just that");
+    static_assert(is_right_kind || !is_sized_matrix(NodeType::kind_of),
+                  "duet: a matrix symbol is given a value of another size; matrix_symbol<\"A\", 2, "
+                  "4> takes a matrix of Eigen of 2 rows and 4 columns");
     if constexpr (is_right_kind) {
       using held_type_of_value = typename detail::constant_traits<T>::held_type;
       return detail::argument<NodeType, held_type_of_value>{static_cast<held_type_of_value>(value)};
@@ -168,6 +200,10 @@ template <class NodeType, class Held>
 }
 
 namespace detail {
+
+// What tells constants apart is the type of a closure, another one wherever a function is called.
+// Each header's closures take a parameter of their own: clang 14 counts closures by namespace
+// block, but names them by namespace, so those of two headers would be taken for one.
 
 template <class Tag, Term T>
 [[nodiscard]] constexpr const T& term(const T& x) {

@@ -96,19 +96,19 @@ struct lerp : detail::function_of_many<lerp> {
 } // namespace op
 
 /// The angle of the point (x, y), in (−π, π].
-template <class Y, class X, class Tag = decltype([] {})>
+template <class Y, class X, class Tag = decltype([](op::hypot*) {})>
   requires Operands<Y, X>
 [[nodiscard]] constexpr auto atan2(const Y& y, const X& x) {
   return apply<op::atan2>(detail::term<Tag>(y), detail::term<Tag>(x));
 }
 /// √(x² + y²)
-template <class X, class Y, class Tag = decltype([] {})>
+template <class X, class Y, class Tag = decltype([](op::hypot*) {})>
   requires Operands<X, Y>
 [[nodiscard]] constexpr auto hypot(const X& x, const Y& y) {
   return apply<op::hypot>(detail::term<Tag>(x), detail::term<Tag>(y));
 }
 /// √(x² + y² + z²)
-template <class X, class Y, class Z, class Tag = decltype([] {})>
+template <class X, class Y, class Z, class Tag = decltype([](op::hypot*) {})>
   requires(Operands<X, Y>&& Term<Z>)
 [[nodiscard]] constexpr auto hypot(const X& x, const Y& y, const Z& z) {
   return hypot(hypot<X, Y, Tag>(x, y), z);
@@ -119,7 +119,8 @@ template <Term X, Term Y, Term Z>
   return apply<op::fma>(x, y, z);
 }
 /// a + t (b − a) of scalars, exact at t = 0 and t = 1.
-template <class A, class B, class T, class TagA = decltype([] {}), class TagB = decltype([] {})>
+template <class A, class B, class T, class TagA = decltype([](op::hypot*) {}),
+          class TagB = decltype([](op::hypot*) {})>
   requires(Operands<A, B, T>&& Term<T>)
 [[nodiscard]] constexpr auto lerp(const A& a, const B& b, const T& t) {
   return apply<op::lerp>(detail::term<TagA>(a), detail::term<TagB>(b), t);

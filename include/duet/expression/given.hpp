@@ -8,6 +8,8 @@
 #include <duet/expression/held.hpp>
 #include <duet/expression/node.hpp>
 
+#include <Eigen/Core>
+
 #include <concepts>
 #include <cstdint>
 #include <type_traits>
@@ -40,8 +42,8 @@ template <class T>
 struct scalar_of<screw_dual<T>> {
   using type = T;
 };
-template <class T>
-struct scalar_of<vector3<T>> : scalar_of<T> {};
+template <class T, int Rows, int Columns, int Options>
+struct scalar_of<Eigen::Matrix<T, Rows, Columns, Options>> : scalar_of<T> {};
 template <class T>
 struct scalar_of<quaternion<T>> : scalar_of<T> {};
 
@@ -85,11 +87,15 @@ template <class Real, class T>
   const auto value = constant_over<Real>(x.value());
   return screw_dual<std::remove_const_t<decltype(value)>>(value, constant_over<Real>(x.epsilon()));
 }
-template <class Real, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE auto constant_over(const vector3<T>& v) {
-  using S = decltype(constant_over<Real>(v[0]));
-  return vector3<S>(constant_over<Real>(v[0]), constant_over<Real>(v[1]),
-                    constant_over<Real>(v[2]));
+template <class Real, class T, int Rows, int Columns, int Options>
+[[nodiscard]] DUET_ALWAYS_INLINE auto
+constant_over(const Eigen::Matrix<T, Rows, Columns, Options>& m) {
+  using S = decltype(constant_over<Real>(m.data()[0]));
+  Eigen::Matrix<S, Rows, Columns, Options> result;
+  for (int i = 0; i < Rows * Columns; ++i) {
+    result.data()[i] = constant_over<Real>(m.data()[i]);
+  }
+  return result;
 }
 template <class Real, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const quaternion<T>& q) {
@@ -139,8 +145,9 @@ template <kind K, class Given>
 struct leaf<zero_node<K>, Given> {
   static constexpr auto value(const Given&) {
     using real = typename Given::real;
-    if constexpr (K == kind::vector) {
-      return vector3<real>(real(0), real(0), real(0));
+    if constexpr (is_matrix(K)) {
+      using matrix = Eigen::Matrix<real, rows_of(K), columns_of(K)>;
+      return matrix(matrix::Zero());
     } else if constexpr (K == kind::dual_vector) {
       using D = screw_dual<real>;
       return dual_vector<real>(D(real(0)), D(real(0)), D(real(0)));

@@ -16,16 +16,16 @@
 #include <type_traits>
 
 /// \file
-/// Jacobians of formulas of vectors, rotations and poses.
+/// Jacobians of formulas of vectors, matrices, rotations and poses.
 
 namespace duet::expression {
 
 namespace detail {
 
-/// What a column of the Jacobian is: a velocity, or the rate of a vector.
+/// What a column of the Jacobian is: a velocity, or the rate of a vector or matrix.
 template <class Node, class Motion, class Frame>
 [[nodiscard]] constexpr auto column_of() {
-  if constexpr (Node::kind_of == kind::vector) {
+  if constexpr (is_matrix(Node::kind_of)) {
     return rate_t<Node, Motion>{};
   } else {
     return velocity_of<Frame, Node, Motion>();
@@ -40,8 +40,8 @@ DUET_ALWAYS_INLINE void write_column(T* column, const V& v) {
       column[3 + i] = v[i].value();
     }
   } else {
-    for (int i = 0; i < 3; ++i) {
-      column[i] = v[i];
+    for (int i = 0; i < int(V::SizeAtCompileTime); ++i) {
+      column[i] = v.data()[i];
     }
   }
 }
@@ -61,7 +61,8 @@ public:
   template <class... Arguments>
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
     using S = typename base::template scalar<Arguments...>;
-    constexpr int rows = node::kind_of == kind::pose ? 6 : 3;
+    constexpr kind k = node::kind_of;
+    constexpr int rows = k == kind::pose ? 6 : is_matrix(k) ? rows_of(k) * columns_of(k) : 3;
     if constexpr (is_pose_chain<node> && std::is_same_v<Frame, spatial_frame> &&
                   std::is_same_v<S, double>) {
       value_and_jacobian<dual_quaternion<double>, Eigen::Matrix<S, 6, int(sizeof...(Motions))>>
@@ -89,9 +90,9 @@ template <class F, class Variables, class Frame>
 [[nodiscard]] constexpr auto make_jacobian(const F& f) {
   constexpr kind k = F::node_type::kind_of;
   static_assert(
-      k == kind::vector || k == kind::quaternion || k == kind::pose,
-      "duet: a Jacobian is that of a vector, a rotation or a pose; a scalar formula has a "
-      "gradient");
+      is_matrix(k) || k == kind::quaternion || k == kind::pose,
+      "duet: a Jacobian is that of a vector, a matrix, a rotation or a pose; a scalar formula has "
+      "a gradient");
   return jacobian_of<F, typename Variables::template motions_in<Frame>, Frame>(f);
 }
 
@@ -100,22 +101,23 @@ template <class F, class Variables, class Frame>
 /// f and the matrix ∂f/∂(u, w …), a function to be called by name:
 /// `auto [x, J] = jacobian(f, wrt(u, w), frame::spatial)(u = 0.3, w = w0)`.
 ///
-/// Columns are of the variables in their order: a scalar has one, a vector three, a dual vector n +
-/// εm six in the order [m; n], a rotation three and a pose six, in which it moves along its tangent
-/// coordinates. Rows: the components of a
-/// vector; the angular velocity of a rotation (N7); the twist [v; ω] of a pose (N18). Rotations and
-/// poses, on both sides, are taken as unit, and in `frame::spatial` or `frame::body`.
+/// Columns are of the variables in their order: a scalar has one, a vector three, a matrix one for
+/// each entry, column by column, a dual vector n + εm six in the order [m; n], a rotation three and
+/// a pose six, in which it moves along its tangent coordinates. Rows: the components of a vector;
+/// the entries of a matrix, column by column as Eigen stores them; the angular velocity of a
+/// rotation (N7); the twist [v; ω] of a pose (N18). Rotations and poses, on both sides, are taken
+/// as unit, and in `frame::spatial` or `frame::body`.
 template <Formula F, class... Symbols, class Frame>
 [[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>, Frame frame) {
   static_cast<void>(duet::detail::is_spatial(frame));
   return detail::make_jacobian<F, variables<Symbols...>, Frame>(f);
 }
 
-/// The same of vectors by scalars and vectors, where no frame matters.
+/// The same of vectors and matrices by scalars, vectors and matrices, where no frame matters.
 template <Formula F, class... Symbols>
 [[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>) {
   static_assert(F::node_type::kind_of != kind::quaternion && F::node_type::kind_of != kind::pose &&
-                    ((Symbols::kind_of == kind::scalar || Symbols::kind_of == kind::vector) && ...),
+                    ((Symbols::kind_of == kind::scalar || is_matrix(Symbols::kind_of)) && ...),
                 "duet: with rotations and poses say the frame: jacobian(f, wrt(u), frame::body)");
   return detail::make_jacobian<F, variables<Symbols...>, void>(f);
 }

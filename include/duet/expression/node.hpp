@@ -11,7 +11,7 @@
 
 namespace duet::expression {
 
-/// What a node stands for.
+/// What a node stands for. Matrices of a size have the kind `matrix_kind(rows, columns)`.
 enum class kind {
   scalar,
   condition,   ///< true or false
@@ -20,6 +20,25 @@ enum class kind {
   dual_vector, ///< a line, screw or twist of rigid motion
   pose         ///< a dual quaternion, a rigid motion if unit
 };
+
+/// The kind of matrices of a size, of 1 to 6 rows and columns: of 1 x 1 a scalar, of 3 x 1 a
+/// vector, of any other size one of its own, behind the kinds that have a name.
+[[nodiscard]] constexpr kind matrix_kind(int rows, int columns) {
+  return columns == 1 && rows == 1   ? kind::scalar
+         : columns == 1 && rows == 3 ? kind::vector
+                                     : static_cast<kind>(8 * rows + columns);
+}
+/// A matrix that is neither a scalar nor a vector of three.
+[[nodiscard]] constexpr bool is_sized_matrix(kind k) { return k > kind::pose; }
+/// A matrix that is no scalar.
+[[nodiscard]] constexpr bool is_matrix(kind k) { return is_sized_matrix(k) || k == kind::vector; }
+/// Of a scalar or a matrix.
+[[nodiscard]] constexpr int rows_of(kind k) {
+  return is_sized_matrix(k) ? static_cast<int>(k) / 8 : k == kind::vector ? 3 : 1;
+}
+[[nodiscard]] constexpr int columns_of(kind k) {
+  return is_sized_matrix(k) ? static_cast<int>(k) % 8 : 1;
+}
 
 /// A variable with a name, spelt out in letters, for every compiler to print.
 template <kind K, char... Letters>

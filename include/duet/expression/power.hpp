@@ -148,7 +148,7 @@ struct power {
 } // namespace op
 
 /// x^p of scalars. Exponents that the compiler knows, as `c<2>`, are simplified.
-template <class X, class P, class Tag = decltype([] {})>
+template <class X, class P, class Tag = decltype([](op::power*) {})>
   requires Operands<X, P> &&(!QuaternionTerm<X> && !PoseTerm<X>)
       [[nodiscard]] constexpr auto pow(const X& x, const P& p) {
     return apply<op::power>(detail::term<Tag>(x), detail::term<Tag>(p));

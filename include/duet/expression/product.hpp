@@ -13,7 +13,8 @@
 #include <type_traits>
 
 /// \file
-/// Products of scalars, quaternions and poses, scaling, and quotients.
+/// Products of scalars, quaternions and poses, scaling, and quotients. (Those of matrices are in
+/// matrix_product.hpp.)
 
 namespace duet::expression {
 
@@ -21,6 +22,7 @@ namespace op {
 
 template <int Exponent>
 struct whole_power;
+struct matrix_product;
 
 } // namespace op
 
@@ -81,7 +83,8 @@ inline constexpr bool is_divided_exactly<applied_node<op::difference, A, B>, Div
 
 [[nodiscard]] constexpr bool is_product_of_kinds(kind a, kind b) {
   return a == kind::scalar || b == kind::scalar ||
-         (a == b && (a == kind::quaternion || a == kind::pose));
+         (a == b && (a == kind::quaternion || a == kind::pose)) ||
+         (is_matrix(a) && is_matrix(b) && (a != b || a != kind::vector));
 }
 
 } // namespace detail
@@ -94,11 +97,13 @@ struct product {
   template <class A, class B>
   static constexpr auto simplified(A a, B b) {
     static_assert(detail::is_product_of_kinds(A::kind_of, B::kind_of),
-                  "duet: a product is of scalars, of a scalar and anything, of two quaternions or "
-                  "of two poses; vectors have dot and cross, rotations rotate(q, v)");
+                  "duet: a product is of scalars, of a scalar and anything, of two matrices, two "
+                  "quaternions or two poses; vectors have dot and cross, rotations rotate(q, v)");
     using base_of_a = typename detail::base<A>::type;
     using base_of_b = typename detail::base<B>::type;
-    if constexpr (is_zero<A> || is_zero<B>) {
+    if constexpr (is_matrix(A::kind_of) && is_matrix(B::kind_of)) {
+      return apply<matrix_product>(a, b);
+    } else if constexpr (is_zero<A> || is_zero<B>) {
       return zero_of<kind_of(A::kind_of, B::kind_of)>();
     } else if constexpr (is_one<A>) {
       return b;
@@ -119,6 +124,8 @@ struct product {
       return -(operand<0>(a) * b);
     } else if constexpr (is_applied<B, negative>) {
       return -(a * operand<0>(b));
+    } else if constexpr (detail::is_placed<B>) {
+      return detail::placed_like(b, a * operand<0>(b));
     } else if constexpr (is_number<A>) {
       if constexpr (has_number<B>) {
         constexpr double inner = decltype(operand<0>(b))::value;
@@ -181,6 +188,8 @@ struct quotient {
       } else {
         return applied_node<quotient, A, B>{};
       }
+    } else if constexpr (detail::is_placed<A>) {
+      return detail::placed_like(a, operand<0>(a) / b);
     } else if constexpr (detail::starts_with_minus<A>()) {
       return -(-a / b);
     } else if constexpr (detail::starts_with_minus<B>()) {

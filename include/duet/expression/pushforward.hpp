@@ -10,6 +10,8 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/tangent.hpp>
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <string>
 #include <tuple>
@@ -34,11 +36,15 @@ template <class Tag, class A, class B>
   return screw_dual<std::remove_const_t<decltype(value)>>(
       value, with_rate<Tag>(x.epsilon(), rate.epsilon()));
 }
-template <class Tag, class A, class B>
-[[nodiscard]] auto with_rate(const vector3<A>& x, const vector3<B>& rate) {
-  using D = decltype(with_rate<Tag>(x[0], rate[0]));
-  return vector3<D>(with_rate<Tag>(x[0], rate[0]), with_rate<Tag>(x[1], rate[1]),
-                    with_rate<Tag>(x[2], rate[2]));
+template <class Tag, class A, class B, int Rows, int Columns, int Options>
+[[nodiscard]] auto with_rate(const Eigen::Matrix<A, Rows, Columns, Options>& x,
+                             const Eigen::Matrix<B, Rows, Columns, Options>& rate) {
+  using D = decltype(with_rate<Tag>(x.data()[0], rate.data()[0]));
+  Eigen::Matrix<D, Rows, Columns, Options> result;
+  for (int i = 0; i < Rows * Columns; ++i) {
+    result.data()[i] = with_rate<Tag>(x.data()[i], rate.data()[i]);
+  }
+  return result;
 }
 template <class Tag, class A, class B>
 [[nodiscard]] auto with_rate(const quaternion<A>& q, const quaternion<B>& rate) {

@@ -226,7 +226,7 @@ template <detail::QuaternionOrPose Q>
 }
 /// p · q, the product of quaternions as vectors of four components; of dual quaternions, as of
 /// lines, a dual number.
-template <class P, class Q, class Tag = decltype([] {})>
+template <class P, class Q, class Tag = decltype([](op::rotate*) {})>
   requires(Operands<P, Q> && (detail::QuaternionOrPose<P> || detail::QuaternionOrPose<Q>))
 [[nodiscard]] constexpr auto dot(const P& p, const Q& q) {
   return apply<op::dot>(detail::term<Tag>(p), detail::term<Tag>(q));
@@ -257,20 +257,20 @@ template <detail::QuaternionOrPose Q>
   return apply<op::log_quaternion>(q);
 }
 /// N5: q^ρ.
-template <detail::QuaternionOrPose Q, class S, class Tag = decltype([] {})>
+template <detail::QuaternionOrPose Q, class S, class Tag = decltype([](op::rotate*) {})>
   requires Operands<Q, S>
 [[nodiscard]] constexpr auto pow(const Q& q, const S& exponent) {
   return apply<op::power_of_quaternion>(q, detail::term<Tag>(exponent));
 }
 /// N9: a (a* b)^τ the shorter way round.
-template <class A, class B, class S, class TagA = decltype([] {}), class TagB = decltype([] {}),
-          class TagS = decltype([] {})>
+template <class A, class B, class S, class TagA = decltype([](op::rotate*) {}),
+          class TagB = decltype([](op::rotate*) {}), class TagS = decltype([](op::rotate*) {})>
   requires Operands<A, B, S>
 [[nodiscard]] constexpr auto slerp(const A& a, const B& b, const S& tau) {
   return apply<op::slerp>(detail::term<TagA>(a), detail::term<TagB>(b), detail::term<TagS>(tau));
 }
 /// q v q*, v turned by the rotation; a line, screw or twist carried along by a rigid motion.
-template <class Q, class V, class Tag = decltype([] {})>
+template <class Q, class V, class Tag = decltype([](op::rotate*) {})>
   requires Operands<Q, V>
 [[nodiscard]] constexpr auto rotate(const Q& q, const V& v) {
   return apply<op::rotate>(detail::term<Tag>(q), detail::term<Tag>(v));

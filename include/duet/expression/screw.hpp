@@ -121,7 +121,7 @@ template <Node N, Node Angle>
 /// The rigid motion by the angle θ about and along a screw n + ε(m + h n): a unit direction n, the
 /// moment m = point × n and the pitch h, in units of length per radian. exp(½θ(n + …)) with sine
 /// and cosine instead of exponentials. Directions of other lengths give garbage.
-template <class L, class Angle, class Tag = decltype([] {})>
+template <class L, class Angle, class Tag = decltype([](op::turn*) {})>
   requires Operands<L, Angle>
 [[nodiscard]] constexpr auto screw(const L& line, const Angle& angle) {
   const auto l = detail::term<Tag>(line);
@@ -134,7 +134,7 @@ template <class L, class Angle, class Tag = decltype([] {})>
                       merged(detail::held_of(l), detail::held_of(a)));
 }
 /// The rotation by θ about a unit vector n; other lengths give garbage.
-template <class N, class Angle, class Tag = decltype([] {})>
+template <class N, class Angle, class Tag = decltype([](op::turn*) {})>
   requires Operands<N, Angle>
 [[nodiscard]] constexpr auto turn(const N& n, const Angle& angle) {
   const auto axis = detail::term<Tag>(n);
@@ -146,7 +146,7 @@ template <class N, class Angle, class Tag = decltype([] {})>
                       merged(detail::held_of(axis), detail::held_of(a)));
 }
 /// The translation by d along a unit vector or line, a prismatic joint.
-template <class N, class D, class Tag = decltype([] {})>
+template <class N, class D, class Tag = decltype([](op::turn*) {})>
   requires Operands<N, D>
 [[nodiscard]] constexpr auto slide(const N& n, const D& d) {
   const auto direction = detail::term<Tag>(n);
@@ -174,7 +174,7 @@ inline constexpr coordinate<2> z{};
   return make_dual_vector(n, vector3<double>(point.cross(n)));
 }
 /// N17: the pose x ↦ q x q* + t.
-template <class Q, class T, class Tag = decltype([] {})>
+template <class Q, class T, class Tag = decltype([](op::turn*) {})>
   requires Operands<Q, T>
 [[nodiscard]] constexpr auto pose(const Q& q, const T& t) {
   return apply<op::make_pose>(detail::term<Tag>(q), detail::term<Tag>(t));
@@ -190,13 +190,13 @@ template <PoseTerm A>
   return apply<op::translation>(a);
 }
 /// The point x carried along by a pose: R x + t.
-template <PoseTerm A, class X, class Tag = decltype([] {})>
+template <PoseTerm A, class X, class Tag = decltype([](op::turn*) {})>
 [[nodiscard]] constexpr auto transform_point(const A& a, const X& x) {
   return rotate(rotation(a), detail::term<Tag>(x)) + translation(a);
 }
 /// N19: a (a* b)^τ of poses.
-template <class A, class B, class S, class TagA = decltype([] {}), class TagB = decltype([] {}),
-          class TagS = decltype([] {})>
+template <class A, class B, class S, class TagA = decltype([](op::turn*) {}),
+          class TagB = decltype([](op::turn*) {}), class TagS = decltype([](op::turn*) {})>
   requires Operands<A, B, S>
 [[nodiscard]] constexpr auto sclerp(const A& a, const B& b, const S& tau) {
   return slerp<A, B, S, TagA, TagB, TagS>(a, b, tau);

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <sstream>
 #include <string>
+#include <vector>
 
 /// \file
 /// Formulas as text and as LaTeX.
@@ -36,7 +37,8 @@ namespace detail {
   return {digits, is_negative ? negative : precedence::atom, style};
 }
 
-/// Greek letters by their names, what follows the letters as an index, vectors with an arrow.
+/// Greek letters by their names, what follows the letters as an index, columns with an
+/// arrow.
 [[nodiscard]] inline std::string latex_name(const std::string& name, kind k) {
   static constexpr std::array greek = {
       "alpha",   "beta",   "gamma", "delta", "epsilon", "zeta",  "eta",   "theta", "iota",
@@ -53,7 +55,7 @@ namespace detail {
   if (letters.size() > 1 && letters[0] != '\\') {
     letters = "\\mathrm{" + letters + "}";
   }
-  if (k == kind::vector) {
+  if (is_matrix(k) && columns_of(k) == 1) {
     letters = "\\vec{" + letters + "}";
   }
   if (end == std::string::npos) {
@@ -66,6 +68,14 @@ template <class T>
 [[nodiscard]] printed printed_constant(notation style, const T& value) {
   if constexpr (std::floating_point<T>) {
     return printed_number(style, duet::to_text(value));
+  } else if constexpr (is_sized_matrix(constant_traits<T>::kind_of)) {
+    std::vector<std::string> entries;
+    for (Eigen::Index i = 0; i < value.rows(); ++i) {
+      for (Eigen::Index j = 0; j < value.cols(); ++j) {
+        entries.push_back(printed_constant(style, value(i, j)).text);
+      }
+    }
+    return printed_matrix(style, std::size_t(value.cols()), entries);
   } else {
     std::ostringstream text;
     if constexpr (requires { value.transpose(); }) {

@@ -62,6 +62,9 @@ template <kind K, int I, class Held>
 
 namespace op {
 
+template <int I, int J, int Rows, int Columns>
+struct block;
+
 /// The sum of the products of components, of vectors and quaternions.
 struct dot {
   static constexpr kind kind_of(kind, kind) { return kind::scalar; }
@@ -158,13 +161,16 @@ struct component {
   }
   template <class V, class DV>
   static constexpr auto differential(V, DV dv) {
-    return apply<component>(dv);
+    if constexpr (is_sized_matrix(DV::kind_of)) {
+      return apply<block<I, 0, 1, 1>>(dv);
+    } else {
+      return apply<component>(dv);
+    }
   }
   static printed print(notation style, const printed& v) {
     const std::string i = std::to_string(I);
-    return style == notation::latex
-               ? printed{v.inside(precedence::atom) + "_{" + std::to_string(I + 1) + "}"}
-               : printed{v.inside(precedence::atom) + "[" + i + "]"};
+    return style == notation::latex ? detail::with_index(v, std::to_string(I + 1))
+                                    : printed{v.inside(precedence::atom) + "[" + i + "]"};
   }
   template <kind K, int J>
   static constexpr auto simplified(unit_vector_node<K, J>) {
@@ -198,20 +204,20 @@ struct column {
 namespace detail {
 
 template <class A, class B>
-concept VectorOperands = Operands<A, B> &&
-    (VectorTerm<A> || DualVectorTerm<A> || !Term<A>)&&(VectorTerm<B> || DualVectorTerm<B> ||
-                                                       !Term<B>);
+concept VectorOperands =
+    Operands<A, B> && !SizedOperands<A, B> && (VectorTerm<A> || DualVectorTerm<A> || !Term<A>)&&(
+                                                  VectorTerm<B> || DualVectorTerm<B> || !Term<B>);
 
 } // namespace detail
 
 /// a · b
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::cross*) {})>
   requires detail::VectorOperands<A, B>
 [[nodiscard]] constexpr auto dot(const A& a, const B& b) {
   return apply<op::dot>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 /// a × b
-template <class A, class B, class Tag = decltype([] {})>
+template <class A, class B, class Tag = decltype([](op::cross*) {})>
   requires detail::VectorOperands<A, B>
 [[nodiscard]] constexpr auto cross(const A& a, const B& b) {
   return apply<op::cross>(detail::term<Tag>(a), detail::term<Tag>(b));
@@ -228,8 +234,8 @@ template <int I, VectorTerm V>
   return apply<op::component<I>>(v);
 }
 /// The vector of three scalars.
-template <class X, class Y, class Z, class TagX = decltype([] {}), class TagY = decltype([] {}),
-          class TagZ = decltype([] {})>
+template <class X, class Y, class Z, class TagX = decltype([](op::cross*) {}),
+          class TagY = decltype([](op::cross*) {}), class TagZ = decltype([](op::cross*) {})>
   requires Operands<X, Y, Z>
 [[nodiscard]] constexpr auto column(const X& x, const Y& y, const Z& z) {
   return apply<op::column>(detail::term<TagX>(x), detail::term<TagY>(y), detail::term<TagZ>(z));

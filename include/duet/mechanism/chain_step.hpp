@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/dual/sine_cosine.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/known_constant.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -37,16 +38,14 @@ struct step_in_memory {
 
   [[nodiscard]] bool turns() const { return s.turns; }
   [[nodiscard]] bool slides() const { return s.slides; }
-  template <class S>
+  template <class S, class HalfTurn>
   [[nodiscard]] DUET_ALWAYS_INLINE partly_known_quaternion<S, S, S, S>
-  rotation(const S& theta) const {
+  rotation(const HalfTurn& half_turn) const {
     if (!s.turns) {
       return {S(s.a.w()), S(s.a.x()), S(s.a.y()), S(s.a.z())};
     }
-    using std::cos;
-    using std::sin;
-    const S half = theta / 2;
-    const S c = cos(half), s_ = sin(half);
+    const sine_cosine<S> half = half_turn();
+    const S &s_ = half.sine, &c = half.cosine;
     return {c * s.a.w() + s_ * s.an.w(), c * s.a.x() + s_ * s.an.x(), c * s.a.y() + s_ * s.an.y(),
             c * s.a.z() + s_ * s.an.z()};
   }
@@ -64,8 +63,8 @@ struct known_step {
 
   [[nodiscard]] static constexpr bool turns() { return s().turns; }
   [[nodiscard]] static constexpr bool slides() { return s().slides; }
-  template <class S>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const S& theta) {
+  template <class S, class HalfTurn>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const HalfTurn& half_turn) {
     const auto aw = known([] { return s().a.w(); });
     const auto ax = known([] { return s().a.x(); });
     const auto ay = known([] { return s().a.y(); });
@@ -73,10 +72,8 @@ struct known_step {
     if constexpr (!turns()) {
       return partly_known_quaternion{aw, ax, ay, az};
     } else {
-      using std::cos;
-      using std::sin;
-      const S half = theta / 2;
-      const S c = cos(half), s_ = sin(half);
+      const sine_cosine<S> half = half_turn();
+      const S &s_ = half.sine, &c = half.cosine;
       return partly_known_quaternion{c * aw + s_ * known([] { return s().an.w(); }),
                                      c * ax + s_ * known([] { return s().an.x(); }),
                                      c * ay + s_ * known([] { return s().an.y(); }),
@@ -125,9 +122,10 @@ link_state(Q, P) -> link_state<Q, P>;
 
 /// The state after one more joint. `visit(step, axis, position)` is called with the joint's axis in
 /// space and a point on it. `WithRotation`: is the rotation after the joint asked for?
-template <bool WithRotation, class State, class Step, class S, class Visit>
+template <bool WithRotation, class State, class Step, class S, class HalfTurn, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE auto after_joint(const State& state, const Step& step,
-                                                  const S& theta, Visit&& visit) {
+                                                  const S& theta, const HalfTurn& half_turn,
+                                                  Visit&& visit) {
   const auto shift = turned(state.rotation, step.offset());
   const auto axis = turned(state.rotation, step.axis());
   const partly_known_vector<S, S, S> z{number<S>(axis.x), number<S>(axis.y), number<S>(axis.z)};
@@ -140,7 +138,7 @@ template <bool WithRotation, class State, class Step, class S, class Visit>
   }
   visit(step, z, p);
   if constexpr (WithRotation) {
-    return link_state{product(state.rotation, step.rotation(theta)), p};
+    return link_state{product(state.rotation, step.template rotation<S>(half_turn)), p};
   } else {
     return link_state{state.rotation, p};
   }

@@ -6,6 +6,7 @@
 #include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/chain_step.hpp>
+#include <duet/mechanism/half_turns.hpp>
 #include <duet/mechanism/joint.hpp>
 
 #include <cstddef>
@@ -58,9 +59,11 @@ template <class S, class State>
 }
 
 /// From the I-th joint on, the table being known.
-template <bool WithRotation, class C, std::size_t I, class S, class State, class X, class Visit>
+template <bool WithRotation, class C, std::size_t I, class S, class State, class X, class Turns,
+          class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE numeric_state<S> walk_known(const State& state, const X& theta,
-                                                             std::size_t links, Visit&& visit) {
+                                                             const Turns& turns, std::size_t links,
+                                                             Visit&& visit) {
   if constexpr (I == std::size_t(C::joints)) {
     return as_numbers<S>(state);
   } else {
@@ -70,13 +73,14 @@ template <bool WithRotation, class C, std::size_t I, class S, class State, class
     using step = known_step<typename C::arm, I>;
     const S x(vector_argument<X>::get(theta, Eigen::Index(I)));
     const auto seen = [&](const auto&... a) DUET_INLINE_LAMBDA { visit(I, a...); };
+    const auto turn = [&]() DUET_INLINE_LAMBDA { return turns[int(I)]; };
     if constexpr (!WithRotation) {
       if (I + 1 == links) {
-        return as_numbers<S>(after_joint<false>(state, step{}, x, seen));
+        return as_numbers<S>(after_joint<false>(state, step{}, x, turn, seen));
       }
     }
-    return walk_known<WithRotation, C, I + 1, S>(after_joint<true>(state, step{}, x, seen), theta,
-                                                 links, visit);
+    return walk_known<WithRotation, C, I + 1, S>(after_joint<true>(state, step{}, x, turn, seen),
+                                                 theta, turns, links, visit);
   }
 }
 
@@ -92,18 +96,20 @@ template <bool WithRotation, class S, class C, class X, class Visit>
     return walk_known<WithRotation, C, 0, S>(
         link_state{partly_known_quaternion{one, zero, zero, zero},
                    partly_known_vector{zero, zero, zero}},
-        theta, std::size_t(links), visit);
+        theta, half_turns<S, C::joints, X>(theta, C::joints, links), std::size_t(links), visit);
   } else {
     numeric_state<S> state{{S(1), S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
     const auto count = std::size_t(links);
+    const half_turns<S, C::joints, X> turns(theta, chain.size(), links);
     for (std::size_t i = 0; i < count; ++i) {
       const step_in_memory<typename C::scalar_type> step{chain.steps()[i]};
       const S x(vector_argument<X>::get(theta, Eigen::Index(i)));
       const auto seen = [&](const auto&... a) DUET_INLINE_LAMBDA { visit(i, a...); };
+      const auto turn = [&]() DUET_INLINE_LAMBDA { return turns[int(i)]; };
       if (!WithRotation && i + 1 == count) {
-        return as_numbers<S>(after_joint<false>(state, step, x, seen));
+        return as_numbers<S>(after_joint<false>(state, step, x, turn, seen));
       }
-      state = after_joint<true>(state, step, x, seen);
+      state = after_joint<true>(state, step, x, turn, seen);
     }
     return state;
   }

@@ -22,11 +22,13 @@ namespace duet {
 
 namespace detail {
 
-/// A plan along a path that is known to hold unit poses.
+/// A plan along a path that is known to hold unit poses; none where its end is known to be out of
+/// reach.
 template <class C, class Start, class Objective, class Scene>
-[[nodiscard]] motion_plan<C::joints>
-follow(const C& chain, const Start& start, const path_function& target, std::vector<double> stops,
-       const plan_options& options, const Objective& objective, const Scene& around) {
+[[nodiscard]] motion_plan<C::joints> follow(const C& chain, const Start& start,
+                                            const path_function& target, std::vector<double> stops,
+                                            const plan_options& options, const Objective& objective,
+                                            const Scene& around, bool is_out_of_reach = false) {
   require_options(options);
   const auto theta = joint_vector_of(chain, start);
   const pose_deviation gap = deviation_between(chain.pose(theta), target(stops.front()));
@@ -37,7 +39,8 @@ follow(const C& chain, const Start& start, const path_function& target, std::vec
     throw invalid_input(message.str());
   }
   require_clearance(chain, theta, around, options.tolerance);
-  return path_follower(chain, target, std::move(stops), options, objective, around).plan(theta);
+  path_follower follower(chain, target, std::move(stops), options, objective, around);
+  return is_out_of_reach ? follower.stay(theta, stop_reason::out_of_reach) : follower.plan(theta);
 }
 
 template <class Path>

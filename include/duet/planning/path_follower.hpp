@@ -50,6 +50,13 @@ public:
     return summary(best);
   }
 
+  /// Nothing but the start.
+  [[nodiscard]] motion_plan<C::joints> stay(const vector& start, stop_reason why) const {
+    route x({chain_state<C>(solver_.chain(), start), stops_.front(), {}, 0});
+    x.reason = why;
+    return summary(x);
+  }
+
 private:
   struct waypoint {
     chain_state<C> state;

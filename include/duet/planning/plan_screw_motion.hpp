@@ -3,6 +3,7 @@
 
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/planning/follow_path.hpp>
+#include <duet/planning/reach.hpp>
 
 /// \file
 /// Joint paths along the screw motion between two poses.
@@ -17,7 +18,9 @@ namespace duet {
 /// in τ follows from how far the tip is from the screw half way between waypoints; and the arm
 /// moves in place where it would get stuck otherwise.
 ///
-/// \return the plan; where `reason` is not `reached`, the part of it up to there
+/// \return the plan; where `reason` is not `reached`, the part of it up to there. It is the start
+/// alone where the goal is certainly `out_of_reach`: farther away than the links and sliding joints
+/// between the first joint and the last are long
 /// \throws invalid_input for a start outside the limits and for a goal that is no pose, and as
 ///         `follow_path`
 template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
@@ -36,7 +39,8 @@ plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<doub
     return dual_quaternion<double>(first *
                                    exp(dual_vector<double>(half * screw_dual<double>(tau))));
   };
-  return detail::follow(chain, start, target, {0, 1}, options, objective, around);
+  const bool is_out_of_reach = detail::chain_reach(chain).is_beyond(target(1), options.tolerance);
+  return detail::follow(chain, start, target, {0, 1}, options, objective, around, is_out_of_reach);
 }
 
 } // namespace duet

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
@@ -18,7 +19,7 @@ template <class A, class B, class Frame>
   requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>>
 angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame_of_result) {
-  const auto half = [&] {
+  const auto half = [&]() DUET_INLINE_LAMBDA {
     if constexpr (detail::is_spatial(frame_of_result)) {
       return q_dot * conj(q);
     } else {

@@ -1,0 +1,16 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+// expect: duet: dot\(A, B\) takes two vectors or matrices of one size
+
+#include <duet/expression/matrix.hpp>
+#include <duet/expression/symbol.hpp>
+
+int main() {
+  using namespace duet::expression;
+  constexpr matrix_symbol<"A", 2, 4> A;
+  constexpr matrix_symbol<"B", 4, 2> B;
+#ifdef DUET_MUST_FAIL
+  static_cast<void>(dot(A, B));
+#else
+  static_cast<void>(dot(A, transpose(B)));
+#endif
+}
