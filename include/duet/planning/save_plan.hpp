@@ -31,7 +31,7 @@ namespace detail {
 }
 
 template <class V>
-void append(std::vector<double>& row, const V& values) {
+void append_components(std::vector<double>& row, const V& values) {
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     row.push_back(values[i]);
   }
@@ -53,8 +53,8 @@ void save_plan(const std::string& path, const motion_plan<N>& plan) {
                      ",x [m],y [m],z [m],qw,qx,qy,qz,deviation [m],deviation [rad]\n";
   for (std::size_t k = 0; k < plan.joints.size(); ++k) {
     std::vector<double> row{plan.tau[k]};
-    detail::append(row, plan.joints[k]);
-    detail::append(row, pose_coordinates(plan.poses[k]));
+    detail::append_components(row, plan.joints[k]);
+    detail::append_components(row, pose_coordinates(plan.poses[k]));
     row.push_back(plan.deviations[k].length);
     row.push_back(plan.deviations[k].angle);
     text += csv_line(row);
@@ -79,9 +79,9 @@ void save_trajectory(const std::string& path, const joint_trajectory<N>& traject
     const bool is_last = t >= duration;
     const auto motion = trajectory(is_last ? duration : t);
     std::vector<double> row{is_last ? duration : t};
-    detail::append(row, motion.value);
-    detail::append(row, motion.velocity);
-    detail::append(row, motion.acceleration);
+    detail::append_components(row, motion.value);
+    detail::append_components(row, motion.velocity);
+    detail::append_components(row, motion.acceleration);
     text += csv_line(row);
     if (is_last) {
       break;
