@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Formulas as types beside the same by hand, at changing inputs: a seven-joint arm with its
-/// spatial Jacobian, and a gradient. "library" is the formula with the sines of the C library,
-/// which those by hand have.
+/// Formulas as types beside the same by hand, at changing inputs: arms of seven and twenty
+/// joints with their spatial Jacobians, and a gradient. "library" is the formula with the sines of
+/// the C library, which those by hand have.
 
 #include "support/contest.hpp"
 #include "workloads.hpp"
@@ -59,6 +59,19 @@ constexpr symbol<"t4"> t4;
 constexpr symbol<"t5"> t5;
 constexpr symbol<"t6"> t6;
 constexpr symbol<"t7"> t7;
+constexpr symbol<"t8"> t8;
+constexpr symbol<"t9"> t9;
+constexpr symbol<"t10"> t10;
+constexpr symbol<"t11"> t11;
+constexpr symbol<"t12"> t12;
+constexpr symbol<"t13"> t13;
+constexpr symbol<"t14"> t14;
+constexpr symbol<"t15"> t15;
+constexpr symbol<"t16"> t16;
+constexpr symbol<"t17"> t17;
+constexpr symbol<"t18"> t18;
+constexpr symbol<"t19"> t19;
+constexpr symbol<"t20"> t20;
 
 /// The arm of workloads.hpp.
 auto panda() {
@@ -91,6 +104,50 @@ void add_arm() {
   add<7>("formula_arm", "library", -2.8, 2.8,
          [=](const angles& x) { return call_panda(library, x); });
   add<7>("formula_arm", "hand", -2.8, 2.8, by_hand);
+}
+
+/// The arm of twenty joints: from the eighth on upside down, from the fifteenth on upright again.
+auto twenty_joints() {
+  return panda() * slide(axis::z, -.333) * screw(axis::z, -t8) * screw(axis::y, -t9) *
+         slide(axis::z, -.316) * screw(axis::z, -t10) * slide(axis::x, .0825) *
+         screw(axis::y, t11) * slide(axis::x, -.0825) * slide(axis::z, -.384) *
+         screw(axis::z, -t12) * screw(axis::y, t13) * slide(axis::x, .088) * screw(axis::z, t14) *
+         slide(axis::z, .107) * slide(axis::z, .333) * screw(axis::z, t15) * screw(axis::y, t16) *
+         slide(axis::z, .316) * screw(axis::z, t17) * slide(axis::x, .0825) * screw(axis::y, -t18) *
+         slide(axis::x, -.0825) * slide(axis::z, .384) * screw(axis::z, t19) * screw(axis::y, -t20);
+}
+
+template <class Jacobian>
+auto call_twenty(const Jacobian& jacobian, const std::array<double, 20>& x) {
+  return jacobian(t1 = x[0], t2 = x[1], t3 = x[2], t4 = x[3], t5 = x[4], t6 = x[5], t7 = x[6],
+                  t8 = x[7], t9 = x[8], t10 = x[9], t11 = x[10], t12 = x[11], t13 = x[12],
+                  t14 = x[13], t15 = x[14], t16 = x[15], t17 = x[16], t18 = x[17], t19 = x[18],
+                  t20 = x[19]);
+}
+
+void add_long_arm() {
+  using angles = std::array<double, 20>;
+  const auto joints = wrt(t1, t2, t3, t4, t5, t6, t7, t8, t9, t10, t11, t12, t13, t14, t15, t16,
+                          t17, t18, t19, t20);
+  const auto formula = jacobian(twenty_joints(), joints, duet::frame::spatial);
+  const auto library = jacobian(with_library_sines(twenty_joints()), joints, duet::frame::spatial);
+  const auto by_hand = [](const angles& x) {
+    long_pose_jacobian<20> jacobian;
+    const pose<double> a = long_arm_by_hand(x, jacobian);
+    return std::pair(a, jacobian);
+  };
+  angles at;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    at[i] = std::sin(double(3 * i + 1));
+  }
+  const auto t = duet::translation(call_twenty(formula, at).value);
+  expect_agreement("formula_arm_20", "duet", by_hand(at).first.position,
+                   std::array<double, 3>{t[0], t[1], t[2]});
+  add<20>("formula_arm_20", "duet", -2.8, 2.8,
+          [=](const angles& x) { return call_twenty(formula, x); });
+  add<20>("formula_arm_20", "library", -2.8, 2.8,
+          [=](const angles& x) { return call_twenty(library, x); });
+  add<20>("formula_arm_20", "hand", -2.8, 2.8, by_hand);
 }
 
 // A gradient of twenty operations in six variables.
@@ -146,6 +203,7 @@ void add_gradient() {
 
 const bool registered = [] {
   add_arm();
+  add_long_arm();
   add_gradient();
   return true;
 }();

@@ -141,18 +141,31 @@ pose<S> fk7(const inputs<S, joints>& angles) {
   return {{px, py, pz}, {w, x, y, z}};
 }
 
+/// The arm of N joints whose rows are those of the arm, again and again.
+template <std::size_t N>
+inline constexpr std::array<arm_row, N> long_arm = [] {
+  std::array<arm_row, N> rows{};
+  for (std::size_t i = 0; i < N; ++i) {
+    rows[i] = arm[i % joints];
+  }
+  return rows;
+}();
+
 /// Rows: three of the position, four of the quaternion.
-using pose_jacobian = std::array<std::array<double, joints>, 7>;
+template <std::size_t N>
+using long_pose_jacobian = std::array<std::array<double, N>, 7>;
+using pose_jacobian = long_pose_jacobian<joints>;
 
 /// The pose and its derivatives in closed form: joint i turns the flange about its axis zᵢ through
 /// its origin oᵢ, so ∂p/∂θᵢ = zᵢ × (p − oᵢ) and ∂q/∂θᵢ = ½ zᵢ q.
-inline pose<double> fk7_by_hand(const inputs<double, joints>& angles, pose_jacobian& jacobian) {
-  std::array<std::array<double, 3>, joints> axes;
-  std::array<std::array<double, 3>, joints> origins;
+template <std::size_t N>
+pose<double> long_arm_by_hand(const inputs<double, N>& angles, long_pose_jacobian<N>& jacobian) {
+  std::array<std::array<double, 3>, N> axes;
+  std::array<std::array<double, 3>, N> origins;
   double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
   double px = 0.0, py = 0.0, pz = 0.0;
-  for (std::size_t i = 0; i < joints; ++i) {
-    const arm_row& row = arm[i];
+  for (std::size_t i = 0; i < N; ++i) {
+    const arm_row& row = long_arm<N>[i];
     px += row.a * (1.0 - 2.0 * (y * y + z * z));
     py += row.a * 2.0 * (x * y + w * z);
     pz += row.a * 2.0 * (x * z - w * y);
@@ -172,7 +185,7 @@ inline pose<double> fk7_by_hand(const inputs<double, joints>& angles, pose_jacob
     pz += row.d * axes[i][2];
     origins[i] = {px, py, pz};
   }
-  for (std::size_t i = 0; i < joints; ++i) {
+  for (std::size_t i = 0; i < N; ++i) {
     const auto& [ax, ay, az] = axes[i];
     const double rx = px - origins[i][0];
     const double ry = py - origins[i][1];
@@ -186,6 +199,9 @@ inline pose<double> fk7_by_hand(const inputs<double, joints>& angles, pose_jacob
     jacobian[6][i] = 0.5 * (az * w + ax * y - ay * x);
   }
   return {{px, py, pz}, {w, x, y, z}};
+}
+inline pose<double> fk7_by_hand(const inputs<double, joints>& angles, pose_jacobian& jacobian) {
+  return long_arm_by_hand(angles, jacobian);
 }
 
 } // namespace duet_bench
