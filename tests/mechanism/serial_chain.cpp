@@ -5,6 +5,7 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/interop/multiprecision.hpp>
 #include <duet/mechanism/screw_axes.hpp>
@@ -279,7 +280,8 @@ TEST_CASE("sines of all joints at once: as one after the other, under derivative
   // What is not a number stays with the joints after it.
   coordinates<7> broken = coordinates<7>::Constant(.5);
   broken[5] = std::nan("");
-  CHECK(panda.pose(broken, 5) == panda.pose(coordinates<7>::Constant(.5).eval(), 5));
+  const auto expected = pose_coordinates(panda.pose(coordinates<7>::Constant(.5).eval(), 5));
+  CHECK(gap(pose_coordinates(panda.pose(broken, 5)), expected) < 1e-15);
   CHECK(std::isnan(panda.pose(broken).w().value()));
 }
 

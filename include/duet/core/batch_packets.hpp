@@ -21,9 +21,9 @@ namespace duet::detail {
 template <class T>
 inline constexpr int native_lanes = 1;
 template <>
-inline constexpr int native_lanes<float> = DUET_VECTOR_BYTES / int(sizeof(float));
+inline constexpr int native_lanes<float> = DUET_BATCH_BYTES / int(sizeof(float));
 template <>
-inline constexpr int native_lanes<double> = DUET_VECTOR_BYTES / int(sizeof(double));
+inline constexpr int native_lanes<double> = DUET_BATCH_BYTES / int(sizeof(double));
 
 /// As many elements as a vector, with the same operators, for types that there are no vectors of.
 template <class T, int W>

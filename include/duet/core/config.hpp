@@ -10,15 +10,24 @@
     "duet: -ffast-math drops NaN, infinities and signed zeros, on which structural zeros rely; compile without it, or define DUET_ALLOW_FAST_MATH to take that risk"
 #endif
 
-/// Width in bytes of the vectors that packed partials are stored in: the target's own width, save
-/// that clang does better with two 256-bit vectors than with one of 512 bits.
-#if defined(__AVX512F__) && !defined(__clang__)
+/// Width in bytes of the vectors that batches fill, the target's own, and of those that packed
+/// partials are stored in: the same, save that clang does better with two 256-bit vectors there
+/// than with one of 512 bits.
+#if defined(__AVX512F__)
+#define DUET_BATCH_BYTES 64
+#ifdef __clang__
+#define DUET_VECTOR_BYTES 32
+#define DUET_ABI_NAMESPACE vector_512_in_halves
+#else
 #define DUET_VECTOR_BYTES 64
 #define DUET_ABI_NAMESPACE vector_512
+#endif
 #elif defined(__AVX__)
+#define DUET_BATCH_BYTES 32
 #define DUET_VECTOR_BYTES 32
 #define DUET_ABI_NAMESPACE vector_256
 #else
+#define DUET_BATCH_BYTES 16
 #define DUET_VECTOR_BYTES 16
 #define DUET_ABI_NAMESPACE vector_128
 #endif
