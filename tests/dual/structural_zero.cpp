@@ -229,4 +229,45 @@ TEST_CASE("arithmetic constants leave infinite values alone at every level") {
   CHECK((taylor<D, 2, outer_tag>(infinity) * 2).value().epsilon() == 0);
 }
 
+namespace {
+
+/// Of N variables the last is x; the others must not notice what happens to it.
+template <int N>
+void check_last_of() {
+  using row = dual<double, N>;
+  const auto last = [](double x) { return row::variable(x, N - 1); };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto check = [](const row& y, double value, double slope) {
+    const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    CHECK(same(y.value(), value));
+    for (int i = 0; i < N - 1; ++i) {
+      CHECK(y.partial(i) == 0);
+    }
+    CHECK(same(y.partial(N - 1), slope));
+  };
+  check(sqrt(last(0)), 0, infinity);
+  check(sqrt(last(4)), 2, 0.25);
+  check(exp(last(1000)), infinity, infinity);
+  check(sin(last(infinity)), nan, nan);
+  check(cos(last(nan)), nan, nan);
+  check(sin(last(0)), 0, 1);
+  check(cos(last(0)), 1, 0);
+  check(1.0 / last(0), infinity, -infinity);
+  check(row(1.0) / last(0), infinity, -infinity);
+  check(row(1.0) / last(2), 0.5, -0.25);
+  check(last(1) / 0.0, infinity, infinity);
+  check(atan2(last(0), row(0.0)), 0, nan);
+  check(sqrt(last(0) * last(0)), 0, 0);
+}
+
+} // namespace
+
+TEST_CASE("rows of any length keep their zeros") {
+  check_last_of<2>();
+  check_last_of<5>();
+  check_last_of<9>();
+  check_last_of<17>();
+  check_last_of<70>();
+}
+
 } // namespace test_dual_structural_zero

@@ -173,10 +173,11 @@ public:
     if constexpr (Infinitesimal<T>) { // zero partials of T survive in quotients only
       const T value = a.value_ / b.value_;
       const detail::chain_of_quotient<T> kernel{value, inverse};
-      return {value, detail::combined(kernel, a.partials_, b.partials_)};
+      return {value, detail::combined(kernel, kernel.is_finite(), a.partials_, b.partials_)};
     } else {
       const detail::chain_of_quotient<T> kernel{T(a.value_ * inverse), inverse};
-      return {T(a.value_ / b.value_), detail::combined(kernel, a.partials_, b.partials_)};
+      return {T(a.value_ / b.value_),
+              detail::combined(kernel, kernel.is_finite(), a.partials_, b.partials_)};
     }
   }
 

@@ -7,6 +7,7 @@
 #include <duet/dual/structural_zero.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <utility>
 
@@ -40,7 +41,14 @@ lift(const Rule& rule, const dual<T, N, Tag>& x, const dual<T, N, Tag>& y, const
 template <class T, int N, class Tag>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<dual<T, N, Tag>> lift(const sine_cosine<T>& y,
                                                                    const dual<T, N, Tag>& x) {
-  return {{y.sine, chain(y.cosine, x.partials())}, {y.cosine, chain(T(-y.sine), x.partials())}};
+  if constexpr (std::floating_point<T>) {
+    // Both are finite or neither. Asked of their sum, clang computes them at once.
+    const bool is_finite = is_all_finite(T(y.sine + y.cosine));
+    return {{y.sine, combined(chain_of_one<T>{y.cosine}, is_finite, x.partials())},
+            {y.cosine, combined(chain_of_one<T>{-y.sine}, is_finite, x.partials())}};
+  } else {
+    return {{y.sine, chain(y.cosine, x.partials())}, {y.cosine, chain(T(-y.sine), x.partials())}};
+  }
 }
 
 template <class T, int N, class Tag>

@@ -33,6 +33,11 @@ namespace duet::detail {
 /// intermediate result goes through memory.
 inline constexpr int unroll_limit = 64;
 
+/// Rows of this many packets or more leave few registers for all that a statement reads, and
+/// compilers copy to the stack what they read before. Told that memory may have changed, they read
+/// it again from where it is. (Measured; 512-bit packets are the costliest to copy.)
+inline constexpr int reread_limit = DUET_VECTOR_BYTES < 64 ? 4 : 2;
+
 template <int Count, class F>
 DUET_ALWAYS_INLINE constexpr void unrolled(F&& f) {
   if constexpr (Count <= unroll_limit) {
@@ -170,6 +175,9 @@ public:
     } else {
       unrolled<count>([&](int i)
                           DUET_INLINE_LAMBDA { result.packets_[i] = f(rows.packets_[i]...); });
+      if constexpr (sizeof...(Rows) > 1 && count >= reread_limit) {
+        __asm__ volatile("" ::: "memory");
+      }
     }
     return result;
   }

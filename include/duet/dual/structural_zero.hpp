@@ -122,13 +122,27 @@ template <class T>
 }
 
 /// A row of more packets than this is masked only where a slope turns out not to be finite. Masks
-/// of 512-bit packets cost more than those of others; clang does better without that branch.
+/// of 512-bit packets cost more than those of others; clang does better without that branch, save
+/// for packets of 128 bits, whose masks take copies of their operands.
 inline constexpr int branch_limit = DUET_VECTOR_BYTES < 64 ? 2 : 1;
 #ifdef __clang__
-inline constexpr int mask_limit = std::numeric_limits<int>::max();
+inline constexpr int mask_limit = DUET_VECTOR_BYTES > 16 ? std::numeric_limits<int>::max() : 0;
 #else
 inline constexpr int mask_limit = branch_limit;
 #endif
+
+/// Up to this many packets that is done in place: a call would cost the registers of what lives on
+/// after it, though it is never made.
+inline constexpr int in_place_limit = 32;
+
+template <class Row>
+[[nodiscard]] constexpr bool is_masked_in_place() {
+  if constexpr (requires { Row::packet_count; }) {
+    return Row::packet_count <= in_place_limit;
+  } else {
+    return false;
+  }
+}
 
 // How partials are combined: `kernel(product, p…)` for each of them, where product(slope, p) is
 // slope · p with surviving zeros.
@@ -201,38 +215,44 @@ template <class Kernel, class Row, class... Rows>
   return Row::map_elements([&](const auto&... p) { return kernel(product, p...); }, row, rows...);
 }
 
-/// The kernel applied to rows of partials.
-template <template <class> class Kernel, class T, class Row, class... Rows>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr Row combined(const Kernel<T>& kernel, const Row& row,
-                                                        const Rows&... rows) {
-  if constexpr (is_always_masked<Kernel<T>, Row, T>()) {
-    const auto product = [](const T& slope, const auto& p)
-                             DUET_INLINE_LAMBDA { return masked_product(slope, p); };
+/// The kernel applied to rows of partials; are its slopes finite?
+template <template <class> class Kernel, class T, class Mask, class Row, class... Rows>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr Row
+combined(const Kernel<T>& kernel, const Mask& is_finite, const Row& row, const Rows&... rows) {
+  const auto with = [&](const auto& product) DUET_INLINE_LAMBDA {
     return Row::map([&](const auto&... p) DUET_INLINE_LAMBDA { return kernel(product, p...); }, row,
                     rows...);
+  };
+  const auto masked = [](const T& slope, const auto& p)
+                          DUET_INLINE_LAMBDA { return masked_product(slope, p); };
+  if constexpr (is_always_masked<Kernel<T>, Row, T>()) {
+    return with(masked);
   } else {
-    if (all(kernel.is_finite())) [[likely]] {
-      const auto product = [](const T& slope, const auto& p) DUET_INLINE_LAMBDA {
-        return std::remove_cvref_t<decltype(p)>(p * slope);
-      };
-      return Row::map([&](const auto&... p) DUET_INLINE_LAMBDA { return kernel(product, p...); },
-                      row, rows...);
+    if (all(is_finite)) [[likely]] {
+      return with([](const T& slope, const auto& p)
+                      DUET_INLINE_LAMBDA { return std::remove_cvref_t<decltype(p)>(p * slope); });
     }
-    return guarded_chain(kernel, row, rows...);
+    if constexpr (is_masked_in_place<Row>()) {
+      return with(masked);
+    } else {
+      return guarded_chain(kernel, row, rows...);
+    }
   }
 }
 
 /// slope · row
 template <class T, class Row>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Row chain(const T& slope, const Row& row) {
-  return combined(chain_of_one<T>{slope}, row);
+  const chain_of_one<T> kernel{slope};
+  return combined(kernel, kernel.is_finite(), row);
 }
 
 /// slope_a · a + slope_b · b
 template <class T, class Row>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Row chain(const T& slope_a, const Row& a,
                                                      const T& slope_b, const Row& b) {
-  return combined(chain_of_two<T>{slope_a, slope_b}, a, b);
+  const chain_of_two<T> kernel{slope_a, slope_b};
+  return combined(kernel, kernel.is_finite(), a, b);
 }
 
 } // namespace duet::detail
