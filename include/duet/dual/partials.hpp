@@ -35,7 +35,8 @@ inline constexpr int unroll_limit = 64;
 
 /// Rows of this many packets or more leave few registers for all that a statement reads, and
 /// compilers copy to the stack what they read before. Told that memory may have changed, they read
-/// it again from where it is. (Measured; 512-bit packets are the costliest to copy.)
+/// it again from where it is. (Measured. With two 512-bit packets, first derivatives and
+/// `second_dual` gain a tenth; duals over duals lose a fifth.)
 inline constexpr int reread_limit = DUET_VECTOR_BYTES < 64 ? 4 : 2;
 
 template <int Count, class F>
