@@ -5,6 +5,7 @@
 #include <duet/core/constants.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/stumpff.hpp>
+#include <duet/dual/universal_functions.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/undetermined.hpp>
@@ -33,6 +34,19 @@ template <class T>
     return {stumpff<0>(s), v[0] * ratio, v[1] * ratio, v[2] * ratio};
   }
 }
+
+namespace detail {
+
+/// exp(b v) for a v that does not depend on all that b depends on: derivatives by b cost no more
+/// than those of a sine and a cosine.
+template <class S, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>> exp_of_multiple(const S& b,
+                                                                             const vector3<T>& v) {
+  const auto u = universal_functions<2>(b, T(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  return {u[0], v[0] * u[1], v[1] * u[1], v[2] * u[1]};
+}
+
+} // namespace detail
 
 /// exp(w + v) = e^w (cos|v| + v sin|v|/|v|) (N4).
 template <class T>

@@ -103,38 +103,26 @@ private:
 
   template <int Rates, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE auto on_span(std::size_t span, const P& u) const {
-    using D = promote_t<T, P>;
     const std::size_t first = basis_.first_function(span);
-    const auto weights = basis_.template weights<Rates>(span, u);
-    if constexpr (std::same_as<D, T>) {
-      return detail::product_of_exponentials<Rates>(controls_[first], &increments_[first + 1],
-                                                    weights);
-    } else {
-      std::array<vector3<D>, std::size_t(Order) - 1> increments;
-      for (std::size_t j = 0; j < increments.size(); ++j) {
-        increments[j] = increments_[first + 1 + j].template cast<D>();
-      }
-      return detail::product_of_exponentials<Rates>(quaternion<D>(controls_[first]),
-                                                    increments.data(), weights);
-    }
+    return detail::product_of_exponentials<Rates>(controls_[first], &increments_[first + 1],
+                                                  basis_.template weights<Rates>(span, u));
   }
   template <int Rates, std::size_t W, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE auto on_span(std::array<std::size_t, W> spans,
                                                 const P& u) const {
-    using D = promote_t<T, P>;
     const auto weights = basis_.template weights<Rates>(spans, u);
     for (std::size_t& i : spans) {
       i = basis_.first_function(i);
     }
     const auto start = detail::gathered(spans, controls_);
-    std::array<vector3<D>, std::size_t(Order) - 1> increments;
-    for (vector3<D>& omega : increments) {
+    std::array<decltype(detail::gathered(spans, increments_)), std::size_t(Order) - 1> increments;
+    for (auto& omega : increments) {
       for (std::size_t& i : spans) {
         ++i;
       }
-      omega = detail::gathered(spans, increments_).template cast<D>();
+      omega = detail::gathered(spans, increments_);
     }
-    return detail::product_of_exponentials<Rates>(quaternion<D>(start), increments.data(), weights);
+    return detail::product_of_exponentials<Rates>(start, increments.data(), weights);
   }
 
   basis_type basis_;

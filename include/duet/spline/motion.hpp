@@ -71,35 +71,85 @@ struct half_motion {
   vector3<T> jerk;
 };
 
+/// v ↦ q v q* for several v, by the matrix of q, coefficient by coefficient.
+template <class T>
+class rotation_of_many {
+public:
+  DUET_ALWAYS_INLINE explicit rotation_of_many(const quaternion<T>& q) {
+    const T x2 = 2 * q.x(), y2 = 2 * q.y(), z2 = 2 * q.z();
+    const T xx = x2 * q.x(), yy = y2 * q.y(), zz = z2 * q.z();
+    const T xy = x2 * q.y(), yz = y2 * q.z(), zx = z2 * q.x();
+    const T wx = x2 * q.w(), wy = y2 * q.w(), wz = z2 * q.w();
+    xx_ = 1 - (yy + zz);
+    xy_ = xy - wz;
+    xz_ = zx + wy;
+    yx_ = xy + wz;
+    yy_ = 1 - (zz + xx);
+    yz_ = yz - wx;
+    zx_ = zx - wy;
+    zy_ = yz + wx;
+    zz_ = 1 - (xx + yy);
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> operator()(const vector3<T>& v) const {
+    return {xx_ * v[0] + xy_ * v[1] + xz_ * v[2], yx_ * v[0] + yy_ * v[1] + yz_ * v[2],
+            zx_ * v[0] + zy_ * v[1] + zz_ * v[2]};
+  }
+
+private:
+  T xx_, xy_, xz_, yx_, yy_, yz_, zx_, zy_, zz_;
+};
+
 /// One step of the recursion below, with the i-th factor e.
-template <int Rates, class T, class Weights>
+template <int Rates, class T, class U, class Weights>
 DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const quaternion<T>& e,
-                                       const vector3<T>& omega, const Weights& b) {
-  m.value = m.value * e;
+                                       const vector3<U>* omega, const Weights& b) {
+  const auto times_omega = [&](const auto& factor)
+                               DUET_INLINE_LAMBDA { return vector3<T>(scaled(factor, omega[i])); };
+  if (i > 0) {
+    m.value = m.value * e;
+  }
   if constexpr (Rates >= 1) {
-    const vector3<T> first = scaled(b[1][i], omega);
     if (i == 0) {
-      m.velocity = first;
+      m.velocity = times_omega(b[1][0]);
       if constexpr (Rates >= 2) {
-        m.acceleration = scaled(b[2][i], omega);
+        m.acceleration = times_omega(b[2][0]);
       }
       if constexpr (Rates >= 3) {
-        m.jerk = scaled(b[3][i], omega);
+        m.jerk = times_omega(b[3][0]);
       }
       return;
     }
     const quaternion<T> back = conj(e);
-    const vector3<T> w_hat = rotate(back, m.velocity);
-    m.velocity = sum_of(w_hat, first);
-    if constexpr (Rates >= 2) {
-      const vector3<T> a_hat = rotate(back, m.acceleration);
-      const vector3<T> second = scaled(b[2][i], omega);
-      const vector3<T> turn = cross_product(w_hat, first);
-      m.acceleration = sum_of<2>(sum_of(a_hat, second), turn);
+    vector3<T> w_hat, a_hat, j_hat;
+    if (i == 1) { // all rates are multiples of one vector, which e* … e turns once
+      const vector3<T> turned = rotate(back, omega[0]);
+      w_hat = scaled(b[1][0], turned);
+      if constexpr (Rates >= 2) {
+        a_hat = scaled(b[2][0], turned);
+      }
       if constexpr (Rates >= 3) {
-        m.jerk = sum_of(rotate(back, m.jerk), scaled(b[3][i], omega));
-        m.jerk = sum_of<2>(m.jerk, cross_product(w_hat, second));
-        m.jerk = sum_of<4>(m.jerk, sum_of(cross_product(a_hat, first), cross_product(turn, first)));
+        j_hat = scaled(b[3][0], turned);
+      }
+    } else {
+      if constexpr (Rates == 1) {
+        w_hat = rotate(back, m.velocity);
+      } else {
+        const rotation_of_many turn(back);
+        w_hat = turn(m.velocity);
+        a_hat = turn(m.acceleration);
+        if constexpr (Rates >= 3) {
+          j_hat = turn(m.jerk);
+        }
+      }
+    }
+    m.velocity = sum_of(w_hat, times_omega(b[1][i]));
+    if constexpr (Rates >= 2) {
+      const vector3<T> turn = cross_product(w_hat, times_omega(b[1][i]));
+      m.acceleration = sum_of<2>(sum_of(a_hat, times_omega(b[2][i])), turn);
+      if constexpr (Rates >= 3) {
+        const vector3<T> sum = sum_of<2>(vector3<T>(scaled(b[2][i], w_hat)),
+                                         vector3<T>(scaled(b[1][i], sum_of(a_hat, turn))));
+        m.jerk = sum_of<2>(sum_of(j_hat, times_omega(b[3][i])), cross_product(sum, omega[i]));
       }
     }
   }
@@ -110,29 +160,35 @@ DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const q
 /// With e = exp(ω b) the factors are taken in one after the other:
 ///   w ← e* w e + b′ω,
 ///   a ← e* a e + b″ω + 2 ŵ × b′ω,               ŵ = e* w e,
-///   j ← e* j e + b‴ω + 2 ŵ × b″ω + 4 â × b′ω + 4 (ŵ × b′ω) × b′ω,   â = e* a e.
+///   j ← e* j e + b‴ω + 2 (b″ŵ + 2b′(â + ŵ × b′ω)) × ω,   â = e* a e.
 /// Q′ = Q w, and 2w, 2a, 2j are angular velocity, acceleration and jerk.
 ///
 /// \tparam Rates  how many of w, a, j are wanted
 /// \param weights  element [d][i] is the d-th derivative of b_{i+1}
 template <int Rates, class T, class W, std::size_t Factors>
-[[nodiscard]] DUET_ALWAYS_INLINE half_motion<T>
+[[nodiscard]] DUET_ALWAYS_INLINE half_motion<promote_t<T, W>>
 product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments,
                         const std::array<std::array<W, Factors>, std::size_t(Rates) + 1>& weights) {
-  half_motion<T> m{start, {}, {}, {}};
+  using D = promote_t<T, W>;
+  half_motion<D> m;
   const auto factor = [&](std::size_t i) DUET_INLINE_LAMBDA {
-    return duet::exp(scaled(weights[0][i], increments[i]));
+    return exp_of_multiple(weights[0][i], increments[i]);
   };
-  if constexpr (Real<T>) {
+  if constexpr (sizeof(D) <= 4 * sizeof(real_type_t<D>)) {
     // All exponentials first: between them nothing else is alive that calls could force to memory.
     [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
-      const std::array<quaternion<T>, Factors> e{factor(I)...};
-      (take_in_factor<Rates>(m, I, e[I], increments[I], weights), ...);
+      const std::array<quaternion<D>, Factors> e{factor(I)...};
+      m.value = start * e[0];
+      (take_in_factor<Rates>(m, I, e[I], increments, weights), ...);
     }
     (std::make_index_sequence<Factors>{});
-  } else { // unrolled, dual numbers would take the compiler too long
+  } else { // unrolled, larger numbers would take the compiler too long
     for (std::size_t i = 0; i < Factors; ++i) {
-      take_in_factor<Rates>(m, i, factor(i), increments[i], weights);
+      const quaternion<D> e = factor(i);
+      if (i == 0) {
+        m.value = start * e;
+      }
+      take_in_factor<Rates>(m, i, e, increments, weights);
     }
   }
   return m;
