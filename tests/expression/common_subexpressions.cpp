@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace test_expression_common_subexpressions {
 namespace {
@@ -74,6 +75,24 @@ TEST_CASE("equal subexpressions are evaluated once, different ones each") {
   CHECK(calls([&] { return hessian(sin(x * y), wrt(x, y))(x = at, y = at); }) == 11);
   CHECK(calls([&] { return derivative(derivative(sin(x), x), x)(x = at); }) == 10);
   CHECK(calls([&] { return derivative(cos(y) * x, x)(x = at, y = at); }) == 1);
+
+  // So do an angle and its negative.
+  const auto turns = sin(x) * cos(-x) + sin(-x / c<2>) * cos(x / c<2>);
+  CHECK(calls([&] { return turns(x = at); }) == 22);
+}
+
+TEST_CASE("more sines at once than are written out one behind the other") {
+  constexpr symbol<"x"> x;
+  constexpr int count = 40;
+  const auto f = [x]<int... K>(std::integer_sequence<int, K...>) {
+    return (... + (c<K + 1> * sin(c<K + 1> * x)));
+  }
+  (std::make_integer_sequence<int, count>{});
+  double expected = 0;
+  for (int k = 1; k <= count; ++k) {
+    expected += k * std::sin(k * 0.3);
+  }
+  CHECK(f(x = 0.3) == doctest::Approx(expected).epsilon(1e-14));
 }
 
 } // namespace test_expression_common_subexpressions

@@ -158,6 +158,8 @@ TEST_CASE("simplification, by type") {
   static_assert(have_same_node(x - x, c<0>));
   static_assert(have_same_node(x + -y, x - y));
   static_assert(have_same_node(-x * -y, x * y));
+  static_assert(have_same_node(sin(-x), -sin(x)));
+  static_assert(have_same_node(cos(-x), cos(x)));
   static_assert(have_same_node(c<2> * (3.5_c * x), c<7> * x));
   static_assert(have_same_node(pow(x, c<1>), x));
   static_assert(have_same_node(pow(x, c<0>), c<1>));

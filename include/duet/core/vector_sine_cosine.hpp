@@ -85,13 +85,13 @@ vector_sine_and_cosine_of_moderate(const V& x) {
 
   // The quadrant: odd ones swap; the second bit of n is the sign of the sine, that of n + 1 the
   // cosine's.
+  // Without comparing integers, which SSE2 cannot do in 64 bits: g++ would branch, lane by lane.
   using bits = decltype(x < x);
   const bits quadrant = bits(shifted);
-  const bits swapped = (quadrant & 1) != 0;
+  const bits swapped = (bits(sine) ^ bits(cosine)) & -(quadrant & 1);
   const bits sine_sign = (quadrant << 62) & (bits{} + (1LL << 63));
   const bits cosine_sign = ((quadrant + 1) << 62) & (bits{} + (1LL << 63));
-  return {V(bits(swapped ? cosine : sine) ^ sine_sign),
-          V(bits(swapped ? sine : cosine) ^ cosine_sign)};
+  return {V(bits(sine) ^ swapped ^ sine_sign), V(bits(cosine) ^ swapped ^ cosine_sign)};
 }
 
 template <VectorOfDoubles V>
@@ -114,7 +114,8 @@ template <VectorOfDoubles V>
     y.cosine[i] = std::cos(x[i]);
   }
 #else
-  const V size = x < 0 ? -x : x;
+  using bits = decltype(x < x);
+  const V size = V(bits(x) & (bits{} + ~(1LL << 63)));
   if (are_all_below(size, 0x1.921fb54442d18p-1)) { // π/4: nothing to reduce
     // Compilers leave out a subtracted 0, but not −0, and then fuse other products with sums than
     // above: a lane would depend on its neighbours in the last bit.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/dual/rules.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/formula.hpp>
 #include <duet/expression/function.hpp>
 #include <duet/expression/node.hpp>
@@ -94,8 +95,18 @@ struct log1p : detail::function<log1p, duet::rule::log1p> {
     return whole<1> / (whole<1> + x);
   }
 };
+// A negated argument is taken as it is: one call of the C library gives both sine and cosine of
+// one argument, and where x and −x both occur, one pair serves them.
 struct sin : detail::function<sin, duet::rule::sin> {
   static constexpr detail::function_name name = {"sin", "\\sin"};
+  template <class X>
+  static constexpr auto simplified(X x) {
+    if constexpr (is_applied<X, negative>) {
+      return -apply<sin>(operand<0>(x));
+    } else {
+      return applied_node<sin, X>{};
+    }
+  }
   template <class X>
   static constexpr auto slope(X x) {
     return apply<cos>(x);
@@ -103,6 +114,14 @@ struct sin : detail::function<sin, duet::rule::sin> {
 };
 struct cos : detail::function<cos, duet::rule::cos> {
   static constexpr detail::function_name name = {"cos", "\\cos"};
+  template <class X>
+  static constexpr auto simplified(X x) {
+    if constexpr (is_applied<X, negative>) {
+      return apply<cos>(operand<0>(x));
+    } else {
+      return applied_node<cos, X>{};
+    }
+  }
   template <class X>
   static constexpr auto slope(X x) {
     return -apply<sin>(x);

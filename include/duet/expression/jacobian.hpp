@@ -61,28 +61,43 @@ public:
   template <class... Arguments>
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
     using S = typename base::template scalar<Arguments...>;
-    constexpr kind k = node::kind_of;
-    constexpr int rows = k == kind::pose ? 6 : is_matrix(k) ? rows_of(k) * columns_of(k) : 3;
     if constexpr (is_pose_chain<node> && std::is_same_v<Frame, spatial_frame> &&
                   std::is_same_v<S, double>) {
-      value_and_jacobian<dual_quaternion<double>, Eigen::Matrix<S, 6, int(sizeof...(Motions))>>
-          result;
-      using chain = pose_chain<typename factors<node>::type, motion_list<Motions...>>;
-      result.value = chain::evaluate(result.jacobian.data(), this->f_.held(), arguments...);
-      return result;
+      return by_factors(arguments...);
     } else {
-      const auto values = called<node, decltype(column_of<node, Motions, Frame>())...>(
-          this->f_.held(), arguments...);
-      using value = std::decay_t<decltype(values.template get<0>())>;
-      value_and_jacobian<value, Eigen::Matrix<S, rows, int(sizeof...(Motions))>> result;
-      result.value = values.template get<0>();
-      S* column = result.jacobian.data();
-      values.template each<1, int(sizeof...(Motions))>([&](const auto& x) DUET_INLINE_LAMBDA {
-        write_column(column, x);
-        column += rows;
-      });
-      return result;
+      return by_columns<S>(arguments...);
     }
+  }
+
+private:
+  template <class S, class Value, int Rows>
+  using returned = value_and_jacobian<Value, Eigen::Matrix<S, Rows, int(sizeof...(Motions))>>;
+
+  // The results are made in the caller's memory, which g++ does of variables of a whole function
+  // alone: a block of `if constexpr` would copy them.
+
+  template <class... Arguments>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto by_factors(const Arguments&... arguments) const {
+    returned<double, dual_quaternion<double>, 6> result;
+    using chain = pose_chain<typename factors<node>::type, motion_list<Motions...>>;
+    result.value = chain::evaluate(result.jacobian.data(), this->f_.held(), arguments...);
+    return result;
+  }
+
+  template <class S, class... Arguments>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto by_columns(const Arguments&... arguments) const {
+    constexpr kind k = node::kind_of;
+    constexpr int rows = k == kind::pose ? 6 : is_matrix(k) ? rows_of(k) * columns_of(k) : 3;
+    const auto values =
+        called<node, decltype(column_of<node, Motions, Frame>())...>(this->f_.held(), arguments...);
+    returned<S, std::decay_t<decltype(values.template get<0>())>, rows> result;
+    result.value = values.template get<0>();
+    S* column = result.jacobian.data();
+    values.template each<1, int(sizeof...(Motions))>([&](const auto& x) DUET_INLINE_LAMBDA {
+      write_column(column, x);
+      column += rows;
+    });
+    return result;
   }
 };
 

@@ -37,19 +37,27 @@ public:
 private:
   static constexpr int lanes = DUET_VECTOR_BYTES < 32 ? 2 : 4;
   static constexpr std::size_t vectors = (Count + lanes - 1) / lanes;
+  /// More of them would be more code than processors keep decoded.
+  static constexpr std::size_t most_in_line = 8;
   typedef double packet __attribute__((vector_size(lanes * sizeof(double))));
 
   template <std::size_t... K>
   DUET_ALWAYS_INLINE void take(const std::array<double, lanes * vectors>& x,
                                std::index_sequence<K...>) {
-    ((values_[K] = duet::detail::vector_sine_and_cosine(packet_of<K>(x))), ...);
-  }
-  template <std::size_t K>
-  DUET_ALWAYS_INLINE static packet packet_of(const std::array<double, lanes * vectors>& x) {
-    if constexpr (lanes == 2) {
-      return packet{x[2 * K], x[2 * K + 1]};
+    if constexpr (vectors > most_in_line) {
+      for (std::size_t k = 0; k < vectors; ++k) {
+        values_[k] = duet::detail::vector_sine_and_cosine(packet_of(x, k));
+      }
     } else {
-      return packet{x[4 * K], x[4 * K + 1], x[4 * K + 2], x[4 * K + 3]};
+      ((values_[K] = duet::detail::vector_sine_and_cosine(packet_of(x, K))), ...);
+    }
+  }
+  DUET_ALWAYS_INLINE static packet packet_of(const std::array<double, lanes * vectors>& x,
+                                             std::size_t k) {
+    if constexpr (lanes == 2) {
+      return packet{x[2 * k], x[2 * k + 1]};
+    } else {
+      return packet{x[4 * k], x[4 * k + 1], x[4 * k + 2], x[4 * k + 3]};
     }
   }
 

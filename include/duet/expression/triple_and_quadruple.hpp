@@ -6,8 +6,8 @@
 #include <cstring>
 
 /// \file
-/// Three and four doubles for kernels: in one vector where the target has vectors of four, number
-/// by number where it has not.
+/// Three and four doubles for kernels: in one vector where the target has vectors of four, in two
+/// of two where it has not.
 
 namespace duet::expression::detail {
 
@@ -15,13 +15,63 @@ namespace duet::expression::detail {
 
 typedef double four_lanes __attribute__((vector_size(32)));
 
+[[nodiscard]] DUET_ALWAYS_INLINE four_lanes lanes_of(double a, double b, double c, double d) {
+  return four_lanes{a, b, c, d};
+}
+
+/// Some lanes of a, which are 0 to 3, and of b, 4 to 7.
+template <int I, int J, int K, int L>
+[[nodiscard]] DUET_ALWAYS_INLINE four_lanes shuffled(const four_lanes& a, const four_lanes& b) {
+  return __builtin_shufflevector(a, b, I, J, K, L);
+}
+
+#else
+
+typedef double two_lanes __attribute__((vector_size(16)));
+
+struct four_lanes {
+  two_lanes lower, upper;
+  DUET_ALWAYS_INLINE double operator[](int i) const { return i < 2 ? lower[i] : upper[i - 2]; }
+
+  friend DUET_ALWAYS_INLINE four_lanes operator+(const four_lanes& a, const four_lanes& b) {
+    return {a.lower + b.lower, a.upper + b.upper};
+  }
+  friend DUET_ALWAYS_INLINE four_lanes operator-(const four_lanes& a, const four_lanes& b) {
+    return {a.lower - b.lower, a.upper - b.upper};
+  }
+  friend DUET_ALWAYS_INLINE four_lanes operator*(const four_lanes& a, const four_lanes& b) {
+    return {a.lower * b.lower, a.upper * b.upper};
+  }
+  friend DUET_ALWAYS_INLINE four_lanes operator*(const four_lanes& a, double b) {
+    return {a.lower * b, a.upper * b};
+  }
+};
+
+[[nodiscard]] DUET_ALWAYS_INLINE four_lanes lanes_of(double a, double b, double c, double d) {
+  return {two_lanes{a, b}, two_lanes{c, d}};
+}
+
+template <int I>
+[[nodiscard]] DUET_ALWAYS_INLINE const two_lanes& half_with(const four_lanes& a,
+                                                            const four_lanes& b) {
+  return I < 2 ? a.lower : I < 4 ? a.upper : I < 6 ? b.lower : b.upper;
+}
+/// Some lanes of a, which are 0 to 3, and of b, 4 to 7.
+template <int I, int J, int K, int L>
+[[nodiscard]] DUET_ALWAYS_INLINE four_lanes shuffled(const four_lanes& a, const four_lanes& b) {
+  return {__builtin_shufflevector(half_with<I>(a, b), half_with<J>(a, b), I % 2, 2 + J % 2),
+          __builtin_shufflevector(half_with<K>(a, b), half_with<L>(a, b), K % 2, 2 + L % 2)};
+}
+
+#endif
+
 struct four_doubles {
   four_lanes v;
   DUET_ALWAYS_INLINE double operator[](int i) const { return v[i]; }
 };
 
 struct triple : four_doubles {
-  DUET_ALWAYS_INLINE triple(double x, double y, double z) : four_doubles{{x, y, z, 0}} {}
+  DUET_ALWAYS_INLINE triple(double x, double y, double z) : four_doubles{lanes_of(x, y, z, 0)} {}
   DUET_ALWAYS_INLINE explicit triple(const four_lanes& a) : four_doubles{a} {}
 
   friend DUET_ALWAYS_INLINE triple operator*(const triple& a, double x) { return triple(a.v * x); }
@@ -34,26 +84,25 @@ struct triple : four_doubles {
 };
 
 [[nodiscard]] DUET_ALWAYS_INLINE triple cross_of(const triple& a, const triple& b) {
-  const four_lanes c = a.v * __builtin_shufflevector(b.v, b.v, 1, 2, 0, 3) -
-                       __builtin_shufflevector(a.v, a.v, 1, 2, 0, 3) * b.v;
-  return triple(__builtin_shufflevector(c, c, 1, 2, 0, 3));
+  const four_lanes c = a.v * shuffled<1, 2, 0, 3>(b.v, b.v) - shuffled<1, 2, 0, 3>(a.v, a.v) * b.v;
+  return triple(shuffled<1, 2, 0, 3>(c, c));
 }
 
 /// A quaternion, scalar first.
 struct quadruple : four_doubles {
   DUET_ALWAYS_INLINE quadruple(double w, double x, double y, double z)
-      : four_doubles{{w, x, y, z}} {}
+      : four_doubles{lanes_of(w, x, y, z)} {}
   DUET_ALWAYS_INLINE explicit quadruple(const four_lanes& a) : four_doubles{a} {}
 
   /// Times s times the I-th unit vector.
   template <int I>
   [[nodiscard]] DUET_ALWAYS_INLINE quadruple times_unit(double s) const {
     if constexpr (I == 0) {
-      return quadruple(__builtin_shufflevector(v, v, 1, 0, 3, 2) * four_lanes{-s, s, s, -s});
+      return quadruple(shuffled<1, 0, 3, 2>(v, v) * lanes_of(-s, s, s, -s));
     } else if constexpr (I == 1) {
-      return quadruple(__builtin_shufflevector(v, v, 2, 3, 0, 1) * four_lanes{-s, -s, s, s});
+      return quadruple(shuffled<2, 3, 0, 1>(v, v) * lanes_of(-s, -s, s, s));
     } else {
-      return quadruple(__builtin_shufflevector(v, v, 3, 2, 1, 0) * four_lanes{-s, s, -s, s});
+      return quadruple(shuffled<3, 2, 1, 0>(v, v) * lanes_of(-s, s, -s, s));
     }
   }
 
@@ -68,87 +117,19 @@ struct quadruple : four_doubles {
 /// A column [v; ω] of a Jacobian, set or added to.
 template <bool IsSet>
 DUET_ALWAYS_INLINE void write_twist(double* column, const triple& v, const triple& omega) {
-  four_lanes upper = __builtin_shufflevector(v.v, omega.v, 0, 1, 2, 4);
-  const four_lanes rest = __builtin_shufflevector(omega.v, omega.v, 1, 2, 1, 2);
+  four_lanes upper = shuffled<0, 1, 2, 4>(v.v, omega.v);
+  const four_lanes rest = shuffled<1, 2, 1, 2>(omega.v, omega.v);
   if constexpr (IsSet) {
     std::memcpy(column, &upper, sizeof upper);
     std::memcpy(column + 4, &rest, 2 * sizeof(double));
   } else {
     four_lanes before;
     std::memcpy(&before, column, sizeof before);
-    upper += before;
+    upper = upper + before;
     std::memcpy(column, &upper, sizeof upper);
     column[4] += rest[0];
     column[5] += rest[1];
   }
 }
-
-#else
-
-struct triple {
-  double x, y, z;
-  DUET_ALWAYS_INLINE triple(double a, double b, double c) : x(a), y(b), z(c) {}
-  DUET_ALWAYS_INLINE double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
-
-  friend DUET_ALWAYS_INLINE triple operator*(const triple& a, double b) {
-    return {a.x * b, a.y * b, a.z * b};
-  }
-  friend DUET_ALWAYS_INLINE triple operator+(const triple& a, const triple& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-  }
-  friend DUET_ALWAYS_INLINE triple operator-(const triple& a, const triple& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-  }
-};
-
-[[nodiscard]] DUET_ALWAYS_INLINE triple cross_of(const triple& a, const triple& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/// A quaternion, scalar first.
-struct quadruple {
-  double w, x, y, z;
-  DUET_ALWAYS_INLINE quadruple(double a, double b, double c, double d) : w(a), x(b), y(c), z(d) {}
-  DUET_ALWAYS_INLINE double operator[](int i) const {
-    return i == 0 ? w : i == 1 ? x : i == 2 ? y : z;
-  }
-
-  /// Times s times the I-th unit vector.
-  template <int I>
-  [[nodiscard]] DUET_ALWAYS_INLINE quadruple times_unit(double s) const {
-    if constexpr (I == 0) {
-      return {-s * x, s * w, s * z, -s * y};
-    } else if constexpr (I == 1) {
-      return {-s * y, -s * z, s * w, s * x};
-    } else {
-      return {-s * z, s * y, -s * x, s * w};
-    }
-  }
-
-  friend DUET_ALWAYS_INLINE quadruple operator*(const quadruple& a, double b) {
-    return {a.w * b, a.x * b, a.y * b, a.z * b};
-  }
-  friend DUET_ALWAYS_INLINE quadruple operator+(const quadruple& a, const quadruple& b) {
-    return {a.w + b.w, a.x + b.x, a.y + b.y, a.z + b.z};
-  }
-};
-
-/// A column [v; ω] of a Jacobian, set or added to.
-template <bool IsSet>
-DUET_ALWAYS_INLINE void write_twist(double* column, const triple& v, const triple& omega) {
-  const double twist[] = {v.x, v.y, v.z, omega.x, omega.y, omega.z};
-  if constexpr (IsSet) {
-    std::memcpy(column, twist, sizeof twist);
-  } else {
-    column[0] += twist[0];
-    column[1] += twist[1];
-    column[2] += twist[2];
-    column[3] += twist[3];
-    column[4] += twist[4];
-    column[5] += twist[5];
-  }
-}
-
-#endif
 
 } // namespace duet::expression::detail
