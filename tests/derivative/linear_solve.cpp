@@ -6,9 +6,11 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/linear_solve.hpp>
 
+#include <Eigen/LU>
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <type_traits>

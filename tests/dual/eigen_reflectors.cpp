@@ -3,6 +3,7 @@
 #include "dual/eigen_problems.hpp"
 
 #include <Eigen/QR>
+#include <doctest/doctest.h>
 
 namespace test_dual_eigen_reflectors {
 

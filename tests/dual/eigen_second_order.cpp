@@ -2,7 +2,11 @@
 
 #include "dual/eigen_problems.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
+#include <doctest/doctest.h>
+
+#include <cmath>
 
 // Second derivatives of solutions, by Taylor numbers and by nested duals:
 // A x″ = b″ − 2A′x′ − A″x.
