@@ -59,7 +59,7 @@ struct spline_work {
   std::array<lanes, batches> u_in_lanes;
   std::vector<duet::motion<double>> results = std::vector<duet::motion<double>>(count);
   std::array<duet::motion<lanes>, batches> results_in_lanes;
-  std::array<numbers, count> results_by_hand;
+  std::array<numbers_with_jerk, count> results_by_hand;
 
   spline_work() {
     std::mt19937_64 engine(1);
@@ -126,7 +126,7 @@ const bool registered = [] {
   const hand_written_spline kernel(controls());
   const auto spline_by_hand = [=](spline_work& s) {
     for (std::size_t i = 0; i < count; ++i) {
-      s.results_by_hand[i] = kernel.motion(s.u[i]);
+      s.results_by_hand[i] = kernel.motion_with_jerk(s.u[i]);
     }
   };
   const auto spline_sweep = [=](spline_work& s) {
@@ -142,9 +142,10 @@ const bool registered = [] {
   spline_sweep(s);
   for (std::size_t i = 0; i < count; ++i) {
     const auto& m = s.results[i];
-    const numbers found = {m.value.w(),       m.value.x(),      m.value.y(),   m.value.z(),
-                           m.velocity[0],     m.velocity[1],    m.velocity[2], m.acceleration[0],
-                           m.acceleration[1], m.acceleration[2]};
+    const numbers_with_jerk found = {
+        m.value.w(),   m.value.x(),   m.value.y(),       m.value.z(),       m.velocity[0],
+        m.velocity[1], m.velocity[2], m.acceleration[0], m.acceleration[1], m.acceleration[2],
+        m.jerk[0],     m.jerk[1],     m.jerk[2]};
     expect_agreement("spline_sweep", "duet", s.results_by_hand[i], found);
   }
   add<spline_work>("spline_sweep", "duet", spline_sweep);

@@ -60,10 +60,11 @@ struct problem {
   vector start, end;
 };
 
-enum class family { near_goals, unrelated_goals, from_gripper_down };
+enum class family { near_goals, near_goals_cut_off, unrelated_goals, from_gripper_down };
 
-/// Starts and goals in the inner 80 % of the joints' ranges, near ones within 0.5 rad per joint;
-/// from the gripper-down pose within 0.5 rad and the limits.
+/// Starts and goals in the inner 80 % of the joints' ranges. Near goals are within 0.5 rad per
+/// joint of starts that leave as much room, or of any start, and cut off where they leave these
+/// ranges; from the gripper-down pose within 0.5 rad and the limits.
 std::vector<problem> problems(family kind, unsigned seed) {
   duet::random_source random(seed);
   const vector down = gripper_down();
@@ -75,10 +76,12 @@ std::vector<problem> problems(family kind, unsigned seed) {
       if (kind == family::from_gripper_down) {
         p.end[i] = std::clamp(down[i] + random.uniform(-.5, .5), lower, upper);
       } else {
-        p.start[i] = middle + half * random.uniform(-1, 1);
-        p.end[i] = kind == family::near_goals ? std::clamp(p.start[i] + random.uniform(-.5, .5),
-                                                           middle - half, middle + half)
-                                              : middle + half * random.uniform(-1, 1);
+        const double room = kind == family::near_goals ? half - .5 : half;
+        p.start[i] = middle + room * random.uniform(-1, 1);
+        p.end[i] =
+            kind == family::unrelated_goals
+                ? middle + half * random.uniform(-1, 1)
+                : std::clamp(p.start[i] + random.uniform(-.5, .5), middle - half, middle + half);
       }
     }
   }
@@ -230,6 +233,8 @@ const bool registered = [] {
     };
     add("near", family::near_goals, true);
     add("near_without_search", family::near_goals, false);
+    add("near_cut_off", family::near_goals_cut_off, true);
+    add("near_cut_off_without_search", family::near_goals_cut_off, false);
     add("unrelated", family::unrelated_goals, true);
     add("unrelated_without_search", family::unrelated_goals, false);
     add("gripper_down", family::from_gripper_down, true);

@@ -20,6 +20,8 @@ inline constexpr double knot_distance = 0.1;
 
 /// Value, angular velocity and acceleration in body axes.
 using numbers = std::array<double, 10>;
+/// The same, and the angular jerk.
+using numbers_with_jerk = std::array<double, 13>;
 
 /// A smooth tumble, up to 0.25 rad a segment.
 inline duet::quaternion<double> orientation(double t) {
@@ -73,14 +75,49 @@ public:
     return q;
   }
 
+  [[nodiscard]] numbers_with_jerk motion_with_jerk(double u) const {
+    const location at(u);
+    const node* n = &nodes_[at.segment];
+    const double x = at.x;
+    const auto b = weights(x);
+    const auto first = slopes(x), second = curvatures(x);
+    constexpr double third[] = {r * r * r, -2 * r * r * r, r * r * r};
+    std::array<double, 4> q = n->q;
+    std::array<double, 3> w{}, a{}, j{};
+    for (int i = 0; i < 3; ++i) {
+      ++n;
+      const auto e = exponential(*n, b[i]);
+      q = product(q, e);
+      const double w1 = n->angle * first[i], w2 = n->angle * second[i], w3 = n->angle * third[i];
+      const std::array<double, 3> d = {n->axis[0] * w1, n->axis[1] * w1, n->axis[2] * w1};
+      const std::array<double, 3> d2 = {n->axis[0] * w2, n->axis[1] * w2, n->axis[2] * w2};
+      if (i == 0) {
+        w = d;
+        a = d2;
+        j = {n->axis[0] * w3, n->axis[1] * w3, n->axis[2] * w3};
+        continue;
+      }
+      w = turned_back(e, w);
+      a = turned_back(e, a);
+      j = turned_back(e, j);
+      const auto wd = cross(w, d), wd2 = cross(w, d2);
+      const auto twice = cross({a[0] + wd[0], a[1] + wd[1], a[2] + wd[2]}, d);
+      for (int k = 0; k < 3; ++k) {
+        j[k] += n->axis[k] * w3 + 4 * twice[k] + 2 * wd2[k];
+        a[k] += d2[k] + 2 * wd[k];
+        w[k] += d[k];
+      }
+    }
+    return {q[0],     q[1],     q[2],     q[3],     2 * w[0], 2 * w[1], 2 * w[2],
+            2 * a[0], 2 * a[1], 2 * a[2], 2 * j[0], 2 * j[1], 2 * j[2]};
+  }
+
   [[nodiscard]] numbers motion(double u) const {
     const location at(u);
     const node* n = &nodes_[at.segment];
     const double x = at.x;
-    constexpr double r = 1 / knot_distance;
     const auto b = weights(x);
-    const double first[] = {r * (1 - x) * (1 - x) / 2, r * (0.5 + x - x * x), r * x * x / 2};
-    const double second[] = {r * r * (x - 1), r * r * (1 - 2 * x), r * r * x};
+    const auto first = slopes(x), second = curvatures(x);
     std::array<double, 4> q = n->q;
     std::array<double, 3> w{}, a{};
     for (int i = 0; i < 3; ++i) {
@@ -105,6 +142,8 @@ public:
   }
 
 private:
+  static constexpr double r = 1 / knot_distance;
+
   struct node {
     std::array<double, 4> q;
     std::array<double, 3> axis;
@@ -124,6 +163,16 @@ private:
   static std::array<double, 3> weights(double x) {
     const double x2 = x * x, x3 = x2 * x;
     return {(5 + 3 * x - 3 * x2 + x3) / 6, (1 + 3 * x + 3 * x2 - 2 * x3) / 6, x3 / 6};
+  }
+  static std::array<double, 3> slopes(double x) {
+    return {r * (1 - x) * (1 - x) / 2, r * (0.5 + x - x * x), r * x * x / 2};
+  }
+  static std::array<double, 3> curvatures(double x) {
+    return {r * r * (x - 1), r * r * (1 - 2 * x), r * r * x};
+  }
+  static std::array<double, 3> cross(const std::array<double, 3>& a,
+                                     const std::array<double, 3>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   }
   static std::array<double, 4> exponential(const node& n, double b) {
     const double s = std::sin(n.angle * b), c = std::cos(n.angle * b);

@@ -33,7 +33,7 @@ struct problem {
 };
 
 /// Problem `number` of those that bench/planning.cpp counts: in the inner 80 % of the joints'
-/// ranges, `near` within 0.5 rad per joint.
+/// ranges, `near` within 0.5 rad per joint and cut off there.
 problem random_problem(unsigned seed, int number, bool is_near) {
   duet_test::random_source random(seed);
   problem result;

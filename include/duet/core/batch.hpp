@@ -159,13 +159,22 @@ public:
     return from_packets([&](int p) DUET_INLINE_LAMBDA { return -a.packets_[p]; });
   }
   [[nodiscard]] friend DUET_ALWAYS_INLINE batch operator+(const batch& a, const batch& b) {
-    return from_packets([&](int p) DUET_INLINE_LAMBDA { return a.packets_[p] + b.packets_[p]; });
+    return from_packets([&](int p) DUET_INLINE_LAMBDA {
+      DUET_CONTRACTED
+      return a.packets_[p] + b.packets_[p];
+    });
   }
   [[nodiscard]] friend DUET_ALWAYS_INLINE batch operator-(const batch& a, const batch& b) {
-    return from_packets([&](int p) DUET_INLINE_LAMBDA { return a.packets_[p] - b.packets_[p]; });
+    return from_packets([&](int p) DUET_INLINE_LAMBDA {
+      DUET_CONTRACTED
+      return a.packets_[p] - b.packets_[p];
+    });
   }
   [[nodiscard]] friend DUET_ALWAYS_INLINE batch operator*(const batch& a, const batch& b) {
-    return from_packets([&](int p) DUET_INLINE_LAMBDA { return a.packets_[p] * b.packets_[p]; });
+    return from_packets([&](int p) DUET_INLINE_LAMBDA {
+      DUET_CONTRACTED
+      return a.packets_[p] * b.packets_[p];
+    });
   }
   [[nodiscard]] friend DUET_ALWAYS_INLINE batch operator/(const batch& a, const batch& b) {
     return from_packets([&](int p) DUET_INLINE_LAMBDA { return a.packets_[p] / b.packets_[p]; });

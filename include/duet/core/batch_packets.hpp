@@ -124,8 +124,13 @@ struct packets {
 /// Is any lane of a mask set?
 template <class Mask>
 [[nodiscard]] DUET_ALWAYS_INLINE bool any_lane(const Mask& m) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(m) == 64 && !std::is_class_v<Mask>) {
+    return _mm512_test_epi64_mask(__m512i(m), __m512i(m)) != 0;
+  } else
+#endif
 #if defined(__AVX__)
-  if constexpr (sizeof(m) == 32 && !std::is_class_v<Mask>) {
+      if constexpr (sizeof(m) == 32 && !std::is_class_v<Mask>) {
     return !_mm256_testz_si256(__m256i(m), __m256i(m));
   } else
 #endif

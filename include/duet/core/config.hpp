@@ -52,3 +52,14 @@
 #else
 #define DUET_INLINE_LAMBDA
 #endif
+
+/// At the beginning of a body: its products and sums may be fused with those around them, where the
+/// target multiplies and adds in one step. g++ does so by itself; clang does it within one
+/// expression only, as if bodies were not inlined. Defined as nothing, -ffp-contract alone decides.
+#ifndef DUET_CONTRACTED
+#ifdef __clang__
+#define DUET_CONTRACTED _Pragma("clang fp contract(fast)")
+#else
+#define DUET_CONTRACTED
+#endif
+#endif

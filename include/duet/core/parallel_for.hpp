@@ -111,7 +111,7 @@ private:
 /// `how.report` is called after each block with what is done so far, until it returns `false` or
 /// throws: blocks in work are then finished, and no more begun. Its exceptions are rethrown like
 /// those of `body`.
-/// \param block  the most elements a block has; 0: an eighth of a thread's share, of one thread
+/// \param block  the most elements a block has; 0: a 32nd of a thread's share, of one thread
 /// all, and with `how.report` no more than a 128th of all
 /// \throws cancelled where `how.report` returned `false` before everything was done: it says how
 /// many elements are, from the first on
@@ -120,7 +120,7 @@ void parallel_for_blocks(std::size_t count, const Body& body, execution how = al
                          std::size_t block = 0) {
   const std::size_t wanted =
       how.threads > 0 ? how.threads : std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t blocks_for_threads = wanted == 1 ? 1 : 8 * wanted;
+  const std::size_t blocks_for_threads = wanted == 1 ? 1 : 32 * wanted;
   const std::size_t least =
       how.report ? std::max<std::size_t>(128, blocks_for_threads) : blocks_for_threads;
   const std::size_t size = block > 0 ? block : std::max<std::size_t>(1, count / least);

@@ -53,6 +53,9 @@ public:
     }
     breaks_.push_back(knots_[knots_.size() - std::size_t(Order)]);
     spans_per_unit_ = R(spans_.size()) / (breaks_.back() - breaks_.front());
+    for (std::size_t i = 0; i < spans_.size(); ++i) {
+      is_about_uniform_ = is_about_uniform_ && guessed_span(spans_[i].middle) == i;
+    }
   }
 
   [[nodiscard]] const std::vector<R>& knots() const { return knots_; }
@@ -75,22 +78,17 @@ public:
       throw_outside(u);
     }
     // Where knots are about uniform the guess is right; otherwise a binary search finds the span.
-    const auto guess = std::min(static_cast<std::size_t>((u - breaks_.front()) * spans_per_unit_),
-                                spans_.size() - 1);
+    const std::size_t guess = guessed_span(u);
     if (breaks_[guess] <= u && u < breaks_[guess + 1]) [[likely]] {
       return guess;
     }
     const auto above = std::upper_bound(breaks_.begin(), breaks_.end(), u) - breaks_.begin();
     return std::min(static_cast<std::size_t>(above), spans_.size()) - 1;
   }
-  /// The same, looked for in the span of the hint and the next one first; the hint is updated.
-  [[nodiscard]] std::size_t span_of(const R& u, span_hint& hint) const {
-    for (std::size_t i = hint.span; i < spans_.size() && i - hint.span < 2; ++i) {
-      if (breaks_[i] <= u && u < breaks_[i + 1]) {
-        return hint.span = i;
-      }
-    }
-    return hint.span = span_of(u);
+  /// The same, looked for in the span of the hint and the next one first where knots are not about
+  /// uniform; the hint is updated.
+  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t span_of(const R& u, span_hint& hint) const {
+    return hint.span = is_about_uniform_ ? span_of(u) : span_near(u, hint.span);
   }
 
   /// Index of the first of the k functions that do not vanish on a span.
@@ -124,6 +122,19 @@ public:
   }
 
 private:
+  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t guessed_span(const R& u) const {
+    return std::min(static_cast<std::size_t>((u - breaks_.front()) * spans_per_unit_),
+                    spans_.size() - 1);
+  }
+  [[nodiscard]] std::size_t span_near(const R& u, std::size_t hint) const {
+    for (std::size_t i = hint; i < spans_.size() && i - hint < 2; ++i) {
+      if (breaks_[i] <= u && u < breaks_[i + 1]) {
+        return i;
+      }
+    }
+    return span_of(u);
+  }
+
   /// Derivatives 0 … k−1 at the middle of the span. About the middle no term of the Taylor series
   /// exceeds the sum by much.
   template <class S>
@@ -242,6 +253,7 @@ private:
   std::vector<R> breaks_;
   std::vector<span_data<R>> spans_;
   R spans_per_unit_;
+  bool is_about_uniform_ = true;
 };
 
 } // namespace duet

@@ -96,7 +96,8 @@ template <class Spline>
 void evaluate(const Spline& s, std::span<const typename Spline::real_type> parameters,
               std::span<quaternion<typename Spline::scalar_type>> out, execution how = one_core) {
   detail::evaluate_blocks<typename Spline::scalar_type>(
-      "evaluate", parameters, out, how, [&](const auto& u, span_hint& hint) { return s(u, hint); });
+      "evaluate", parameters, out, how,
+      [&](const auto& u, span_hint& hint) DUET_INLINE_LAMBDA { return s(u, hint); });
 }
 
 /// out[i] = s.motion(parameters[i], frame), as `evaluate`.
@@ -106,7 +107,7 @@ void evaluate_motion(const Spline& s, std::span<const typename Spline::real_type
                      execution how = one_core) {
   detail::evaluate_blocks<typename Spline::scalar_type>(
       "evaluate_motion", parameters, out, how,
-      [&](const auto& u, span_hint& hint) { return s.motion(u, frame, hint); });
+      [&](const auto& u, span_hint& hint) DUET_INLINE_LAMBDA { return s.motion(u, frame, hint); });
 }
 
 } // namespace duet
