@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "dual/eigen_problems.hpp"
+#include "support/eigen_problems.hpp"
 #include "support/message.hpp"
 
 #include <duet/derivative/jacobian.hpp>
