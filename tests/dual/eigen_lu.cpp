@@ -3,6 +3,7 @@
 #include "support/eigen_problems.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <doctest/doctest.h>
 
 namespace test_dual_eigen_lu {
