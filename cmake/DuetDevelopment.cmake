@@ -4,6 +4,13 @@
 
 add_library(duet_development INTERFACE)
 target_link_libraries(duet_development INTERFACE duet::duet)
+
+# g++ begins to collect garbage at 128 MB, and finds little: from 2 GB on is an eighth quicker.
+set(duet_compiler_memory "")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(duet_compiler_memory --param=ggc-min-heapsize=2000000)
+endif()
+
 # Warnings are errors in .ci/run only: what other releases of a compiler say should stop nobody.
 #
 # clang's -Wconversion includes -Wsign-conversion, g++'s does not: Eigen and std disagree on the sign
@@ -13,6 +20,6 @@ target_link_libraries(duet_development INTERFACE duet::duet)
 # doctest and Google Benchmark.
 target_compile_options(duet_development INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wshadow -Wnon-virtual-dtor
-  -Woverloaded-virtual -Wold-style-cast
+  -Woverloaded-virtual -Wold-style-cast ${duet_compiler_memory}
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>"
   $<$<AND:$<CXX_COMPILER_ID:Clang>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,22>>:-Wno-c2y-extensions>)

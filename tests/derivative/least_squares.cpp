@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "dual/eigen_problems.hpp"
+#include "support/eigen_problems.hpp"
 #include "support/message.hpp"
+#include "support/random.hpp"
 
 #include <duet/derivative/least_squares.hpp>
 
@@ -167,7 +168,7 @@ TEST_CASE("scalars and shapes of A and b may differ") {
   only_a.b_slope.setZero();
   fit only_b = f;
   only_b.a_slope.setZero();
-  const auto a = seeded<dual<double>, 4, 3, Eigen::RowMajor>(f.a, f.a_slope);
+  const auto a = seeded<dual<double>, 4, 3>(f.a, f.a_slope);
   const auto b = seeded<dual<double>, Dynamic, 1>(f.b, f.b_slope);
   check_solution(least_squares(a, Eigen::Vector4d(f.b)), only_a.normal());
   const auto x = least_squares(Eigen::Matrix<double, 4, 3>(f.a), b);

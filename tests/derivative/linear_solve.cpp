@@ -1,14 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "dual/eigen_problems.hpp"
+#include "support/eigen_problems.hpp"
 #include "support/message.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/linear_solve.hpp>
 
+#include <Eigen/LU>
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <type_traits>

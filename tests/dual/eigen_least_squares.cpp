@@ -1,8 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "dual/eigen_problems.hpp"
+#include "support/eigen_problems.hpp"
+#include "support/random.hpp"
 
 #include <Eigen/QR>
+#include <doctest/doctest.h>
 
 namespace test_dual_eigen_least_squares {
 

@@ -1,8 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "dual/eigen_problems.hpp"
+#include "support/eigen_problems.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/QR>
+#include <doctest/doctest.h>
+
+#include <cmath>
 
 // Second derivatives of solutions, by Taylor numbers and by nested duals:
 // A x″ = b″ − 2A′x′ − A″x.

@@ -67,7 +67,7 @@ private:
 template <int Capacity = 16>
 [[nodiscard]] urdf_chain<Capacity> read_urdf(const std::string& path, const std::string& base,
                                              const std::string& tip) {
-  detail::urdf_reader reader(path);
+  detail::urdf_reader<boost::property_tree::ptree> reader(path);
   std::vector<joint<double>> joints;
   std::vector<std::string> names;
   using named_link = typename urdf_chain<Capacity>::named_link;

@@ -25,13 +25,15 @@
 
 namespace duet::detail {
 
-using xml = boost::property_tree::ptree;
-
-/// Tells file and element of what is wrong.
+/// Tells file and element of what is wrong. A template so that compilers make the parser for those
+/// alone who read a file.
+///
+/// \tparam Xml  boost::property_tree::ptree
+template <class Xml>
 class urdf_reader {
 public:
   explicit urdf_reader(std::string path) : path_(std::move(path)) {
-    xml document;
+    Xml document;
     try {
       boost::property_tree::read_xml(path_, document);
     } catch (const boost::property_tree::xml_parser_error& e) {
@@ -51,10 +53,10 @@ public:
   }
 
   /// The joints from the link `base` to the link `tip`, in that order.
-  [[nodiscard]] std::vector<const xml*> path(const std::string& base, const std::string& tip) {
+  [[nodiscard]] std::vector<const Xml*> path(const std::string& base, const std::string& tip) {
     require_link("", base);
     require_link("", tip);
-    std::vector<const xml*> result;
+    std::vector<const Xml*> result;
     std::vector<std::string> seen{tip};
     for (std::string link = tip; link != base;) {
       const auto above = joint_above_.find(link);
@@ -78,7 +80,7 @@ public:
     return result;
   }
 
-  [[nodiscard]] joint<double> read(const xml& element) const {
+  [[nodiscard]] joint<double> read(const Xml& element) const {
     const std::string here = where(element);
     if (element.get_child_optional("mimic")) {
       fail(here + " <mimic>", "joints that follow others are not supported in a chain");
@@ -115,10 +117,10 @@ public:
     return result;
   }
 
-  [[nodiscard]] static std::string name(const xml& element) {
-    return element.get<std::string>("<xmlattr>.name", "");
+  [[nodiscard]] static std::string name(const Xml& element) {
+    return element.template get<std::string>("<xmlattr>.name", "");
   }
-  [[nodiscard]] std::string child(const xml& element) const {
+  [[nodiscard]] std::string child(const Xml& element) const {
     return attribute(element.get_child("child"), where(element), "link");
   }
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
@@ -127,20 +129,20 @@ public:
   }
 
 private:
-  [[nodiscard]] static std::string where(const xml& joint) {
+  [[nodiscard]] static std::string where(const Xml& joint) {
     return "<joint name=\"" + name(joint) + "\">";
   }
 
-  void require_attribute(const xml& element, const std::string& where,
+  void require_attribute(const Xml& element, const std::string& where,
                          const std::string& key) const {
     if (!element.get_child_optional("<xmlattr>." + key)) {
       fail(where, "no attribute \"" + key + "\"");
     }
   }
-  [[nodiscard]] std::string attribute(const xml& element, const std::string& where,
+  [[nodiscard]] std::string attribute(const Xml& element, const std::string& where,
                                       const std::string& key) const {
     require_attribute(element, where, key);
-    return element.get<std::string>("<xmlattr>." + key);
+    return element.template get<std::string>("<xmlattr>." + key);
   }
 
   [[nodiscard]] double number(const std::string& text, const std::string& where,
@@ -153,10 +155,10 @@ private:
   }
 
   /// The three numbers of an attribute.
-  [[nodiscard]] std::array<double, 3> numbers(const xml& element, const std::string& where,
+  [[nodiscard]] std::array<double, 3> numbers(const Xml& element, const std::string& where,
                                               const std::string& key,
                                               const std::array<double, 3>& otherwise) const {
-    const auto text = element.get_optional<std::string>("<xmlattr>." + key);
+    const auto text = element.template get_optional<std::string>("<xmlattr>." + key);
     if (!text) {
       return otherwise;
     }
@@ -177,7 +179,7 @@ private:
     return result;
   }
 
-  void read_limits(const xml& element, const std::string& here, joint<double>& result) const {
+  void read_limits(const Xml& element, const std::string& here, joint<double>& result) const {
     const auto limit = element.get_child_optional("limit");
     const std::string place = here + " <limit>";
     const bool is_bounded = result.kind != joint_kind::continuous;
@@ -189,7 +191,7 @@ private:
       return;
     }
     const auto value = [&](const std::string& key, double otherwise) {
-      const auto text = limit->get_optional<std::string>("<xmlattr>." + key);
+      const auto text = limit->template get_optional<std::string>("<xmlattr>." + key);
       return text ? number(*text, place, key) : otherwise;
     };
     if (is_bounded) {
@@ -223,7 +225,7 @@ private:
     }
   }
 
-  void add_joint(const xml& element) {
+  void add_joint(const Xml& element) {
     require_attribute(element, "<joint>", "name");
     for (const char* key : {"parent", "child"}) {
       if (!element.get_child_optional(key)) {
@@ -238,7 +240,7 @@ private:
 
   std::string path_;
   std::vector<std::string> links_;
-  std::map<std::string, xml> joint_above_; ///< by the link that it moves
+  std::map<std::string, Xml> joint_above_; ///< by the link that it moves
 };
 
 } // namespace duet::detail

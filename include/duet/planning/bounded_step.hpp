@@ -16,10 +16,15 @@
 
 namespace duet::detail {
 
-/// Solves J Jᵀ y = e with as much damping as a small singular value asks for.
+/// Below this singular value steps are damped.
+inline constexpr double damping_threshold = 1e-3;
+
+/// Solves J Jᵀ y = e with as much damping as a small singular value asks for. A template so that
+/// compilers make its factorisation for those alone who use it.
+template <class Gram>
 class damped_gram {
 public:
-  explicit damped_gram(const matrix6<double>& gram) : factors_(gram) {
+  explicit damped_gram(const Gram& gram) : factors_(gram) {
     // The smallest eigenvalue from above: Rayleigh's quotient after two inverse iterations.
     if (factors_.info() == Eigen::Success) {
       const vector6<double> once = factors_.solve(vector6<double>::Ones());
@@ -27,10 +32,10 @@ public:
       smallest_ = once.dot(twice) / twice.squaredNorm();
     }
     smallest_ = smallest_ > 0 ? std::sqrt(smallest_) : 0;
-    if (smallest_ < threshold) {
-      const double missing = 1 - smallest_ / threshold;
-      const double damping = missing * threshold;
-      factors_.compute(gram + damping * damping * matrix6<double>::Identity());
+    if (smallest_ < damping_threshold) {
+      const double missing = 1 - smallest_ / damping_threshold;
+      const double damping = missing * damping_threshold;
+      factors_.compute(gram + damping * damping * Gram::Identity());
     }
   }
 
@@ -38,11 +43,8 @@ public:
   /// The smallest singular value of J, from above.
   [[nodiscard]] double smallest() const { return smallest_; }
 
-  /// Below this singular value steps are damped.
-  static constexpr double threshold = 1e-3;
-
 private:
-  Eigen::LLT<matrix6<double>> factors_;
+  Eigen::LLT<Gram> factors_;
   double smallest_ = 0;
 };
 
@@ -97,7 +99,7 @@ template <class J, class V>
 [[nodiscard]] bounded_step_result<V> bounded_step(const J& jacobian, const vector6<double>& e,
                                                   const V& lower, const V& upper) {
   return bounded_step(jacobian, e, lower, upper,
-                      [](const matrix6<double>& gram) { return damped_gram(gram); });
+                      [](const auto& gram) { return damped_gram(gram); });
 }
 
 } // namespace duet::detail

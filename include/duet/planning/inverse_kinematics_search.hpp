@@ -190,7 +190,7 @@ private:
       return stop_reason::joint_limit;
     }
     const damped_gram gram(matrix6<double>(at.jacobian * at.jacobian.transpose()));
-    return chain_.size() >= 6 && gram.smallest() < 10 * damped_gram::threshold
+    return chain_.size() >= 6 && gram.smallest() < 10 * damping_threshold
                ? stop_reason::singular
                : stop_reason::no_progress;
   }

@@ -172,13 +172,12 @@ private:
       }
       x.step = std::min(options_.largest_step, x.step * change);
       if (way < 1 && (iterations_left_ <= 0 || x.step < options_.smallest_step)) {
-        x.reason = iterations_left_ <= 0 ? stop_reason::iteration_limit
-                   : there.is_blocked || there.shortfall > options_.tolerance
-                       ? stop_reason::obstacle
-                   : there.is_bounded ? stop_reason::joint_limit
-                   : there.smallest_singular_value < 10 * damped_gram::threshold
-                       ? stop_reason::singular
-                       : stop_reason::no_progress;
+        x.reason =
+            iterations_left_ <= 0 ? stop_reason::iteration_limit
+            : there.is_blocked || there.shortfall > options_.tolerance ? stop_reason::obstacle
+            : there.is_bounded                                         ? stop_reason::joint_limit
+            : there.smallest_singular_value < 10 * damping_threshold   ? stop_reason::singular
+                                                                       : stop_reason::no_progress;
         return false;
       }
     }
