@@ -182,10 +182,15 @@ TEST_CASE("scalars and shapes of A and b may differ") {
   CHECK(least_squares(ones, right)[0] == doctest::Approx(1.5).epsilon(1e-15));
   CHECK(least_squares(ones.cast<float>(), right.cast<float>())[0] ==
         doctest::Approx(1.5).epsilon(1e-6));
-  const auto l = least_squares(
-      Eigen::Matrix<int, 2, 1>(1, 1),
-      Eigen::Matrix<dual<long double>, 2, 1>(dual<long double>(1, 1), dual<long double>(2)));
-  CHECK(std::abs(l[0].epsilon() - 0.5L) <= 1e-18L);
+  // Row by row, AᵀA = diag(2, 4), b − A x = (−1, 0, 1).
+  using D = dual<long double>;
+  const Eigen::Matrix<D, 3, 2, Eigen::RowMajor> by_rows{{1, D(0, 1)}, {0, 2}, {1, 0}};
+  const auto l = least_squares(by_rows, Eigen::Vector3i(1, 2, 3));
+  const long double exact[] = {2, 1}, exact_slope[] = {-0.5L, -0.25L};
+  for (int i = 0; i < 2; ++i) {
+    CHECK(std::abs(l[i].value() - exact[i]) <= 1e-18L);
+    CHECK(std::abs(l[i].epsilon() - exact_slope[i]) <= 1e-18L);
+  }
 }
 
 TEST_CASE("what does not depend on a variable has zero partials") {
