@@ -86,14 +86,15 @@ template <Real T>
 }
 
 /// c_n(s) of small s: up to 4, and up to 1 of c₀ and c₁ or where no more is asked for.
-template <int N, int Limit = N<2 ? 1 : 4, Real T> [[nodiscard]] DUET_ALWAYS_INLINE T
-                     stumpff_of_small(const T& s) {
+template <int N, int Limit = (N < 2 ? 1 : 4), Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_small(const T& s) {
   if constexpr (std::floating_point<lane_type_t<T>>) {
     // The first term left out is 4e-19 at s = 1 and 2e-22 at s = 4, with more digits 3e-27 and
     // 4e-27.
     constexpr int terms = Limit > 1 ? 13 : N < 2 ? 10 : 9;
     constexpr int more_terms = Limit > 1 ? 15 : N < 2 ? 13 : 12;
-    return stumpff_polynomial < N, std::numeric_limits<T>::digits <= 53 ? terms : more_terms > (s);
+    constexpr int count = std::numeric_limits<T>::digits <= 53 ? terms : more_terms;
+    return stumpff_polynomial<N, count>(s);
   } else {
     return stumpff_series<N>(s);
   }
