@@ -71,34 +71,6 @@ struct half_motion {
   vector3<T> jerk;
 };
 
-/// v ↦ q v q* for several v, by the matrix of q, coefficient by coefficient.
-template <class T>
-class rotation_of_many {
-public:
-  DUET_ALWAYS_INLINE explicit rotation_of_many(const quaternion<T>& q) {
-    const T x2 = 2 * q.x(), y2 = 2 * q.y(), z2 = 2 * q.z();
-    const T xx = x2 * q.x(), yy = y2 * q.y(), zz = z2 * q.z();
-    const T xy = x2 * q.y(), yz = y2 * q.z(), zx = z2 * q.x();
-    const T wx = x2 * q.w(), wy = y2 * q.w(), wz = z2 * q.w();
-    xx_ = 1 - (yy + zz);
-    xy_ = xy - wz;
-    xz_ = zx + wy;
-    yx_ = xy + wz;
-    yy_ = 1 - (zz + xx);
-    yz_ = yz - wx;
-    zx_ = zx - wy;
-    zy_ = yz + wx;
-    zz_ = 1 - (xx + yy);
-  }
-  [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> operator()(const vector3<T>& v) const {
-    return {xx_ * v[0] + xy_ * v[1] + xz_ * v[2], yx_ * v[0] + yy_ * v[1] + yz_ * v[2],
-            zx_ * v[0] + zy_ * v[1] + zz_ * v[2]};
-  }
-
-private:
-  T xx_, xy_, xz_, yx_, yy_, yz_, zx_, zy_, zz_;
-};
-
 /// One step of the recursion below, with the i-th factor e.
 template <int Rates, class T, class U, class Weights>
 DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const quaternion<T>& e,
