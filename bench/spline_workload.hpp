@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 /// \file
@@ -75,70 +76,9 @@ public:
     return q;
   }
 
+  [[nodiscard]] numbers motion(double u) const { return motion_of<numbers>(u); }
   [[nodiscard]] numbers_with_jerk motion_with_jerk(double u) const {
-    const location at(u);
-    const node* n = &nodes_[at.segment];
-    const double x = at.x;
-    const auto b = weights(x);
-    const auto first = slopes(x), second = curvatures(x);
-    constexpr double third[] = {r * r * r, -2 * r * r * r, r * r * r};
-    std::array<double, 4> q = n->q;
-    std::array<double, 3> w{}, a{}, j{};
-    for (int i = 0; i < 3; ++i) {
-      ++n;
-      const auto e = exponential(*n, b[i]);
-      q = product(q, e);
-      const double w1 = n->angle * first[i], w2 = n->angle * second[i], w3 = n->angle * third[i];
-      const std::array<double, 3> d = {n->axis[0] * w1, n->axis[1] * w1, n->axis[2] * w1};
-      const std::array<double, 3> d2 = {n->axis[0] * w2, n->axis[1] * w2, n->axis[2] * w2};
-      if (i == 0) {
-        w = d;
-        a = d2;
-        j = {n->axis[0] * w3, n->axis[1] * w3, n->axis[2] * w3};
-        continue;
-      }
-      w = turned_back(e, w);
-      a = turned_back(e, a);
-      j = turned_back(e, j);
-      const auto wd = cross(w, d), wd2 = cross(w, d2);
-      const auto twice = cross({a[0] + wd[0], a[1] + wd[1], a[2] + wd[2]}, d);
-      for (int k = 0; k < 3; ++k) {
-        j[k] += n->axis[k] * w3 + 4 * twice[k] + 2 * wd2[k];
-        a[k] += d2[k] + 2 * wd[k];
-        w[k] += d[k];
-      }
-    }
-    return {q[0],     q[1],     q[2],     q[3],     2 * w[0], 2 * w[1], 2 * w[2],
-            2 * a[0], 2 * a[1], 2 * a[2], 2 * j[0], 2 * j[1], 2 * j[2]};
-  }
-
-  [[nodiscard]] numbers motion(double u) const {
-    const location at(u);
-    const node* n = &nodes_[at.segment];
-    const double x = at.x;
-    const auto b = weights(x);
-    const auto first = slopes(x), second = curvatures(x);
-    std::array<double, 4> q = n->q;
-    std::array<double, 3> w{}, a{};
-    for (int i = 0; i < 3; ++i) {
-      ++n;
-      const auto e = exponential(*n, b[i]);
-      q = product(q, e);
-      const double w1 = n->angle * first[i], w2 = n->angle * second[i];
-      const double d[] = {n->axis[0] * w1, n->axis[1] * w1, n->axis[2] * w1};
-      if (i == 0) {
-        w = {d[0], d[1], d[2]};
-        a = {n->axis[0] * w2, n->axis[1] * w2, n->axis[2] * w2};
-        continue;
-      }
-      w = turned_back(e, w);
-      a = turned_back(e, a);
-      a = {a[0] + n->axis[0] * w2 + 2 * (w[1] * d[2] - w[2] * d[1]),
-           a[1] + n->axis[1] * w2 + 2 * (w[2] * d[0] - w[0] * d[2]),
-           a[2] + n->axis[2] * w2 + 2 * (w[0] * d[1] - w[1] * d[0])};
-      w = {w[0] + d[0], w[1] + d[1], w[2] + d[2]};
-    }
-    return {q[0], q[1], q[2], q[3], 2 * w[0], 2 * w[1], 2 * w[2], 2 * a[0], 2 * a[1], 2 * a[2]};
+    return motion_of<numbers_with_jerk>(u);
   }
 
 private:
@@ -160,6 +100,54 @@ private:
     double x;
   };
 
+  /// \tparam Numbers  `numbers`, or `numbers_with_jerk`
+  template <class Numbers>
+  [[nodiscard]] Numbers motion_of(double u) const {
+    constexpr bool has_jerk = std::is_same_v<Numbers, numbers_with_jerk>;
+    constexpr double third[] = {r * r * r, -2 * r * r * r, r * r * r};
+    const location at(u);
+    const node* n = &nodes_[at.segment];
+    const double x = at.x;
+    const auto b = weights(x);
+    const auto first = slopes(x), second = curvatures(x);
+    std::array<double, 4> q = n->q;
+    std::array<double, 3> w{}, a{}, j{};
+    for (int i = 0; i < 3; ++i) {
+      ++n;
+      const auto e = exponential(*n, b[i]);
+      q = product(q, e);
+      const auto d = multiple(n->axis, n->angle * first[i]);
+      const auto d2 = multiple(n->axis, n->angle * second[i]);
+      const auto d3 = multiple(n->axis, n->angle * third[i]);
+      if (i == 0) {
+        w = d;
+        a = d2;
+        j = d3;
+        continue;
+      }
+      w = turned_back(e, w);
+      a = turned_back(e, a);
+      const auto wd = cross(w, d);
+      if constexpr (has_jerk) {
+        j = turned_back(e, j);
+        const auto wd2 = cross(w, d2);
+        const auto twice = cross({a[0] + wd[0], a[1] + wd[1], a[2] + wd[2]}, d);
+        j = {j[0] + d3[0] + 4 * twice[0] + 2 * wd2[0], j[1] + d3[1] + 4 * twice[1] + 2 * wd2[1],
+             j[2] + d3[2] + 4 * twice[2] + 2 * wd2[2]};
+      }
+      a = {a[0] + d2[0] + 2 * wd[0], a[1] + d2[1] + 2 * wd[1], a[2] + d2[2] + 2 * wd[2]};
+      w = {w[0] + d[0], w[1] + d[1], w[2] + d[2]};
+    }
+    Numbers result = {q[0],     q[1],     q[2],     q[3],     2 * w[0],
+                      2 * w[1], 2 * w[2], 2 * a[0], 2 * a[1], 2 * a[2]};
+    if constexpr (has_jerk) {
+      for (int k = 0; k < 3; ++k) {
+        result[10 + k] = 2 * j[k];
+      }
+    }
+    return result;
+  }
+
   static std::array<double, 3> weights(double x) {
     const double x2 = x * x, x3 = x2 * x;
     return {(5 + 3 * x - 3 * x2 + x3) / 6, (1 + 3 * x + 3 * x2 - 2 * x3) / 6, x3 / 6};
@@ -169,6 +157,9 @@ private:
   }
   static std::array<double, 3> curvatures(double x) {
     return {r * r * (x - 1), r * r * (1 - 2 * x), r * r * x};
+  }
+  static std::array<double, 3> multiple(const std::array<double, 3>& v, double factor) {
+    return {v[0] * factor, v[1] * factor, v[2] * factor};
   }
   static std::array<double, 3> cross(const std::array<double, 3>& a,
                                      const std::array<double, 3>& b) {
