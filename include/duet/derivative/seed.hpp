@@ -57,8 +57,8 @@ struct vector_argument<std::array<T, N>> {
 /// Up to this many components are differentiated in one pass.
 inline constexpr int single_pass_limit = 32;
 /// More of them in as few passes of at most this many as it takes. Measured: each pass computes all
-/// values anew, but longer rows cost more per partial.
-inline constexpr int pass_limit = 36;
+/// values anew, but longer rows cost more per partial, the sooner the shorter vectors are.
+inline constexpr int pass_limit = DUET_BATCH_BYTES < 64 ? 50 : 64;
 /// A pass over a vector whose size is known at run time only: a short one pays for all of it.
 inline constexpr int chunk = 16;
 

@@ -60,7 +60,9 @@ struct packing {
 template <class T, int N>
   requires(N > 1 && (std::same_as<T, float> || std::same_as<T, double>))
 struct packing<T, N> {
-  static constexpr int native = DUET_VECTOR_BYTES / int(sizeof(T));
+  // Where clang does better with halves of vectors, that is for short rows only.
+  static constexpr int bytes = N * int(sizeof(T)) > 128 ? DUET_BATCH_BYTES : DUET_VECTOR_BYTES;
+  static constexpr int native = bytes / int(sizeof(T));
   static constexpr int width = ceil_to_power_of_two(N) < native ? ceil_to_power_of_two(N) : native;
   typedef T packet __attribute__((vector_size(width * sizeof(T))));
 };

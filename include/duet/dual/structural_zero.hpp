@@ -28,11 +28,14 @@ template <class T>
   }
 }
 
-/// Are `x` and all its infinitesimal parts finite? (x − x is NaN for infinities and NaN.)
+/// Are `x` and all its infinitesimal parts finite? (x − x is NaN for infinities and NaN, else 0, and
+/// asking for ≥ takes one branch where = takes two: one for NaN.)
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_all_finite(const T& x) {
   if constexpr (Infinitesimal<T>) {
     return x.all_of([](const auto& part) { return is_all_finite(part); });
+  } else if constexpr (Real<T>) {
+    return x - x >= T(0);
   } else {
     return x - x == T(0);
   }
@@ -122,9 +125,9 @@ template <class T>
 }
 
 /// A row of more packets than this is masked only where a slope turns out not to be finite. Masks
-/// of 512-bit packets cost more than those of others; clang does better without that branch, save
-/// for packets of 128 bits, whose masks take copies of their operands.
-inline constexpr int branch_limit = DUET_VECTOR_BYTES < 64 ? 2 : 1;
+/// of 512-bit packets cost more than those of others, and those of 128 bits take copies of their
+/// operands; clang does without that branch better where packets are larger.
+inline constexpr int branch_limit = DUET_VECTOR_BYTES < 32 ? 0 : DUET_VECTOR_BYTES < 64 ? 2 : 1;
 #ifdef __clang__
 inline constexpr int mask_limit = DUET_VECTOR_BYTES > 16 ? std::numeric_limits<int>::max() : 0;
 #else
