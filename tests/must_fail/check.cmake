@@ -6,7 +6,7 @@
 #   // flags: <flags for both compilations, optional>
 # The right way, the control, must compile: else the mistake may fail for the wrong reason.
 #
-# A snippet without flags of its own is given duet/duet.hpp precompiled, where that is named.
+# A snippet without flags of its own is given a precompiled header, where one is named.
 #
 # cmake -Dcompile=<compiler and flags> -Dsnippet=<file> [-Dprecompiled=<header>] -P check.cmake
 

@@ -8,6 +8,23 @@
 /// \file
 /// The number types that tests take as the truth, and those they use as scalars.
 
+/// The arithmetic of such numbers is compiled once, optimised, in multiprecision.cpp: without,
+/// tests that need a truth would run for several times as long.
+#define DUET_TEST_MULTIPRECISION(prefix, ...)                                                      \
+  prefix template class __VA_ARGS__;                                                               \
+  prefix template void boost::multiprecision::backends::eval_add(__VA_ARGS__&, const __VA_ARGS__&, \
+                                                                 const __VA_ARGS__&);              \
+  prefix template void boost::multiprecision::backends::eval_subtract(                             \
+      __VA_ARGS__&, const __VA_ARGS__&, const __VA_ARGS__&);                                       \
+  prefix template void boost::multiprecision::backends::eval_multiply(                             \
+      __VA_ARGS__&, const __VA_ARGS__&, const __VA_ARGS__&);                                       \
+  prefix template void boost::multiprecision::backends::eval_divide(                               \
+      __VA_ARGS__&, const __VA_ARGS__&, const __VA_ARGS__&);                                       \
+  prefix template void boost::multiprecision::backends::eval_sqrt(__VA_ARGS__&, const __VA_ARGS__&)
+
+DUET_TEST_MULTIPRECISION(extern, boost::multiprecision::cpp_bin_float<50>);
+DUET_TEST_MULTIPRECISION(extern, boost::multiprecision::cpp_bin_float<100>);
+
 namespace duet_test {
 
 namespace mp = boost::multiprecision;
