@@ -28,8 +28,8 @@ template <class T>
   }
 }
 
-/// Are `x` and all its infinitesimal parts finite? (x − x is NaN for infinities and NaN, else 0, and
-/// asking for ≥ takes one branch where = takes two: one for NaN.)
+/// Are `x` and all its infinitesimal parts finite? (x − x is NaN for infinities and NaN, else 0,
+/// and asking for ≥ takes one branch where = takes two: one for NaN.)
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_all_finite(const T& x) {
   if constexpr (Infinitesimal<T>) {
