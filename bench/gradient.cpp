@@ -3,6 +3,7 @@
 /// \file
 /// Gradients of f_grad by 1 to 32 variables in one pass, and by 100 and 1000.
 
+#include "gradient_by_hand.hpp"
 #include "support/contenders.hpp"
 #include "support/contest.hpp"
 #include "workloads.hpp"
@@ -74,6 +75,8 @@ void add() {
   const std::string workload = "gradient_" + std::to_string(N);
   const auto expected = gradient_by<duet_contender>(at);
   contest(workload, "value", at, [](const auto& x) { return f_grad(x); });
+  expect_agreement(workload, "hand", expected, gradient_by_hand(at));
+  contest(workload, "hand", at, [](const auto& x) { return gradient_by_hand(x); });
   for_each_contender([&](auto contender) {
     using library = decltype(contender);
     expect_agreement(workload, library::name, expected, gradient_by<library>(at));

@@ -128,10 +128,12 @@ public:
   }
   template <class C>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual plus(const C& c) const {
+    DUET_CONTRACTED
     return {T(value_ + c), partials_};
   }
   template <class C>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual times(const C& c) const {
+    DUET_CONTRACTED
     return {T(value_ * c),
             partials_type::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * c; }, partials_)};
   }
@@ -150,17 +152,20 @@ public:
     }
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual sum(const dual& a, const dual& b) {
+    DUET_CONTRACTED
     return {T(a.value_ + b.value_), partials_type::map([](const auto& p, const auto& q)
                                                            DUET_INLINE_LAMBDA { return p + q; },
                                                        a.partials_, b.partials_)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual difference(const dual& a, const dual& b) {
+    DUET_CONTRACTED
     return {T(a.value_ - b.value_), partials_type::map([](const auto& p, const auto& q)
                                                            DUET_INLINE_LAMBDA { return p - q; },
                                                        a.partials_, b.partials_)};
   }
   /// N10: (a₁ + εb₁)(a₂ + εb₂) = a₁a₂ + ε(a₁b₂ + b₁a₂)
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual product(const dual& a, const dual& b) {
+    DUET_CONTRACTED
     return {T(a.value_ * b.value_),
             partials_type::map([&](const auto& p, const auto& q)
                                    DUET_INLINE_LAMBDA { return p * b.value_ + q * a.value_; },

@@ -33,11 +33,13 @@ namespace duet::detail {
 /// intermediate result goes through memory.
 inline constexpr int unroll_limit = 64;
 
-/// Rows of this many packets or more leave few registers for all that a statement reads, and
-/// compilers copy to the stack what they read before. Told that memory may have changed, they read
-/// it again from where it is. (Measured. With two 512-bit packets, first derivatives and
-/// `second_dual` gain a tenth; duals over duals lose a fifth.)
-inline constexpr int reread_limit = DUET_VECTOR_BYTES < 64 ? 4 : 2;
+/// Rows of many packets leave few registers for all that a statement reads, and compilers copy to
+/// the stack what they read before. Told that memory may have changed, they read it again from
+/// where it is. (Measured. With two or three 512-bit packets, first derivatives and `second_dual`
+/// gain a tenth, duals over duals lose a fifth; with four and more that is slower.)
+[[nodiscard]] constexpr bool is_reread(int packets) {
+  return DUET_VECTOR_BYTES < 64 ? packets >= 4 : packets == 2 || packets == 3;
+}
 
 template <int Count, class F>
 DUET_ALWAYS_INLINE constexpr void unrolled(F&& f) {
@@ -178,7 +180,7 @@ public:
     } else {
       unrolled<count>([&](int i)
                           DUET_INLINE_LAMBDA { result.packets_[i] = f(rows.packets_[i]...); });
-      if constexpr (sizeof...(Rows) > 1 && count >= reread_limit) {
+      if constexpr (sizeof...(Rows) > 1 && is_reread(count)) {
         __asm__ volatile("" ::: "memory");
       }
     }

@@ -86,7 +86,8 @@ template <class D, class S, class T>
 }
 
 template <class Rule, class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const Rule& rule, const taylor<T, K, Tag>& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift_in_place(const Rule& rule,
+                                                                 const taylor<T, K, Tag>& x) {
   const auto shorter_x = truncated<K - 1>(x);
   if constexpr (K == 1) {
     const T y = rule.value(shorter_x);
@@ -95,6 +96,26 @@ template <class Rule, class T, int K, class Tag>
     const auto y = lift(rule, shorter_x);
     const T last = divided_by_order(chain_coefficient(x, rule.slope(shorter_x, y)), K);
     return extended<taylor<T, K, Tag>>(y, last, K);
+  }
+}
+
+/// Where the compiler may call it.
+template <class Rule, class T, int K, class Tag>
+[[nodiscard]] inline taylor<T, K, Tag> lift_by_call(const Rule& rule, const taylor<T, K, Tag>& x) {
+  return lift_in_place(rule, x);
+}
+
+/// Up to this order of built-in numbers a call, with all coefficients through memory, costs more
+/// than what it computes.
+inline constexpr int in_place_order = 3;
+
+template <class Rule, class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const Rule& rule,
+                                                        const taylor<T, K, Tag>& x) {
+  if constexpr (std::floating_point<T> && K <= in_place_order) {
+    return lift_in_place(rule, x);
+  } else {
+    return lift_by_call(rule, x);
   }
 }
 
