@@ -165,8 +165,12 @@ public:
   }
   /// N10: (a₁ + εb₁)(a₂ + εb₂) = a₁a₂ + ε(a₁b₂ + b₁a₂)
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual product(const dual& a, const dual& b) {
-    DUET_CONTRACTED
-    return {T(a.value_ * b.value_),
+    const T value = [&]() DUET_INLINE_LAMBDA {
+      DUET_CONTRACTED
+      return T(a.value_ * b.value_);
+    }();
+    // One expression, which is fused in any case: said as two, clang leaves loops rolled.
+    return {value,
             partials_type::map([&](const auto& p, const auto& q)
                                    DUET_INLINE_LAMBDA { return p * b.value_ + q * a.value_; },
                                a.partials_, b.partials_)};
