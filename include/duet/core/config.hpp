@@ -12,7 +12,7 @@
 
 /// Width in bytes of the vectors that batches fill, the target's own, and of those that packed
 /// partials are stored in: the same, save that clang does better with two 256-bit vectors there
-/// than with one of 512 bits.
+/// than with one of 512 bits, where a row fills no more than two of these.
 #if defined(__AVX512F__)
 #define DUET_BATCH_BYTES 64
 #ifdef __clang__
