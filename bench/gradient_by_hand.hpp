@@ -14,7 +14,7 @@
 /// \file
 /// The gradient of f_grad as one writes it by hand for speed: every statement differentiated with
 /// pencil and paper, its rows of partials combined in one pass of compiler vectors, without a
-/// temporary and without a question about finite slopes. What no library can be expected to beat.
+/// question about finite slopes.
 
 namespace duet_bench {
 
