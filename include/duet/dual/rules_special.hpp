@@ -19,18 +19,26 @@ namespace detail {
 template <class T>
 [[nodiscard]] T digamma(const T& argument);
 
+/// π cot πx. The tangent has a pole where the cotangent is 0, at which derivatives would be lost.
+template <class T>
+[[nodiscard]] T cotangent_of_half_turns(const T& x) {
+  using std::cos;
+  using std::round;
+  using std::sin;
+  using real = real_type_t<T>;
+  // Whole periods go first, they would cost the digits of πx.
+  const T angle = (x - real(round(innermost(x)))) * constant::pi<real>();
+  return constant::pi<real>() * cos(angle) / sin(angle);
+}
+
 /// ψ(x) = Γ′(x)/Γ(x), from its asymptotic series after enough steps ψ(x) = ψ(x + 1) − 1/x. Nothing
-/// but algebra, log and tan, so every scalar of duet gives the derivatives of ψ too.
+/// but algebra, log, sin and cos, so every scalar of duet gives the derivatives of ψ too.
 template <class T>
 [[nodiscard]] T digamma_of_one(const T& argument) {
   using std::log;
-  using std::round;
-  using std::tan;
   using real = real_type_t<T>;
   if (innermost(argument) < 0.5) {
-    // ψ(x) = ψ(1 − x) − π cot πx; whole periods go first, they would cost the digits of πx.
-    const T offset = argument - real(round(innermost(argument)));
-    return digamma(T(1 - argument)) - constant::pi<real>() / tan(T(offset * constant::pi<real>()));
+    return digamma(T(1 - argument)) - cotangent_of_half_turns(argument);
   }
   // B₂ₖ = numerator/denominator; the first term left out, B₃₆/(36 x³⁶), is below the last digit.
   constexpr std::array<std::array<long long, 2>, 17> bernoulli{{{1, 6},
