@@ -1,7 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
 #include "support/random.hpp"
 
+#include <duet/core/number_text.hpp>
 #include <duet/planning/time_parametrised.hpp>
 
 #include <doctest/doctest.h>
@@ -173,13 +175,25 @@ TEST_CASE("along a plan; a plan that stays; bad input") {
   const vector v(1, 1, 1), a(1, 1, 1);
   const auto q = time_parametrised(plan, v, a);
   CHECK(q.duration() == doctest::Approx(2).epsilon(1e-4));
-  CHECK_THROWS_WITH_AS((void)q(3), doctest::Contains("t is 3, outside 0 to 2"), invalid_input);
+  CHECK_THROWS_WITH_AS((void)q(3), doctest::Contains("t is 3, outside 0 to "), invalid_input);
   CHECK_THROWS_AS((void)q(std::nan("")), invalid_input);
+
+  // The ends are those to rounding.
+  const double end = q.duration(), ulp = std::nextafter(end, 9) - end;
+  for (const int k : {1, 8}) {
+    CHECK(q(end + k * ulp).value == q(end).value);
+    CHECK(q(-k * ulp).value == q(0).value);
+  }
+  const auto exceeding = duet_test::message_of([&] { (void)q(end + 9 * ulp); });
+  CHECK(exceeding == "duet: joint_trajectory: t is " + to_text(end + 9 * ulp) + ", outside 0 to " +
+                         to_text(end) + "; std::clamp makes it stay at its end");
+  CHECK_THROWS_AS((void)q(-9 * ulp), invalid_input);
 
   plan.joints = {vector(0, 1, 2), vector(0, 1, 2)};
   const auto still = time_parametrised(plan, v, a);
   CHECK(still.duration() == 0);
   CHECK(still(0).value == vector(0, 1, 2));
+  CHECK_THROWS_AS((void)still(1e-300), invalid_input);
   CHECK(still.times() == std::vector<double>{0, 0});
 
   plan.joints.clear();

@@ -157,12 +157,10 @@ TEST_CASE("outside the domain") {
   CHECK_NOTHROW(static_cast<void>(s(2.0)));
   CHECK_NOTHROW(static_cast<void>(s(3.0)));
   const auto of = [&](double u) { return message_of([&] { static_cast<void>(s(u)); }); };
-  CHECK(of(1.5) == "duet: spline evaluated at 1.5, outside its domain [2, 3]");
-  CHECK(of(4) == "duet: spline evaluated at 4, outside its domain [2, 3]");
+  CHECK(of(1.5).starts_with("duet: spline evaluated at 1.5, outside its domain [2, 3]; "));
+  CHECK(of(4).starts_with("duet: spline evaluated at 4, outside its domain [2, 3]; "));
   CHECK(of(not_a_number) == "duet: spline evaluated at nan, outside its domain [2, 3]");
-  CHECK(of(-infinity) == "duet: spline evaluated at -inf, outside its domain [2, 3]");
-  CHECK_THROWS_AS(static_cast<void>(s(std::nextafter(2.0, 0))), invalid_input);
-  CHECK_THROWS_AS(static_cast<void>(s(std::nextafter(3.0, 4))), invalid_input);
+  CHECK(of(-infinity).starts_with("duet: spline evaluated at -inf, outside its domain [2, 3]; "));
   CHECK_THROWS_AS(static_cast<void>(s.motion(not_a_number, duet::frame::body)), invalid_input);
   CHECK_THROWS_AS(static_cast<void>(s.derivatives(5.0)), invalid_input);
 }

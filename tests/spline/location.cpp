@@ -18,6 +18,8 @@
 namespace test_spline_location {
 namespace {
 
+const std::string and_clamp = "; set_outside_domain(outside::clamp) makes a curve stay at its end";
+
 using duet::outside;
 using duet_test::distance;
 using spline = duet::cumulative_bspline<double>;
@@ -62,15 +64,17 @@ TEST_CASE("outside the domain: an error by default, with the value") {
   const std::vector<double> round = {0, 0, 0, 0, 1, 2, 2, 2, 2};
   spline t(round, duet_test::random_orientations(5, 1));
   CHECK(t.outside_domain() == outside::error);
-  CHECK(message_of(t, 2.5) == "duet: spline evaluated at 2.5, outside its domain [0, 2]");
-  CHECK(message_of(t, -1) == "duet: spline evaluated at -1, outside its domain [0, 2]");
+  CHECK(message_of(t, 2.5) ==
+        "duet: spline evaluated at 2.5, outside its domain [0, 2]" + and_clamp);
+  CHECK(message_of(t, -1) == "duet: spline evaluated at -1, outside its domain [0, 2]" + and_clamp);
   for (const outside way : {outside::error, outside::clamp, outside::extrapolate}) {
     t.set_outside_domain(way);
     CHECK(message_of(t, std::numeric_limits<double>::quiet_NaN()) ==
           "duet: spline evaluated at nan, outside its domain [0, 2]");
   }
   const double infinity = std::numeric_limits<double>::infinity();
-  CHECK(message_of(t, infinity) == "duet: spline evaluated at inf, outside its domain [0, 2]");
+  CHECK(message_of(t, infinity) ==
+        "duet: spline evaluated at inf, outside its domain [0, 2]" + and_clamp);
 }
 
 TEST_CASE("clamp: the curve rests at its ends") {

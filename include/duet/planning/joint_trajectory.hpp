@@ -2,12 +2,13 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/number_text.hpp>
+#include <duet/core/rounding.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -68,12 +69,15 @@ public:
   /// When it passes each of the waypoints.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   /// Coordinates, rates and accelerations at time t; where the acceleration jumps, one of the two.
+  /// Up to 8 ulp of the duration beyond an end is that end.
   /// \throws invalid_input for t outside 0 … duration()
   [[nodiscard]] joint_motion<vector> operator()(double t) const {
     if (!(t >= 0 && t <= duration())) {
-      std::ostringstream message;
-      message << "duet: joint_trajectory: t is " << t << ", outside 0 to " << duration();
-      throw invalid_input(message.str());
+      t = detail::rounded_into(t, 0.0, duration());
+      if (!(t >= 0 && t <= duration())) {
+        throw invalid_input("duet: joint_trajectory: t is " + to_text(t) + ", outside 0 to " +
+                            to_text(duration()) + "; std::clamp makes it stay at its end");
+      }
     }
     const auto next = std::upper_bound(pieces_.begin() + 1, pieces_.end(), t,
                                        [](double a, const auto& piece) { return a < piece.time; });

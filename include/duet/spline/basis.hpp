@@ -4,6 +4,7 @@
 #include <duet/core/batch_lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/location.hpp>
@@ -12,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <sstream>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -71,11 +73,17 @@ public:
     return u >= breaks_.front() && u <= breaks_.back();
   }
 
-  /// Number of the non-empty span that holds u: half-open, the last one closed.
+  /// u; the end of the domain that it is beyond by rounding only, see `outside`.
+  [[nodiscard]] R rounded_into_domain(const R& u) const {
+    return detail::rounded_into(u, breaks_.front(), breaks_.back());
+  }
+
+  /// Number of the non-empty span that holds u: half-open, the last one closed. Beyond an end by
+  /// rounding only, that at the end.
   /// \throws invalid_input outside the domain
   [[nodiscard]] DUET_ALWAYS_INLINE std::size_t span_of(const R& u) const {
-    if (!contains(u)) {
-      throw_outside(u);
+    if (!contains(u)) [[unlikely]] {
+      return span_beside(u);
     }
     // Where knots are about uniform the guess is right; otherwise a binary search finds the span.
     const std::size_t guess = guessed_span(u);
@@ -242,11 +250,17 @@ private:
     return result;
   }
 
-  [[noreturn]] void throw_outside(const R& u) const {
-    std::ostringstream message;
-    message << "duet: spline evaluated at " << u << ", outside its domain [" << breaks_.front()
-            << ", " << breaks_.back() << "]";
-    throw invalid_input(message.str());
+  [[nodiscard, gnu::cold]] std::size_t span_beside(const R& u) const {
+    if (contains(rounded_into_domain(u))) {
+      return u < breaks_.front() ? 0 : spans_.size() - 1;
+    }
+    std::string message = "duet: spline evaluated at " + detail::all_digits(u) +
+                          ", outside its domain [" + detail::all_digits(breaks_.front()) + ", " +
+                          detail::all_digits(breaks_.back()) + "]";
+    if (u == u) {
+      message += "; set_outside_domain(outside::clamp) makes a curve stay at its end";
+    }
+    throw invalid_input(message);
   }
 
   std::vector<R> knots_;

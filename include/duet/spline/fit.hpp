@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/rounding.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/bspline_fit.hpp>
@@ -74,9 +75,8 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 ///         not follow the row before; invalid_input for counts that differ, too few rows somewhere,
 ///         a length or limit that is not positive; no_convergence
 template <class Spline, class R, class T>
-[[nodiscard]] fit_result<Spline> fit(const std::vector<R>& parameters,
-                                     std::vector<quaternion<T>> rows, std::vector<R> knots,
-                                     const fit_options& options = {}) {
+[[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> rows,
+                                     std::vector<R> knots, const fit_options& options = {}) {
   static_assert(std::is_same_v<Spline, cumulative_bspline<T, Spline::order>> &&
                     std::is_same_v<R, real_type_t<T>>,
                 "duet: fit makes cumulative_bspline<T, Order> from quaternion<T>");
@@ -94,9 +94,13 @@ template <class Spline, class R, class T>
   }
   const bspline_basis<Spline::order, R> basis(std::move(knots));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i] < basis.front() || parameters[i] > basis.back()) {
-      message << "parameter " << parameters[i] << " is outside the knots' domain, " << basis.front()
-              << " to " << basis.back() << ": clamped_knots of parameters from "
+    if (!basis.contains(parameters[i])) {
+      parameters[i] = basis.rounded_into_domain(parameters[i]);
+    }
+    if (!basis.contains(parameters[i])) {
+      message << "parameter " << detail::all_digits(parameters[i])
+              << " is outside the knots' domain, " << detail::all_digits(basis.front()) << " to "
+              << detail::all_digits(basis.back()) << ": clamped_knots of parameters from "
               << parameters.front() << " to " << parameters.back() << " hold all rows";
       throw invalid_row(i, message.str());
     }

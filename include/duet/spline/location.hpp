@@ -8,7 +8,8 @@
 
 namespace duet {
 
-/// What a curve does outside its domain.
+/// What a curve does outside its domain. Up to 8 ulp beyond an end, of the end of larger magnitude,
+/// is that end: so far sums of steps may be off.
 enum class outside {
   error,      ///< throws invalid_input
   clamp,      ///< stays where it is at the end, without rates

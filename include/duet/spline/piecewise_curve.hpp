@@ -100,11 +100,10 @@ private:
     std::size_t span = 0;
     bool is_at_rest = false;
     if (!spans.contains(value)) [[unlikely]] {
-      span = span_beside(value);
-      is_at_rest = outside_ == outside::clamp;
-      if (is_at_rest) {
-        u = P(value < spans.front() ? spans.front() : spans.back());
-      }
+      const place there = place_beside(value);
+      span = there.span;
+      is_at_rest = there.is_at_rest;
+      u = is_at_rest ? P(there.u) : P(u + (there.u - value));
     } else if constexpr (std::is_same_v<Hint, span_hint>) {
       span = spans.span_of(value, hint);
     } else {
@@ -126,24 +125,34 @@ private:
     const auto& spans = curve().spans();
     const reals value = innermost(u);
     std::array<std::size_t, std::size_t(reals::lanes)> span;
-    typename reals::mask_type is_at_rest(false);
+    bool is_inside = true;
     for (int k = 0; k < reals::lanes; ++k) {
       const auto here = static_cast<R>(value[k]);
       std::size_t& i = span[std::size_t(k)];
       if (!spans.contains(here)) [[unlikely]] {
-        i = span_beside(here);
-        is_at_rest.set(k, outside_ == outside::clamp);
+        i = place_beside(here).span;
+        is_inside = false;
       } else if constexpr (std::is_same_v<Hint, span_hint>) {
         i = spans.span_of(here, hint);
       } else {
         i = spans.span_of(here);
       }
     }
-    if (!any(is_at_rest)) [[likely]] {
+    if (is_inside) [[likely]] {
       return curve().template on_span<Rates>(span, u);
     }
-    u = blended(is_at_rest,
-                P(blended(value < spans.front(), reals(spans.front()), reals(spans.back()))), u);
+    typename reals::mask_type is_at_rest(false);
+    reals there(R(0)), rounding(R(0));
+    for (int k = 0; k < reals::lanes; ++k) {
+      const auto here = static_cast<R>(value[k]);
+      if (!spans.contains(here)) {
+        const place at = place_beside(here);
+        is_at_rest.set(k, at.is_at_rest);
+        there.set(k, at.u);
+        rounding.set(k, at.is_at_rest ? R(0) : R(at.u - here));
+      }
+    }
+    u = blended(is_at_rest, P(there), P(u + rounding));
     auto m = curve().template on_span<Rates>(span, u);
     if constexpr (Rates > 0) {
       for (auto* rate : {&m.velocity, &m.acceleration, &m.jerk}) {
@@ -153,15 +162,26 @@ private:
     return m;
   }
 
-  /// The first or last span, for what is outside the domain.
+  /// Where a parameter outside the domain is evaluated.
+  struct place {
+    std::size_t span; ///< the first or the last
+    R u;
+    bool is_at_rest;
+  };
   /// \throws invalid_input where there is no going on
-  [[nodiscard, gnu::cold]] std::size_t span_beside(const R& u) const {
+  [[nodiscard, gnu::cold]] place place_beside(const R& u) const {
     const auto& spans = curve().spans();
+    const bool is_before = u < spans.front();
+    const std::size_t span = is_before ? 0 : spans.breaks().size() - 2;
+    const R& end = is_before ? spans.front() : spans.back();
+    if (spans.rounded_into_domain(u) == end) {
+      return {span, end, false};
+    }
     const bool is_usable = outside_ == outside::clamp ? u == u : u - u == 0;
     if (outside_ == outside::error || !is_usable) {
-      return spans.span_of(u); // throws
+      static_cast<void>(spans.span_of(u)); // throws
     }
-    return u < spans.front() ? 0 : spans.breaks().size() - 2;
+    return {span, outside_ == outside::clamp ? end : u, outside_ == outside::clamp};
   }
 
   outside outside_ = outside::error;

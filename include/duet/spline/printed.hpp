@@ -23,14 +23,15 @@ struct printed_derivatives {
   quaternion<T> commuting_first, commuting_second;
 };
 
-/// P3 and P4 as printed, at u; for the true derivatives use `cumulative_bspline::derivatives`.
-/// \throws invalid_input outside the domain
+/// P3 and P4 as printed, at a parameter u; for the true derivatives use
+/// `cumulative_bspline::derivatives`. \throws invalid_input outside the domain
 template <class T, int Order>
 [[nodiscard]] printed_derivatives<T> printed_derivative(const cumulative_bspline<T, Order>& s,
-                                                        const T& u) {
+                                                        const T& parameter) {
   static_assert(Order >= 3, "duet: the printed second derivative needs order 3 or more");
   using Q = quaternion<T>;
   const auto& knots = s.basis().knots();
+  const T u = s.basis().rounded_into_domain(parameter);
   const std::size_t span = s.basis().span_of(u);
   const std::size_t first = s.basis().first_function(span);
   const auto weights = s.basis().template weights<2>(span, u);

@@ -1,0 +1,49 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/number_text.hpp>
+#include <duet/core/scalar_traits.hpp>
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <sstream>
+#include <string>
+
+/// \file
+/// What rounding takes beyond the end of a range.
+
+namespace duet::detail {
+
+/// u; the end of [low, high] that it is beyond by 8 ulp at most, of the end of larger magnitude.
+template <Real R>
+[[nodiscard, gnu::cold]] R rounded_into(const R& u, const R& low, const R& high) {
+  using std::frexp;
+  using std::ldexp;
+  const R size = -low < high ? high : R(-low);
+  if (!(size > 0)) {
+    return u; // low = high = 0
+  }
+  int exponent = 0;
+  static_cast<void>(frexp(size, &exponent));
+  const R rounding = 8 * R(ldexp(std::numeric_limits<R>::epsilon(), exponent - 1));
+  if (u < low && low - u <= rounding) {
+    return low;
+  }
+  return u > high && u - high <= rounding ? high : u;
+}
+
+/// A number for messages, told apart from its neighbours.
+template <Real R>
+[[nodiscard]] std::string all_digits(const R& x) {
+  if constexpr (std::floating_point<R>) {
+    return to_text(x);
+  } else {
+    std::ostringstream text;
+    text.precision(std::numeric_limits<R>::max_digits10);
+    text << x;
+    return text.str();
+  }
+}
+
+} // namespace duet::detail

@@ -1,0 +1,154 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "spline/curves.hpp"
+#include "support/lanes.hpp"
+#include "support/message.hpp"
+
+#include <duet/core/number_text.hpp>
+#include <duet/dual/dual.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/evaluate.hpp>
+#include <duet/spline/fit.hpp>
+#include <duet/spline/printed.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+// Sums of steps end a few ulp beyond the end: there a curve is at its end.
+
+namespace test_spline_ends_by_rounding {
+namespace {
+
+using duet::outside;
+using duet_test::message_of;
+using cumulative = duet::cumulative_bspline<double>;
+using quintic = duet::rotation_vector_spline<double, 6>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+template <class Spline>
+Spline curve_over(double first, double last) {
+  const std::vector<double> u{first, first + (last - first) / 3, last};
+  const auto q = duet_test::random_orientations(5, 0.7);
+  if constexpr (std::is_same_v<Spline, quintic>) {
+    return {u, {q[0], q[1], q[2]}, {{q[1].vec(), q[0].vec()}, {q[2].vec(), q[1].vec()}, {}}};
+  } else {
+    return {duet::clamped_knots(u, 4), q};
+  }
+}
+
+/// The number k ulp of the larger end outside.
+double beyond(double end, double ulp, int k, bool is_last) {
+  return is_last ? end + k * ulp : end - k * ulp;
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("up to 8 ulp of the larger end outside, a curve is at its end", Spline,
+                   cumulative, quintic) {
+  const std::array<std::array<double, 2>, 6> domains{
+      {{0, 4}, {-4, 0}, {-0.3, 0.7}, {1e9, 1e9 + 1}, {-1e-3, 1e-7}, {2, 1e12}}};
+  for (const auto& [first, last] : domains) {
+    auto s = curve_over<Spline>(first, last);
+    const double size = std::max(std::abs(first), std::abs(last));
+    const double ulp = std::nextafter(size, infinity) - size;
+    for (const bool is_last : {false, true}) {
+      const double end = is_last ? last : first;
+      const auto at_end = s.motion(end, duet::frame::body);
+      const auto slope = s(duet::dual<double>(end, 1));
+      for (const int k : {1, 2, 5, 8}) {
+        const double u = beyond(end, ulp, k, is_last);
+        for (const auto way : {outside::error, outside::clamp, outside::extrapolate}) {
+          s.set_outside_domain(way);
+          CHECK(s(u) == s(end));
+          duet::span_hint hint{7};
+          const auto m = s.motion(u, duet::frame::body, hint);
+          CHECK(m.value == at_end.value);
+          CHECK(m.velocity == at_end.velocity);
+          CHECK(m.jerk == at_end.jerk);
+          CHECK(s.derivatives(u)[2] == s.derivatives(end)[2]);
+          CHECK(s(duet::dual<double>(u, 1)) == slope); // one-sided, that of the last piece
+          duet::batch<double, 4> some(end);
+          some.set(2, u);
+          CHECK(duet::lane(s(some), 2) == duet::lane(s(duet::batch<double, 4>(end)), 2));
+        }
+        s.set_outside_domain(outside::error);
+        std::vector<double> column(9, end);
+        column[5] = u;
+        std::vector<decltype(s(end))> out(9);
+        duet::evaluate(s, column, out);
+        CHECK(out[5] == out[4]);
+      }
+      const double u = beyond(end, ulp, 9, is_last);
+      CHECK(message_of([&] { static_cast<void>(s(u)); }) ==
+            "duet: spline evaluated at " + duet::to_text(u) + ", outside its domain [" +
+                duet::to_text(first) + ", " + duet::to_text(last) +
+                "]; set_outside_domain(outside::clamp) makes a curve stay at its end");
+      s.set_outside_domain(outside::clamp);
+      CHECK(s.motion(u, duet::frame::body).velocity.isZero(0));
+      s.set_outside_domain(outside::extrapolate);
+      CHECK_NOTHROW(static_cast<void>(s(u)));
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("the loops by which time runs", Spline, cumulative, quintic) {
+  int beyond_the_end = 0;
+  for (const double last : {0.7, 1.1, 4.0, 1e9 / 3, 12.566370614359172}) {
+    const auto s = curve_over<Spline>(0, last);
+    const double ulp = std::nextafter(last, infinity) - last;
+    for (int n = 1; n <= 60; ++n) {
+      const double h = last / n;
+      for (int i = 0; i <= n; ++i) {
+        CHECK_NOTHROW(static_cast<void>(s(last * i / n)));
+        CHECK_NOTHROW(static_cast<void>(s(i * h)));
+        beyond_the_end += i * h > last;
+      }
+      double u = 0;
+      for (int i = 0; i < n; ++i) {
+        u += h;
+      }
+      beyond_the_end += u > last;
+      if (u <= last + 8 * ulp) {
+        CHECK_NOTHROW(static_cast<void>(s.motion(u, duet::frame::spatial)));
+      } else {
+        CHECK_THROWS_AS(static_cast<void>(s.motion(u, duet::frame::spatial)), duet::invalid_input);
+      }
+    }
+  }
+  CHECK(beyond_the_end > 50); // else the loops tell nothing
+}
+
+TEST_CASE("the issue's own step beyond; float; the printed formulas; rows of a fit") {
+  const auto s = curve_over<cumulative>(0, 4);
+  CHECK(s(4 * (1 + 3e-16)) == s(4));
+  CHECK(duet::printed_derivative(s, 4 * (1 + 3e-16)).commuting_second ==
+        duet::printed_derivative(s, 4.0).commuting_second);
+  CHECK_THROWS_AS(static_cast<void>(duet::printed_derivative(s, 4 * (1 + 3e-15))),
+                  duet::invalid_input);
+
+  const duet::bspline_basis<2, float> basis({0, 0, 3, 3});
+  CHECK(basis.span_of(std::nextafter(3.f, 4.f)) == 0);
+  CHECK_THROWS_WITH_AS(static_cast<void>(basis.span_of(3.00001f)),
+                       doctest::Contains("evaluated at 3.00001, outside its domain [0, 3]"),
+                       duet::invalid_input);
+
+  std::vector<double> u;
+  std::vector<duet::quaternion<double>> rows;
+  for (int i = 0; i <= 12; ++i) {
+    u.push_back(i / 3.0);
+    rows.push_back(s(u.back()));
+  }
+  u.back() = std::nextafter(4.0, 5.0);
+  const auto fitted = duet::fit<cumulative>(u, rows, s.basis().knots());
+  CHECK(fitted.rms < 1e-12);
+}
+
+} // namespace test_spline_ends_by_rounding
