@@ -90,6 +90,18 @@ TEST_CASE("P3, P4 as printed: the letter of the formulas") {
         CHECK(distance(printed.literal_first, q * first) <= 1e-13 * (1 + size(first)));
         CHECK(distance(printed.literal_second, literal_second) <=
               1e-13 * (1 + size(first) * size(first_in_p4) + size(second)));
+        // With functions from B_0 the curve's first control is q_0: sums over all that follow, and
+        // B̃′_0 = B̃″_0 = 0 on the domain.
+        const auto zero = as_printed(knots, 0, k, u);
+        CHECK(zero[0] == 0);
+        CHECK(zero[1] == 0);
+        const quaternion all(0, sum + s.increments()[1] * lone[0]);
+        const quaternion all_of_second(0, sum_of_second + s.increments()[1] * lone[1]);
+        CHECK(distance(printed.from_zero_first, q * all) <= 1e-13 * (1 + size(all)));
+        CHECK(distance(printed.from_zero_second, q * all * all + q * all_of_second) <=
+              1e-13 * (1 + size(all) * size(all) + size(all_of_second)));
+        CHECK(distance(printed.from_zero_first, printed.commuting_first) <=
+              1e-13 * (1 + size(all)));
       }
     }
   };
@@ -144,6 +156,44 @@ TEST_CASE("P3 to the letter is right only where the ω_i are parallel and B̃′
   CHECK(beyond > 10);
 }
 
+TEST_CASE("P2 with functions from B_0: q_{-1} cancels") {
+  for (const duet_test::named_knots& each : knot_vectors(4)) {
+    const std::vector<double>& knots = each.knots;
+    CAPTURE(each.name);
+    const std::size_t count = knots.size() - 4;
+    const cumulative_bspline<double> s(knots, duet_test::random_orientations(count, 1));
+    const quaternion before = duet::from_axis_angle(vector(0, 1, 0), 1.3); // any q_{-1}
+    const auto omega_0 = log(conj(before) * s.controls()[0]).vec();
+    for (const double u : parameters_on(knots, 4)) {
+      const auto cumulative = [&](std::size_t i) {
+        double sum = 0;
+        for (; i < count; ++i) {
+          sum += duet::bspline_value(knots, i, 4, u);
+        }
+        return sum;
+      };
+      quaternion q = pow(before, cumulative(0)) * duet::exp(vector(omega_0 * cumulative(0)));
+      for (std::size_t i = 1; i < count; ++i) {
+        q = q * duet::exp(vector(s.increments()[i] * cumulative(i)));
+      }
+      CHECK(distance(q, s(u)) < 1e-14);
+    }
+  }
+}
+
+TEST_CASE("P4: Q″ = Q (a + w²), and w² = −|w|²") {
+  const auto knots = knot_vectors(4)[1].knots;
+  const cumulative_bspline<double> s(knots, duet_test::random_orientations(knots.size() - 4, 1));
+  for (const double u : parameters_on(knots, 4)) {
+    const auto m = s.motion(u, duet::frame::body);
+    const quaternion w(0, m.velocity / 2), a(0, m.acceleration / 2);
+    const auto truth = s.derivatives(u)[2];
+    CHECK(distance(truth, m.value * (a + w * w)) <= 1e-13 * (1 + size(truth)));
+    CHECK(distance(w * w, quaternion(-norm2(w))) <= 1e-14 * (1 + norm2(w)));
+    CHECK(relative(truth, m.value * (a - w * w)) > 1e-3);
+  }
+}
+
 TEST_CASE("P4 to the letter is wrong even for parallel ω_i: its B̃″_i is one term short") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> s(knots, about_one_axis(knots.size() - 4));
@@ -166,6 +216,7 @@ TEST_CASE("P3, P4: in general the commuting sums are not the derivatives") {
     const auto printed = printed_derivative(s, u);
     CHECK(relative(truth[1], printed.commuting_first) > 1e-3);
     CHECK(relative(truth[2], printed.commuting_second) > 1e-3);
+    CHECK(relative(truth[2], printed.from_zero_second) > 1e-3);
   }
 }
 

@@ -10,8 +10,10 @@
 
 namespace duet {
 
-/// P5 as printed: the matrix A_K with ω = A_K [φ′, θ′, ψ′]ᵀ in spatial axes, for
-/// R = R_z(ψ) R_y(θ) R_x(φ), **with the paper's slip**: its element (3, 1) reads −sin ψ.
+/// P5 as the copy at hand has it: the matrix A_K with ω = A_K [φ′, θ′, ψ′]ᵀ in spatial axes, for
+/// R = R_z(ψ) R_y(θ) R_x(φ), **with a slip**: its element (3, 1) reads −sin ψ. Columns are axes of
+/// rotation, of length 1; with −sin ψ the first is not, so that no sequence of Euler angles has
+/// this matrix.
 ///
 /// The true one, −sin θ, is in `euler_rate_matrix<zyx>(psi, theta)`, whose columns are in the
 /// order of the letters: ψ′, θ′, φ′. The two agree where sin ψ = sin θ.

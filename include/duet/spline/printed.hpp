@@ -8,18 +8,27 @@
 #include <cstddef>
 
 /// \file
-/// The derivatives of the cumulative curve as the paper prints them (P3, P4). They are not the
-/// derivatives of the curve: it is for comparison that they stand here.
+/// The derivatives of the cumulative curve as the copy at hand of the paper prints them (P3, P4).
+/// They are not the derivatives of the curve: it is for comparison that they stand here.
+///
+/// The paper writes q_{−1}, but never B_{−1}. If the functions over the knots are its B_{−1}, B_0
+/// …, as many as controls, the curve's first control is q_{−1}; this is how duet counts. If they
+/// are its B_0, B_1 …, then B̃_0 = 1, the curve's first control is q_0, and q_{−1} has no effect.
 
 namespace duet {
 
-/// First and second derivative of Q, twice: the letter of the print, and its spirit.
+/// First and second derivative of Q, three times: the letter of the print, under both readings, and
+/// its spirit.
 template <class T>
 struct printed_derivatives {
-  /// P3 and P4 to the letter: a lone scalar B̃′_0 where ω_0 B̃′_0 belongs (B̃″_0 in both brackets of
-  /// P4), the ω_i summed as if they commuted, B̃″_i one term short.
+  /// P3 and P4 to the letter, the first function being B_{−1}: sums from 1 on, a lone scalar B̃′_0
+  /// where ω_0 B̃′_0 belongs (B̃″_0 in both brackets of P4), the ω_i summed as if they commuted, B̃″_i
+  /// one term short.
   quaternion<T> literal_first, literal_second;
-  /// The same commuting sums over all i, with the true B̃′_i and B̃″_i.
+  /// P3 and P4 to the letter, the first function being B_0: the lone scalars vanish, and the sums
+  /// have all that varies. The ω_i are summed as if they commuted, B̃″_i is one term short.
+  quaternion<T> from_zero_first, from_zero_second;
+  /// The commuting sums over all i with the true B̃′_i and B̃″_i; the first is `from_zero_first`.
   quaternion<T> commuting_first, commuting_second;
 };
 
@@ -39,12 +48,14 @@ template <class T, int Order>
 
   vector3<T> commuting_sum = vector3<T>::Zero();
   vector3<T> commuting_sum_of_second = vector3<T>::Zero();
+  vector3<T> sum = vector3<T>::Zero();
+  vector3<T> sum_of_second = vector3<T>::Zero();
   vector3<T> literal_sum = vector3<T>::Zero();
   vector3<T> literal_sum_of_second = vector3<T>::Zero();
   T lone_first(0);
   T lone_second(0);
   for (std::size_t j = 0; j + 1 < k; ++j) {
-    const std::size_t i = first + 1 + j; // the paper's i − 1: its products start at q_{−1}
+    const std::size_t i = first + 1 + j; // the paper's i + 1, or its i where functions start at B_0
     const vector3<T>& omega = s.increments()[i];
     commuting_sum += omega * weights[1][j];
     commuting_sum_of_second += omega * weights[2][j];
@@ -56,7 +67,9 @@ template <class T, int Order>
         shorter_width > 0 ? T((k - 1) * (k - 2) / (width * shorter_width) *
                               detail::bspline_value(knots, i, Order - 2, u, s.basis().back()))
                           : T(0);
-    if (i == 1) { // the paper's B̃_0
+    sum += omega * printed_first;
+    sum_of_second += omega * printed_second;
+    if (i == 1) { // B̃_0 where the first function is B_{−1}
       lone_first = printed_first;
       lone_second = printed_second;
     } else {
@@ -69,6 +82,8 @@ template <class T, int Order>
   result.literal_first = q * Q(lone_first, literal_sum);
   result.literal_second = result.literal_first * Q(lone_second, literal_sum) +
                           q * Q(lone_second, literal_sum_of_second);
+  result.from_zero_first = q * Q(T(0), sum);
+  result.from_zero_second = result.from_zero_first * Q(T(0), sum) + q * Q(T(0), sum_of_second);
   result.commuting_first = q * Q(T(0), commuting_sum);
   result.commuting_second =
       result.commuting_first * Q(T(0), commuting_sum) + q * Q(T(0), commuting_sum_of_second);
