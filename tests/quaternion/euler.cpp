@@ -1,7 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/ulp.hpp"
 
+#include <duet/core/constants.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -13,8 +17,12 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
 
 // All twelve sequences of Euler angles.
 
@@ -174,6 +182,126 @@ TEST_CASE("rates of the angles: AD of euler(q(t)), and the inverse of euler_rate
       }
     }
   });
+}
+
+namespace {
+
+/// The angles by the entries of the rotation matrix, in 100 digits; not a number where
+/// undetermined.
+template <euler_sequence S, class T>
+std::array<duet_test::real_100, 3> exact_angles(const quaternion<T>& q) {
+  using real = duet_test::real_100;
+  const real w(q.w()), v[3] = {real(q.x()), real(q.y()), real(q.z())};
+  const auto entry = [&](int row, int column) { // times |q|²
+    const real square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    if (row == column) {
+      return real(w * w + 2 * v[row] * v[row] - square);
+    }
+    const int sign = (column - row + 3) % 3 == 1 ? -1 : 1;
+    return real(2 * (v[row] * v[column] + sign * w * v[3 - row - column]));
+  };
+  constexpr int i = S.first, j = S.second, o = S.other();
+  const real sign = S.sign();
+  const auto angle = [](const real& y, const real& x) {
+    return y == 0 && x == 0 ? std::numeric_limits<real>::quiet_NaN() : real(atan2(y, x));
+  };
+  const auto root = [](const real& a, const real& b) { return real(sqrt(a * a + b * b)); };
+  if (S.is_proper()) {
+    return {angle(entry(j, i), -sign * entry(o, i)),
+            angle(root(entry(j, i), entry(o, i)), entry(i, i)),
+            angle(entry(i, j), sign * entry(i, o))};
+  }
+  return {angle(-sign * entry(j, o), entry(o, o)),
+          angle(sign * entry(i, o), root(entry(j, o), entry(o, o))),
+          angle(-sign * entry(i, j), entry(i, i))};
+}
+
+/// Numbers of every size, and those near which angles vanish only by cancellation.
+template <euler_sequence S>
+std::vector<quaternion<double>> hard_attitudes() {
+  random_source random(84);
+  const double sizes[] = {0, 1e-300, 1e-20, 1e-10, 1e-5, 0.4, 1.2};
+  std::vector<quaternion<double>> result;
+  for (const double a : sizes) {
+    for (const double b : sizes) {
+      for (const double c : sizes) {
+        if (random.uniform(0, 1) > 0.06) {
+          continue; // of 343 a few
+        }
+        const auto turned = [&](double angle) { // some near a half turn, some negative
+          const double there = random.uniform(0, 1) < 0.2 ? pi - angle : angle;
+          return random.uniform(0, 1) < 0.5 ? -there : there;
+        };
+        result.push_back(duet::from_euler<S>(turned(a), turned(b), turned(c)));
+        const double size = random.magnitude(1e-150, 1e150);
+        result.push_back(duet::from_euler<S>(turned(a), turned(b - pi / 2), turned(c)) * size);
+      }
+    }
+  }
+  for (int k = 0; k < 20; ++k) {
+    const auto d = random.direction<4>();
+    const double small[] = {random.magnitude(1e-300, 1), random.magnitude(1e-20, 1),
+                            random.magnitude(1e-3, 1), 1};
+    result.push_back({d[0] * small[k % 4], d[1] * small[k / 2 % 4], d[2] * small[k / 3 % 4],
+                      d[3] * small[k / 5 % 4]});
+  }
+  return result;
+}
+
+/// The errors of angles over T in ulps of themselves.
+template <class T, euler_sequence S>
+void add_errors(duet_test::worst_error& worst, const quaternion<double>& given) {
+  using real = duet_test::real_100;
+  const quaternion<T> q(T(given.w()), T(given.x()), T(given.y()), T(given.z()));
+  const auto exact = exact_angles<S>(q);
+  const auto angles = duet::euler<S>(q);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (exact[i] == exact[i]) {
+      real error = abs(real(real(angles[i]) - exact[i]));
+      if (error > 6) { // π and −π are the same
+        error = abs(real(error - 2 * duet::constant::pi<real>()));
+      }
+      worst.add(duet_test::ulps_of_error<T>(error, exact[i]), i, given, S.first, S.second, S.third);
+    }
+  }
+}
+
+} // namespace
+
+TEST_CASE("each angle is right to 8 ulp of itself, however small, in every sequence") {
+  duet_test::worst_error in_double("euler"), in_float("float"), in_long_double("long double"),
+      in_50_digits("50 digits");
+  for_each_sequence([&]<euler_sequence S>() {
+    const auto inputs = hard_attitudes<S>();
+    for (std::size_t n = 0; n < inputs.size(); ++n) {
+      const auto& q = inputs[n];
+      add_errors<double, S>(in_double, q);
+      if (n % 5 == 0 && std::max(std::abs(q.w()), std::abs(q.x())) > 1e-30) {
+        add_errors<long double, S>(in_long_double, q);
+        add_errors<float, S>(in_float, normalized(q));
+      }
+    }
+  });
+  add_errors<duet_test::real_50, duet::zyx>(in_50_digits, {1, 0.3, 1e-30, 1e-30});
+  add_errors<duet_test::real_50, duet::zyx>(in_50_digits, {0.3, 0.1, 0.2, -0.6});
+  add_errors<duet_test::real_50, duet::zxz>(in_50_digits, {0.3, 0.1, 0.2, -0.6});
+  CHECK_MESSAGE(in_double <= 8, in_double);
+  CHECK_MESSAGE(in_float <= 8, in_float);
+  CHECK_MESSAGE(in_long_double <= 8, in_long_double);
+  CHECK_MESSAGE(in_50_digits <= 8, in_50_digits);
+}
+
+TEST_CASE("a pitch too small for the difference of two quarter turns") {
+  for (const double pitch : {1e-10, 1e-20, -1e-300}) {
+    CHECK(duet::euler<duet::zyx>(quaternion<double>(1, 0, pitch / 2, 0))[1] == pitch);
+  }
+}
+
+TEST_CASE("the zero quaternion has no angles") {
+  CHECK_THROWS_WITH_AS(static_cast<void>(duet::euler<duet::zyx>(quaternion<double>())),
+                       "duet: euler of the zero quaternion", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(duet::euler<duet::zxz>(quaternion<duet::dual<double>>())),
+                       "duet: euler of the zero quaternion", duet::invalid_input);
 }
 
 // The value at gimbal lock is right; derivatives there do not exist.

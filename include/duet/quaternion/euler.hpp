@@ -1,14 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/constants.hpp>
+#include <duet/core/batch_lanes.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
+#include <duet/core/sum_of_products.hpp>
+#include <duet/dual/parts.hpp>
+#include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/rotation.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
+#include <limits>
 #include <type_traits>
 
 /// \file
@@ -47,14 +53,70 @@ template <class T>
   return {cos(half), axis == 0 ? s : zero, axis == 1 ? s : zero, axis == 2 ? s : zero};
 }
 
-/// An angle within 2π of zero, brought into [−π, π].
-template <class T>
-[[nodiscard]] T wrapped(const T& angle) {
-  const auto pi = constant::pi<real_type_t<T>>();
-  const auto lowered = select(
-      innermost(angle) > pi, [&] { return T(angle - 2 * pi); }, [&] { return angle; });
+/// w, then the components of q along the first and the second axis of the sequence and along their
+/// product e_i e_j.
+template <euler_sequence Sequence, class T>
+[[nodiscard]] std::array<T, 4> along_axes(const quaternion<T>& q) {
+  const std::array<T, 3> v{q.x(), q.y(), q.z()};
+  return {q.w(), v[std::size_t(Sequence.first)], v[std::size_t(Sequence.second)],
+          T(Sequence.sign() * v[std::size_t(Sequence.other())])};
+}
+
+/// Numbers in proportion to cos β cos(α+γ), cos β sin(α+γ), sin β cos(α−γ), sin β sin(α−γ), which
+/// with half angles α, β, γ are those components of R_i R_j R_i.
+///
+/// A quarter turn about e_j takes e_i to the third axis: R_i R_j(b) R_k(c) R_j(π/2) is
+/// R_i R_j(b + π/2) R_i(∓c).
+template <euler_sequence Sequence, class T>
+[[nodiscard]] std::array<T, 4> proper_components(const std::array<T, 4>& q) {
+  if constexpr (Sequence.is_proper()) {
+    return q;
+  } else {
+    return {q[0] - q[2], q[1] - q[3], q[2] + q[0], q[3] + q[1]};
+  }
+}
+
+/// The angles of a real quaternion. What vanishes with an angle is a sum of two products and as
+/// exact as it is small; what else there is need not be.
+template <euler_sequence Sequence, Real R>
+[[nodiscard]] std::array<R, 3> euler_angles(const quaternion<R>& q) {
+  using std::atan2;
+  using std::hypot;
+  require_not_zero(q, "euler");
+  // So large that no product with the largest component underflows.
+  constexpr int exponent = std::min(std::numeric_limits<R>::max_exponent, 16384) / 2 - 4;
+  const std::array<R, 4> components =
+      along_axes<Sequence>(scaled_down(q, binary_exponent(largest_component(q)) - exponent));
+  const R &s = components[0], &i = components[1], &j = components[2], &k = components[3];
+  const std::array<R, 4> halves = proper_components<Sequence>(components);
+  const R &w = halves[0], &x = halves[1], &y = halves[2], &z = halves[3];
+  // The sines and cosines of the first angle and of the last, times sin β cos β, and the middle
+  // one.
+  const R cosine_a = w * y - x * z, cosine_c = w * y + x * z;
+  R sine_a, sine_c, middle;
+  if constexpr (Sequence.is_proper()) {
+    sine_a = sum_of_products<R>(i, j, s, k);
+    sine_c = sum_of_products<R>(i, j, -s, k);
+    middle = 2 * atan2(R(hypot(y, z)), R(hypot(w, x)));
+  } else {
+    sine_a = 2 * sum_of_products<R>(s, i, -j, k);
+    sine_c = 2 * Sequence.sign() * sum_of_products<R>(s, k, -i, j);
+    middle = atan2(R(2 * sum_of_products<R>(s, j, i, k)), R(hypot(w, x) * hypot(y, z)));
+  }
+  // In gimbal lock only α + γ or α − γ is determined: β is given to neither.
+  const int sign = Sequence.is_proper() ? 1 : -Sequence.sign();
+  const auto both = [&](const R& half_sum, int sign_of_last) {
+    return std::array<R, 3>{half_sum, middle, R(sign_of_last * half_sum)};
+  };
   return select(
-      innermost(angle) < -pi, [&] { return T(angle + 2 * pi); }, [&] { return lowered; });
+      y == 0 && z == 0, [&] { return both(atan2(x, w), sign); },
+      [&] {
+        return select(
+            w == 0 && x == 0, [&] { return both(atan2(z, y), -sign); },
+            [&] {
+              return std::array<R, 3>{atan2(sine_a, cosine_a), middle, atan2(sine_c, cosine_c)};
+            });
+      });
 }
 
 } // namespace detail
@@ -74,35 +136,28 @@ template <euler_sequence Sequence, class A, class B, class C>
 /// The angles of a rotation, q of any norm, in the letters' order.
 ///
 /// First and third lie in [−π, π]; the second in [0, π] where the first and last letters are equal,
-/// else in [−π/2, π/2]. At either end of the second angle's range (gimbal lock) only the sum or the
-/// difference of the others is determined; the angles returned still give the rotation, but they
-/// have no derivative there.
+/// else in [−π/2, π/2]. Each is right to a few units in its own last place, however small it is. At
+/// either end of the second angle's range (gimbal lock) only the sum or the difference of the
+/// others is determined; the angles returned still give the rotation, but they have no derivative
+/// there. \throws invalid_input for the zero quaternion
 template <euler_sequence Sequence, class T>
 [[nodiscard]] std::array<T, 3> euler(const quaternion<T>& q) {
-  using std::atan2;
-  using std::hypot;
-  constexpr int sign = Sequence.sign();
-  const std::array<T, 3> v{q.x(), q.y(), q.z()};
-  const T& i = v[std::size_t(Sequence.first)];
-  const T& j = v[std::size_t(Sequence.second)];
-  const T k = sign * v[std::size_t(Sequence.other())];
-  // With half angles α, β, γ, R_i R_j R_i is (cos β cos(α+γ), cos β sin(α+γ), sin β cos(α−γ),
-  // sin β sin(α−γ)) in the basis 1, e_i, e_j, e_i e_j.
-  const auto proper = [](const T& w, const T& x, const T& y, const T& z) {
+  if constexpr (Infinitesimal<T>) {
+    using std::atan2;
+    using std::hypot;
+    const auto values = euler<Sequence>(detail::innermost_of(q));
+    // Infinitesimal parts of α + γ and α − γ keep their digits near gimbal lock too.
+    const auto [w, x, y, z] = detail::proper_components<Sequence>(detail::along_axes<Sequence>(q));
     const T sum = atan2(x, w);
     const T difference = atan2(z, y);
-    return std::array<T, 3>{detail::wrapped(T(sum + difference)),
-                            T(2 * atan2(hypot(y, z), hypot(w, x))),
-                            detail::wrapped(T(sum - difference))};
-  };
-  if constexpr (Sequence.is_proper()) {
-    return proper(q.w(), i, j, k);
+    constexpr int sign = Sequence.is_proper() ? 1 : -Sequence.sign();
+    return {detail::with_innermost(T(sum + difference), values[0]),
+            detail::with_innermost(T(2 * atan2(hypot(y, z), hypot(w, x))), values[1]),
+            detail::with_innermost(T(sign * (sum - difference)), values[2])};
+  } else if constexpr (Batched<T>) {
+    return detail::by_lane([](const auto& p) { return euler<Sequence>(p); }, q);
   } else {
-    // A quarter turn about e_j takes e_i to the third axis: R_i R_j(b) R_k(c) R_j(π/2) is
-    // R_i R_j(b + π/2) R_i(∓c). The factor √2 cancels.
-    const auto angles = proper(q.w() - j, i - k, j + q.w(), k + i);
-    const auto pi = constant::pi<real_type_t<T>>();
-    return {angles[0], T(angles[1] - pi / 2), T(-sign * angles[2])};
+    return detail::euler_angles<Sequence>(q);
   }
 }
 
@@ -113,12 +168,23 @@ template <euler_sequence Sequence, class T>
 /// P5 (true form): for `zyx` its columns belong to ψ′, θ′, φ′. Singular in gimbal lock.
 template <euler_sequence Sequence, class T>
 [[nodiscard]] matrix3<T> euler_rate_matrix(const T& a, const T& b) {
-  const quaternion<T> first = detail::axis_rotation(Sequence.first, a);
-  const quaternion<T> both = first * detail::axis_rotation(Sequence.second, b);
+  using std::cos;
+  using std::sin;
+  constexpr int i = Sequence.first, j = Sequence.second, other = Sequence.other();
+  constexpr int sign = Sequence.sign(); // e_i × e_j = ± e_other
+  const T cosine = cos(a), sine = sin(a);
+  // R_i takes e_other to cos a e_other ∓ sin a e_j. Before, R_j took e_k to the sum of `along` e_i
+  // and `across` e_other.
+  const T along = Sequence.is_proper() ? T(cos(b)) : T(sign * sin(b));
+  const T across = Sequence.is_proper() ? T(-sign * sin(b)) : T(cos(b));
   matrix3<T> m;
-  m.col(0) = vector3<T>::Unit(Sequence.first);
-  m.col(1) = rotate(first, vector3<T>(vector3<T>::Unit(Sequence.second)));
-  m.col(2) = rotate(both, vector3<T>(vector3<T>::Unit(Sequence.third)));
+  m.col(0) = vector3<T>::Unit(i);
+  m(i, 1) = T(0);
+  m(j, 1) = cosine;
+  m(other, 1) = sign * sine;
+  m(i, 2) = along;
+  m(j, 2) = -sign * sine * across;
+  m(other, 2) = cosine * across;
   return m;
 }
 
