@@ -4,6 +4,8 @@
 // pose, and its spatial Jacobian, which the compiler derives, beside that of the chain from its
 // table.
 
+#include "support/program.hpp"
+
 #include <duet/duet.hpp>
 
 #include <algorithm>
@@ -33,9 +35,7 @@ auto panda() {
   return shoulder * elbow * wrist;
 }
 
-} // namespace
-
-int main() {
+int run() {
   const auto arm = panda();
   std::cout << "A = " << to_text(arm) << "\n\n" << to_latex(arm) << "\n\n";
 
@@ -59,4 +59,9 @@ int main() {
   const double of_tip = (duet::translation(chain.pose(theta)) - t).norm();
   std::printf("from the chain's by less than 1e-14: %s\n",
               std::max(of_jacobian, of_tip) < 1e-14 ? "yes" : "no");
+  return 0;
 }
+
+} // namespace
+
+int main() { return example::run_program("arm_as_formula", run); }

@@ -4,12 +4,16 @@
 /// Is my formula right? The body angular velocity of the rotation exp(φ), as derived on paper:
 ///   ω = φ̇ − (1 − cos θ)/θ² φ × φ̇ + (θ − sin θ)/θ³ φ × (φ × φ̇),  θ = |φ|.
 
+#include "support/program.hpp"
+
 #include <duet/duet.hpp>
 #include <duet/interop/multiprecision.hpp>
 
 #include <iostream>
 
-int main() {
+namespace {
+
+int run() {
   using namespace duet;
 
   // What it is: the rotation as a function of time, differentiated.
@@ -34,4 +38,9 @@ int main() {
     const std::string label = sign > 0 ? "with a plus" : "with a minus";
     std::cout << to_text(compare<double, real_50>(label, automatic, on_paper(sign), inputs));
   }
+  return 0;
 }
+
+} // namespace
+
+int main() { return example::run_program("check_your_formula", run); }

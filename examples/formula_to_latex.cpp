@@ -3,6 +3,8 @@
 // From a formula in the code to the formula in the paper: its derivatives as text and as LaTeX, and
 // the numbers that both stand for.
 
+#include "support/program.hpp"
+
 #include <duet/duet.hpp>
 
 #include <cstdio>
@@ -17,9 +19,7 @@ void print(const char* name, const F& f) {
   std::cout << "  " << name << " = " << to_text(f) << "\n    \\[ " << to_latex(f) << " \\]\n";
 }
 
-} // namespace
-
-int main() {
+int run() {
   constexpr symbol<"t"> t;
   constexpr symbol<"omega"> omega;
   constexpr symbol<"delta"> delta;
@@ -44,4 +44,9 @@ int main() {
   const double by_duals =
       duet::derivative([&](auto s) { return x(t = s, omega = 2, delta = 0.1); }, 1.5).derivative;
   std::printf("x(1.5) = %.15f\nx'(1.5) = %.15f, by dual numbers %.15f\n", at(x), at(v), by_duals);
+  return 0;
 }
+
+} // namespace
+
+int main() { return example::run_program("formula_to_latex", run); }

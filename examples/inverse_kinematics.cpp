@@ -6,6 +6,7 @@
 #include "support/arms.hpp"
 #include "support/command_line.hpp"
 #include "support/poses.hpp"
+#include "support/program.hpp"
 
 #include <duet/duet.hpp>
 
@@ -13,8 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
-#include <iostream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -89,6 +88,10 @@ void write_joints(const std::string& path, const std::vector<solution>& found) {
 }
 
 void solve(const example::command_line& given) {
+  const auto out = given.text("out");
+  if (out) {
+    require_writable(*out);
+  }
   const example::arm_chain arm = example::arm_of(given);
   const Eigen::VectorXd start = example::coordinates(arm, given, "start");
   const std::vector<goal> goals = goals_of(given, arm);
@@ -102,13 +105,10 @@ void solve(const example::command_line& given) {
     poses.push_back(g.pose);
   }
   std::vector<solution> found(goals.size());
-  const bool is_long = goals.size() >= 1000;
-  const auto report = [is_long](const progress& p) {
-    if (is_long) {
-      std::fprintf(stderr, "\r%zu of %zu goals%s", p.done, p.count, p.share() == 1 ? "\n" : "");
-    }
-  };
-  inverse_kinematics(arm, poses, start, found, options, {.threads = 0, .report = report});
+  {
+    progress_line line("goals");
+    inverse_kinematics(arm, poses, start, found, options, {.threads = 0, .report = line});
+  }
   if (goals.size() == 1 && found[0].reason != stop_reason::reached) {
     throw std::runtime_error(why_not(goals[0], found[0]));
   }
@@ -119,7 +119,7 @@ void solve(const example::command_line& given) {
     iterations += s.iterations;
     restarts += s.restarts;
     if (s.reason != stop_reason::reached) {
-      std::printf("%s\n", why_not(goals[k], s).c_str());
+      std::printf("%s\n", printable(why_not(goals[k], s)).c_str());
       continue;
     }
     ++reached;
@@ -132,8 +132,8 @@ void solve(const example::command_line& given) {
       std::printf("\n");
     }
   }
-  if (const auto path = given.text("out")) {
-    write_joints(*path, found);
+  if (out) {
+    write_joints(*out, found);
   }
   std::printf("inverse kinematics: reached=%d of=%zu iterations=%d restarts=%d deviation=%.2g\n",
               reached, goals.size(), iterations, restarts, deviation);
@@ -142,7 +142,7 @@ void solve(const example::command_line& given) {
 } // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("inverse_kinematics", [&] {
     po::options_description description(
         "Joint coordinates for a pose of a robot arm's tip, within the arm's limits.\nA pose is "
         "x,y,z,qw,qx,qy,qz (scalar first), or a matrix [R t; 0 1] row by row, 12 or 16 numbers.\n"
@@ -165,8 +165,5 @@ int main(int argc, char** argv) {
       solve(*line);
     }
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "inverse_kinematics: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

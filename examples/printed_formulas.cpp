@@ -6,6 +6,8 @@
 /// how the basis functions are numbered, under both readings. Prints the table of
 /// docs/printed_formulas.md; ends with 1 where a verdict is not the expected one.
 
+#include "support/program.hpp"
+
 #include <duet/duet.hpp>
 #include <duet/interop/multiprecision.hpp>
 
@@ -262,9 +264,7 @@ void euler_angles() {
   judge("P5: -sin theta", verdict::agrees, automatic, closed_form, inputs);
 }
 
-} // namespace
-
-int main() {
+int run() {
   basis();
   curve();
   basis_rates();
@@ -273,3 +273,7 @@ int main() {
   std::cout << to_markdown(table);
   return as_expected ? 0 : 1;
 }
+
+} // namespace
+
+int main() { return example::run_program("printed_formulas", run); }

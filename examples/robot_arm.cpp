@@ -6,12 +6,11 @@
 
 #include "support/arms.hpp"
 #include "support/command_line.hpp"
+#include "support/program.hpp"
 
 #include <duet/duet.hpp>
 
 #include <cstdio>
-#include <exception>
-#include <iostream>
 #include <string>
 
 namespace {
@@ -50,7 +49,7 @@ void report(const example::arm_chain& arm, const Eigen::VectorXd& theta) {
 } // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("robot_arm", [&] {
     po::options_description description("A robot arm at given joint coordinates. Options");
     example::add_arm_options(description);
     auto add = description.add_options();
@@ -64,8 +63,5 @@ int main(int argc, char** argv) {
     const example::arm_chain arm = example::arm_of(*line);
     report(arm, example::coordinates(arm, *line, "joints"));
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "robot_arm: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -3,7 +3,9 @@
 // Every curve of duet through the same rows of a smooth motion: errors of orientation and angular
 // velocity against the number of rows. Writes spline_comparison.csv and, with gnuplot, a picture.
 
+#include "support/folder.hpp"
 #include "support/gnuplot.hpp"
+#include "support/program.hpp"
 #include <duet/core/csv.hpp>
 
 #include <duet/derivative/derivative.hpp>
@@ -21,7 +23,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <exception>
 #include <functional>
 #include <iostream>
 #include <string>
@@ -183,11 +184,13 @@ std::string picture_script() {
 }
 
 void run() {
-  std::string csv = "rows";
+  example::require_folder(".");
+  std::vector<std::string> names{"rows"};
   for (const curve& c : curves()) {
-    csv += std::string(",value ") + c.name + ",velocity " + c.name;
+    names.push_back(std::string("value ") + c.name);
+    names.push_back(std::string("velocity ") + c.name);
   }
-  csv += "\n";
+  std::string csv = duet::csv_header(names);
   std::vector<std::vector<std::array<double, 2>>> errors(curves().size());
   const std::array counts{9, 17, 33, 65, 129, 257};
   for (const int count : counts) {
@@ -215,11 +218,8 @@ void run() {
 } // namespace
 
 int main() {
-  try {
+  return example::run_program("spline_comparison", [] {
     run();
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "spline_comparison: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -7,10 +7,13 @@
 
 #include "support/arms.hpp"
 #include "support/command_line.hpp"
+#include "support/folder.hpp"
 #include "support/gnuplot.hpp"
+#include "support/program.hpp"
 
 #include <duet/core/csv.hpp>
 #include <duet/core/parallel_for.hpp>
+#include <duet/core/progress_line.hpp>
 #include <duet/mechanism/sweep.hpp>
 
 #include <Eigen/Core>
@@ -22,7 +25,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
+#include <filesystem>
 #include <iostream>
 #include <numbers>
 #include <stdexcept>
@@ -88,22 +91,18 @@ std::vector<sample> sweep(const chain& arm, std::size_t count) {
       samples[i] = {std::hypot(t[0], t[1]), t[2], manipulability_of(jacobian)};
     }
   };
-  int percent = -1;
+  progress_line line("configurations");
   const auto report = [&](const progress& p) {
-    if (const int now = int(100 * p.share()); now > percent) {
-      percent = now;
-      std::fprintf(stderr, "\r%zu of %zu configurations", p.done, p.count);
-    }
+    line(p);
     return is_interrupted == 0;
   };
-  std::signal(SIGINT, [](int) { is_interrupted = 1; });
+  const auto otherwise = std::signal(SIGINT, [](int) { is_interrupted = 1; });
   try {
     parallel_for_blocks(count, sweep_block, {.threads = 0, .report = report}, 1024);
   } catch (const cancelled& early) {
     samples.resize(early.completed());
   }
-  std::signal(SIGINT, SIG_DFL);
-  std::fprintf(stderr, "\n");
+  std::signal(SIGINT, otherwise);
   return samples;
 }
 
@@ -158,6 +157,7 @@ const char* const picture = "set datafile separator ','\nset multiplot layout 1,
                             "lc rgb '#1f77b4' notitle\nunset multiplot\n";
 
 void run(const chain& arm, std::size_t wanted, const std::string& folder) {
+  example::require_folder(folder);
   const std::vector<sample> samples = sweep(arm, wanted);
   const std::size_t count = samples.size();
   double sum = 0, largest = 0;
@@ -169,6 +169,7 @@ void run(const chain& arm, std::size_t wanted, const std::string& folder) {
       best = i;
     }
   }
+  std::filesystem::create_directories(folder);
   write_file(folder + "/workspace_sweep_histogram.csv", histogram(samples, largest));
   write_file(folder + "/workspace_sweep_map.csv", map(samples));
   std::printf("best joints");
@@ -186,14 +187,14 @@ void run(const chain& arm, std::size_t wanted, const std::string& folder) {
 } // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("workspace_sweep", [&] {
     po::options_description description("Where a robot arm moves well. Options");
     auto add = description.add_options();
     add("help", "print this and stop");
     add("samples", po::value<int>()->value_name("N"),
         "random configurations, 1 to 10000000 (default: 20000)");
     add("out", po::value<std::string>()->value_name("FOLDER"),
-        "an existing folder for tables and picture (default: .)");
+        "folder for tables and picture (default: .)");
     example::add_arm_options(description);
     const auto line = example::command_line::parse(argc, argv, description);
     if (!line) {
@@ -205,8 +206,5 @@ int main(int argc, char** argv) {
     }
     run(example::arm_of(*line), std::size_t(samples), line->text("out").value_or("."));
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "workspace_sweep: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -8,13 +8,14 @@
 #include "ride.hpp"
 
 #include "../support/command_line.hpp"
+#include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
+#include "../support/program.hpp"
 #include <duet/core/csv.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -68,11 +69,13 @@ std::optional<options> parse_options(int argc, char** argv) {
 }
 
 std::string ride_csv(const vehicle& v, const std::vector<result>& results) {
-  std::string text = "t,road";
+  std::vector<std::string> names{"t", "road"};
   for (const result& r : results) {
-    text += ",height " + r.name + ",toe_in_deg " + r.name + ",energy " + r.name;
+    for (const char* column : {"height ", "toe_in_deg ", "energy "}) {
+      names.push_back(column + r.name);
+    }
   }
-  text += "\n";
+  std::string text = duet::csv_header(names);
   for (std::size_t i = 0; i < results.front().samples.size(); ++i) {
     std::vector<double> numbers{results.front().samples[i].t,
                                 road(v, results.front().samples[i].t)};
@@ -112,6 +115,7 @@ std::string picture_script(const std::vector<result>& results) {
 }
 
 void run(const options& given) {
+  example::require_folder(given.out);
   const wheel_carrier::carrier mechanism(wheel_carrier::published_hardpoints());
   vehicle v;
   v.bump_height = given.bump;
@@ -134,8 +138,8 @@ void run(const options& given) {
   std::filesystem::create_directories(given.out);
   duet::write_file(given.out + "/ride.csv", ride_csv(v, results));
   const bool drawn = example::draw(given.out, "ride", "1000,900", picture_script(results));
-  std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
-            << "\n";
+  std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
+            << duet::printable(given.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed or failed\n";
   }
@@ -149,13 +153,10 @@ void run(const options& given) {
 } // namespace bump_ride
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("bump_ride", [&] {
     if (const auto given = bump_ride::parse_options(argc, argv)) {
       bump_ride::run(*given);
     }
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "bump_ride: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -8,12 +8,13 @@
 #include "smoothing.hpp"
 #include "trajectory.hpp"
 
+#include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
+#include "../support/program.hpp"
 #include <duet/core/csv.hpp>
 
 #include <cstddef>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
@@ -25,14 +26,15 @@ namespace {
 void print_faults(const recording& r, const std::string& path) {
   constexpr std::size_t most = 20;
   for (std::size_t i = 0; i < r.faults.size() && i < most; ++i) {
-    std::cerr << path << ":" << r.faults[i].line << ": " << r.faults[i].reason << "\n";
+    std::cerr << duet::file_error(path, r.faults[i].line, r.faults[i].reason).what() << "\n";
   }
   if (r.faults.size() > most) {
-    std::cerr << path << ": and " << r.faults.size() - most << " more\n";
+    std::cerr << duet::printable(path) << ": and " << r.faults.size() - most << " more\n";
   }
 }
 
 void run(const options& given) {
+  example::require_folder(given.out);
   const recording r = given.file ? read_recording(*given.file) : made_up_recording();
   if (given.file) {
     print_faults(r, *given.file);
@@ -53,8 +55,8 @@ void run(const options& given) {
   const bool drawn =
       example::draw(given.out, "fit", "1000,900",
                     picture_script(r.rows.front().time, duration, s.outlier, r.rows.size()));
-  std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
-            << "\n";
+  std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
+            << duet::printable(given.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed or failed\n";
   }
@@ -68,13 +70,10 @@ void run(const options& given) {
 } // namespace fit_trajectory
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("fit_trajectory", [&] {
     if (const auto given = fit_trajectory::parse_options(argc, argv)) {
       fit_trajectory::run(*given);
     }
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "fit_trajectory: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

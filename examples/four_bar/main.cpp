@@ -6,7 +6,9 @@
 #include "linkage.hpp"
 
 #include "../support/command_line.hpp"
+#include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
+#include "../support/program.hpp"
 
 #include <duet/core/csv.hpp>
 #include <duet/core/number_text.hpp>
@@ -16,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <numbers>
@@ -191,6 +192,7 @@ std::string picture_script() {
 }
 
 void run(const options& given) {
+  example::require_folder(given.out);
   const std::vector<sample> samples = run_through(given);
   const auto [a, b, c, d] = given.links;
   std::printf("Links %g, %g, %g, ground %g m: %s\n\n", a, b, c, d, given.links.kind().c_str());
@@ -206,8 +208,8 @@ void run(const options& given) {
   duet::write_file(given.out + "/motion.csv", motion_csv(samples));
   duet::write_file(given.out + "/links.csv", links_csv(given, samples));
   const bool drawn = example::draw(given.out, "four_bar", "1100,520", picture_script());
-  std::cout << "\nTables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
-            << "\n";
+  std::cout << "\nTables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
+            << duet::printable(given.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed or failed\n";
   }
@@ -222,13 +224,10 @@ void run(const options& given) {
 } // namespace four_bar
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("four_bar", [&] {
     if (const auto given = four_bar::parse_options(argc, argv)) {
       four_bar::run(*given);
     }
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "four_bar: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -8,11 +8,12 @@
 #include "pictures.hpp"
 #include "tables.hpp"
 
+#include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
+#include "../support/program.hpp"
 
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <future>
 #include <iostream>
@@ -21,15 +22,18 @@
 namespace motion_plan_example {
 namespace {
 
-/// Says every second that it is still at work.
+/// Says that it is still at work, where that takes long.
 plan_type plan(const problem& p) {
   auto result = std::async(std::launch::async, [&] {
     return duet::plan_screw_motion(p.arm, p.start, p.goal, {}, {}, p.around);
   });
-  for (int seconds = 1; result.wait_for(std::chrono::seconds(1)) != std::future_status::ready;
-       ++seconds) {
-    std::cerr << "\rplanning for " << seconds << " s" << std::flush;
-  }
+  duet::progress_line line("");
+  constexpr std::chrono::milliseconds tick(100);
+  std::chrono::duration<double> time(0);
+  do {
+    line.say("planning for " + std::to_string(int(time.count())) + " s");
+    time += tick;
+  } while (result.wait_for(tick) != std::future_status::ready);
   return result.get();
 }
 
@@ -55,6 +59,7 @@ std::string tip_csv(const problem& p, const duet::joint_trajectory<-16>& traject
 
 /// Whether the goal was reached.
 bool run(const problem& p) {
+  example::require_folder(p.out);
   const plan_type found = plan(p);
   const Eigen::VectorXd acceleration = Eigen::VectorXd::Constant(p.arm.size(), p.acceleration);
   const auto trajectory = duet::time_parametrised(found, velocities(p), acceleration);
@@ -85,7 +90,8 @@ bool run(const problem& p) {
       example::draw(p.out, "joints", "900,900", joints_script(p.arm.size())) &&
       example::draw(p.out, "deviation", "900,600", deviation_script(has_obstacles)) &&
       example::draw(p.out, "arm", "900,800", arm_script(has_obstacles));
-  std::cout << "Tables" << (drawn ? " and pictures (SVG, PNG)" : "") << " are in " << p.out << "\n";
+  std::cout << "Tables" << (drawn ? " and pictures (SVG, PNG)" : "") << " are in "
+            << duet::printable(p.out) << "\n";
   if (!drawn) {
     std::cout << "No pictures: gnuplot is not installed or failed, or nothing moves\n";
   }
@@ -106,11 +112,8 @@ bool run(const problem& p) {
 } // namespace motion_plan_example
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("motion_plan", [&] {
     const auto given = motion_plan_example::parse(argc, argv);
     return !given || motion_plan_example::run(*given) ? 0 : 1;
-  } catch (const std::exception& error) {
-    std::cerr << "motion_plan: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -3,7 +3,9 @@
 // The tip of an arm draws a helix without turning: follow_path along a function. Writes the joint
 // path as a table, and draws it. The arm is one of duet's or read from a URDF file.
 
+#include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
+#include "../support/program.hpp"
 #include "options.hpp"
 #include "tables.hpp"
 
@@ -12,14 +14,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 
 namespace path_following {
 namespace {
 
-int run(const options& given) {
+void run(const options& given) {
+  example::require_folder(given.out);
   const auto first = given.arm.pose(given.start);
   const auto helix = [&](double u) {
     const double angle = 2 * duet::constant::pi<double>() * u;
@@ -34,8 +36,8 @@ int run(const options& given) {
   duet::write_file(given.out + "/arm.csv", arm_csv(given.arm, plan));
   duet::write_file(given.out + "/helix.csv", helix_csv(helix, given.turns));
   const bool drawn = example::draw(given.out, "path", "1000,760", picture_script(given.arm.size()));
-  std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
-            << "\n";
+  std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
+            << duet::printable(given.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed or failed\n";
   }
@@ -51,18 +53,16 @@ int run(const options& given) {
     std::cout << "The arm cannot draw all of it: it stops after " << plan.tau.back() << " of "
               << given.turns << " turns\n";
   }
-  return 0;
 }
 
 } // namespace
 } // namespace path_following
 
 int main(int argc, char** argv) {
-  try {
-    const auto given = path_following::parse_options(argc, argv);
-    return given ? path_following::run(*given) : 0;
-  } catch (const std::exception& error) {
-    std::cerr << "path_following: " << error.what() << "\n";
-    return 1;
-  }
+  return example::run_program("path_following", [&] {
+    if (const auto given = path_following::parse_options(argc, argv)) {
+      path_following::run(*given);
+    }
+    return 0;
+  });
 }

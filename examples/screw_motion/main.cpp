@@ -7,11 +7,12 @@
 #include "options.hpp"
 #include "path.hpp"
 
+#include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
+#include "../support/program.hpp"
 #include <duet/core/csv.hpp>
 
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 
@@ -19,6 +20,7 @@ namespace screw_motion {
 namespace {
 
 void run(const options& given) {
+  example::require_folder(given.out);
   const auto [from, to] = poses(given);
   const duet::way round = given.is_long_way ? duet::way::longest : duet::way::shortest;
   const screw between = screw_between(from, to, given.is_long_way);
@@ -33,8 +35,8 @@ void run(const options& given) {
   duet::write_file(given.out + "/path.csv", path_csv(path));
   duet::write_file(given.out + "/frames.csv", frames_csv(path, between));
   const bool drawn = example::draw(given.out, "path", "900,760", path_script());
-  std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in " << given.out
-            << "\n";
+  std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
+            << duet::printable(given.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed or failed\n";
   }
@@ -46,13 +48,10 @@ void run(const options& given) {
 } // namespace screw_motion
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("screw_motion", [&] {
     if (const auto given = screw_motion::parse_options(argc, argv)) {
       screw_motion::run(*given);
     }
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "screw_motion: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -1,30 +1,74 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/csv.hpp>
+#include <duet/core/file.hpp>
 
+#include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
+
+#if __has_include(<sys/wait.h>)
+#include <sys/wait.h>
+#endif
 
 /// \file
 /// Pictures by gnuplot.
 
 namespace example {
 
-/// Draws folder/name.svg and folder/name.png; false where gnuplot is absent or fails.
+/// Within apostrophes; one of the text becomes `apostrophe`.
+[[nodiscard]] inline std::string quoted(const std::string& text, const char* apostrophe) {
+  std::string result = "'";
+  for (const char c : text) {
+    result += c == '\'' ? std::string(apostrophe) : std::string(1, c);
+  }
+  return result + "'";
+}
+[[nodiscard]] inline std::string quoted_for_shell(const std::string& text) {
+  return quoted(text, "'\\''");
+}
+
+/// Runs a command of the shell; whether it ended well. Ctrl-C, which meanwhile only the command
+/// hears, ends this program too.
+inline bool run_command(const std::string& command) {
+  const int status = std::system(command.c_str());
+#ifdef WIFSIGNALED
+  if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) ||
+      (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT)) {
+    std::raise(SIGINT);
+  }
+#endif
+  return status == 0;
+}
+
+/// Draws folder/name.svg and folder/name.png, both or neither; false where gnuplot is absent or
+/// fails.
 inline bool draw(const std::string& folder, const std::string& name, const std::string& size,
                  const std::string& script) {
-  duet::write_file(folder + "/" + name + ".gnuplot",
-                   "set terminal svg size " + size + " background rgb 'white'\nset output '" +
-                       name + ".svg'\n" + script + "set output\nset terminal pngcairo size " +
-                       size + "\nset output '" + name + ".png'\n" + script);
-  std::string quoted = "'";
-  for (const char c : folder) {
-    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  // By itself the script draws to these names; here it is given those of drafts.
+  const auto output = [&](const std::string& kind) {
+    const std::string variable = kind + "_file";
+    return "if (!exists('" + variable + "')) " + variable + " = '" + name + "." + kind +
+           "'\nset output " + variable + "\n";
+  };
+  const std::string path = folder + "/" + name;
+  duet::write_file(path + ".gnuplot", "set terminal svg size " + size +
+                                          " background rgb 'white'\n" + output("svg") + script +
+                                          "set output\nset terminal pngcairo size " + size + "\n" +
+                                          output("png") + script);
+  duet::file_draft svg(path + ".svg"), png(path + ".png");
+  const auto absolute = [](const duet::file_draft& draft) {
+    return quoted(std::filesystem::absolute(draft.name()).string(), "''");
+  };
+  const std::string variables = "svg_file=" + absolute(svg) + "; png_file=" + absolute(png);
+  if (!run_command("cd -- " + quoted_for_shell(folder) + " && gnuplot -d -e " +
+                   quoted_for_shell(variables) + " '" + name + ".gnuplot' >/dev/null 2>&1")) {
+    return false;
   }
-  const std::string command =
-      "cd " + quoted + "' && gnuplot '" + name + ".gnuplot' >/dev/null 2>&1";
-  return std::system(command.c_str()) == 0;
+  svg.commit();
+  png.commit();
+  return true;
 }
 
 } // namespace example

@@ -10,13 +10,15 @@
 #include "report.hpp"
 #include "toleranced_carrier.hpp"
 
+#include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
+#include "../support/program.hpp"
 #include "../wheel_carrier/hardpoints_file.hpp"
 
 #include <duet/core/csv.hpp>
 #include <duet/core/parallel_for.hpp>
+#include <duet/core/progress_line.hpp>
 
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -39,21 +41,6 @@ std::vector<double> heights(const options& given) {
   return result;
 }
 
-/// Says every two seconds how far it is.
-class progress_line {
-public:
-  void operator()(const duet::progress& p) {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - spoke_ > std::chrono::seconds(2)) {
-      std::cout << p.done << " of " << p.count << " blocks\n" << std::flush;
-      spoke_ = now;
-    }
-  }
-
-private:
-  std::chrono::steady_clock::time_point spoke_ = std::chrono::steady_clock::now();
-};
-
 /// Of the missing blocks, every size-th is this process's.
 void compute_share(const block_store& blocks, const toleranced_carrier& mechanism,
                    const std::vector<std::size_t>& missing, const processes& all,
@@ -62,7 +49,7 @@ void compute_share(const block_store& blocks, const toleranced_carrier& mechanis
   for (std::size_t i = all.rank(); i < missing.size(); i += all.size()) {
     share.push_back(missing[i]);
   }
-  progress_line line;
+  duet::progress_line line("blocks");
   duet::execution how{threads};
   if (all.rank() == 0) {
     how.report = line;
@@ -89,7 +76,8 @@ void summarise(const options& given, const hardpoints& points, const toleranced_
   duet::write_file(given.out + "/sensitivities.csv", sensitivities_csv(r, points));
   const bool drawn =
       example::draw(given.out, "tolerance_study", "1100,800", picture_script(r, points));
-  std::printf("Tables%s are in %s\n", drawn ? " and a picture (SVG, PNG)" : "", given.out.c_str());
+  std::printf("Tables%s are in %s\n", drawn ? " and a picture (SVG, PNG)" : "",
+              duet::printable(given.out).c_str());
   if (!drawn) {
     std::printf("No picture: gnuplot is not installed or failed\n");
   }
@@ -106,6 +94,7 @@ int run(const options& given, const processes& all) {
   const toleranced_carrier mechanism(points, heights(given));
   const block_store blocks(given, points);
   const auto missing = all.from_first([&] {
+    example::require_folder(given.out);
     const auto result = blocks.missing();
     if (!given.summary_only) {
       std::filesystem::create_directories(blocks.folder());
@@ -141,12 +130,7 @@ int run(const options& given, const processes& all) {
 
 int main(int argc, char** argv) {
   const auto guarded = [](const auto& body) {
-    try {
-      return body();
-    } catch (const std::exception& error) {
-      std::cerr << "tolerance_study: " + std::string(error.what()) + "\n" << std::flush;
-      return 1;
-    }
+    return example::run_program("tolerance_study", body);
   };
   std::optional<tolerance_study::options> given;
   const int status = guarded([&] {

@@ -108,13 +108,13 @@ inline void print(const results& r, const hardpoints& points) {
 }
 
 [[nodiscard]] inline std::string summary_csv(const results& r) {
-  std::string text = "u";
+  std::vector<std::string> names{"u"};
   for (const std::string name : angle_names) {
     for (const char* column : {"design", "linear sd", "sampled sd", "mean", "2.5 %", "97.5 %"}) {
-      text += "," + name + " " + column;
+      names.push_back(name + " " + column);
     }
   }
-  text += "\n";
+  std::string text = duet::csv_header(names);
   for (std::size_t row = 0; row < r.heights.size(); ++row) {
     std::vector<double> numbers{r.heights[row]};
     for (const auto& spreads : r.spreads) {
@@ -129,19 +129,19 @@ inline void print(const results& r, const hardpoints& points) {
 
 /// Degrees per metre: a line per coordinate, toe-in and camber at every height.
 [[nodiscard]] inline std::string sensitivities_csv(const results& r, const hardpoints& points) {
-  std::string text = "coordinate";
+  std::vector<std::string> names{"coordinate"};
   for (const double u : r.heights) {
-    text += ",toe-in at " + duet::to_text(u) + ",camber at " + duet::to_text(u);
+    for (const std::string name : angle_names) {
+      names.push_back(name + " at " + duet::to_text(u));
+    }
   }
-  text += "\n";
+  std::string text = duet::csv_header(names);
   for (int j = 0; j < coordinate_count; ++j) {
-    std::string name = coordinate_name(points, j);
-    std::replace(name.begin(), name.end(), ',', ' ');
     std::vector<double> numbers;
     for (const sensitivity& s : r.sensitivities) {
       numbers.insert(numbers.end(), {s(0, j), s(1, j)});
     }
-    text += name + "," + duet::csv_line(numbers);
+    text += duet::csv_name(coordinate_name(points, j)) + "," + duet::csv_line(numbers);
   }
   return text;
 }

@@ -58,11 +58,12 @@ using named_curve = std::pair<std::string, error_curve>;
 /// u, then δ_E and dδ_E in percent for every curve.
 inline std::string errors_csv(const std::vector<double>& samples,
                               const std::vector<named_curve>& curves) {
-  std::string text = "u";
+  std::vector<std::string> names{"u"};
   for (const auto& [name, curve] : curves) {
-    text += ",delta_E " + name + ",ddelta_E " + name;
+    names.push_back("delta_E " + name);
+    names.push_back("ddelta_E " + name);
   }
-  text += "\n";
+  std::string text = duet::csv_header(names);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     std::vector<double> row{samples[i]};
     for (const auto& [name, curve] : curves) {

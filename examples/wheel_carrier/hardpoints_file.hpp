@@ -36,7 +36,7 @@ inline hardpoints read_hardpoints(const std::string& path) {
     } else if (rods == 5) {
       throw file_error(path, row.line, "a sixth rod; the carrier has five");
     } else {
-      result.rods[rods++] = {row.name, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
+      result.rods[rods++] = {duet::printable(row.name), {x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
     }
   }
   if (rods != 5) {

@@ -12,12 +12,13 @@
 #include "splines.hpp"
 #include "table.hpp"
 
+#include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
+#include "../support/program.hpp"
 #include <duet/core/csv.hpp>
 
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -161,10 +162,10 @@ std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
     made.push_back(equal_arc_table(mechanism, arcs, rows));
     columns.push_back({double(rows)});
   }
-  std::string csv = "rows";
+  std::vector<std::string> names{"rows"};
   for (const auto& [spline_name, ends] : all_curves) {
     std::printf("\n  %-34s", (std::string(spline_name) + ", " + ends).c_str());
-    csv += std::string(",") + spline_name + " " + ends;
+    names.push_back(std::string(spline_name) + " " + ends);
     for (std::size_t i = 0; i < made.size(); ++i) {
       const error_curve e = errors(states, make_curve(spline_name, made[i], ends, known));
       columns[i].push_back(summarise(e.delta_first).maximum);
@@ -172,7 +173,7 @@ std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
     }
   }
   std::printf("\n");
-  csv += "\n";
+  std::string csv = duet::csv_header(names);
   for (const auto& column : columns) {
     csv += csv_line(column);
   }
@@ -180,6 +181,7 @@ std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
 }
 
 void run(const options& given) {
+  example::require_folder(given.out);
   const bool has_reference = !given.table || given.hardpoints;
   const carrier mechanism(given.hardpoints ? read_hardpoints(*given.hardpoints)
                                            : published_hardpoints());
@@ -244,7 +246,7 @@ void run(const options& given) {
              example::draw(given.out, "splines", "1000,900", splines_script(splines)));
   }
   std::printf("\nTables%s are in %s\n", has_reference && drawn ? " and pictures (SVG, PNG)" : "",
-              given.out.c_str());
+              duet::printable(given.out).c_str());
   if (!drawn) {
     std::printf("No pictures: gnuplot is not installed or failed\n");
   }
@@ -264,13 +266,10 @@ void run(const options& given) {
 } // namespace wheel_carrier
 
 int main(int argc, char** argv) {
-  try {
+  return example::run_program("wheel_carrier", [&] {
     if (const auto given = wheel_carrier::parse_options(argc, argv)) {
       wheel_carrier::run(*given);
     }
     return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "wheel_carrier: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

@@ -9,7 +9,7 @@
 #include <duet/core/csv.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/parallel_for.hpp>
-#include <duet/core/progress.hpp>
+#include <duet/core/progress_line.hpp>
 #include <duet/core/vector_sine_cosine.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/chunked.hpp>

@@ -6,12 +6,9 @@
 #include <doctest/doctest.h>
 
 #include <array>
-#include <chrono>
-#include <iostream>
+#include <cstddef>
 #include <limits>
-#include <sstream>
 #include <string>
-#include <thread>
 
 // How a comparison is printed, for people and for programs.
 
@@ -73,28 +70,25 @@ TEST_CASE("for programs") {
         "\"u = 1, w = (0, 2)\",\"u = 1, w = (0, 1)\"\n");
 }
 
-TEST_CASE("a long run says how far it is, a short one nothing") {
-  std::ostringstream caught;
-  std::streambuf* const original = std::cerr.rdbuf(caught.rdbuf());
-  const auto run = [](int milliseconds, bool shows_progress) {
-    const auto slow = [=](auto x) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-      return x;
-    };
-    duet::comparison_options options;
-    options.samples = 40;
-    options.shows_progress = shows_progress;
-    return duet::compare<double>(
-        "slow", slow, [](auto x) { return x; }, duet::sampler(duet::real_numbers{}), options);
+TEST_CASE("a run says how far it is, and may be ended") {
+  std::size_t told = 0, last = 40;
+  const auto report = [&](const duet::progress& p) {
+    CHECK(p.done == ++told);
+    CHECK(p.count == 40);
+    return p.done < last;
   };
-  CHECK(run(0, true));
-  CHECK(caught.str().empty());
-  CHECK(run(60, false));
-  CHECK(caught.str().empty());
-  CHECK(run(60, true));
-  std::cerr.rdbuf(original);
-  CHECK(caught.str().starts_with("\rduet: compare \"slow\": "));
-  CHECK(caught.str().ends_with(" of 40\n"));
+  const auto run = [&] {
+    return duet::compare<double>(
+        "same", [](auto x) { return x; }, [](auto x) { return x; },
+        duet::sampler(duet::real_numbers{}), {.samples = 40, .report = report});
+  };
+  CHECK(run());
+  CHECK(told == 40);
+  told = 0;
+  last = 7;
+  CHECK_THROWS_WITH_AS(static_cast<void>(run()), "duet: cancelled with 7 of 40 elements done",
+                       duet::cancelled);
+  CHECK(told == 7);
 }
 
 } // namespace test_comparison_reports

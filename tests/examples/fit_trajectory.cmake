@@ -46,6 +46,7 @@ function(expect_fault text content)
   file(WRITE ${folder}/rows.txt "${content}")
   execute_process(COMMAND ${program} --out out rows.txt WORKING_DIRECTORY ${folder}
     RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  remove_progress(error)
   if(NOT result EQUAL 0 OR NOT error MATCHES "^${text}\n$")
     message(FATAL_ERROR "status ${result}, says\n${error}instead of: ${text}")
   endif()

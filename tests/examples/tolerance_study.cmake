@@ -30,6 +30,7 @@ run(1 "of blocks 0-3 in out/samples are missing: 0-3; run again" --samples 1000 
 function(study expected_result expected_output expected_error)
   execute_process(COMMAND ${program} --out out --samples 1000 --rows 3 ${ARGN} WORKING_DIRECTORY ${folder}
     RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  remove_progress(error)
   if(NOT result EQUAL expected_result OR NOT output MATCHES "${expected_output}")
     message(FATAL_ERROR "${ARGN}: status ${result}, prints\n${output}${error}"
       "instead of status ${expected_result} and: ${expected_output}")

@@ -52,28 +52,30 @@ if(NOT result EQUAL 1 OR NOT times EQUAL 1)
   message(FATAL_ERROR "status ${result}\n${error}")
 endif()
 
-# The second of three processes computes block 1 and is killed when it comes to write it, which it cannot before: the
-# file is a pipe that nobody reads. The others have written their blocks.
+# The second of three processes computes block 1 and is killed when it comes to write it, which it cannot before: it
+# runs in another folder, where the file is a pipe that nobody reads. The others have written their blocks.
 list(JOIN options " " words)
 file(WRITE ${folder}/kill.sh "
 set -eu
-mkdir -p killed/samples
-mkfifo killed/samples/00001.csv.part
-\"$1\" -n 3 sh -c 'echo $$ >pid.\${OMPI_COMM_WORLD_RANK:-$PMI_RANK}; exec \"$@\"' sh \"$2\" ${words} --out killed &
+mkdir -p other/killed/samples
+mkfifo other/killed/samples/00001.csv
+\"$1\" -n 3 sh -c '
+  if [ \${OMPI_COMM_WORLD_RANK:-$PMI_RANK} = 1 ]; then
+    cd other
+    echo $$ >pid
+  fi
+  exec \"$@\"' sh \"$2\" ${words} --out killed &
 run=$!
-tries=0
-until [ -s pid.1 ] && [ -e killed/samples/00000.csv ] && [ -e killed/samples/00002.csv ] &&
+until [ -s other/pid ] && [ -e killed/samples/00000.csv ] && [ -e killed/samples/00002.csv ] &&
       [ -e killed/samples/00003.csv ]; do
-  tries=$((tries + 1))
-  [ $tries -lt 600 ] || { kill $run; echo 'the blocks do not come'; exit 2; }
+  kill -0 $run
   sleep 0.1
 done
-kill -9 \"$(cat pid.1)\"
+kill -9 \"$(cat other/pid)\"
 if wait $run; then
   echo 'a process was killed, yet mpirun succeeded'
   exit 3
 fi
-rm killed/samples/00001.csv.part
 ")
 execute_process(COMMAND sh kill.sh ${mpirun} ${program} WORKING_DIRECTORY ${folder}
   RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)

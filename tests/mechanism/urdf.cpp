@@ -126,6 +126,80 @@ TEST_CASE("cycles, broken and missing files") {
   CHECK(message() == file + "cannot open file");
 }
 
+TEST_CASE("nesting, and what a parser makes of it") {
+  const std::string file = "duet: read_urdf: " + path + ": ";
+  const auto says = [&](const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+    return message("a", "a");
+  };
+  const auto nested = [](std::size_t depth, const std::string& open, const std::string& close) {
+    std::string text = "<robot><link name=\"a\"/>";
+    for (std::size_t i = 0; i < depth; ++i) {
+      text += open;
+    }
+    for (std::size_t i = 0; i < depth; ++i) {
+      text += close;
+    }
+    return text + "</robot>\n";
+  };
+  CHECK(says(nested(99, "<x>", "</x>")).empty());
+  const std::string deep = file + "line 1: elements are nested more than 100 deep";
+  CHECK(says(nested(100, "<x>", "</x>")) == deep);
+  CHECK(says(nested(200000, "<x>", "</x>")) == deep);
+  // End tags that are none.
+  for (const std::string none :
+       {"<!--</x>-->", "<![CDATA[</x>]]>", "<?p </x>?>", "<y z='</x>'/>", "<y z=\"/></x>\"/>"}) {
+    CHECK(says(nested(101, "<x>" + none, "</x>")) == deep);
+    CHECK(says(nested(50, "<x>" + none, "</x>")).empty());
+  }
+  // Tags that are none.
+  CHECK(says(nested(1, "<!--<x><x>--><?p <x>?><y z='<x>' w = \"<x>\" /><![CDATA[<x>]]>", ""))
+            .empty());
+  CHECK(says("<robot>\n<link name=\"a\"></robot>\n</link>") ==
+        file + "line 2: </robot> where </link> is expected");
+  CHECK(says("<robot/>\n</robot>") == file + "line 2: </robot> where nothing is open");
+  CHECK(says("<robot>\n<link name=\"a\">\n</link>\n") == file + "line 4: no </robot>");
+  CHECK(says("<robot>\n<!-- </robot>") == file + "line 2: no -->");
+  CHECK(says("<robot a=>") == file + "line 1: no quote before an attribute's value");
+  CHECK(says("<robot a>") == file + "line 1: no = after an attribute's name");
+  CHECK(says("<robot a=\"b>") == file + "line 1: no \"");
+  CHECK(says("<robot / >") == file + "line 1: no > after <robot");
+  CHECK(says("< robot>") == file + "line 1: no name after <");
+  CHECK(says(std::string("<robot>\n\0</robot>", 18)) == file + "line 2: holds a byte 0");
+  CHECK(says("<!DOCTYPE robot [<!ENTITY a \"&b;&b;\">]><robot>&a;</robot>") ==
+        file + "line 1: declarations, as <!DOCTYPE, are not supported");
+  CHECK(says("") == file + "no element <robot>");
+  CHECK(says("\xef\xbb\xbf<robot><link name=\"a\"/></robot>").empty()); // a byte order mark
+  CHECK(says(std::string((1U << 24U) + 1, ' ')) == file + "has more than 16 MB");
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+  CHECK(message() == file + "cannot be read, it may be a folder");
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("links that are fixed to one another do not count as joints") {
+  constexpr int count = 300;
+  std::string inside = "<link name=\"l0\"/>";
+  for (int i = 1; i <= count; ++i) {
+    const std::string link = "l" + std::to_string(i);
+    inside += "<link name=\"" + link + "\"/><joint type=\"fixed\" name=\"" + link +
+              "\"><parent link=\"l" + std::to_string(i - 1) + "\"/><child link=\"" + link +
+              "\"/></joint>";
+  }
+  write(inside);
+  CHECK(read_urdf(path, "l0", "l" + std::to_string(count)).links().size() == count + 1);
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("what a terminal would obey is not repeated") {
+  write("<link name=\"a\"/><link name=\"\x1b[2J\"/>"
+        "<joint name=\"&#27;]0;x&#7;\"><parent link=\"a\"/><child link=\"\x1b[2J\"/></joint>");
+  CHECK(message("a", "\x1b[2J") ==
+        "duet: read_urdf: " + path + ": <joint name=\"\\x1b]0;x\\x07\">: no attribute \"type\"");
+  CHECK(message("a", "\n") == "duet: read_urdf: " + path + ": no link \"\\n\"");
+  std::filesystem::remove(path);
+}
+
 TEST_CASE("real robots") {
   const auto data = duet_test::outside_data("urdf");
   if (!data) {

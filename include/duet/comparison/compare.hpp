@@ -6,17 +6,16 @@
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
 #include <duet/comparison/simplify.hpp>
+#include <duet/core/progress.hpp>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iostream>
 #include <limits>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 /// \file
@@ -26,44 +25,13 @@ namespace duet {
 
 /// Settings of `compare`.
 struct comparison_options {
-  std::size_t samples = 1000; ///< special points, points of the caller and random ones together
-  std::uint64_t seed = 1;     ///< of the random points; the same seed gives the same result
-  double tolerance = 100;     ///< in units of the last place
-  bool shows_progress = true; ///< a line on standard error where a run takes over two seconds
+  std::size_t samples = 1000;    ///< special points, points of the caller and random ones together
+  std::uint64_t seed = 1;        ///< of the random points; the same seed gives the same result
+  double tolerance = 100;        ///< in units of the last place
+  progress_callback report = {}; ///< told after every input, may end the run: see `progress_line`
 };
 
 namespace detail {
-
-/// A line on standard error that counts, from the third second on.
-class progress_line {
-public:
-  progress_line(std::string label, std::size_t total, bool is_shown)
-      : label_(std::move(label)), total_(total), is_shown_(is_shown) {}
-  progress_line(const progress_line&) = delete;
-  progress_line& operator=(const progress_line&) = delete;
-  ~progress_line() {
-    if (printed_) {
-      std::cerr << "\n";
-    }
-  }
-  void advance(std::size_t done) {
-    const auto now = clock::now();
-    if (is_shown_ && now >= next_) {
-      next_ = now + std::chrono::seconds(1);
-      printed_ = true;
-      std::cerr << "\rduet: compare \"" << label_ << "\": " << done << " of " << total_
-                << std::flush;
-    }
-  }
-
-private:
-  using clock = std::chrono::steady_clock;
-  std::string label_;
-  std::size_t total_;
-  bool is_shown_;
-  bool printed_ = false;
-  clock::time_point next_ = clock::now() + std::chrono::seconds(2);
-};
 
 /// What the differences in several precisions, the least precise first, say together.
 ///
@@ -115,11 +83,9 @@ template <class... T, class F, class G, class Inputs>
   result.samples = points.size();
   result.tolerance = options.tolerance;
   result.errors = {worst_errors{.digits = std::numeric_limits<T>::digits10}...};
-  progress_line progress(label, points.size(), options.shows_progress);
   coordinates worst_point;
   double worst_ulps = -1;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    progress.advance(i);
     const auto differences = contest.at(points[i]);
     const verdict found = judged(differences, options.tolerance);
     double ulps = 0;
@@ -134,6 +100,10 @@ template <class... T, class F, class G, class Inputs>
       ulps = std::max(ulps, differences[k].ulps);
     }
     ++result.counts[std::size_t(found)];
+    const progress now{i + 1, points.size()};
+    if (options.report && !options.report(now) && now.done < now.count) {
+      throw cancelled(now);
+    }
     if (found == verdict::agrees) {
       continue;
     }
@@ -169,7 +139,8 @@ template <class... T, class F, class G, class Inputs>
 ///
 /// A failing input is simplified, coordinate by coordinate, to the simplest one that still gets the
 /// same verdict. Deterministic for a given seed.
-/// \throws invalid_input where the two return different numbers of components
+/// \throws invalid_input where the two return different numbers of components; cancelled where
+/// `options.report` returned `false`
 ///
 /// Example: `compare("d sin", [](auto x) { return derivative([](auto t) { return sin(t); }, x)
 /// .derivative; }, [](auto x) { return cos(x); }, sampler(real_numbers{-3, 3}))`

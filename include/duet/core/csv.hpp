@@ -1,14 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/file.hpp>
 #include <duet/core/number_text.hpp>
+#include <duet/core/printable.hpp>
 
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,15 +17,6 @@
 /// Comma-separated values, read and written the same under every locale.
 
 namespace duet {
-
-/// A file that cannot be used: `path:line: reason`.
-class file_error : public std::runtime_error {
-public:
-  file_error(const std::string& path, const std::string& reason)
-      : std::runtime_error(path + ": " + reason) {}
-  file_error(const std::string& path, std::size_t line, const std::string& reason)
-      : std::runtime_error(path + ":" + std::to_string(line) + ": " + reason) {}
-};
 
 /// A row of a file, as numbers.
 struct csv_row {
@@ -109,6 +100,26 @@ private:
   bool has_header_ = false;
 };
 
+/// A name as a cell: without what would end the cell or the line, or begin a comment.
+[[nodiscard]] inline std::string csv_name(const std::string& text) {
+  std::string name;
+  for (const char c : printable(text)) {
+    if (c != ',' && c != '"' && c != '#') {
+      name += c;
+    }
+  }
+  return name;
+}
+
+/// The first line of a table: the names of its columns.
+[[nodiscard]] inline std::string csv_header(const std::vector<std::string>& names) {
+  std::string line;
+  for (const std::string& name : names) {
+    line += (line.empty() ? "" : ",") + csv_name(name);
+  }
+  return line + "\n";
+}
+
 /// One line of numbers.
 inline std::string csv_line(const std::vector<double>& numbers) {
   std::string line;
@@ -116,25 +127,6 @@ inline std::string csv_line(const std::vector<double>& numbers) {
     line += (line.empty() ? "" : ",") + to_text(x);
   }
   return line + "\n";
-}
-
-/// Writes a whole file or none: under another name first, then renamed.
-/// \throws file_error
-inline void write_file(const std::string& path, const std::string& content) {
-  const std::string draft = path + ".part";
-  {
-    std::ofstream out(draft, std::ios::binary);
-    out << content;
-    out.flush();
-    if (!out) {
-      std::remove(draft.c_str());
-      throw file_error(path, "cannot be written");
-    }
-  }
-  if (std::rename(draft.c_str(), path.c_str()) != 0) {
-    std::remove(draft.c_str());
-    throw file_error(path, "cannot be written");
-  }
 }
 
 } // namespace duet

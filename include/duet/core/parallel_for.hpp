@@ -75,8 +75,17 @@ private:
   void tell(std::size_t size) {
     const std::lock_guard lock(mutex_);
     done_ += size;
-    if (!has_stopped_ && !report_({done_, count_})) {
-      has_stopped_ = true;
+    if (has_stopped_) {
+      return;
+    }
+    try {
+      if (!report_({done_, count_})) {
+        has_stopped_ = true;
+      }
+    } catch (...) {
+      has_stopped_ =
+          true; // while the others still wait for the lock, so that they do not ask again
+      throw;
     }
   }
   void keep(std::size_t first, std::exception_ptr error) {

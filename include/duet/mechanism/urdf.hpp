@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/printable.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/mechanism/urdf_reader.hpp>
@@ -42,7 +43,7 @@ public:
     const auto found = std::find_if(links_.begin(), links_.end(),
                                     [&](const named_link& each) { return each.name == name; });
     if (found == links_.end()) {
-      throw invalid_input("duet: no link \"" + std::string(name) + "\" in the chain");
+      throw invalid_input(printable("duet: no link \"" + std::string(name) + "\" in the chain"));
     }
     return found->frame;
   }
@@ -60,7 +61,8 @@ private:
 /// radians. Joint limits are those of the `limit` elements.
 ///
 /// \tparam Capacity  how many moving joints there may be; their number is known at run time
-/// \throws invalid_input with file and element for what cannot be read: XML, missing elements and
+/// \throws invalid_input with file and element for what cannot be read: XML that is not well
+/// formed, nested more than 100 deep or has a document type, missing elements and
 /// attributes, bad numbers, axes that are no unit vectors, unknown links, cycles, links with two
 /// joints above them, joints that mimic others or are of other kinds than revolute, continuous,
 /// prismatic and fixed; and for too many joints

@@ -3,9 +3,11 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/number_text.hpp>
+#include <duet/core/printable.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/mechanism/table_arithmetic.hpp>
+#include <duet/mechanism/xml_check.hpp>
 
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
@@ -14,7 +16,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <fstream>
 #include <map>
+#include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,7 +40,8 @@ public:
   explicit urdf_reader(std::string path) : path_(std::move(path)) {
     Xml document;
     try {
-      boost::property_tree::read_xml(path_, document);
+      std::istringstream text(checked_text());
+      boost::property_tree::read_xml(text, document);
     } catch (const boost::property_tree::xml_parser_error& e) {
       fail(e.line() > 0 ? "line " + std::to_string(e.line()) : "", e.message());
     }
@@ -45,7 +51,7 @@ public:
     }
     for (const auto& [tag, element] : *robot) {
       if (tag == "link") {
-        links_.push_back(attribute(element, "<link>", "name"));
+        links_.insert(attribute(element, "<link>", "name"));
       } else if (tag == "joint") {
         add_joint(element);
       }
@@ -57,7 +63,7 @@ public:
     require_link("", base);
     require_link("", tip);
     std::vector<const Xml*> result;
-    std::vector<std::string> seen{tip};
+    std::set<std::string> seen{tip};
     for (std::string link = tip; link != base;) {
       const auto above = joint_above_.find(link);
       if (above == joint_above_.end()) {
@@ -71,10 +77,9 @@ public:
       result.push_back(&above->second);
       link = attribute(above->second.get_child("parent"), where(above->second), "link");
       require_link(where(above->second) + " <parent>", link);
-      if (std::find(seen.begin(), seen.end(), link) != seen.end()) {
+      if (!seen.insert(link).second) {
         fail(where(above->second), "closes a cycle at the link \"" + link + "\"");
       }
-      seen.push_back(link);
     }
     std::reverse(result.begin(), result.end());
     return result;
@@ -124,11 +129,34 @@ public:
     return attribute(element.get_child("child"), where(element), "link");
   }
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
-    throw invalid_input("duet: read_urdf: " + path_ + ": " + (where.empty() ? "" : where + ": ") +
-                        what);
+    throw invalid_input(
+        printable("duet: read_urdf: " + path_ + ": " + (where.empty() ? "" : where + ": ") + what));
   }
 
 private:
+  /// The file, if it may be given to the parser.
+  [[nodiscard]] std::string checked_text() const {
+    constexpr std::size_t most = std::size_t(1) << 24U;
+    std::ifstream in(path_, std::ios::binary);
+    if (!in) {
+      fail("", "cannot open file");
+    }
+    if (in.peek(); in.bad()) {
+      fail("", "cannot be read, it may be a folder");
+    }
+    std::string text;
+    for (std::array<char, 4096> part{}; in.read(part.data(), part.size()), in.gcount() > 0;) {
+      text.append(part.data(), std::size_t(in.gcount()));
+      if (text.size() > most) {
+        fail("", "has more than 16 MB");
+      }
+    }
+    if (const auto fault = xml_check(text).fault()) {
+      fail("line " + std::to_string(fault->line), fault->reason);
+    }
+    return text;
+  }
+
   [[nodiscard]] static std::string where(const Xml& joint) {
     return "<joint name=\"" + name(joint) + "\">";
   }
@@ -220,7 +248,7 @@ private:
   }
 
   void require_link(const std::string& where, const std::string& link) const {
-    if (std::find(links_.begin(), links_.end(), link) == links_.end()) {
+    if (!links_.contains(link)) {
       fail(where, "no link \"" + link + "\"");
     }
   }
@@ -239,7 +267,7 @@ private:
   }
 
   std::string path_;
-  std::vector<std::string> links_;
+  std::set<std::string> links_;
   std::map<std::string, Xml> joint_above_; ///< by the link that it moves
 };
 

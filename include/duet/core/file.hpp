@@ -1,0 +1,221 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/printable.hpp>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+/// \file
+/// Files written as a whole or not at all.
+
+namespace duet {
+
+/// A file that cannot be used: `path:line: reason`, on one line whatever it quotes.
+class file_error : public std::runtime_error {
+public:
+  file_error(const std::string& path, const std::string& reason)
+      : std::runtime_error(printable(path + ": " + reason)) {}
+  file_error(const std::string& path, std::size_t line, const std::string& reason)
+      : std::runtime_error(printable(path + ":" + std::to_string(line) + ": " + reason)) {}
+};
+
+namespace detail {
+
+/// `path: cannot be written: reason`
+[[nodiscard]] inline file_error cannot_write(const std::string& path, int error) {
+  return {path, "cannot be written: " + std::generic_category().message(error)};
+}
+
+/// A stream of C, closed when it goes.
+class c_file {
+public:
+  c_file(const std::string& path, const char* mode) : file_(std::fopen(path.c_str(), mode)) {}
+  c_file(const c_file&) = delete;
+  c_file& operator=(const c_file&) = delete;
+  ~c_file() { close(); }
+
+  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
+  /// Is all of it written? Else errno says why not.
+  [[nodiscard]] bool write(const std::string& content) {
+    return std::fwrite(content.data(), 1, content.size(), file_) == content.size() &&
+           std::fflush(file_) == 0;
+  }
+  /// \return no error
+  bool close() {
+    std::FILE* const file = std::exchange(file_, nullptr);
+    return file == nullptr || std::fclose(file) == 0;
+  }
+
+private:
+  std::FILE* file_;
+};
+
+/// Is there something at a path that is neither a file nor a folder: a device, a pipe, a socket?
+[[nodiscard]] inline bool is_special_file(const std::string& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  return exists(status) && !is_regular_file(status) && !is_directory(status);
+}
+
+/// The file that a path leads to over all links, there or not.
+/// \throws file_error where something is there that is no file, or one that may not be written
+[[nodiscard]] inline std::filesystem::path link_target(const std::string& path) {
+  constexpr int most_links = 40;
+  std::filesystem::path result(path);
+  std::error_code error;
+  for (int links = 0; is_symlink(std::filesystem::symlink_status(result, error)); ++links) {
+    if (links == most_links) {
+      throw cannot_write(path, ELOOP);
+    }
+    result = result.parent_path() / std::filesystem::read_symlink(result);
+  }
+  const auto status = std::filesystem::status(result, error);
+  if (!status_known(status)) {
+    throw cannot_write(path, error.value());
+  }
+  if (exists(status)) {
+    if (!is_regular_file(status)) {
+      throw cannot_write(path, is_directory(status) ? EISDIR : EINVAL);
+    }
+    if (!c_file(result.string(), "r+b").is_open()) { // changes nothing
+      throw cannot_write(path, errno);
+    }
+  }
+  return result;
+}
+
+/// The names of all drafts, for handlers of signals: these can neither lock nor allocate.
+inline std::array<std::atomic<const char*>, 64> draft_names{};
+
+} // namespace detail
+
+/// Removes drafts: for the handler of a signal that ends the program. Signal-safe where
+/// `std::remove` is, as on POSIX.
+inline void remove_drafts() noexcept {
+  for (std::atomic<const char*>& name : detail::draft_names) {
+    if (const char* const draft = name.exchange(nullptr)) {
+      std::remove(draft);
+    }
+  }
+}
+
+/// A file under another name, in the same folder, until it is whole: then it takes its place, and
+/// has the permissions of the one that was there. Without `commit` it is removed.
+///
+/// Links are followed, so that a link stays one.
+class file_draft {
+public:
+  /// Makes the draft, an empty file.
+  /// \throws file_error where the file cannot be written
+  explicit file_draft(const std::string& path) : path_(path), target_(detail::link_target(path)) {
+    for (int number = 0;; ++number) {
+      // Nobody else has this name: files are made, not opened.
+      const auto time = std::chrono::system_clock::now().time_since_epoch().count();
+      name_ = (target_.parent_path() /
+               (".duet-" + std::to_string(time) + "-" + std::to_string(number) + ".part"))
+                  .string();
+      enlist();
+      if (detail::c_file(name_, "wbx").is_open()) {
+        return;
+      }
+      const int error = errno;
+      strike();
+      if (error != EEXIST || number == 1000) {
+        throw detail::cannot_write(path, error);
+      }
+    }
+  }
+  file_draft(const file_draft&) = delete;
+  file_draft& operator=(const file_draft&) = delete;
+  ~file_draft() {
+    if (!name_.empty()) {
+      std::remove(name_.c_str());
+      strike();
+    }
+  }
+
+  /// Where it is until then.
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+  /// \throws file_error
+  void write(const std::string& content) const {
+    detail::c_file out(name_, "wb");
+    if (!out.is_open() || !out.write(content) || !out.close()) {
+      throw detail::cannot_write(path_, errno);
+    }
+  }
+
+  /// Puts it in its place.
+  /// \throws file_error
+  void commit() {
+    std::error_code error;
+    const auto before = std::filesystem::status(target_, error);
+    if (exists(before)) {
+      std::filesystem::permissions(name_, before.permissions(), error);
+    }
+    std::filesystem::rename(name_, target_, error);
+    if (error) {
+      throw detail::cannot_write(path_, error.value());
+    }
+    strike();
+    name_.clear();
+  }
+
+private:
+  void enlist() {
+    for (std::atomic<const char*>& name : detail::draft_names) {
+      const char* free = nullptr;
+      if (name.compare_exchange_strong(free, name_.c_str())) {
+        return;
+      }
+    }
+  }
+  void strike() {
+    for (std::atomic<const char*>& name : detail::draft_names) {
+      const char* mine = name_.c_str();
+      if (name.compare_exchange_strong(mine, nullptr)) {
+        return;
+      }
+    }
+  }
+
+  std::string path_;
+  std::filesystem::path target_;
+  std::string name_;
+};
+
+/// Finds out before the work whether `write_file` could write its result; changes nothing.
+/// \throws file_error
+inline void require_writable(const std::string& path) {
+  if (!detail::is_special_file(path)) {
+    file_draft{path};
+  }
+}
+
+/// Writes a whole file or none: a `file_draft`, which then takes the file's place. Links are
+/// followed; to a device or a pipe it writes directly.
+/// \throws file_error
+inline void write_file(const std::string& path, const std::string& content) {
+  if (detail::is_special_file(path)) {
+    detail::c_file out(path, "wb");
+    if (!out.is_open() || !out.write(content) || !out.close()) {
+      throw detail::cannot_write(path, errno);
+    }
+    return;
+  }
+  file_draft draft(path);
+  draft.write(content);
+  draft.commit();
+}
+
+} // namespace duet

@@ -1,0 +1,76 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+/// \file
+/// Text from outside, as a message may show it.
+
+namespace duet {
+
+namespace detail {
+
+/// The bytes of the UTF-8 character that a text begins with; 0 where it begins with none, or with
+/// one that tells a terminal what to do: a control character, a line separator, a change of the
+/// direction of writing.
+[[nodiscard]] inline std::size_t shown_bytes(std::string_view text) {
+  const auto byte = [text](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) {
+    return first >= 0x20 && first != 0x7f ? 1 : 0;
+  }
+  const std::size_t count = first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+  if (first < 0xc2 || first > 0xf4) {
+    return 0;
+  }
+  unsigned code = first & (0x7fU >> count);
+  for (std::size_t i = 1; i < count; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80) {
+      return 0;
+    }
+    code = (code << 6U) | (byte(i) & 0x3fU);
+  }
+  const bool is_character = count == 2   ? code >= 0x80
+                            : count == 3 ? code >= 0x800 && (code < 0xd800 || code > 0xdfff)
+                                         : code >= 0x10000 && code <= 0x10ffff;
+  const bool is_control =
+      code < 0xa0 || (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return is_character && !is_control ? count : 0;
+}
+
+} // namespace detail
+
+/// Text from outside (a file's name, its cells, an argument) as a message may show it: on one line,
+/// and without what a terminal would obey. Control characters and bytes that are no UTF-8 become
+/// `\n`, `\t`, `\r` or `\x1b`; of more than 1000 bytes the middle is left out.
+[[nodiscard]] inline std::string printable(std::string_view text) {
+  constexpr std::size_t most = 1000;
+  if (text.size() > most) {
+    return printable(text.substr(0, most / 2)) + " ... " +
+           printable(text.substr(text.size() - most / 2));
+  }
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string result;
+  while (!text.empty()) {
+    std::size_t count = detail::shown_bytes(text);
+    if (count > 0) {
+      result += text.substr(0, count);
+    } else {
+      count = 1;
+      const auto byte = static_cast<unsigned char>(text[0]);
+      if (byte == '\n' || byte == '\t' || byte == '\r') {
+        result += byte == '\n' ? "\\n" : byte == '\t' ? "\\t" : "\\r";
+      } else {
+        result += {'\\', 'x', digits[byte / 16U], digits[byte % 16U]};
+      }
+    }
+    text.remove_prefix(count);
+  }
+  return result;
+}
+
+} // namespace duet

@@ -1,0 +1,193 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/message.hpp"
+
+#include <duet/core/file.hpp>
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace test_core_file {
+namespace {
+
+namespace fs = std::filesystem;
+using duet::write_file;
+
+/// A folder of its own, empty at first and gone at last.
+class playground {
+public:
+  explicit playground(const char* name)
+      : path_(fs::absolute(std::string("test_core_file_") + name)) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~playground() { fs::remove_all(path_); }
+  [[nodiscard]] std::string at(const std::string& name) const { return path_ / name; }
+  /// How many things are in it: drafts would be counted, too.
+  [[nodiscard]] auto count() const {
+    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
+  }
+
+private:
+  fs::path path_;
+};
+
+std::string content_of(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string message(const std::string& path) {
+  return duet_test::message_of<duet::file_error>([&] { write_file(path, "x"); });
+}
+
+} // namespace
+
+TEST_CASE("a file is replaced as a whole and keeps its permissions") {
+  const playground here("whole");
+  const std::string path = here.at("a.csv");
+  write_file(path, "first\n");
+  CHECK(content_of(path) == "first\n");
+  fs::permissions(path, fs::perms(0600));
+  write_file(path, std::string(100000, 'x'));
+  CHECK(content_of(path) == std::string(100000, 'x'));
+  CHECK(fs::status(path).permissions() == fs::perms(0600));
+  write_file(path, "");
+  CHECK(content_of(path).empty());
+  CHECK(here.count() == 1);
+}
+
+TEST_CASE("a draft that is given up leaves what was there") {
+  const playground here("draft");
+  const std::string path = here.at("a.csv");
+  write_file(path, "first\n");
+  {
+    const duet::file_draft draft(path);
+    draft.write("second\n");
+    CHECK(here.count() == 2);
+    CHECK(content_of(draft.name()) == "second\n");
+  }
+  CHECK(here.count() == 1);
+  // So does a signal that comes meanwhile.
+  duet::file_draft draft(path);
+  draft.write("second\n");
+  duet::remove_drafts();
+  CHECK(here.count() == 1);
+  CHECK_THROWS_AS(draft.commit(), duet::file_error);
+  CHECK(content_of(path) == "first\n");
+}
+
+TEST_CASE("writers of one file do not mix") {
+  const playground here("writers");
+  const std::string path = here.at("a.csv");
+  const std::string a(200000, 'a'), b(100000, 'b');
+  const auto write_often = [&](const std::string& text) {
+    for (int i = 0; i < 20; ++i) {
+      write_file(path, text);
+    }
+  };
+  std::thread other([&] { write_often(a); });
+  write_often(b);
+  const std::string found = content_of(path);
+  CHECK((found == a || found == b));
+  other.join();
+  CHECK(here.count() == 1);
+}
+
+TEST_CASE("links are followed") {
+  const playground here("links");
+  fs::create_directory(here.at("far"));
+  write_file(here.at("far/a.csv"), "first\n");
+  fs::create_symlink("a.csv", here.at("far/second"));
+  fs::create_symlink("far/second", here.at("link"));
+  write_file(here.at("link"), "second\n");
+  CHECK(fs::is_symlink(here.at("link")));
+  CHECK(fs::is_symlink(here.at("far/second")));
+  CHECK(content_of(here.at("far/a.csv")) == "second\n");
+  // To a file that is not there yet.
+  fs::create_symlink(here.at("far/new.csv"), here.at("dangling"));
+  duet::require_writable(here.at("dangling"));
+  CHECK(!fs::exists(here.at("far/new.csv")));
+  write_file(here.at("dangling"), "new\n");
+  CHECK(fs::is_symlink(here.at("dangling")));
+  CHECK(content_of(here.at("far/new.csv")) == "new\n");
+  CHECK(here.count() == 3);
+  // To nowhere, and round and round.
+  fs::create_symlink("none/new.csv", here.at("nowhere"));
+  CHECK(message(here.at("nowhere")) ==
+        here.at("nowhere") + ": cannot be written: No such file or directory");
+  fs::create_symlink("round", here.at("round"));
+  CHECK(message(here.at("round")).find("round: cannot be written: ") != std::string::npos);
+}
+
+TEST_CASE("devices and pipes are written to and stay what they are") {
+  const playground here("special");
+  const std::string pipe = here.at("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  duet::require_writable(pipe); // does not wait for a reader
+  std::string received;
+  std::thread reader([&] { received = content_of(pipe); });
+  write_file(pipe, "through\n");
+  reader.join();
+  CHECK(received == "through\n");
+  CHECK(fs::is_fifo(pipe));
+  CHECK(here.count() == 1);
+
+  if (fs::is_character_file("/dev/full") && fs::is_character_file("/dev/null")) {
+    write_file("/dev/null", "gone\n");
+    CHECK(message("/dev/full") == "/dev/full: cannot be written: No space left on device");
+    fs::create_symlink("/dev/full", here.at("full"));
+    CHECK(message(here.at("full")) ==
+          here.at("full") + ": cannot be written: No space left on device");
+    CHECK(fs::is_character_file("/dev/full"));
+    CHECK(fs::is_character_file("/dev/null"));
+  }
+}
+
+TEST_CASE("what cannot be written is found before") {
+  const playground here("errors");
+  const auto asked = [](const std::string& path) {
+    return duet_test::message_of<duet::file_error>([&] { duet::require_writable(path); });
+  };
+  CHECK(asked(here.at("a.csv")).empty());
+  for (const auto& [path, reason] :
+       {std::pair(here.at(""), "Is a directory"),
+        std::pair(here.at("none/a.csv"), "No such file or directory"),
+        std::pair(here.at(std::string(300, 'x')), "File name too long")}) {
+    CHECK(asked(path) == message(path));
+    CHECK(message(path) == path + ": cannot be written: " + reason);
+  }
+  CHECK(here.count() == 0);
+  CHECK(message(here.at("none\n\x1b[2J/a.csv")) ==
+        here.at("none\\n\\x1b[2J/a.csv") + ": cannot be written: No such file or directory");
+}
+
+TEST_CASE("files and folders without permission") {
+  if (geteuid() == 0) {
+    MESSAGE("not tested: root may write everywhere");
+    return;
+  }
+  const playground here("permissions");
+  const std::string path = here.at("a.csv");
+  write_file(path, "first\n");
+  fs::permissions(path, fs::perms(0400));
+  CHECK(message(path) == path + ": cannot be written: Permission denied");
+  fs::permissions(path, fs::perms(0600));
+  fs::permissions(here.at(""), fs::perms(0500));
+  CHECK(message(path) == path + ": cannot be written: Permission denied");
+  CHECK(message(here.at("new.csv")).find("Permission denied") != std::string::npos);
+  fs::permissions(here.at(""), fs::perms(0700));
+  CHECK(content_of(path) == "first\n");
+  CHECK(here.count() == 1);
+}
+
+} // namespace test_core_file

@@ -1,0 +1,75 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/core/parallel_for.hpp>
+#include <duet/core/progress_line.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+namespace test_core_progress_line {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// What a run of three steps says.
+std::string said(bool is_terminal, double interval) {
+  std::FILE* const file = std::tmpfile();
+  {
+    duet::progress_line line("things", {file, is_terminal, interval});
+    for (std::size_t i = 1; i <= 3; ++i) {
+      line({i, 3});
+    }
+  }
+  std::rewind(file);
+  std::string text;
+  for (int c = 0; (c = std::fgetc(file)) != EOF;) {
+    text += char(c);
+  }
+  std::fclose(file);
+  return text;
+}
+
+} // namespace
+
+TEST_CASE("one line on a terminal, lines elsewhere, nothing of a short run") {
+  CHECK(said(false, 0) ==
+        "progress: 1 of 3 things\nprogress: 2 of 3 things\nprogress: 3 of 3 things\n");
+  CHECK(said(true, 0) ==
+        "\rprogress: 1 of 3 things\rprogress: 2 of 3 things\rprogress: 3 of 3 things\n");
+  CHECK(said(false, never).empty());
+  CHECK(said(true, never).empty());
+}
+
+TEST_CASE("the environment says how often") {
+  const auto interval = [](const char* text) {
+    setenv("DUET_PROGRESS_INTERVAL", text, 1);
+    return duet::progress_display::standard().interval;
+  };
+  const char* const before = std::getenv("DUET_PROGRESS_INTERVAL");
+  const std::string kept = before == nullptr ? "" : before;
+  const bool is_terminal = duet::progress_display::standard().is_terminal;
+  const double otherwise = is_terminal ? 1 : 10;
+  CHECK(interval("0") == 0);
+  CHECK(interval("2.5") == 2.5);
+  CHECK(interval("inf") == never);
+  for (const char* const text : {"", "often", "-1", "nan"}) {
+    CHECK(interval(text) == otherwise);
+  }
+  setenv("DUET_PROGRESS_INTERVAL", kept.c_str(), 1);
+}
+
+TEST_CASE("as the report of a run") {
+  std::FILE* const file = std::tmpfile();
+  duet::progress_line line("calls", {file, false, 0});
+  duet::parallel_for_blocks(
+      4, [](std::size_t, std::size_t) {}, {.threads = 1, .report = line}, 2);
+  CHECK(std::ftell(file) == 2 * long(std::string("progress: 2 of 4 calls\n").size()));
+  std::fclose(file);
+}
+
+} // namespace test_core_progress_line
