@@ -7,68 +7,124 @@
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/resolved_motion.hpp>
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+
 /// \file
-/// The planner of the lecture notes, to the letter (N24).
+/// The planner of the lecture notes (N24), and what their notes 1 and 2 make of it (N25). The copy
+/// of the notes has lost the letter of its first three steps; they are as N19, N22 and N23 have
+/// them.
 
 namespace duet {
 
-/// Settings of `printed_screw_plan`.
+/// Settings of `printed_screw_plan` and `printed_path_plan`.
 struct printed_plan_options {
-  double tau = .01;        ///< of the small step of ScLERP
+  double tau = .01;        ///< of the small step of ScLERP; paths given by poses have none
   double beta = 1;         ///< N23
   double tolerance = 1e-4; ///< how close the tip must come, in units of length and radians
   int iterations = 10000;
 };
 
+namespace detail {
+
+/// Steps of N23 towards `next(k, here)`, k = 1, 2, …, until the tip is close to `goal` after
+/// `fewest` steps or more. `keep(k, joints, pose)` is told every waypoint.
+template <class C, class Next, class Keep>
+[[nodiscard]] stop_reason printed_steps(const C& chain, joint_vector<double, C::joints> theta,
+                                        const dual_quaternion<double>& goal, int fewest,
+                                        const printed_plan_options& options, const Next& next,
+                                        const Keep& keep) {
+  dual_quaternion<double> here = chain.pose(theta);
+  keep(0, theta, here);
+  for (int k = 0;; ++k) {
+    const pose_deviation left = deviation_between(here, goal);
+    if (k >= fewest && left.length <= options.tolerance && left.angle <= options.tolerance) {
+      return stop_reason::reached;
+    }
+    if (k == options.iterations) {
+      return stop_reason::iteration_limit;
+    }
+    try {
+      theta = resolved_step(chain, theta, next(k + 1, here), options.beta);
+    } catch (const invalid_input&) {
+      return stop_reason::singular;
+    }
+    for (int i = 0; i < chain.size(); ++i) {
+      if (!(theta[i] >= chain.limits(i).lower && theta[i] <= chain.limits(i).upper)) {
+        return stop_reason::joint_limit;
+      }
+    }
+    here = chain.pose(theta);
+    keep(k + 1, theta, here);
+  }
+}
+
+} // namespace detail
+
 /// N24, as the notes have it: (1) from the start's pose A_s (2) one step of ScLERP towards the
 /// goal, (3) the joints after it by N23, (4) their pose is the next A_s, (5) until it is close to
-/// the goal.
+/// the goal. By their note 2 this is inverse kinematics too, from any start: the last joints are
+/// the answer.
 ///
 /// For study. Every step starts where the last one ended, so the path drifts from the screw motion
 /// (`deviations`, from its nearest pose); limits of joints are looked at only to stop; and with a
-/// fixed τ of what is left the goal is approached slower and slower.
-/// \throws invalid_input for a start outside the limits and for a goal that is no pose
+/// fixed τ of what is left the goal is approached slower and slower: each step leaves about 1 − βτ
+/// of the way, so β does what τ does. \throws invalid_input for a start outside the limits and for
+/// a goal that is no pose
 template <SerialChain C, VectorLike Start>
 [[nodiscard]] auto printed_screw_plan(const C& chain, const Start& start,
                                       const dual_quaternion<double>& goal,
                                       const printed_plan_options& options = {}) {
   detail::require_problem(chain, start, goal);
   motion_plan<C::joints> plan;
-  auto theta = detail::joint_vector_of(chain, start);
+  const auto theta = detail::joint_vector_of(chain, start);
   const dual_quaternion<double> first = chain.pose(theta);
   const auto motion = screw_parameters(conj(first) * goal);
-  const auto keep = [&](const dual_quaternion<double>& here) {
-    const auto nearest = nearest_on_screw(first, motion, here, 1);
-    detail::add_waypoint(plan, chain, theta, here, nearest.tau,
-                         deviation_between(nearest.pose, here));
-  };
-  dual_quaternion<double> here = first;
-  keep(here);
-  for (;; ++plan.iterations) {
-    const pose_deviation left = deviation_between(here, goal);
-    if (left.length <= options.tolerance && left.angle <= options.tolerance) {
-      plan.reason = stop_reason::reached;
-      return plan;
-    }
-    if (plan.iterations == options.iterations) {
-      plan.reason = stop_reason::iteration_limit;
-      return plan;
-    }
-    try {
-      theta = resolved_step(chain, theta, sclerp(here, goal, options.tau), options.beta);
-    } catch (const invalid_input&) {
-      plan.reason = stop_reason::singular;
-      return plan;
-    }
-    for (int i = 0; i < chain.size(); ++i) {
-      if (!(theta[i] >= chain.limits(i).lower && theta[i] <= chain.limits(i).upper)) {
-        plan.reason = stop_reason::joint_limit;
-        return plan;
-      }
-    }
-    here = chain.pose(theta);
-    keep(here);
+  plan.reason = detail::printed_steps(
+      chain, theta, goal, 0, options,
+      [&](int, const dual_quaternion<double>& here) { return sclerp(here, goal, options.tau); },
+      [&](int k, const auto& joints, const dual_quaternion<double>& here) {
+        const auto nearest = nearest_on_screw(first, motion, here, 1);
+        detail::add_waypoint(plan, chain, joints, here, nearest.tau,
+                             deviation_between(nearest.pose, here));
+        plan.iterations = k;
+      });
+  return plan;
+}
+
+/// N25, note 1: N24 along a path given by poses, the interpolation left out. One step of N23
+/// towards each pose in turn, from wherever the last step ended, and further steps towards the last
+/// pose until the tip is close to it. `tau` of a waypoint is the number of the pose it was to
+/// reach, 0 at the start; `deviations` are from that pose, at the start from the first one.
+///
+/// For study; with limits as in `printed_screw_plan`. A step leaves 1 − β of the way, so with steps
+/// of the length h the tip lags (1 − β)/β h behind; it follows for 0 < β < 2, with β = 1 to the
+/// second order of h. \throws invalid_input for a start outside the limits, for no poses, and for
+/// one that is none
+template <SerialChain C, VectorLike Start>
+[[nodiscard]] auto printed_path_plan(const C& chain, const Start& start,
+                                     std::span<const dual_quaternion<double>> path,
+                                     const printed_plan_options& options = {}) {
+  detail::require_start(chain, start);
+  if (path.empty()) {
+    throw invalid_input("duet: plan: the path has no poses");
   }
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    detail::require_pose(path[i], "plan", "pose " + std::to_string(i) + " of the path");
+  }
+  motion_plan<C::joints> plan;
+  const auto target = [&](int k) { return std::min(std::size_t(std::max(k, 1)), path.size()) - 1; };
+  plan.reason = detail::printed_steps(
+      chain, detail::joint_vector_of(chain, start), path.back(), int(path.size()), options,
+      [&](int k, const dual_quaternion<double>&) { return path[target(k)]; },
+      [&](int k, const auto& joints, const dual_quaternion<double>& here) {
+        detail::add_waypoint(plan, chain, joints, here, k == 0 ? 0. : double(target(k) + 1),
+                             deviation_between(path[target(k)], here));
+        plan.iterations = k;
+      });
+  return plan;
 }
 
 } // namespace duet
