@@ -219,4 +219,91 @@ TEST_CASE("remainders") {
   }
 }
 
+namespace {
+
+/// The derivatives along the first argument, in turn from the value's, at y: `exact[k]` to order 4.
+template <class F>
+void add_series(worst_error& worst, F f, double x, const std::array<R, 5>& exact) {
+  const auto series = f(duet::taylor<double, 4>::variable(x));
+  for (std::size_t k = 1; k <= 4; ++k) {
+    worst.add(ulps(series.derivative(int(k)), exact[k], exact[k]), k, x);
+  }
+}
+
+} // namespace
+
+// By closed forms: what a difference could tell of x²/r³ beside 1/r needs more than 100 digits.
+TEST_CASE("hypot and atan2 of arguments decades apart, to the fourth derivative") {
+  worst_error worst_hypot("hypot");
+  worst_error worst_hypot_3("hypot of three");
+  worst_error worst_atan2("atan2");
+  worst_error worst_mixed("mixed derivatives");
+  duet_test::random_source random(15);
+  for (int i = 0; i < 400; ++i) {
+    const double a = random.signed_magnitude(1e-12, 1e12);
+    const double b = a * random.signed_magnitude(1e3, 1e20);
+    const auto [x, y] = i % 2 == 0 ? std::array{a, b} : std::array{b, a};
+    const R wide_x(x), wide_y(y);
+    const R s = wide_x * wide_x, t = wide_y * wide_y, square = s + t, r = sqrt(square);
+    const std::array<R, 5> length{r, R(wide_x / r), R(t / (r * square)),
+                                  R(-3 * wide_x * t / (r * square * square)),
+                                  R(3 * t * (4 * s - t) / (r * square * square * square))};
+    add_series(
+        worst_hypot, [y = y](const auto& u) { return hypot(u, y); }, x, length);
+    add_series(
+        worst_hypot_3, [y = y](const auto& u) { return hypot(y * 0.6, u, y * 0.8); }, x,
+        [&] {
+          const R z = wide_y * wide_y * (R(0.6 * y) * R(0.6 * y) + R(0.8 * y) * R(0.8 * y)) / t;
+          const R q = s + z, n = sqrt(q);
+          return std::array<R, 5>{n, R(wide_x / n), R(z / (n * q)),
+                                  R(-3 * wide_x * z / (n * q * q)),
+                                  R(3 * z * (4 * s - z) / (n * q * q * q))};
+        }());
+    const R cube = square * square * square;
+    const std::array<R, 5> angle{
+        R(0), R(wide_y / square), R(-2 * wide_x * wide_y / (square * square)),
+        R(2 * wide_y * (3 * s - t) / cube), R(24 * wide_x * wide_y * (t - s) / (cube * square))};
+    add_series(
+        worst_atan2, [y = y](const auto& u) { return atan2(u, y); }, x, angle);
+
+    using D = duet::second_dual<double, 2>;
+    const auto u = D::variable(x, 0), v = D::variable(y, 1);
+    const D h = hypot(u, v), theta = atan2(u, v);
+    const R corner = -wide_x * wide_y / (r * square), turn = (s - t) / (square * square);
+    worst_mixed.add(ulps(h.second_partial(0, 1), corner, corner), "hypot", x, y);
+    worst_mixed.add(ulps(h.second_partial(0, 0), length[2], length[2]), "hypot", x, y);
+    worst_mixed.add(ulps(theta.second_partial(0, 1), turn, turn), "atan2", x, y);
+    worst_mixed.add(ulps(theta.second_partial(0, 0), angle[2], angle[2]), "atan2", x, y);
+  }
+  CHECK_MESSAGE(worst_hypot <= 16, worst_hypot);
+  CHECK_MESSAGE(worst_hypot_3 <= 16, worst_hypot_3);
+  CHECK_MESSAGE(worst_atan2 <= 16, worst_atan2);
+  CHECK_MESSAGE(worst_mixed <= 16, worst_mixed);
+}
+
+TEST_CASE("pow with a constant exponent, to the fifth derivative") {
+  worst_error worst("pow");
+  duet_test::random_source random(16);
+  const auto add = [&](double x, double p) {
+    const auto series = pow(duet::taylor<double, 5>::variable(x), p);
+    R exact = exp(R(p * log(R(x))));
+    for (int k = 1; k <= 5; ++k) {
+      exact *= (R(p) - (k - 1)) / R(x); // one ulp by p does not count: p is exact
+      if (abs(exact) < R(1e300) && abs(exact) > R(1e-290)) {
+        worst.add(ulps(series.derivative(k), exact, R(abs(exact) * (1 + abs(R(p) - k)))), k, x, p);
+      }
+    }
+  };
+  for (int i = 0; i < 600; ++i) {
+    const double x = i % 3 == 0 ? random.magnitude(0.1, 10) : random.magnitude(1e-60, 1e60);
+    add(x, i % 2 == 0 ? random.uniform(-6, 6) : random.signed_magnitude(1e-9, 1));
+  }
+  for (const double x : {5e-324, 1e-300, 1e-155, 1e155, 1e300}) {
+    for (const double p : {1e-300, 1e-17, 1e-9, 0.001, 0.3, 1.0 / 3, -0.1, -1e-5, 0.49999, 0.7}) {
+      add(x, p);
+    }
+  }
+  CHECK_MESSAGE(worst <= 8, worst);
+}
+
 } // namespace test_dual_functions_of_many

@@ -135,4 +135,33 @@ TEST_CASE("the power of -|q| turns about the chosen axis x") {
   CHECK(norm(root - quaternion<double>(0, 2, 0, 0)) <= 1e-15);
 }
 
+TEST_CASE("N5: higher derivatives of pow near whole exponents, where they vanish") {
+  random_source random(14);
+  worst_error worst("pow, third and fourth derivative");
+  for (int i = 0; i < 60; ++i) {
+    const auto a = random.direction<4>(), b = random.direction<4>();
+    const quaternion<double> q(std::abs(a[0]), a[1], a[2], a[3]), rate(b[0], b[1], b[2], b[3]);
+    const double rho = 1 + i % 3 + random.uniform(-0.04, 0.04);
+    const truth::four x = truth::wide(q), dx = truth::wide(rate);
+    const auto derivative = [&](int k, const truth::real& exponent) {
+      return truth::difference(
+          [&](const truth::real& t) { return truth::pow(truth::sum(x, dx, t), exponent); }, k,
+          truth::real(0.1));
+    };
+    const auto series =
+        pow(q + duet::taylor<double, 4>::variable(0) * rate, duet::taylor<double, 4>(rho));
+    for (int k = 3; k <= 4; ++k) {
+      const auto exact = derivative(k, truth::real(rho));
+      const auto beside = derivative(k, truth::real(rho * (1 + 1e-8)));
+      const truth::real scale =
+          truth::length(exact) + 1e8 * truth::length(truth::sum(beside, exact, -1));
+      worst.add(truth::ulps(quaternion<double>(series.w().derivative(k), series.x().derivative(k),
+                                               series.y().derivative(k), series.z().derivative(k)),
+                            exact, scale),
+                k, q, rate, rho);
+    }
+  }
+  CHECK_MESSAGE(worst <= 32, worst);
+}
+
 } // namespace test_quaternion_power

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <numeric>
 
 /// \file
@@ -54,14 +55,28 @@ struct power {
     return pow(x, exponent);
   }
   template <class T>
-  T slope(const T& x, const T&) const {
+  T slope(const T& x, [[maybe_unused]] const T& y) const {
     using std::pow;
+    const auto by_power = [&] {
+      return T(exponent * pow(x, Exponent(exponent - detail::integer<Exponent>(1))));
+    };
     return select(
         detail::is_structural_zero(exponent) ||
             (innermost(exponent) == detail::integer<Exponent>(0) &&
              innermost(x) == detail::integer<T>(0)),
         [] { return T(0); },
-        [&] { return T(exponent * pow(x, Exponent(exponent - detail::integer<Exponent>(1)))); });
+        [&] {
+          if constexpr (Real<real_type_t<T>>) {
+            // Below ½ p − 1 is rounded, which x^(p−1) far from 1 shows; from there on it is exact,
+            // and x^p may overflow or vanish before its slope does.
+            using std::isfinite;
+            return select(
+                innermost(exponent) < 0.5 && innermost(x) != 0 && isfinite(innermost(x)),
+                [&] { return T(exponent * y / x); }, by_power);
+          } else {
+            return by_power();
+          }
+        });
   }
 };
 
@@ -119,9 +134,21 @@ struct atan2 {
   }
   template <class T>
   std::array<T, 2> slopes(const T&, const T& y, const T& x) const {
-    using std::hypot;
-    const T r = hypot(x, y); // x² + y² would overflow or vanish first
-    return {x / r / r, -(y / r / r)};
+    // By the ratio of the smaller to the larger: x² + y² would overflow or vanish first, and what
+    // is differentiated once more would cancel.
+    using std::abs;
+    return select(
+        abs(innermost(y)) <= abs(innermost(x)),
+        [&] {
+          const T ratio = y / x;
+          const T slope = 1 / x / (1 + ratio * ratio);
+          return std::array<T, 2>{slope, -(ratio * slope)};
+        },
+        [&] {
+          const T ratio = x / y;
+          const T slope = 1 / y / (1 + ratio * ratio);
+          return std::array<T, 2>{ratio * slope, -slope};
+        });
   }
 };
 
@@ -140,12 +167,66 @@ struct hypot {
       return hypot(T(hypot(x, y)), z);
     }
   }
+  template <class T>
+  std::array<T, 2> slopes(const T& r, const T& x, const T& y) const {
+    if constexpr (Infinitesimal<T>) {
+      using std::abs;
+      return select(
+          abs(innermost(y)) <= abs(innermost(x)), [&] { return by_largest(x, y); },
+          [&] {
+            const std::array<T, 2> s = by_largest(y, x);
+            return std::array<T, 2>{s[1], s[0]};
+          });
+    } else {
+      return {x / r, y / r};
+    }
+  }
+  template <class T>
+  std::array<T, 3> slopes(const T& r, const T& x, const T& y, const T& z) const {
+    if constexpr (Infinitesimal<T>) {
+      using std::abs;
+      const auto a = abs(innermost(x)), b = abs(innermost(y)), c = abs(innermost(z));
+      return select(
+          b <= a && c <= a, [&] { return by_largest(x, y, z); },
+          [&] {
+            return select(
+                c <= b,
+                [&] {
+                  const std::array<T, 3> s = by_largest(y, x, z);
+                  return std::array<T, 3>{s[1], s[0], s[2]};
+                },
+                [&] {
+                  const std::array<T, 3> s = by_largest(z, x, y);
+                  return std::array<T, 3>{s[1], s[2], s[0]};
+                });
+          });
+    } else {
+      return {x / r, y / r, z / r};
+    }
+  }
+
+private:
+  /// The slopes by ratios to the largest argument: 1/r − x²/r³, the derivative of x/r, would cancel
+  /// where x is the largest by far.
   template <class T, class... Rest>
-  std::array<T, 1 + sizeof...(Rest)> slopes(const T& y, const T& x, const Rest&... rest) const {
-    return {x / y, rest / y...};
+  static std::array<T, 1 + sizeof...(Rest)> by_largest(const T& largest, const Rest&... rest) {
+    using std::sqrt;
+    std::array<T, 1 + sizeof...(Rest)> result{T(0), rest / largest...};
+    T square(1);
+    for (const T& ratio : result) {
+      square = square + ratio * ratio;
+    }
+    const T length = sqrt(square);
+    result[0] = select(
+        innermost(largest) < 0, [&] { return T(-1 / length); }, [&] { return T(1 / length); });
+    for (std::size_t i = 1; i < result.size(); ++i) {
+      result[i] = result[i] * result[0];
+    }
+    return result;
   }
 };
 
+/// x y + z, rounded once.
 struct fma {
   template <class T>
   T value(const T& x, const T& y, const T& z) const {

@@ -173,6 +173,30 @@ pow_of_regular(const quaternion<T>& q, const vector3<T>& v, const S& exponent) {
          R(pow(norm(q), exponent));
 }
 
+/// q^ρ away from a full turn, as q^n q^(ρ−n) with the whole number n ≤ 3 next to ρ > 0: of the
+/// k-th derivative, which vanishes with ρ (ρ − 1) … (ρ − k + 1), nothing cancels.
+template <class T, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>> pow_by_whole(const quaternion<T>& q,
+                                                                          const S& exponent) {
+  using R = promote_t<T, S>;
+  const auto v = log_vector(q, "pow");
+  if constexpr (!Infinitesimal<R> || Batched<R>) {
+    return pow_of_regular(q, v, exponent);
+  } else {
+    using real = real_type_t<R>;
+    const real value(innermost(exponent));
+    const int n = value < 0.5 || !is_moderate(innermost(norm2(q))) ? 0
+                  : value < 1.5                                    ? 1
+                  : value < 2.5                                    ? 2
+                                                                   : 3;
+    quaternion<R> power = pow_of_regular(q, v, S(exponent - integer<S>(n)));
+    for (int k = 0; k < n; ++k) {
+      power = power * q;
+    }
+    return power;
+  }
+}
+
 /// q^ρ = (−1)^n exp(ûπ(ρ − n)) (−q)^ρ with the whole number n next to ρ.
 ///
 /// Near a full turn û turns arbitrarily fast with q, and the last factor, being near 1, does not
@@ -191,7 +215,7 @@ template <class T, class S>
     using real = real_type_t<R>;
     const real whole = round(real(innermost(exponent)));
     const auto rest = exponent - whole;
-    const auto power = pow_of_regular(-q, log_vector(-q, "pow"), exponent);
+    const auto power = pow_by_whole(-q, exponent);
     const auto half_turns = select(
         fmod(whole, real(2)) == 0, [&] { return power; }, [&] { return -power; });
     return select(
@@ -216,9 +240,7 @@ template <class T, ScalarFor<T> S>
   return select(
       innermost(q.w()) < 0 && 64 * s < innermost(q.w()) * innermost(q.w()),
       [&] { return detail::pow_near_full_turn(q, rho); },
-      [&]() DUET_INLINE_LAMBDA {
-        return detail::pow_of_regular(q, detail::log_vector(q, "pow"), rho);
-      });
+      [&]() DUET_INLINE_LAMBDA { return detail::pow_by_whole(q, rho); });
 }
 
 /// Which way round `slerp` goes: q and −q are the same rotation, reached by two arcs.
