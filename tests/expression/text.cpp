@@ -46,6 +46,15 @@ TEST_CASE("derivatives as text") {
   CHECK(to_text(derivative(log(x) / x, x)) == "(1 / x - log(x) / x) / x");
   CHECK(to_text(derivative(pow(x, c<-2>), x)) == "-2 * x^-3");
   CHECK(to_text(derivative(x * y, y)) == "x");
+  CHECK(to_text(derivative(sqrt(x * x), x)) == "2 * x / (2 * sqrt(x^2))");
+  CHECK(to_text(derivative(tanh(x + y), x)) == "1 / cosh(x + y)^2");
+  CHECK(to_text(derivative(pow(x, 2.5_c), x)) == "2.5 * x^1.5");
+  CHECK(to_text(derivative(pow(x, y), x)) == "y * x^(y - 1)");
+  CHECK(to_text(derivative(x * acos(y), y)) == "-x / sqrt(1 - y^2)");
+  CHECK(to_text(derivative(atan2(y + 1, x), x)) == "-(y + 1) / (x^2 + (y + 1)^2)");
+  CHECK(to_text(derivative(derivative(atan(x), x), x)) == "-2 * x / (1 + x^2) / (1 + x^2)");
+  CHECK(to_text(derivative(derivative(tan(x), x), x)) == "2 * tan(x) * (1 + tan(x)^2)");
+  CHECK(to_latex(derivative(hypot(x, y), x)) == R"(\frac{x}{\operatorname{hypot}(x, y)})");
 }
 
 TEST_CASE("LaTeX") {

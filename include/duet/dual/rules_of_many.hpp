@@ -168,46 +168,38 @@ struct hypot {
     }
   }
   template <class T>
-  std::array<T, 2> slopes(const T& r, const T& x, const T& y) const {
-    if constexpr (Infinitesimal<T>) {
-      using std::abs;
-      return select(
-          abs(innermost(y)) <= abs(innermost(x)), [&] { return by_largest(x, y); },
-          [&] {
-            const std::array<T, 2> s = by_largest(y, x);
-            return std::array<T, 2>{s[1], s[0]};
-          });
-    } else {
-      return {x / r, y / r};
-    }
+  std::array<T, 2> slopes(const T&, const T& x, const T& y) const {
+    using std::abs;
+    return select(
+        abs(innermost(y)) <= abs(innermost(x)), [&] { return by_largest(x, y); },
+        [&] {
+          const std::array<T, 2> s = by_largest(y, x);
+          return std::array<T, 2>{s[1], s[0]};
+        });
   }
   template <class T>
-  std::array<T, 3> slopes(const T& r, const T& x, const T& y, const T& z) const {
-    if constexpr (Infinitesimal<T>) {
-      using std::abs;
-      const auto a = abs(innermost(x)), b = abs(innermost(y)), c = abs(innermost(z));
-      return select(
-          b <= a && c <= a, [&] { return by_largest(x, y, z); },
-          [&] {
-            return select(
-                c <= b,
-                [&] {
-                  const std::array<T, 3> s = by_largest(y, x, z);
-                  return std::array<T, 3>{s[1], s[0], s[2]};
-                },
-                [&] {
-                  const std::array<T, 3> s = by_largest(z, x, y);
-                  return std::array<T, 3>{s[1], s[2], s[0]};
-                });
-          });
-    } else {
-      return {x / r, y / r, z / r};
-    }
+  std::array<T, 3> slopes(const T&, const T& x, const T& y, const T& z) const {
+    using std::abs;
+    const auto a = abs(innermost(x)), b = abs(innermost(y)), c = abs(innermost(z));
+    return select(
+        b <= a && c <= a, [&] { return by_largest(x, y, z); },
+        [&] {
+          return select(
+              c <= b,
+              [&] {
+                const std::array<T, 3> s = by_largest(y, x, z);
+                return std::array<T, 3>{s[1], s[0], s[2]};
+              },
+              [&] {
+                const std::array<T, 3> s = by_largest(z, x, y);
+                return std::array<T, 3>{s[1], s[2], s[0]};
+              });
+        });
   }
 
 private:
-  /// The slopes by ratios to the largest argument: 1/r − x²/r³, the derivative of x/r, would cancel
-  /// where x is the largest by far.
+  /// The slopes by ratios to the largest argument: of x/r the derivative, 1/r − x²/r³, would cancel
+  /// where x is the largest by far, and r is rounded where it is denormal.
   template <class T, class... Rest>
   static std::array<T, 1 + sizeof...(Rest)> by_largest(const T& largest, const Rest&... rest) {
     using std::sqrt;

@@ -79,8 +79,8 @@ struct sign {
     return duet::select(
         signbit(innermost(x)), [] { return X(-1); }, [] { return X(1); });
   }
-  template <class X>
-  static constexpr auto slope(X) {
+  template <int, class X>
+  static constexpr auto slope_by(X) {
     return whole<0>;
   }
   static printed print(notation style, const printed& x) {
@@ -96,8 +96,8 @@ struct abs {
     using std::abs;
     return X(abs(x));
   }
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<sign>(x);
   }
   static printed print(notation style, const printed& x) {

@@ -9,6 +9,7 @@
 #include <duet/expression/symbol.hpp>
 
 #include <type_traits>
+#include <utility>
 
 /// \file
 /// Derivatives of formulas as formulas.
@@ -56,22 +57,15 @@ template <int I, class Operation, class Rate, class... Operands>
 [[nodiscard]] constexpr auto rate_by_operand(Rate rate, Operands... x) {
   if constexpr (is_zero<Rate>) {
     return rate;
-  } else if constexpr (sizeof...(Operands) == 1) {
-    return Operation::slope(x...) * rate;
-  } else if constexpr (I == 0) {
-    return Operation::slope_of_first(x...) * rate;
   } else {
-    return Operation::slope_of_second(x...) * rate;
+    return Operation::template slope_by<I>(x...) * rate;
   }
 }
 
-template <class Operation, class A, class RateOfA>
-[[nodiscard]] constexpr auto rate_by_slopes(A a, RateOfA da) {
-  return rate_by_operand<0, Operation>(da, a);
-}
-template <class Operation, class A, class B, class RateOfA, class RateOfB>
-[[nodiscard]] constexpr auto rate_by_slopes(A a, B b, RateOfA da, RateOfB db) {
-  return rate_by_operand<0, Operation>(da, a, b) + rate_by_operand<1, Operation>(db, a, b);
+template <class Operation, class... Operands, class... Rates, int... I>
+[[nodiscard]] constexpr auto rate_by_slopes(applied_node<Operation, Operands...>,
+                                            std::integer_sequence<int, I...>, Rates... rates) {
+  return (... + rate_by_operand<I, Operation>(rates, Operands{}...));
 }
 
 template <class Operation, class... Operands, class Motion>
@@ -85,7 +79,9 @@ struct rate<applied_node<Operation, Operands...>, Motion> {
                          }) {
       return Operation::differential(Operands{}..., rate_t<Operands, Motion>{}...);
     } else {
-      return rate_by_slopes<Operation>(Operands{}..., rate_t<Operands, Motion>{}...);
+      return rate_by_slopes(applied_node<Operation, Operands...>{},
+                            std::make_integer_sequence<int, int(sizeof...(Operands))>{},
+                            rate_t<Operands, Motion>{}...);
     }
   }
   using type = decltype(make());

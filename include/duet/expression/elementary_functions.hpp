@@ -34,64 +34,67 @@ struct atan;
 
 struct sqrt : detail::function<sqrt, duet::rule::sqrt> {
   static constexpr detail::function_name name = {"sqrt", "\\sqrt"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  static constexpr bool slopes_take_value = true;
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / (whole<2> * apply<sqrt>(x));
   }
 };
 struct cbrt : detail::function<cbrt, duet::rule::cbrt> {
   static constexpr detail::function_name name = {"cbrt", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  static constexpr bool slopes_take_value = true;
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / (whole<3> * apply<whole_power<2>>(apply<cbrt>(x)));
   }
 };
 struct exp : detail::function<exp, duet::rule::exp> {
   static constexpr detail::function_name name = {"exp", "\\exp"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<exp>(x);
   }
 };
 struct exp2 : detail::function<exp2, duet::rule::exp2> {
   static constexpr detail::function_name name = {"exp2", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  static constexpr bool slopes_take_value = true;
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return apply<log>(whole<2>) * apply<exp2>(x);
   }
 };
 struct expm1 : detail::function<expm1, duet::rule::expm1> {
   static constexpr detail::function_name name = {"expm1", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<exp>(x);
   }
 };
 struct log : detail::function<log, duet::rule::log> {
   static constexpr detail::function_name name = {"log", "\\log"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / x;
   }
 };
 struct log2 : detail::function<log2, duet::rule::log2> {
   static constexpr detail::function_name name = {"log2", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / (apply<log>(whole<2>) * x);
   }
 };
 struct log10 : detail::function<log10, duet::rule::log10> {
   static constexpr detail::function_name name = {"log10", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / (apply<log>(whole<10>) * x);
   }
 };
 struct log1p : detail::function<log1p, duet::rule::log1p> {
   static constexpr detail::function_name name = {"log1p", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / (whole<1> + x);
   }
 };
@@ -107,8 +110,8 @@ struct sin : detail::function<sin, duet::rule::sin> {
       return applied_node<sin, X>{};
     }
   }
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<cos>(x);
   }
 };
@@ -122,36 +125,37 @@ struct cos : detail::function<cos, duet::rule::cos> {
       return applied_node<cos, X>{};
     }
   }
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return -apply<sin>(x);
   }
 };
 struct tan : detail::function<tan, duet::rule::tan> {
   static constexpr detail::function_name name = {"tan", "\\tan"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  static constexpr bool slopes_take_value = true;
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> + apply<whole_power<2>>(apply<tan>(x));
   }
 };
 struct asin : detail::function<asin, duet::rule::asin> {
   static constexpr detail::function_name name = {"asin", "\\arcsin"};
-  template <class X>
-  static constexpr auto slope(X x) {
-    return whole<1> / apply<sqrt>(apply<one_minus_square>(x));
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
+    return whole<1> / apply<sqrt>(whole<1> - apply<whole_power<2>>(x));
   }
 };
 struct acos : detail::function<acos, duet::rule::acos> {
   static constexpr detail::function_name name = {"acos", "\\arccos"};
-  template <class X>
-  static constexpr auto slope(X x) {
-    return whole<-1> / apply<sqrt>(apply<one_minus_square>(x));
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
+    return -asin::slope_by<0>(x);
   }
 };
 struct atan : detail::function<atan, duet::rule::atan> {
   static constexpr detail::function_name name = {"atan", "\\arctan"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / (whole<1> + apply<whole_power<2>>(x));
   }
 };

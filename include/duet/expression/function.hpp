@@ -4,6 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/constants.hpp>
 #include <duet/dual/dual.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual/rules.hpp>
 #include <duet/dual/rules_special.hpp>
 #include <duet/expression/formula.hpp>
@@ -13,13 +14,111 @@
 #include <duet/expression/printed.hpp>
 
 #include <string>
+#include <type_traits>
+#include <utility>
 
 /// \file
-/// What all functions of one scalar have in common, and those that only derivatives need.
+/// What all functions of scalars have in common, and those that only derivatives need.
 
 namespace duet::expression {
 
 namespace detail {
+
+template <class... T>
+struct common_scalar_of;
+template <class T>
+struct common_scalar_of<T> {
+  using type = T;
+};
+template <class A, class B, class... Rest>
+struct common_scalar_of<A, B, Rest...> : common_scalar_of<promote_t<A, B>, Rest...> {};
+/// The scalar that holds the arguments of a function.
+template <class... T>
+using common_scalar_t = typename common_scalar_of<T...>::type;
+
+} // namespace detail
+
+namespace op {
+
+/// The derivative of a function, of order `Orders` by each of its arguments, by the rule of the
+/// dual numbers. Its operands are the arguments, behind the value where the rule looks at that.
+template <class Function, int... Orders>
+struct partial {
+  template <class... Kinds>
+  static constexpr kind kind_of(Kinds...) {
+    return kind::scalar;
+  }
+  template <class First, class... Rest>
+  DUET_ALWAYS_INLINE static auto value(const First& first, const Rest&... rest) {
+    if constexpr (Function::slopes_take_value) {
+      return at(first, rest...);
+    } else {
+      return at(first, first, rest...);
+    }
+  }
+  template <int I, class... X>
+  static constexpr auto slope_by(X... x) {
+    constexpr int argument = Function::slopes_take_value ? I - 1 : I;
+    if constexpr (argument < 0) {
+      return whole<0>; // the value moves as the arguments do
+    } else {
+      return [&]<int... K>(std::integer_sequence<int, K...>) {
+        return apply<partial<Function, (Orders + int(K == argument))...>>(x...);
+      }
+      (std::make_integer_sequence<int, int(sizeof...(Orders))>{});
+    }
+  }
+
+  /// Where the value is y.
+  template <class Y, class... X>
+  DUET_ALWAYS_INLINE static auto at(const Y& y, const X&... x) {
+    using R = detail::common_scalar_t<X...>;
+    if constexpr ((0 + ... + Orders) == 1) {
+      return R(Function::template slope_at<last_argument>(R(y), x...));
+    } else {
+      return [&]<int... K>(std::integer_sequence<int, K...>) {
+        using D = dual<R, 1, derivative_tag<partial>>;
+        const auto moved = [](auto is_moving, const auto& a) {
+          if constexpr (is_moving) {
+            return D::variable(R(a));
+          } else {
+            return a;
+          }
+        };
+        const D moving_value(R(y), R(Function::template slope_at<last_argument>(R(y), x...)));
+        using lower = partial<Function, (Orders - int(K == last_argument))...>;
+        return lower::at(moving_value, moved(std::bool_constant<K == last_argument>{}, x)...)
+            .epsilon();
+      }
+      (std::make_integer_sequence<int, int(sizeof...(Orders))>{});
+    }
+  }
+
+  /// The last argument by which it is a derivative.
+  static constexpr int last_argument = [] {
+    const int orders[] = {Orders...};
+    int i = int(sizeof...(Orders)) - 1;
+    while (orders[i] == 0) {
+      --i;
+    }
+    return i;
+  }();
+};
+
+} // namespace op
+
+namespace detail {
+
+/// The derivative by the I-th argument.
+template <class Function, int I, int... K, class... X>
+[[nodiscard]] constexpr auto partial_by(std::integer_sequence<int, K...>, X... x) {
+  using operation = op::partial<Function, int(K == I)...>;
+  if constexpr (Function::slopes_take_value) {
+    return apply<operation>(apply<Function>(x...), x...);
+  } else {
+    return apply<operation>(x...);
+  }
+}
 
 struct function_name {
   const char* text;
@@ -43,17 +142,38 @@ struct function_name {
           (is_high ? "\\left(" : "(") + arguments + (is_high ? "\\right)" : ")")};
 }
 
-/// A function with a rule of the dual numbers, which has the values; what derives from this has
-/// `name`, and `slope(x)`, the derivative as a node.
+/// What one function of scalars and another have in common. What derives from this has `name` and,
+/// unless its derivative is a function too, `written_slope<I>(x…)`, the derivative by the I-th
+/// argument as it is printed. Numbers come from `Rule`, the rule of the dual numbers.
 template <class Function, class Rule>
 struct function {
-  static constexpr kind kind_of(kind a) { return a; }
-  template <class X>
-  DUET_ALWAYS_INLINE static X value(const X& x) {
-    return Rule{}.value(x);
+  /// Do the rule's slopes look at the value?
+  static constexpr bool slopes_take_value = false;
+
+  template <class... Kinds>
+  static constexpr kind kind_of(Kinds...) {
+    return kind::scalar;
   }
-  static printed print(notation style, const printed& x) {
-    return printed_call(style, Function::name, x.text);
+  template <class... X>
+  DUET_ALWAYS_INLINE static common_scalar_t<X...> value(const X&... x) {
+    return Rule{}.value(common_scalar_t<X...>(x)...);
+  }
+  /// The derivative by the I-th argument where the value is y.
+  template <int I, class Y, class... X>
+  DUET_ALWAYS_INLINE static Y slope_at(const Y& y, const X&... x) {
+    if constexpr (sizeof...(X) == 1) {
+      return Rule{}.slope(Y(x)..., y);
+    } else {
+      return Rule{}.slopes(y, Y(x)...)[I];
+    }
+  }
+  template <int I, class... X>
+  static constexpr auto slope_by(X... x) {
+    return partial_by<Function, I>(std::make_integer_sequence<int, int(sizeof...(X))>{}, x...);
+  }
+  template <class... P>
+  static printed print(notation style, const printed& first, const P&... rest) {
+    return printed_call(style, Function::name, (first.text + ... + (", " + rest.text)));
   }
 };
 
@@ -78,23 +198,6 @@ inline constexpr formula<pi_node, held<>> pi{};
 
 namespace op {
 
-/// 1 − x², accurate near ±1.
-struct one_minus_square {
-  static constexpr kind kind_of(kind a) { return a; }
-  template <class X>
-  static X value(const X& x) {
-    return duet::detail::one_minus_square(x);
-  }
-  template <class X>
-  static constexpr auto slope(X x) {
-    return whole<-2> * x;
-  }
-  static printed print(notation style, const printed& x) {
-    return {"1 - " + x.inside(precedence::atom) + (style == notation::latex ? "^{2}" : "^2"),
-            precedence::sum};
-  }
-};
-
 /// The N-th derivative of ψ, the logarithmic derivative of Γ.
 template <int N>
 struct polygamma {
@@ -108,8 +211,8 @@ struct polygamma {
       return polygamma<N - 1>::value(D::variable(x)).epsilon();
     }
   }
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<polygamma<N + 1>>(x);
   }
   static printed print(notation style, const printed& x) {

@@ -9,70 +9,39 @@
 #include <duet/expression/node.hpp>
 #include <duet/expression/number.hpp>
 #include <duet/expression/power.hpp>
-#include <duet/expression/printed.hpp>
-
-#include <cmath>
-#include <string>
 
 /// \file
 /// Functions of two scalars and more.
 
 namespace duet::expression {
 
-namespace detail {
-
-/// The same for a function of several scalars.
-template <class Function>
-struct function_of_many {
-  template <class... Kinds>
-  static constexpr kind kind_of(Kinds...) {
-    return kind::scalar;
-  }
-  template <class... P>
-  static printed print(notation style, const printed& first, const P&... rest) {
-    return printed_call(style, Function::name, (first.text + ... + (", " + rest.text)));
-  }
-};
-
-} // namespace detail
-
 namespace op {
 
-struct atan2 : detail::function_of_many<atan2> {
+struct atan2 : detail::function<atan2, duet::rule::atan2> {
   static constexpr detail::function_name name = {"atan2", ""};
-  template <class Y, class X>
-  static promote_t<Y, X> value(const Y& y, const X& x) {
-    using std::atan2;
-    return atan2(y, x);
-  }
-  template <class Y, class X>
-  static constexpr auto differential(Y y, X x, auto dy, auto dx) {
-    return (x * dy - y * dx) / (apply<whole_power<2>>(x) + apply<whole_power<2>>(y));
+  template <int I, class Y, class X>
+  static constexpr auto written_slope(Y y, X x) {
+    const auto square = apply<whole_power<2>>(x) + apply<whole_power<2>>(y);
+    if constexpr (I == 0) {
+      return x / square;
+    } else {
+      return -(y / square);
+    }
   }
 };
 
-/// √(x² + y²)
-struct hypot : detail::function_of_many<hypot> {
+/// √(x² + y² + …)
+struct hypot : detail::function<hypot, duet::rule::hypot> {
   static constexpr detail::function_name name = {"hypot", ""};
-  template <class X, class Y>
-  static promote_t<X, Y> value(const X& x, const Y& y) {
-    using std::hypot;
-    return hypot(x, y);
-  }
-  template <class X, class Y>
-  static constexpr auto differential(X x, Y y, auto dx, auto dy) {
-    return (x * dx + y * dy) / apply<hypot>(x, y);
+  template <int I, class... X>
+  static constexpr auto written_slope(X... x) {
+    return operand<I>(applied_node<hypot, X...>{}) / apply<hypot>(x...);
   }
 };
 
 /// x y + z, rounded once.
-struct fma : detail::function_of_many<fma> {
+struct fma : detail::function<fma, duet::rule::fma> {
   static constexpr detail::function_name name = {"fma", ""};
-  template <class X, class Y, class Z>
-  static promote_t<promote_t<X, Y>, Z> value(const X& x, const Y& y, const Z& z) {
-    using std::fma;
-    return fma(x, y, z);
-  }
   template <class X, class Y, class Z>
   static constexpr auto differential(X x, Y y, Z, auto dx, auto dy, auto dz) {
     return dx * y + x * dy + dz;
@@ -80,13 +49,8 @@ struct fma : detail::function_of_many<fma> {
 };
 
 /// a + t (b − a)
-struct lerp : detail::function_of_many<lerp> {
+struct lerp : detail::function<lerp, duet::rule::lerp> {
   static constexpr detail::function_name name = {"lerp", ""};
-  template <class A, class B, class T>
-  static auto value(const A& a, const B& b, const T& t) {
-    using R = promote_t<promote_t<A, B>, T>;
-    return duet::rule::lerp{}.value(R(a), R(b), R(t));
-  }
   template <class A, class B, class T>
   static constexpr auto differential(A a, B b, T t, auto da, auto db, auto dt) {
     return (whole<1> - t) * da + t * db + (b - a) * dt;
@@ -111,7 +75,7 @@ template <class X, class Y, class Tag = decltype([](op::hypot*) {})>
 template <class X, class Y, class Z, class Tag = decltype([](op::hypot*) {})>
   requires(Operands<X, Y>&& Term<Z>)
 [[nodiscard]] constexpr auto hypot(const X& x, const Y& y, const Z& z) {
-  return hypot(hypot<X, Y, Tag>(x, y), z);
+  return apply<op::hypot>(detail::term<Tag>(x), detail::term<Tag>(y), z);
 }
 /// x y + z, the value rounded once.
 template <Term X, Term Y, Term Z>

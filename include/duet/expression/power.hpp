@@ -3,7 +3,9 @@
 
 #include <duet/core/config.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/dual/rules_of_many.hpp>
 #include <duet/expression/formula.hpp>
+#include <duet/expression/function.hpp>
 #include <duet/expression/node.hpp>
 #include <duet/expression/number.hpp>
 #include <duet/expression/printed.hpp>
@@ -29,8 +31,10 @@ struct whole_power {
   static constexpr kind kind_of(kind a) { return a; }
   template <class X>
   DUET_ALWAYS_INLINE static constexpr X value(const X& x) {
-    if constexpr (Exponent < 0) {
-      return X(1 / power_of<-Exponent>(x));
+    if constexpr (Exponent == -1) {
+      return X(1 / x);
+    } else if constexpr (Exponent < 0) { // x^n may be out of range where its reciprocal is not
+      return X(1 / power_of<-Exponent / 2>(x) / power_of<(1 - Exponent) / 2>(x));
     } else if constexpr (Exponent == 2) {
       return X(x * x);
     } else if constexpr (Exponent == 3) {
@@ -44,8 +48,8 @@ struct whole_power {
       }
     }
   }
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     if constexpr (Exponent == 2) {
       return whole<Exponent> * x;
     } else {
@@ -69,41 +73,9 @@ private:
   }
 };
 
-struct power;
-
-/// p x^{p−1}, 0 where p is.
-struct power_slope {
-  static constexpr kind kind_of(kind, kind) { return kind::scalar; }
-  template <class X, class P>
-  static auto value(const X& x, const P& p) {
-    using T = promote_t<X, P>;
-    if constexpr (std::is_same_v<T, X>) {
-      return duet::rule::power<P>{p}.slope(x, x);
-    } else {
-      return duet::rule::power<T>{T(p)}.slope(T(x), T(x));
-    }
-  }
-  template <class X, class P>
-  static constexpr auto slope_of_first(X x, P p) {
-    return p * apply<power_slope>(x, p - whole<1>);
-  }
-  template <class X, class P>
-  static constexpr auto slope_of_second(X x, P p) {
-    const auto lower = apply<power>(x, p - whole<1>);
-    return lower + p * (lower * apply<log>(x));
-  }
-  static printed print(notation style, const printed& x, const printed& p) {
-    const std::string n = p.inside(precedence::product) + " - 1";
-    return {p.inside(precedence::product) + (style == notation::latex ? " " : " * ") +
-                x.inside(precedence::atom) +
-                (style == notation::latex ? "^{" + n + "}" : "^(" + n + ")"),
-            precedence::product};
-  }
-};
-
 /// x^p.
-struct power {
-  static constexpr kind kind_of(kind, kind) { return kind::scalar; }
+struct power : detail::function<power, duet::rule::pow> {
+  static constexpr bool slopes_take_value = true;
   template <class X, class P>
   static constexpr auto simplified([[maybe_unused]] X x, [[maybe_unused]] P p) {
     if constexpr (is_zero<P> || is_one<X>) {
@@ -126,17 +98,24 @@ struct power {
     using std::pow;
     return static_cast<promote_t<X, P>>(pow(x, p));
   }
-  template <class X, class P>
-  static constexpr auto slope_of_first(X x, [[maybe_unused]] P p) {
-    if constexpr (is_number<P>) {
-      return p * apply<power>(x, p - whole<1>);
+  /// A constant exponent or base has no slope of its own.
+  template <int I, class Y, class X, class P>
+  static Y slope_at(const Y& y, const X& x, const P& p) {
+    if constexpr (I == 0 && std::is_same_v<X, Y>) {
+      return duet::rule::power<P>{p}.slope(x, y);
+    } else if constexpr (I == 1 && std::is_same_v<P, Y>) {
+      return duet::rule::exponential<X>{x}.slope(p, y);
     } else {
-      return apply<power_slope>(x, p);
+      return duet::rule::pow{}.slopes(y, Y(x), Y(p))[I];
     }
   }
-  template <class X, class P>
-  static constexpr auto slope_of_second(X x, P p) {
-    return apply<power>(x, p) * apply<log>(x);
+  template <int I, class X, class P>
+  static constexpr auto written_slope(X x, P p) {
+    if constexpr (I == 0) {
+      return p * apply<power>(x, p - whole<1>);
+    } else {
+      return apply<power>(x, p) * apply<log>(x);
+    }
   }
   static printed print(notation style, const printed& x, const printed& p) {
     return {x.inside(precedence::atom) + "^" +

@@ -31,71 +31,72 @@ struct hypot;
 
 struct sinh : detail::function<sinh, duet::rule::sinh> {
   static constexpr detail::function_name name = {"sinh", "\\sinh"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<cosh>(x);
   }
 };
 struct cosh : detail::function<cosh, duet::rule::cosh> {
   static constexpr detail::function_name name = {"cosh", "\\cosh"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<sinh>(x);
   }
 };
 struct tanh : detail::function<tanh, duet::rule::tanh> {
   static constexpr detail::function_name name = {"tanh", "\\tanh"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  static constexpr bool slopes_take_value = true;
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / apply<whole_power<2>>(apply<cosh>(x));
   }
 };
 struct asinh : detail::function<asinh, duet::rule::asinh> {
   static constexpr detail::function_name name = {"asinh", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / apply<hypot>(whole<1>, x);
   }
 };
 struct acosh : detail::function<acosh, duet::rule::acosh> {
   static constexpr detail::function_name name = {"acosh", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<1> / (apply<sqrt>(x - whole<1>) * apply<sqrt>(x + whole<1>));
   }
 };
 struct atanh : detail::function<atanh, duet::rule::atanh> {
   static constexpr detail::function_name name = {"atanh", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
-    return whole<1> / apply<one_minus_square>(x);
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
+    return whole<1> / (whole<1> - apply<whole_power<2>>(x));
   }
 };
 struct erf : detail::function<erf, duet::rule::erf> {
   static constexpr detail::function_name name = {"erf", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto written_slope(X x) {
     return whole<2> / apply<sqrt>(pi_node{}) * apply<exp>(-apply<whole_power<2>>(x));
   }
 };
 struct erfc : detail::function<erfc, duet::rule::erfc> {
   static constexpr detail::function_name name = {"erfc", ""};
-  template <class X>
-  static constexpr auto slope(X x) {
-    return -(whole<2> / apply<sqrt>(pi_node{}) * apply<exp>(-apply<whole_power<2>>(x)));
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
+    return -erf::slope_by<0>(x);
   }
 };
 struct tgamma : detail::function<tgamma, duet::rule::tgamma> {
   static constexpr detail::function_name name = {"tgamma", "\\Gamma"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<tgamma>(x) * apply<polygamma<0>>(x);
   }
 };
 struct lgamma : detail::function<lgamma, duet::rule::lgamma> {
   static constexpr detail::function_name name = {"lgamma", "\\log\\Gamma"};
-  template <class X>
-  static constexpr auto slope(X x) {
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
     return apply<polygamma<0>>(x);
   }
 };

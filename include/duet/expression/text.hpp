@@ -6,6 +6,7 @@
 #include <duet/expression/function.hpp>
 #include <duet/expression/node.hpp>
 #include <duet/expression/printed.hpp>
+#include <duet/expression/written.hpp>
 
 #include <array>
 #include <cstddef>
@@ -122,7 +123,7 @@ template <class Operation, class... Operands, class Held>
 /// The formula as one writes it in a program: `2 * x * cos(x^2)`.
 template <Formula F>
 [[nodiscard]] std::string to_text(const F& f) {
-  return detail::print(notation::text, typename F::node_type{}, f.held()).text;
+  return detail::print(notation::text, detail::written_t<typename F::node_type>{}, f.held()).text;
 }
 
 /// The formula for a paper, to stand in mathematics mode: `2 \cdot x \cos\left(x^{2}\right)`.
@@ -130,7 +131,7 @@ template <Formula F>
 /// index.
 template <Formula F>
 [[nodiscard]] std::string to_latex(const F& f) {
-  return detail::print(notation::latex, typename F::node_type{}, f.held()).text;
+  return detail::print(notation::latex, detail::written_t<typename F::node_type>{}, f.held()).text;
 }
 
 } // namespace duet::expression

@@ -180,18 +180,22 @@ template <class T, class S>
                                                                           const S& exponent) {
   using R = promote_t<T, S>;
   const auto v = log_vector(q, "pow");
-  if constexpr (!Infinitesimal<R> || Batched<R>) {
+  if constexpr (!Infinitesimal<R>) {
     return pow_of_regular(q, v, exponent);
   } else {
     using real = real_type_t<R>;
     const real value(innermost(exponent));
-    const int n = value < 0.5 || !is_moderate(innermost(norm2(q))) ? 0
-                  : value < 1.5                                    ? 1
-                  : value < 2.5                                    ? 2
-                                                                   : 3;
-    quaternion<R> power = pow_of_regular(q, v, S(exponent - integer<S>(n)));
-    for (int k = 0; k < n; ++k) {
-      power = power * q;
+    const real square(innermost(norm2(q)));
+    const auto reaches = [&](int k) { return value >= real(k) - real(0.5) && is_moderate(square); };
+    real whole(0);
+    for (int k = 1; k <= 3; ++k) {
+      whole = select(
+          reaches(k), [&] { return real(k); }, [&] { return whole; });
+    }
+    quaternion<R> power = pow_of_regular(q, v, exponent - whole);
+    for (int k = 1; k <= 3; ++k) {
+      power = select(
+          reaches(k), [&] { return quaternion<R>(power * q); }, [&] { return power; });
     }
     return power;
   }
