@@ -53,13 +53,8 @@ struct goal {
     return {example_goal(arm)};
   }
   std::vector<goal> result;
-  const csv_file file(*path);
-  for (const csv_row& row : file.rows()) {
-    try {
-      result.push_back({*path + ":" + std::to_string(row.line), example::parse_pose(row.numbers)});
-    } catch (const invalid_input& error) {
-      throw file_error(*path, row.line, error.what());
-    }
+  for (const auto& [line, pose] : example::read_poses(*path)) {
+    result.push_back({*path + ":" + std::to_string(line), pose});
   }
   return result;
 }

@@ -24,6 +24,9 @@ namespace fit_trajectory {
 namespace {
 
 void print_faults(const recording& r, const std::string& path) {
+  if (!r.remark.empty()) {
+    std::cerr << path << ": " << r.remark << "\n";
+  }
   constexpr std::size_t most = 20;
   for (std::size_t i = 0; i < r.faults.size() && i < most; ++i) {
     std::cerr << duet::file_error(path, r.faults[i].line, r.faults[i].reason).what() << "\n";
@@ -46,11 +49,12 @@ void run(const options& given) {
         " usable rows are too few for one knot in " + std::to_string(rows_per_knot));
   }
   const double duration = r.rows.back().time - r.rows.front().time;
+  const double rate = rate_for(duration, given.rate);
   std::cout << r.rows.size() << " rows over " << duration << " s: fitting\n" << std::flush;
   const smoothed s = smooth(r, rows_per_knot, given.length, given.outlier);
 
   std::filesystem::create_directories(given.out);
-  duet::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, given.rate));
+  duet::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, rate));
   duet::write_file(given.out + "/rows.csv", rows_csv(r, s));
   const bool drawn =
       example::draw(given.out, "fit", "1000,900",

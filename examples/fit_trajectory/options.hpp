@@ -16,7 +16,7 @@ namespace fit_trajectory {
 struct options {
   std::optional<std::string> file;
   int rows_per_knot = 10;
-  double rate = 100;
+  std::optional<double> rate;
   double length = 1;
   double outlier = 0; ///< 0: from the data
   std::string out = "fit_trajectory_out";
@@ -30,18 +30,20 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       "A smooth curve near recorded motion, by least squares over a cumulative cubic B-spline of\n"
       "poses, with velocities and accelerations (trajectory.csv), residuals (rows.csv) and "
       "pictures.\n\n  fit_trajectory [FILE] [options]\n\n"
-      "FILE has rows `timestamp tx ty tz qx qy qz qw` (seconds, metres, # starts a comment); "
-      "without\none, a made-up recording is taken. Rows that are no poses or repeat a timestamp "
-      "are named and\nleft out. Velocities and accelerations are in fixed axes, those of the "
-      "origin and angular ones.\nOptions");
+      "FILE has rows `timestamp tx ty tz qx qy qz qw` (seconds, metres, # starts a comment), or a "
+      "header, a\nfirst line or a comment, that names the columns in another order; files of the "
+      "EuRoC data set are known.\nWithout FILE, a made-up recording is taken. Rows that are no "
+      "poses "
+      "or repeat a timestamp are named and\nleft out. Velocities and accelerations are in fixed "
+      "axes, those of the origin and angular ones.\nOptions");
   description.add_options()("help", "print this and stop")(
       "file", po::value<std::string>()->value_name("FILE"),
       "the recording")("rows-per-knot", po::value<int>()->value_name("N"),
                        "rows from one knot to the next; more are smoother (default: 10)")(
       "rate", po::value<double>()->value_name("HZ"),
-      "poses per second of trajectory.csv (default: 100)")(
-      "length", po::value<double>()->value_name("M"),
-      "metres that count as much as a turn by one radian (default: 1)")(
+      "poses per second of trajectory.csv (default: 100, fewer where that made more than a "
+      "million)")("length", po::value<double>()->value_name("M"),
+                  "metres that count as much as a turn by one radian (default: 1)")(
       "outlier", po::value<double>()->value_name("R"),
       "residual beyond which a row counts less (default: three times the median of a plain "
       "fit)")("out", po::value<std::string>()->value_name("DIR"),
@@ -57,7 +59,7 @@ inline std::optional<options> parse_options(int argc, char** argv) {
   if (result.rows_per_knot < 1) {
     throw std::runtime_error("--rows-per-knot: 1 or more");
   }
-  const auto positive = [&](const char* name, double& value) {
+  const auto positive = [&](const char* name, auto& value) {
     if (const auto number = given->get<double>(name)) {
       if (!(*number > 0) || !std::isfinite(*number)) {
         throw std::runtime_error(std::string("--") + name + ": a positive number expected");

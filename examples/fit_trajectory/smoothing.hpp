@@ -3,6 +3,8 @@
 
 #include "trajectory.hpp"
 
+#include <duet/core/csv.hpp>
+#include <duet/core/number_text.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
@@ -15,6 +17,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,6 +83,20 @@ inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double len
 inline std::size_t outliers(const smoothed& s) {
   const auto is_far = [&](double residual) { return residual > s.outlier; };
   return std::size_t(std::count_if(s.fit.residuals.begin(), s.fit.residuals.end(), is_far));
+}
+
+/// Poses per second of the table: those asked for, else 100 or as many as make a million.
+/// \throws std::runtime_error where those asked for would be too many
+inline double rate_for(double duration, const std::optional<double>& asked) {
+  constexpr double usual = 100, usual_poses = 1e6, most_poses = 1e7;
+  if (!asked) {
+    return std::min(usual, usual_poses / duration);
+  }
+  if (!(duration * *asked <= most_poses)) {
+    throw std::runtime_error("--rate: " + duet::to_text(*asked) + " Hz over " +
+                             duet::to_text(duration) + " s would make more than 10000000 poses");
+  }
+  return *asked;
 }
 
 /// Poses and their rates at even times, in fixed axes: velocity and acceleration of the origin,

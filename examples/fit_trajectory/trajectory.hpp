@@ -1,27 +1,26 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/csv.hpp>
-
 #include <duet/comparison/random_source.hpp>
+#include <duet/core/file.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/orientations.hpp>
+#include <duet/spline/table_rows.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
-#include <sstream>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 /// \file
-/// Recorded motion: rows `timestamp tx ty tz qx qy qz qw`.
+/// Recorded motion: rows `timestamp tx ty tz qx qy qz qw`, or as a header says.
 
 namespace fit_trajectory {
 
@@ -44,41 +43,74 @@ struct recording {
   std::vector<row> rows; ///< in order of time
   std::vector<fault> faults;
   std::size_t left_out = 0;
+  std::string remark; ///< how the file was understood, where that is not plain
 };
 
 namespace detail {
 
-/// The eight numbers of a line, NaN among them, none for a comment.
+/// How the times of a file become seconds, and what there is to say about that.
+struct time_scale {
+  double per_second = 1;
+  bool is_guessed = false; ///< nanoseconds, which are whole numbers
+};
+
+/// Where the columns are, by the header or, without one, by their number.
 /// \throws duet::file_error
-inline std::vector<double> numbers_of(const std::string& path, std::size_t line, std::string text) {
-  text = text.substr(0, text.find('#'));
-  std::replace(text.begin(), text.end(), ',', ' ');
-  std::istringstream words(text);
-  std::vector<double> numbers;
-  for (std::string word; words >> word;) {
-    const auto number = duet::parse_number(word);
-    if (!number) {
-      throw duet::file_error(path, line, "'" + word + "' is not a number");
+inline duet::detail::table_layout layout_of(const std::string& path, std::size_t line,
+                                            const std::vector<std::string_view>& cells,
+                                            bool has_commas,
+                                            const std::optional<duet::detail::table_layout>& header,
+                                            recording& r, time_scale& scale) {
+  using duet::detail::column;
+  using enum column;
+  constexpr double least_nanoseconds = 1e17; // 1973; as seconds the age of the universe
+  const auto time_of = [&](std::size_t at) {
+    return at < cells.size() ? duet::parse_number(cells[at]).value_or(0) : 0.0;
+  };
+  if (!header) {
+    if (cells.size() != 8) {
+      throw duet::file_error(path, line,
+                             "8 numbers expected (timestamp tx ty tz qx qy qz qw), got " +
+                                 std::to_string(cells.size()) +
+                                 "; other columns need a header with their names");
     }
-    numbers.push_back(*number);
+    const bool is_scalar_first = has_commas && std::abs(time_of(0)) >= least_nanoseconds;
+    if (std::abs(time_of(0)) >= least_nanoseconds) {
+      scale = {1e9, true};
+      r.remark = std::string("timestamps in nanoseconds: read as ") +
+                 (is_scalar_first ? "in EuRoC files, timestamp, x, y, z, qw, qx, qy, qz"
+                                  : "timestamp tx ty tz qx qy qz qw");
+    }
+    return is_scalar_first
+               ? duet::detail::table_layout({u, x, y, z, qw, qx, qy, qz},
+                                            {"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"})
+               : duet::detail::table_layout(
+                     {u, x, y, z, qx, qy, qz, qw},
+                     {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"});
   }
-  if (!numbers.empty() && numbers.size() != 8) {
-    throw duet::file_error(path, line,
-                           "8 numbers expected (timestamp tx ty tz qx qy qz qw), got " +
-                               std::to_string(numbers.size()));
+  const std::string& unit = header->time_unit;
+  if (unit.empty()) {
+    const bool is_large = std::abs(time_of(header->at[0])) >= least_nanoseconds;
+    if (header->is_euroc || is_large) {
+      scale = {1e9, true};
+      r.remark = header->is_euroc ? "a EuRoC file: timestamps in nanoseconds"
+                                  : "timestamps of this size are taken for nanoseconds";
+    }
+  } else if (unit == "ns" || unit == "us" || unit == "ms") {
+    scale.per_second = unit == "ns" ? 1e9 : unit == "us" ? 1e6 : 1e3;
+    r.remark = std::string(header->is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
+  } else if (unit != "s" && unit != "sec" && unit != "seconds") {
+    throw duet::file_error(path, line, "timestamps in '" + unit + "': s, ms, us or ns expected");
   }
-  return numbers;
+  if (const std::string& place = header->place_unit; !place.empty() && place != "m") {
+    throw duet::file_error(path, line, "positions in '" + place + "': m expected");
+  }
+  return *header;
 }
 
 /// What is wrong with a row by itself, empty if nothing.
-inline std::string fault_of(const std::vector<double>& x) {
-  static constexpr std::array names{"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i])) {
-      return std::string(names[i]) + " is " + duet::to_text(x[i]);
-    }
-  }
-  const double length = norm(duet::quaternion<double>(x[7], x[4], x[5], x[6]));
+inline std::string fault_of(const duet::quaternion<double>& q) {
+  const double length = norm(q);
   if (!(std::abs(length - 1) <= duet::unit_norm_tolerance)) {
     return "the quaternion has norm " + duet::to_text(length) + ", not 1";
   }
@@ -87,6 +119,10 @@ inline std::string fault_of(const std::vector<double>& x) {
 
 /// Rows in order of time, each time once.
 inline void put_in_order(recording& r) {
+  const auto is_late = [](const row& a, const row& b) { return !(a.time < b.time); };
+  if (std::adjacent_find(r.rows.begin(), r.rows.end(), is_late) == r.rows.end()) {
+    return;
+  }
   std::stable_sort(r.rows.begin(), r.rows.end(),
                    [](const row& a, const row& b) { return a.time < b.time; });
   std::vector<row> once;
@@ -114,28 +150,33 @@ inline void put_in_order(recording& r) {
 
 } // namespace detail
 
+/// Seconds; of EuRoC files and timestamps from 1e17 on nanoseconds, with a remark.
 /// \throws duet::file_error for a file that cannot be read and for a line of another format
 inline recording read_recording(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) {
-    throw duet::file_error(path, "cannot be read");
-  }
   recording result;
-  std::string text;
-  for (std::size_t line = 1; std::getline(in, text); ++line) {
-    const std::vector<double> x = detail::numbers_of(path, line, text);
-    if (x.empty()) {
-      continue;
-    }
-    if (const std::string fault = detail::fault_of(x); !fault.empty()) {
-      result.faults.push_back({line, fault + ": left out"});
-      ++result.left_out;
-      continue;
-    }
-    const duet::quaternion<double> q(x[7], x[4], x[5], x[6]);
-    result.rows.push_back(
-        {line, x[0], duet::pose(normalized(q), vector3<double>(x[1], x[2], x[3]))});
-  }
+  detail::time_scale scale;
+  const auto start = [&](std::size_t line, const auto& cells, const auto& header, bool has_commas) {
+    return detail::layout_of(path, line, cells, has_commas, header, result, scale);
+  };
+  duet::detail::for_each_table_row(
+      path, true, true, start,
+      [&](std::size_t line, const std::array<double, 8>& x, const std::string& fault) {
+        const duet::quaternion<double> q(x[4], x[5], x[6], x[7]);
+        const std::string reason = fault.empty() ? detail::fault_of(q) : fault;
+        if (!reason.empty()) {
+          result.faults.push_back({line, reason + ": left out"});
+          ++result.left_out;
+          return;
+        }
+        if (scale.is_guessed && x[0] != std::floor(x[0])) {
+          throw duet::file_error(path, line,
+                                 "timestamp " + duet::to_text(x[0]) +
+                                     " is no whole number of nanoseconds: a header with its unit, "
+                                     "as in `timestamp [s]`, is needed");
+        }
+        result.rows.push_back({line, x[0] / scale.per_second,
+                               duet::pose(normalized(q), vector3<double>(x[1], x[2], x[3]))});
+      });
   if (result.rows.empty()) {
     throw duet::file_error(path, "holds no usable rows");
   }

@@ -32,20 +32,12 @@ struct options {
 /// The two poses of the command line, of the file, or of an example.
 inline std::pair<pose_type, pose_type> poses(const options& given) {
   if (given.file) {
-    const duet::csv_file file(*given.file);
-    std::vector<pose_type> result;
-    for (const duet::csv_row& row : file.rows()) {
-      try {
-        result.push_back(example::parse_pose(row.numbers));
-      } catch (const duet::invalid_input& error) {
-        throw duet::file_error(*given.file, row.line, error.what());
-      }
-    }
-    if (result.size() != 2) {
+    const auto rows = example::read_poses(*given.file);
+    if (rows.size() != 2) {
       throw duet::file_error(*given.file,
-                             "two poses are needed, not " + std::to_string(result.size()));
+                             "two poses are needed, not " + std::to_string(rows.size()));
     }
-    return {result[0], result[1]};
+    return {rows[0].pose, rows[1].pose};
   }
   if (given.from && given.to) {
     return {example::parse_pose("--from", *given.from), example::parse_pose("--to", *given.to)};

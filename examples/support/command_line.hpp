@@ -3,6 +3,7 @@
 
 #include <boost/program_options.hpp>
 
+#include <cstddef>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -23,6 +24,7 @@ public:
   [[nodiscard]] static std::optional<command_line> parse(int argc, char** argv,
                                                          const po::options_description& description,
                                                          const std::string& positional = {}) {
+    require_no_placeholders(argc, argv);
     po::positional_options_description bare;
     if (!positional.empty()) {
       bare.add(positional.c_str(), 1);
@@ -53,6 +55,22 @@ public:
   }
 
 private:
+  /// Messages of Boost replace `%value%` by the value for as long as there is one: where that holds
+  /// `%value%` itself, for ever.
+  static void require_no_placeholders(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i) {
+      const std::string text(argv[i]);
+      for (std::size_t at = 0; (at = text.find('%', at)) != std::string::npos;) {
+        const std::size_t end = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", at + 1);
+        if (end != std::string::npos && end > at + 1 && text[end] == '%') {
+          throw std::runtime_error("'" + text + "': no argument may hold " +
+                                   text.substr(at, end + 1 - at));
+        }
+        ++at;
+      }
+    }
+  }
+
   po::variables_map given_;
 };
 

@@ -3,15 +3,18 @@
 
 #include "numbers.hpp"
 
+#include <duet/core/csv.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/norm.hpp>
+#include <duet/spline/table_rows.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// \file
@@ -52,6 +55,46 @@ inline duet::dual_quaternion<double> parse_pose(const std::string& option,
   } catch (const duet::invalid_input& error) {
     throw std::runtime_error(option + ": " + error.what());
   }
+}
+
+struct pose_row {
+  std::size_t line;
+  duet::dual_quaternion<double> pose;
+};
+
+/// A pose on each line of a file, as `parse_pose` has it. A header must name `x,y,z,qw,qx,qy,qz`,
+/// in the order of the rows.
+/// \throws duet::file_error
+inline std::vector<pose_row> read_poses(const std::string& path) {
+  const duet::csv_file file(path);
+  duet::detail::table_layout layout;
+  if (!file.header().empty()) {
+    const std::vector<std::string_view> names(file.header().begin(), file.header().end());
+    if (const std::string problem = layout.read(names, false, true); !problem.empty()) {
+      throw duet::file_error(path, file.header_line(), problem);
+    }
+  }
+  std::vector<pose_row> result;
+  for (const duet::csv_row& row : file.rows()) {
+    std::vector<double> numbers = row.numbers;
+    if (!file.header().empty()) {
+      if (numbers.size() != layout.columns) {
+        throw duet::file_error(path, row.line,
+                               std::to_string(layout.columns) + " numbers expected, got " +
+                                   std::to_string(numbers.size()));
+      }
+      for (std::size_t k = 1; k < 8; ++k) {
+        numbers[k - 1] = row.numbers[layout.at[k]];
+      }
+      numbers.resize(7);
+    }
+    try {
+      result.push_back({row.line, parse_pose(numbers)});
+    } catch (const duet::invalid_input& error) {
+      throw duet::file_error(path, row.line, error.what());
+    }
+  }
+  return result;
 }
 
 } // namespace example

@@ -5,6 +5,7 @@
 
 #include <duet/core/csv.hpp>
 
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -17,10 +18,24 @@ using duet::csv_file;
 using duet::csv_row;
 using duet::file_error;
 
+/// \throws file_error for a header that names the coordinates in another order or otherwise
+inline void require_order(const csv_file& file, const std::string& path) {
+  constexpr std::array<const char*, 6> names{"ax", "ay", "az", "px", "py", "pz"};
+  const auto& header = file.header();
+  for (std::size_t i = 0; !header.empty() && i < names.size(); ++i) {
+    const std::string name = i + 1 < header.size() ? header[i + 1] : "";
+    if (header.size() != 7 || name.substr(0, name.find_first_of(" [(")) != names[i]) {
+      throw file_error(path, file.header_line(),
+                       "the columns are name, ax, ay, az, px, py, pz; the header says otherwise");
+    }
+  }
+}
+
 /// Reads five rows `name, ax, ay, az, px, py, pz` (chassis, carrier) and one `wheel centre, x, y,
 /// z`. \throws file_error
 inline hardpoints read_hardpoints(const std::string& path) {
   const csv_file file(path);
+  require_order(file, path);
   hardpoints result;
   bool has_centre = false;
   std::size_t rods = 0;

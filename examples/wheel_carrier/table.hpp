@@ -4,13 +4,15 @@
 #include "carrier.hpp"
 
 #include <duet/core/csv.hpp>
-
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/table_rows.hpp>
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,8 +23,6 @@
 
 namespace wheel_carrier {
 
-using duet::csv_file;
-using duet::csv_row;
 using duet::file_error;
 
 struct table {
@@ -92,23 +92,38 @@ inline table equal_arc_table(const carrier& mechanism, const arc_length& arcs, i
   return result;
 }
 
-/// Reads u, qw, qx, qy, qz. Rows a curve cannot go through are reported here, where their line is
-/// known. \throws file_error
+/// Reads u, qw, qx, qy, qz, in the order that a header gives. Rows a curve cannot go through are
+/// reported here, where their line is known. \throws file_error
 inline table read_table(const std::string& path) {
-  const csv_file file(path, 5);
+  using duet::detail::column;
   table result;
-  for (const csv_row& row : file.rows()) {
-    result.u.push_back(row.numbers[0]);
-    result.q.emplace_back(row.numbers[1], row.numbers[2], row.numbers[3], row.numbers[4]);
-  }
+  std::vector<std::size_t> lines;
+  const auto start = [&](std::size_t line, const auto& cells, const auto& header, bool) {
+    if (!header && cells.size() != 5) {
+      throw file_error(path, line, "5 numbers expected, got " + std::to_string(cells.size()));
+    }
+    return header.value_or(
+        duet::detail::table_layout({column::u, column::qw, column::qx, column::qy, column::qz},
+                                   {"u", "qw", "qx", "qy", "qz"}));
+  };
+  duet::detail::for_each_table_row(
+      path, true, false, start,
+      [&](std::size_t line, const std::array<double, 8>& x, const std::string& fault) {
+        if (!fault.empty()) {
+          throw file_error(path, line, fault);
+        }
+        lines.push_back(line);
+        result.u.push_back(x[0]);
+        result.q.emplace_back(x[4], x[5], x[6], x[7]);
+      });
   if (result.u.size() < 2) {
-    throw file_error(path, "needs two rows or more");
+    throw file_error(path, result.u.empty() ? "holds no rows" : "needs two rows or more");
   }
   try {
     duet::detail::check_rows(result.u, result.q.size(), 2);
     result.q = duet::aligned_orientations(result.q);
   } catch (const duet::invalid_row& error) {
-    throw file_error(path, file.rows()[error.row()].line, error.reason());
+    throw file_error(path, lines[error.row()], error.reason());
   }
   return result;
 }

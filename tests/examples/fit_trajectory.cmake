@@ -57,17 +57,63 @@ expect_fault("rows.txt:42: timestamp 0.55 is out of order: sorted in"
 expect_fault("rows.txt:42: qw is nan: left out" "${rows}4.1 1 0.41 0 0.6 0 0 nan\n")
 expect_fault("rows.txt:42: tx is inf: left out" "${rows}4.1 inf 0.41 0 0.6 0 0 0.8\n")
 expect_fault("rows.txt:42: the quaternion has norm 0, not 1: left out" "${rows}4.1 1 0.41 0 0 0 0 0\n")
+expect_fault("rows.txt:42: tx is 1e400, beyond the range of a double: left out"
+  "${rows}4.1 1e400 0.41 0 0.6 0 0 0.8\n")
+expect_fault("rows.txt:42: tz is -1e-400, beyond the range of a double: left out"
+  "${rows}4.1 1 0.41 -1e-400 0.6 0 0 0.8\n")
+
+# EuRoC's files: by their header, by timestamps and commas; nanoseconds where w is last, as blanks tell. All
+# are the same motion as above.
+set(euroc "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n")
+set(unnamed "")
+set(blanks "")
+string(ASCII 239 187 191 byte_order_mark)
+set(swapped "${byte_order_mark}qw,qx,qy,qz,tx,ty,tz,timestamp_ms,speed\r\n")
+foreach(i RANGE 39)
+  math(EXPR tens "${i} / 10")
+  math(EXPR ones "${i} % 10")
+  math(EXPR stamp "1403636580 + ${tens}")
+  string(APPEND unnamed "${stamp}${ones}00000000,1,0.${tens}${ones},0,0.8,0.6,0,0\n")
+  string(APPEND blanks "${stamp}${ones}00000000.0 1 0.${tens}${ones} 0 0.6 0 0 0.8\n")
+  string(APPEND swapped "0.8,0.6,0,0,1,0.${tens}${ones},0,${i}00,n/a\r\n")
+endforeach()
+function(expect_rotation content said)
+  expect_fault("${said}" "${content}")
+  file(STRINGS ${folder}/out/trajectory.csv lines LIMIT_COUNT 2)
+  list(GET lines 1 line)
+  if(NOT line MATCHES "^[0-9.]+,(1|0.99999|1.00000)[0-9]*,[-0-9.e]+,[-0-9.e]+,0.(6|59999|60000)[0-9]*,[-0-9.e]+,[-0-9.e]+,0.(8|79999|80000)[0-9]*,")
+    message(FATAL_ERROR "after ${said} the first pose is ${line}")
+  endif()
+endfunction()
+expect_rotation("${euroc}${unnamed}" "rows.txt: a EuRoC file: timestamps in nanoseconds")
+expect_rotation("${unnamed}"
+  "rows.txt: timestamps in nanoseconds: read as in EuRoC files, timestamp, x, y, z, qw, qx, qy, qz")
+expect_rotation("${blanks}" "rows.txt: timestamps in nanoseconds: read as timestamp tx ty tz qx qy qz qw")
+expect_rotation("${swapped}" "rows.txt: timestamps in ms")
+# Its own output is as good as any.
+run_rows(0 "" "${rows}")
+file(COPY_FILE ${folder}/out/trajectory.csv ${folder}/again.csv)
+file(COPY_FILE ${folder}/out/rows.csv ${folder}/residuals.csv)
+run(0 "rows=391 left_out=0" again.csv)
+run(1 "residuals.csv:1: the header names no column qw: known are u " residuals.csv)
 
 run(1 "nowhere.txt: cannot be read" nowhere.txt)
+run(1 "[.]: is a folder, not a file" .)
+run_rows(1 "--rate: 1e[+]09 Hz over 3.9 s would make more than 10000000 poses" "${rows}" --rate 1e9)
+run_rows(1 "rows.txt:2: timestamp 0.5 is no whole number of nanoseconds: a header with its unit" "${euroc}0.5,0,0,0,1,0,0,0\n")
+run_rows(1 "rows.txt:2: timestamps in 'h': s, ms, us or ns expected" "t [h],x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n")
+run_rows(1 "rows.txt:2: positions in 'mm': m expected" "t,x [mm],y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n")
 run_rows(1 "rows.txt: holds no usable rows" "# nothing\n")
 run_rows(1 "rows.txt: 14 usable rows are too few for one knot in 20" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1
 2 1 2 3 0 0 0 1\n3 1 2 3 0 0 0 1\n4 1 2 3 0 0 0 1\n5 1 2 3 0 0 0 1\n6 1 2 3 0 0 0 1\n7 1 2 3 0 0 0 1
 8 1 2 3 0 0 0 1\n9 1 2 3 0 0 0 1\n10 1 2 3 0 0 0 1\n11 1 2 3 0 0 0 1\n12 1 2 3 0 0 0 1
 13 1 2 3 0 0 0 1\n" --rows-per-knot 20)
-run_rows(1 "rows.txt:2: 8 numbers expected .*, got 7" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0\n")
-run_rows(1 "rows.txt:1: 'one' is not a number" "0 one 2 3 0 0 0 1\n")
+run_rows(1 "rows.txt:2: 8 columns expected, got 7" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0\n")
+run_rows(1 "rows.txt:1: 8 numbers expected [(]timestamp tx ty tz qx qy qz qw[)], got 7" "1 1 2 3 0 0 0\n")
+run_rows(1 "rows.txt:1: tx is not a number: 'one'" "0 one 2 3 0 0 0 1\n")
 run(1 "--rate: a positive number expected" --rate 0)
 run(1 "--rows-per-knot: 1 or more" --rows-per-knot 0)
+run(1 "'%value%': no argument may hold %value%" --rate %value%) # once went on for ever
 run(1 "unrecognised option '--bogus'" --bogus)
 
 if(data)

@@ -32,6 +32,8 @@ run(1 "--from: .*not a rotation: .*det R = -1" --from 1,0,0,0,0,1,0,0,0,0,-1,0 -
 run(1 "--from and --to belong together" --from ${start})
 run(1 "--steps: 1 or more" --steps 0)
 run(1 "unrecognised option '--bogus'" --bogus)
+run_file(0 "kind=translation angle=0 translation=1" "qx,qy,qz,qw,x,y,z\n0,0,0,1,0,0,0\n0,0,0,1,0,0,1\n")
+run_file(1 "poses.csv:1: the header names no column qw" "x,y,z,q0,q1,q2,q3\n0,0,0,1,0,0,0\n0,0,1,1,0,0,0\n")
 run(1 "missing.csv: cannot be read" --file missing.csv)
 run_file(1 "poses.csv:2: the quaternion has norm 0, not 1" "0,0,0,1,0,0,0\n0,0,1,0,0,0,0\n")
 run_file(1 "poses.csv:2: column 5 is inf" "0,0,0,1,0,0,0\n0,0,0,1,inf,0,0\n")

@@ -99,8 +99,9 @@ endforeach()
 
 # A test that is in no list would never run. Files that are compiled together must not see each other's
 # names, and a file runs those cases that stand in itself.
-foreach(layer IN LISTS layers)
+foreach(layer IN LISTS layers ITEMS fuzz)
   file(GLOB tests RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/tests tests/${layer}/*.cpp)
+  list(REMOVE_ITEM tests fuzz/libfuzzer.cpp)
   set(list "")
   if(tests)
     file(READ tests/${layer}/CMakeLists.txt list)

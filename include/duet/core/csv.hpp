@@ -4,12 +4,14 @@
 #include <duet/core/file.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/printable.hpp>
+#include <duet/core/text_rows.hpp>
 
-#include <cmath>
+#include <array>
+#include <charconv>
 #include <cstddef>
-#include <fstream>
-#include <sstream>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -25,79 +27,61 @@ struct csv_row {
   std::vector<double> numbers;
 };
 
-/// The rows of a file. Empty lines and lines from `#` on are passed over, and so is a first line
-/// without any number, the header.
+/// The rows of a file. Empty lines and lines from `#` on are passed over; a first line without any
+/// number is the header.
 class csv_file {
 public:
   /// \param columns  how many numbers each row must hold; 0: any, the first cell may be a name
   /// \throws file_error
   explicit csv_file(const std::string& path, std::size_t columns = 0) {
-    std::ifstream in(path);
-    if (!in) {
-      throw file_error(path, "cannot be read");
-    }
-    std::string text;
-    for (std::size_t line = 1; std::getline(in, text); ++line) {
-      text = text.substr(0, text.find('#'));
-      if (text.find_first_not_of(" \t\r") == std::string::npos) {
-        continue;
+    std::vector<std::string_view> cells;
+    detail::for_each_line(path, [&](std::size_t line, std::string_view whole) {
+      detail::split_cells(detail::split_line(whole).text, cells);
+      if (cells.empty()) {
+        return;
       }
-      const bool first = rows_.empty() && !has_header_;
-      csv_row row = parse(path, line, text, columns == 0);
-      if (first && row.numbers.empty()) {
-        has_header_ = true;
-        continue;
+      if (rows_.empty() && header_.empty() && detail::are_words(cells)) {
+        header_.assign(cells.begin(), cells.end());
+        header_line_ = line;
+        return;
       }
-      if (columns != 0 && (row.numbers.size() != columns || !row.name.empty())) {
+      csv_row row{line, {}, {}};
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        double number = 0;
+        if (i == 0 && columns == 0 &&
+            detail::read_number(cells[i], number) == std::errc::invalid_argument) {
+          row.name = cells[i];
+          continue;
+        }
+        const std::string fault =
+            detail::read_cell(path, line, "column " + std::to_string(i + 1), cells[i], number);
+        if (!fault.empty()) {
+          throw file_error(path, line, fault);
+        }
+        row.numbers.push_back(number);
+      }
+      if (columns != 0 && row.numbers.size() != columns) {
         throw file_error(path, line,
                          std::to_string(columns) + " numbers expected, got " +
                              std::to_string(row.numbers.size()));
       }
       rows_.push_back(std::move(row));
-    }
+    });
     if (rows_.empty()) {
       throw file_error(path, "holds no rows");
     }
   }
 
   [[nodiscard]] const std::vector<csv_row>& rows() const { return rows_; }
+  /// The names of the columns, empty where the file has none: rows are in the file's order, so
+  /// whoever counts on another one looks here.
+  [[nodiscard]] const std::vector<std::string>& header() const { return header_; }
+  [[nodiscard]] std::size_t header_line() const { return header_line_; }
 
 private:
-  csv_row parse(const std::string& path, std::size_t line, const std::string& text,
-                bool named) const {
-    csv_row row{line, {}, {}};
-    std::istringstream cells(text);
-    std::string cell;
-    bool all_words = true;
-    for (std::size_t column = 1; std::getline(cells, cell, ','); ++column) {
-      const auto number = parse_number(cell);
-      if (number && !std::isfinite(*number)) {
-        throw file_error(path, line, "column " + std::to_string(column) + " is " + trimmed(cell));
-      }
-      if (number) {
-        row.numbers.push_back(*number);
-        all_words = false;
-      } else if (column == 1 && named) {
-        row.name = trimmed(cell);
-      } else if (!(all_words && rows_.empty() && !has_header_)) {
-        throw file_error(path, line,
-                         "column " + std::to_string(column) + " is not a number: '" +
-                             trimmed(cell) + "'");
-      }
-    }
-    return row;
-  }
-
-  static std::string trimmed(const std::string& s) {
-    const auto first = s.find_first_not_of(" \t\r");
-    if (first == std::string::npos) {
-      return {};
-    }
-    return s.substr(first, s.find_last_not_of(" \t\r") - first + 1);
-  }
-
   std::vector<csv_row> rows_;
-  bool has_header_ = false;
+  std::vector<std::string> header_;
+  std::size_t header_line_ = 0;
 };
 
 /// A name as a cell: without what would end the cell or the line, or begin a comment.
@@ -124,9 +108,15 @@ private:
 inline std::string csv_line(const std::vector<double>& numbers) {
   std::string line;
   for (const double x : numbers) {
-    line += (line.empty() ? "" : ",") + to_text(x);
+    if (!line.empty()) {
+      line += ',';
+    }
+    std::array<char, 32> text; // of a double at most 24
+    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
+    line.append(text.data(), end);
   }
-  return line + "\n";
+  line += '\n';
+  return line;
 }
 
 } // namespace duet

@@ -21,21 +21,36 @@ template <std::floating_point T>
   return error == std::errc() ? std::string(buffer, end) : std::string();
 }
 
-/// The number that the whole text spells, blanks around it and a leading plus sign aside; `inf` and
-/// `nan` are numbers too. Nothing where the text is anything else.
-[[nodiscard]] inline std::optional<double> parse_number(std::string_view text) {
+namespace detail {
+
+/// Without blanks at both ends.
+[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
   const auto first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) {
-    return std::nullopt;
+    return {};
   }
-  text = text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// As `parse_number`, with the reason why not: `result_out_of_range` for a number beyond the
+/// range of a double, `invalid_argument` for what is no number.
+[[nodiscard]] inline std::errc read_number(std::string_view text, double& value) {
+  text = trimmed(text);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
     text.remove_prefix(1);
   }
-  double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
+  return end == text.data() + text.size() ? error : std::errc::invalid_argument;
+}
+
+} // namespace detail
+
+/// The number that the whole text spells, blanks around it and a leading plus sign aside; `inf` and
+/// `nan` are numbers too. Nothing where the text is anything else.
+[[nodiscard]] inline std::optional<double> parse_number(std::string_view text) {
+  double value = 0;
+  if (detail::read_number(text, value) != std::errc()) {
     return std::nullopt;
   }
   return value;

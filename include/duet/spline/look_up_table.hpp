@@ -2,12 +2,13 @@
 #pragma once
 
 #include <duet/core/csv.hpp>
+#include <duet/core/number_text.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/orientations.hpp>
+#include <duet/spline/table_rows.hpp>
 
 #include <array>
 #include <cmath>
@@ -64,34 +65,54 @@ void save_table(const std::string& path, const look_up_table<T>& table) {
   write_file(path, text);
 }
 
-/// Reads what `save_table` writes; a header and comments from `#` on are passed over.
-/// \throws file_error with the line of a row that is ragged, not finite, not a unit or does not
+/// Reads what `save_table` writes, and tables whose header, a first line or a comment, names the
+/// columns in another order or in other words: `# timestamp tx ty tz qx qy qz qw`. The numbers are
+/// taken as they are, whatever units the header has; columns of other names are passed over.
+/// \throws file_error for a file without a header, as nothing else tells qw first from qw last, or
+/// with one in doubt; with the line of a row that is ragged, not finite, not a unit or does not
 /// follow the one before
 template <class T>
 [[nodiscard]] look_up_table<T> load_table(const std::string& path) {
   constexpr bool is_rotation = detail::is_rotation_scalar<T>;
-  const csv_file file(path, is_rotation ? 5 : 8);
   look_up_table<T> table;
-  std::vector<quaternion<double>> rotations;
-  for (const csv_row& row : file.rows()) {
-    const auto* q = &row.numbers[is_rotation ? 1 : 4];
-    table.parameters.push_back(row.numbers[0]);
-    rotations.emplace_back(q[0], q[1], q[2], q[3]);
-  }
-  try {
-    detail::check_rows(table.parameters, rotations.size(), 0);
-    static_cast<void>(unit_quaternions(rotations));
-  } catch (const invalid_row& error) {
-    throw file_error(path, file.rows()[error.row()].line, error.reason());
-  }
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
-    const quaternion<double> q = detail::unit_of_file(rotations[i]);
-    if constexpr (is_rotation) {
-      table.elements.push_back(q);
-    } else {
-      const auto& x = file.rows()[i].numbers;
-      table.elements.push_back(pose(q, vector3<double>(x[1], x[2], x[3])));
+  const auto start = [&](std::size_t line, const auto&, const auto& header, bool) {
+    if (!header) {
+      throw file_error(path, line,
+                       std::string("no header before the first row says which column is "
+                                   "which, as `") +
+                           (is_rotation ? "u,qw,qx,qy,qz" : "u,x,y,z,qw,qx,qy,qz") +
+                           "` does: " + detail::known_columns);
     }
+    return *header;
+  };
+  detail::for_each_table_row(
+      path, true, !is_rotation, start,
+      [&](std::size_t line, const std::array<double, 8>& x, const std::string& fault) {
+        if (!fault.empty()) {
+          throw file_error(path, line, fault);
+        }
+        const quaternion<double> q(x[4], x[5], x[6], x[7]);
+        if (const double length = norm(q); !(std::abs(length - 1) <= unit_norm_tolerance)) {
+          throw file_error(path, line,
+                           "the quaternion has norm " + to_text(length) +
+                               ", not 1: are its columns what the header says?");
+        }
+        if (!table.parameters.empty() && !(x[0] > table.parameters.back())) {
+          throw file_error(path, line,
+                           "parameter " + to_text(x[0]) +
+                               " does not increase, the row before has " +
+                               to_text(table.parameters.back()));
+        }
+        table.parameters.push_back(x[0]);
+        if constexpr (is_rotation) {
+          table.elements.push_back(detail::unit_of_file(q));
+        } else {
+          table.elements.push_back(
+              pose(detail::unit_of_file(q), vector3<double>(x[1], x[2], x[3])));
+        }
+      });
+  if (table.parameters.empty()) {
+    throw file_error(path, "holds no rows");
   }
   return table;
 }

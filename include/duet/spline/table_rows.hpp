@@ -1,0 +1,250 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/file.hpp>
+#include <duet/core/text_rows.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Rows of rotations and poses in text files, by the names of their columns.
+
+namespace duet::detail {
+
+/// What a column of such a table may hold; `other` is passed over.
+enum class column : std::size_t { u, x, y, z, qw, qx, qy, qz, other };
+
+inline constexpr const char* known_columns = "known are u (tau, t, time, timestamp), x y z (tx, "
+                                             "px, p_x, p_RS_R_x ...) and qw qx qy qz (q_w, "
+                                             "q_RS_w ...), with units as in `t [s]`";
+
+/// A name in a header: of what, and in which unit.
+struct column_name {
+  column what = column::other;
+  std::string name;
+  std::string unit; ///< as written, empty where none is
+
+  explicit column_name(std::string_view cell) {
+    const std::size_t bracket = std::min(cell.find_first_of("[("), cell.size());
+    name = lower(trimmed(cell.substr(0, bracket)));
+    if (bracket < cell.size()) {
+      unit = lower(cell.substr(bracket + 1, cell.find_first_of("])", bracket) - bracket - 1));
+    }
+    what = meaning();
+  }
+
+private:
+  [[nodiscard]] static std::string lower(std::string_view text) {
+    std::string result(trimmed(text));
+    for (char& c : result) {
+      c = c == '.' ? '_' : char(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return result;
+  }
+
+  [[nodiscard]] column meaning() {
+    if (name == "u" || name == "tau" || is_time(name)) {
+      return column::u;
+    }
+    const std::size_t cut = name.rfind('_');
+    const std::string last = cut == std::string::npos ? "" : name.substr(cut + 1);
+    if ((last == "s" || last == "ms" || last == "us" || last == "ns") &&
+        is_time(name.substr(0, cut)) && unit.empty()) {
+      unit = last; // timestamp_ns
+      return column::u;
+    }
+    const std::string_view axes = "wxyz";
+    const std::size_t axis = name.empty() ? axes.npos : axes.find(name.back());
+    if (axis == axes.npos) {
+      return column::other;
+    }
+    const bool has_cut = cut != std::string::npos && cut + 2 == name.size();
+    const std::string of = name.substr(0, has_cut ? cut : name.size() - 1);
+    const auto ends_with = [&](std::string_view end) { return has_cut && of.ends_with(end); };
+    if (of == "q" || (has_cut && of.starts_with("q_")) || ends_with("quat") ||
+        ends_with("quaternion") || ends_with("orientation")) {
+      return column(std::size_t(column::qw) + axis);
+    }
+    if (axis > 0 && (of.empty() || of == "t" || of == "p" || (has_cut && of.starts_with("p_")) ||
+                     ends_with("pos") || ends_with("position") || ends_with("translation"))) {
+      return column(std::size_t(column::x) + axis - 1);
+    }
+    return column::other;
+  }
+
+  [[nodiscard]] static bool is_time(const std::string& text) {
+    return text == "t" || text == "time" || text == "timestamp" || text == "stamp";
+  }
+};
+
+/// Where in a row its eight numbers stand: u, x y z, qw qx qy qz.
+struct table_layout {
+  static constexpr std::size_t absent = std::size_t(-1);
+
+  std::array<std::size_t, 8> at;
+  std::array<std::string, 8> names; ///< as in the header
+  std::size_t columns = 0;
+  std::string time_unit, place_unit;
+  bool is_euroc = false; ///< named as in the files of the EuRoC data set
+
+  table_layout() { at.fill(absent); }
+  /// Columns in this order.
+  table_layout(const std::vector<column>& order, const std::vector<std::string>& their_names)
+      : table_layout() {
+    columns = order.size();
+    for (std::size_t i = 0; i < columns; ++i) {
+      at[std::size_t(order[i])] = i;
+      names[std::size_t(order[i])] = their_names[i];
+    }
+  }
+
+  /// \param has_u, has_place  what the rows must have besides quaternions
+  /// \return what is wrong with the header, empty if nothing
+  [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_u,
+                                 bool has_place) {
+    columns = header.size();
+    for (std::size_t i = 0; i < columns; ++i) {
+      const column_name cell(header[i]);
+      if (cell.what == column::other) {
+        continue;
+      }
+      const auto k = std::size_t(cell.what);
+      if (at[k] != absent) {
+        return "the header has both '" + names[k] + "' and '" + std::string(header[i]) + "'";
+      }
+      at[k] = i;
+      names[k] = header[i];
+      if (cell.what == column::u) {
+        time_unit = cell.unit;
+      } else if (cell.what == column::x) {
+        place_unit = cell.unit;
+        is_euroc = cell.name.starts_with("p_rs_");
+      }
+    }
+    constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (at[k] == absent && (k == 0 ? has_u : k >= 4 || has_place)) {
+        return std::string("the header names no column ") + short_names[k] + ": " + known_columns;
+      }
+    }
+    return {};
+  }
+};
+
+/// A comment before the first row that seems to name the columns.
+class commented_header {
+public:
+  void look_at(std::size_t line, std::string_view comment) {
+    std::vector<std::string_view> cells;
+    split_cells(comment, cells);
+    if (cells.size() > 1 && cells[0].ends_with(':')) { // `columns: t x y z ...`
+      cells.erase(cells.begin());
+    }
+    std::array<bool, 9> has{};
+    for (const std::string_view cell : cells) {
+      has[std::size_t(column_name(cell).what)] = true;
+    }
+    const bool has_quaternion = has[4] && has[5] && has[6] && has[7];
+    if (has_quaternion ||
+        (!is_certain_ && cells.size() > 1 && column_name(cells[0]).what == column::u)) {
+      line_ = line;
+      cells_.assign(cells.begin(), cells.end());
+      is_certain_ = has_quaternion;
+    }
+  }
+
+  /// The layout that it gives rows of so many columns, if any.
+  /// \throws file_error where it is in doubt
+  [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
+                                                   bool has_u, bool has_place) const {
+    table_layout result;
+    if (cells_.size() == columns) {
+      const std::vector<std::string_view> header(cells_.begin(), cells_.end());
+      if (const std::string problem = result.read(header, has_u, has_place); !problem.empty()) {
+        throw file_error(path, line_, problem);
+      }
+      return result;
+    }
+    if (is_certain_) {
+      throw file_error(path, line_,
+                       "the comment names " + std::to_string(cells_.size()) +
+                           " columns, the rows have " + std::to_string(columns));
+    }
+    return std::nullopt;
+  }
+
+private:
+  std::size_t line_ = 0;
+  std::vector<std::string> cells_;
+  bool is_certain_ = false;
+};
+
+/// Calls row(line, numbers, fault) for every row of a file, with its eight numbers in the order of
+/// `column`, those that the file does not have 0; `fault` says what is wrong with one that is not
+/// finite, or is empty.
+///
+/// The columns are told by a header: a first line of names, or a comment before the first row.
+/// Columns of other names are passed over.
+/// \param start  start(line, cells, header, has_commas) makes the layout at the first row; `header`
+///               is empty where the file has none, cells are apart by commas or by blanks
+/// \throws file_error with the line of what is no row, or a header in doubt
+template <class Start, class Row>
+void for_each_table_row(const std::string& path, bool has_u, bool has_place, const Start& start,
+                        const Row& row) {
+  std::optional<table_layout> header;
+  commented_header comment;
+  table_layout layout;
+  std::size_t row_count = 0;
+  std::vector<std::string_view> cells;
+  for_each_line(path, [&](std::size_t line, std::string_view whole) {
+    const split_line parts(whole);
+    const bool is_begin = row_count == 0 && !header;
+    if (parts.text.empty()) {
+      if (is_begin && !parts.comment.empty()) {
+        comment.look_at(line, parts.comment);
+      }
+      return;
+    }
+    split_cells(parts.text, cells);
+    if (is_begin && are_words(cells)) {
+      header.emplace();
+      if (const std::string problem = header->read(cells, has_u, has_place); !problem.empty()) {
+        throw file_error(path, line, problem);
+      }
+      return;
+    }
+    if (row_count == 0) {
+      if (!header) {
+        header = comment.layout(path, cells.size(), has_u, has_place);
+      }
+      layout = start(line, cells, header, parts.text.find(',') != std::string_view::npos);
+    }
+    ++row_count;
+    if (cells.size() != layout.columns) {
+      throw file_error(path, line,
+                       std::to_string(layout.columns) + " columns expected, got " +
+                           std::to_string(cells.size()));
+    }
+    std::array<double, 8> numbers{};
+    std::string fault;
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (layout.at[k] != table_layout::absent) {
+        std::string its = read_cell(path, line, layout.names[k], cells[layout.at[k]], numbers[k]);
+        if (!its.empty() && fault.empty()) {
+          fault = std::move(its);
+        }
+      }
+    }
+    row(line, numbers, fault);
+  });
+}
+
+} // namespace duet::detail

@@ -1,0 +1,71 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/message.hpp"
+
+#include <duet/core/csv.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace test_core_text_rows {
+namespace {
+
+using duet::csv_file;
+
+const std::string path = "text_rows_test.csv";
+
+void write(const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+std::string complaint(const std::string& file, std::size_t columns = 0) {
+  return duet_test::message_of<duet::file_error>(
+      [&] { static_cast<void>(csv_file(file, columns)); });
+}
+
+} // namespace
+
+TEST_CASE("headers, names, blanks, line ends and byte order marks") {
+  write("\xef\xbb\xbfname , a [m],b\r\n\r\n# a comment\nfirst, 1 ,-2e3 # the "
+        "rest\n\t3,+4,\nlast,5,6");
+  const csv_file file(path);
+  CHECK(file.header() == std::vector<std::string>{"name", "a [m]", "b"});
+  CHECK(file.header_line() == 1);
+  REQUIRE(file.rows().size() == 3);
+  CHECK(file.rows()[0].line == 4);
+  CHECK(file.rows()[0].name == "first");
+  CHECK(file.rows()[0].numbers == std::vector<double>{1, -2e3});
+  CHECK(file.rows()[1].numbers == std::vector<double>{3, 4});
+  CHECK(file.rows()[2].numbers == std::vector<double>{5, 6});
+  write("1 2\t3\n");
+  CHECK(csv_file(path, 3).rows()[0].numbers == std::vector<double>{1, 2, 3});
+  CHECK(csv_file(path).header().empty());
+}
+
+TEST_CASE("what is no file of rows says why") {
+  CHECK(complaint("no/such/file") == "no/such/file: cannot be read");
+  CHECK(complaint(".") == ".: is a folder, not a file");
+  write("a,b\n");
+  CHECK(complaint(path) == path + ": holds no rows");
+  write("\xff\xfe"
+        "1\n");
+  CHECK(complaint(path) == path + ": is UTF-16: UTF-8 expected");
+  write("1,2\n" + std::string(2'000'000, '1'));
+  CHECK(complaint(path) == path + ":2: more than a million characters: no file of rows");
+  write("1,1e400\n");
+  CHECK(complaint(path) == path + ":1: column 2 is 1e400, beyond the range of a double");
+  write("1,-1e-400\n");
+  CHECK(complaint(path) == path + ":1: column 2 is -1e-400, beyond the range of a double");
+  write("1,inf\n");
+  CHECK(complaint(path) == path + ":1: column 2 is inf");
+  write("1,2\n1,2,3\n");
+  CHECK(complaint(path, 2) == path + ":2: 2 numbers expected, got 3");
+  write("1,2;3\n");
+  CHECK(complaint(path) == path + ":1: column 2 is not a number: '2;3'");
+  std::remove(path.c_str());
+}
+
+} // namespace test_core_text_rows

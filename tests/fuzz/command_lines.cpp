@@ -1,0 +1,132 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "../../examples/fit_trajectory/options.hpp"
+#include "../../examples/path_following/options.hpp"
+#include "../../examples/screw_motion/options.hpp"
+#include "../../examples/tolerance_study/options.hpp"
+#include "../../examples/wheel_carrier/options.hpp"
+#include "fuzz/seeded_loop.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+// Command lines of the examples: what is accepted is within what --help says.
+
+namespace test_fuzz_command_lines {
+namespace {
+
+using duet_fuzz::require;
+
+void try_fit_trajectory(int argc, char** argv) {
+  if (const auto given = fit_trajectory::parse_options(argc, argv)) {
+    require(given->rows_per_knot >= 1, "a row for each knot");
+    for (const double x : {given->length, given->outlier}) {
+      require(x >= 0 && std::isfinite(x), "positive numbers");
+    }
+  }
+}
+void try_screw_motion(int argc, char** argv) {
+  if (auto given = screw_motion::parse_options(argc, argv)) {
+    require(given->steps >= 1, "a step");
+    given->file.reset(); // is read by others
+    for (const auto& pose :
+         {screw_motion::poses(*given).first, screw_motion::poses(*given).second}) {
+      require(std::abs(norm(duet::rotation(pose)) - 1) < 1e-12, "rotations");
+    }
+  }
+}
+void try_tolerance_study(int argc, char** argv) {
+  if (const auto given = tolerance_study::parse_options(argc, argv)) {
+    require(given->samples >= 2 && given->samples <= 10'000'000, "samples");
+    require(given->tolerance > 0 && given->tolerance <= .05, "tolerance");
+    require(given->lowest < given->highest, "travel");
+    require(given->rows >= 2 && given->rows <= 1000, "rows");
+    require(given->threads.value_or(0) <= 1024, "threads");
+  }
+}
+void try_path_following(int argc, char** argv) {
+  if (const auto given = path_following::parse_options(argc, argv)) {
+    require(given->start.size() == given->arm.size() && given->start.allFinite(), "joints");
+    require(given->radius >= 0 && given->turns > 0 && std::isfinite(given->pitch), "a helix");
+  }
+}
+void try_wheel_carrier(int argc, char** argv) {
+  if (const auto given = wheel_carrier::parse_options(argc, argv)) {
+    require(given->rows.value_or(3) >= 3, "rows");
+    require(!given->rates || (given->rates->start.allFinite() && given->rates->end.allFinite()),
+            "rates");
+  }
+}
+
+} // namespace
+
+/// The first character is the program, each line an argument.
+std::vector<std::string> seeds() {
+  return {"f\nrows.txt\n--rows-per-knot\n5\n--rate\n200\n--outlier=0.1\n--out\nx",
+          "f\n--length\n1e3\n--help",
+          "s\n--from\n0,0,0,1,0,0,0\n--to=1,2,3,0.6,0,0,0.8\n--steps\n9\n--long-way",
+          "s\n--from\n1,0,0,0,0,1,0,0,0,0,1,0\n--to\n0,-1,0,3,1,0,0,2,0,0,1,1,0,0,0,1",
+          "s\n--file\nposes.csv",
+          "t\n--samples\n500\n--tolerance\n1e-3\n--travel=-0.1,0.05\n--rows\n4\n--seed\n7\n--"
+          "threads\n2",
+          "t\n--summary\n--hardpoints\nx.csv",
+          "p\n--robot\nur5e\n--radius\n.1\n--pitch\n-.02\n--turns\n3",
+          "p\n--joints\n0,-0.8,0,-2.4,0,1.6,0.8",
+          "p\n--urdf\nnone.urdf\n--base\na\n--tip\nb\n--joints\n0",
+          "w\n--rows\n30\n--spline\nquintic\n--ends\nboth\n--end-rates\n0,0.1,0,1e-3,0,-0.2",
+          "f\n--rate\n%value%", // once went on for ever
+          "w\n--table\nt.csv\n--ends=not-a-knot"};
+}
+
+void target(const std::string& input) {
+  std::vector<std::string> words{"program"};
+  for (std::size_t i = 1; i < input.size();) {
+    const std::size_t end = std::min(input.find('\n', i), input.size());
+    words.push_back(input.substr(i, end - i).c_str()); // as the shell, up to the first zero
+    i = end + 1;
+  }
+  if (words.size() > 1 && words[1].empty()) {
+    words.erase(words.begin() + 1); // after the first character
+  }
+  std::vector<char*> argv;
+  for (std::string& word : words) {
+    argv.push_back(word.data());
+  }
+  argv.push_back(nullptr);
+  const int argc = int(words.size());
+  std::streambuf* const screen = std::cout.rdbuf(nullptr); // --help
+  try {
+    switch (input.empty() ? 'f' : input[0]) {
+    case 's':
+      try_screw_motion(argc, argv.data());
+      break;
+    case 't':
+      try_tolerance_study(argc, argv.data());
+      break;
+    case 'p':
+      try_path_following(argc, argv.data());
+      break;
+    case 'w':
+      try_wheel_carrier(argc, argv.data());
+      break;
+    default:
+      try_fit_trajectory(argc, argv.data());
+    }
+  } catch (const duet_fuzz::finding&) {
+    throw;
+  } catch (const std::exception& error) {
+    require(*error.what() != '\0', "a message");
+  }
+  std::cout.rdbuf(screen);
+  std::cout.clear();
+}
+
+TEST_CASE("command lines, mutated") { duet_fuzz::run_seeded(seeds(), target, 1500); }
+
+} // namespace test_fuzz_command_lines

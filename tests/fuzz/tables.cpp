@@ -1,0 +1,95 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "fuzz/seeded_loop.hpp"
+
+#include <duet/core/file.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/spline/look_up_table.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+// Tables: what is loaded can be put a curve through and is read back as it was written.
+
+namespace test_fuzz_tables {
+namespace {
+
+using duet_fuzz::require;
+
+template <class T>
+void try_loading(const std::string& path) {
+  duet::look_up_table<T> table;
+  try {
+    table = duet::load_table<T>(path);
+  } catch (const duet::file_error& error) {
+    duet_fuzz::require_message(error.what(), path + ":");
+    return;
+  }
+  require(!table.elements.empty() && table.elements.size() == table.parameters.size(), "rows");
+  for (std::size_t i = 0; i < table.elements.size(); ++i) {
+    require(std::isfinite(table.parameters[i]) &&
+                (i == 0 || table.parameters[i] > table.parameters[i - 1]),
+            "increasing parameters");
+    const auto& q = table.elements[i];
+    if constexpr (std::is_same_v<T, double>) {
+      require(std::abs(norm(q) - 1) < 1e-15, "units");
+    } else {
+      require(std::abs(norm(duet::rotation(q)) - 1) < 1e-15, "units");
+      require(duet::translation(q).allFinite(), "finite places");
+    }
+  }
+  const std::string copy = "copy_of_" + path;
+  duet::save_table(copy, table);
+  const auto again = duet::load_table<T>(copy);
+  require(again.parameters == table.parameters, "the same parameters");
+  for (std::size_t i = 0; i < table.elements.size(); ++i) {
+    const auto& a = again.elements[i];
+    const auto& b = table.elements[i];
+    if constexpr (std::is_same_v<T, double>) {
+      require(a == b, "the same rotations");
+    } else {
+      require(duet::rotation(a) == duet::rotation(b), "the same rotations");
+      const duet::vector3<double> place = duet::translation(b);
+      require((duet::translation(a) - place).stableNorm() <= 1e-14 * place.stableNorm() + 1e-300,
+              "the same places");
+    }
+  }
+  std::remove(copy.c_str());
+}
+
+} // namespace
+
+std::vector<std::string> seeds() {
+  return {"u,qw,qx,qy,qz\n0,1,0,0,0\n0.5,0.8,0.6,0,0\n1,0.6,0.8,0,0\n2.5,0.28,0.96,0,0\n",
+          "u,x,y,z,qw,qx,qy,qz\n-1e-3,0.25,-1.5,1e300,0.5,0.5,-0.5,0.5\n"
+          "0,4e-320,-0,17,0.7071067811865476,0,0.7071067811865476,0\n"
+          "0.1,1,2,3,-1,0,0,0\n",
+          "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n"
+          "1305031098.6659 1.3563 0.6305 1.6380 0.6132 0.5962 -0.3311 -0.3986\n"
+          "1305031098.6758 1.3543 0.6306 1.6360 0.6129 0.5966 -0.3316 -0.3980\n",
+          "\xef\xbb\xbf#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
+          "q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1]\r\n"
+          "1403636580838555648,4.688319,-1.786938,0.783338,0.534108,-0.153029,-0.827383,-0.082152,"
+          "-0.027876\r\n"
+          "1403636580843555328,4.688177,-1.786770,0.787350,0.534640,-0.152990,-0.826976,-0.082863,"
+          "0.033272\r\n",
+          "t [s] , q.x , q.y , q.z , q.w\n0, 0, 0, 0, 1 # the first\n\n1, 0.6, 0, 0, 0.8,\n"};
+}
+
+void target(const std::string& input) {
+  const std::string path = "fuzz_tables.csv";
+  std::ofstream(path, std::ios::binary) << input;
+  try_loading<double>(path);
+  try_loading<duet::screw_dual<double>>(path);
+  std::remove(path.c_str());
+}
+
+TEST_CASE("tables, mutated") { duet_fuzz::run_seeded(seeds(), target, 2000); }
+
+} // namespace test_fuzz_tables

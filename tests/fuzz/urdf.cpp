@@ -1,0 +1,80 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "fuzz/seeded_loop.hpp"
+
+#include <duet/mechanism/urdf.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+// Robot descriptions: what is read is a chain, what is not is told on one line.
+
+namespace test_fuzz_urdf {
+
+/// The first, cut from the Panda's description, is whole.
+std::vector<std::string> seeds() {
+  const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>";
+  const std::string joint = "<joint name=\"q\" type=\"prismatic\"><parent link=\"b\"/>"
+                            "<child link=\"c\"/><limit lower=\"-1\" upper=\"2\"/></joint>";
+  return {
+      R"(<?xml version="1.0" ?>
+<!-- arm -->
+<robot name="panda" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="a">
+    <visual><geometry><mesh filename="package://visual/link0.dae"/></geometry></visual>
+  </link>
+  <link name="b"/>
+  <joint name="panda_joint1" type="revolute">
+    <safety_controller k_position="100.0" soft_lower_limit="-2.8973" soft_upper_limit="2.8973"/>
+    <origin rpy="0 -1.57079632679 0" xyz="0 0 0.333"/>
+    <parent link="a"/>
+    <child link="b"/>
+    <axis xyz="0 0 1"/>
+    <limit effort="87" lower="-2.8973" upper="2.8973" velocity="2.1750"/>
+  </joint>
+  <link name="c"/>
+  <joint name="hand" type="fixed"><parent link="b"/><child link="c"/></joint>
+</robot>
+)",
+      "<robot>" + links + joint +
+          "<joint name=\"p\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/>"
+          "<axis xyz=\"0 0.6 0.8\"/></joint></robot>",
+      "<robot>" + links + joint + "</robot>",
+      "<robot>" + links + joint +
+          "<joint name=\"m\" type=\"revolute\"><parent link=\"c\"/><child link=\"b\"/>"
+          "<mimic joint=\"q\"/></joint></robot>"};
+}
+
+void target(const std::string& input) {
+  const std::string path = "fuzz_urdf.urdf";
+  std::ofstream(path, std::ios::binary) << input;
+  try {
+    const auto chain = duet::read_urdf(path, "a", "c");
+    const int n = chain.size();
+    duet_fuzz::require(int(chain.joint_names().size()) == n, "as many names as joints");
+    Eigen::VectorXd theta(n);
+    for (int i = 0; i < n; ++i) {
+      const auto& limits = chain.limits(i);
+      duet_fuzz::require(limits.lower <= limits.upper && limits.velocity >= 0, "limits in order");
+      theta[i] = i / 7.0;
+    }
+    const auto a = chain.pose(theta);
+    duet_fuzz::require(std::abs(norm(duet::rotation(a)) - 1) < 1e-12, "rotations");
+    duet_fuzz::require(duet::translation(a).allFinite(), "finite places");
+  } catch (const duet::invalid_input& error) {
+    duet_fuzz::require_message(error.what(), "duet: ");
+  }
+  std::remove(path.c_str());
+}
+
+TEST_CASE("robot descriptions, mutated") { duet_fuzz::run_seeded(seeds(), target, 2000); }
+
+} // namespace test_fuzz_urdf
