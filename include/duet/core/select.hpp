@@ -24,6 +24,29 @@ template <std::same_as<bool> Condition, std::invocable F, std::invocable G>
   return static_cast<result>(g());
 }
 
+namespace detail {
+
+/// a < b, without a floating-point exception where one is a quiet NaN. (Of batches the target's.)
+template <class A, class B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto quiet_less(const A& a, const B& b) {
+  if constexpr (std::floating_point<A> && std::floating_point<B>) {
+    return std::is_constant_evaluated() ? a < b : __builtin_isless(a, b) != 0;
+  } else {
+    return a < b;
+  }
+}
+/// a ≤ b likewise.
+template <class A, class B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto quiet_less_equal(const A& a, const B& b) {
+  if constexpr (std::floating_point<A> && std::floating_point<B>) {
+    return std::is_constant_evaluated() ? a <= b : __builtin_islessequal(a, b) != 0;
+  } else {
+    return a <= b;
+  }
+}
+
+} // namespace detail
+
 /// Of one lane.
 [[nodiscard]] constexpr bool any(std::same_as<bool> auto x) { return x; }
 [[nodiscard]] constexpr bool all(std::same_as<bool> auto x) { return x; }

@@ -106,16 +106,20 @@ template <class A, class B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fmax(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
+  using real = real_type_t<common>;
   return select(
-      a < b || isnan(innermost(a)), [&] { return common(b); }, [&] { return common(a); });
+      isnan(innermost(a)) || detail::quiet_less(real(innermost(a)), real(innermost(b))),
+      [&] { return common(b); }, [&] { return common(a); });
 }
 template <class A, class B>
   requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fmin(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
+  using real = real_type_t<common>;
   return select(
-      b < a || isnan(innermost(a)), [&] { return common(b); }, [&] { return common(a); });
+      isnan(innermost(a)) || detail::quiet_less(real(innermost(b)), real(innermost(a))),
+      [&] { return common(b); }, [&] { return common(a); });
 }
 
 /// max(a − b, 0); NaN where either is.
@@ -123,8 +127,10 @@ template <class A, class B>
   requires detail::MixedReals<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE auto fdim(const A& a, const B& b) {
   using common = promote_t<A, B>;
+  using real = real_type_t<common>;
   return select(
-      a <= b, [&] { return common(0); }, [&] { return common(a - b); });
+      detail::quiet_less_equal(real(innermost(a)), real(innermost(b))), [&] { return common(0); },
+      [&] { return common(a - b); });
 }
 
 // Rounding: flat wherever it is differentiable.

@@ -22,7 +22,7 @@ namespace duet::detail {
 template <class T>
 [[nodiscard]] T one_minus_square(const T& x) {
   return select(
-      innermost(x) * innermost(x) < 0.25, [&] { return T(1 - x * x); },
+      quiet_less(innermost(x) * innermost(x), 0.25), [&] { return T(1 - x * x); },
       [&] { return T((1 - x) * (1 + x)); });
 }
 
@@ -217,7 +217,8 @@ struct atan {
     using std::abs;
     // x² would overflow long before its reciprocal vanishes.
     return select(
-        abs(innermost(x)) <= 1, [&] { return T(1 / (1 + x * x)); },
+        detail::quiet_less_equal(abs(innermost(x)), real_type_t<T>(1)),
+        [&] { return T(1 / (1 + x * x)); },
         [&] {
           const T r = 1 / x;
           return T(r * r / (1 + r * r));

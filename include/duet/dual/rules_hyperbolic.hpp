@@ -49,11 +49,12 @@ struct tanh {
     if constexpr (Real<real_type_t<T>>) {
       // 1 − y² would cancel where tanh saturates, and 1/cosh² overflow within.
       return select(
-          innermost(y) * innermost(y) < 0.5, [&] { return T(1 - y * y); },
+          detail::quiet_less(innermost(y) * innermost(y), 0.5), [&] { return T(1 - y * y); },
           [&] {
             using std::exp;
             const T e = exp(select(
-                innermost(x) < 0, [&] { return T(2 * x); }, [&] { return T(-2 * x); }));
+                detail::quiet_less(innermost(x), real_type_t<T>(0)), [&] { return T(2 * x); },
+                [&] { return T(-2 * x); }));
             return T(4 * e / ((1 + e) * (1 + e)));
           });
     } else {

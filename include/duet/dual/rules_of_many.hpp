@@ -12,6 +12,7 @@
 #include <concepts>
 #include <cstddef>
 #include <numeric>
+#include <type_traits>
 
 /// \file
 /// The derivatives of pow, atan2, hypot, fma, lerp, midpoint and the remainders. `slopes(y, x…)`
@@ -71,7 +72,8 @@ struct power {
             // and x^p may overflow or vanish before its slope does.
             using std::isfinite;
             return select(
-                innermost(exponent) < 0.5 && innermost(x) != 0 && isfinite(innermost(x)),
+                detail::quiet_less(innermost(exponent), 0.5) && innermost(x) != 0 &&
+                    isfinite(innermost(x)),
                 [&] { return T(exponent * y / x); }, by_power);
           } else {
             return by_power();
@@ -94,10 +96,12 @@ struct exponential {
   T slope(const T& x, const T& y) const {
     const T regular = y * detail::log_of_base<T>(base);
     // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
+    const auto& real_x = detail::real_part(innermost(x));
+    using R = std::remove_cvref_t<decltype(real_x)>;
     const auto vanishes =
-        innermost(base) == detail::integer<Base>(0) && detail::real_part(innermost(x)) > 0;
+        innermost(base) == detail::integer<Base>(0) && detail::quiet_less(R(0), real_x);
     const auto is_flat =
-        is_constant(base) || detail::real_part(innermost(x)) > scalar_traits<T>::order;
+        is_constant(base) || detail::quiet_less(R(scalar_traits<T>::order), real_x);
     return select(
         vanishes && is_flat, [] { return T(0); },
         [&] {
@@ -138,15 +142,15 @@ struct atan2 {
     // is differentiated once more would cancel.
     using std::abs;
     return select(
-        abs(innermost(y)) <= abs(innermost(x)),
+        detail::quiet_less_equal(abs(innermost(y)), abs(innermost(x))),
         [&] {
           const T ratio = y / x;
-          const T slope = 1 / x / (1 + ratio * ratio);
+          const T slope = 1 / (1 + ratio * ratio) / x;
           return std::array<T, 2>{slope, -(ratio * slope)};
         },
         [&] {
           const T ratio = x / y;
-          const T slope = 1 / y / (1 + ratio * ratio);
+          const T slope = 1 / (1 + ratio * ratio) / y;
           return std::array<T, 2>{ratio * slope, -slope};
         });
   }
@@ -171,7 +175,8 @@ struct hypot {
   std::array<T, 2> slopes(const T&, const T& x, const T& y) const {
     using std::abs;
     return select(
-        abs(innermost(y)) <= abs(innermost(x)), [&] { return by_largest(x, y); },
+        detail::quiet_less_equal(abs(innermost(y)), abs(innermost(x))),
+        [&] { return by_largest(x, y); },
         [&] {
           const std::array<T, 2> s = by_largest(y, x);
           return std::array<T, 2>{s[1], s[0]};
@@ -182,10 +187,11 @@ struct hypot {
     using std::abs;
     const auto a = abs(innermost(x)), b = abs(innermost(y)), c = abs(innermost(z));
     return select(
-        b <= a && c <= a, [&] { return by_largest(x, y, z); },
+        detail::quiet_less_equal(b, a) && detail::quiet_less_equal(c, a),
+        [&] { return by_largest(x, y, z); },
         [&] {
           return select(
-              c <= b,
+              detail::quiet_less_equal(c, b),
               [&] {
                 const std::array<T, 3> s = by_largest(y, x, z);
                 return std::array<T, 3>{s[1], s[0], s[2]};
@@ -210,7 +216,8 @@ private:
     }
     const T length = sqrt(square);
     result[0] = select(
-        innermost(largest) < 0, [&] { return T(-1 / length); }, [&] { return T(1 / length); });
+        detail::quiet_less(innermost(largest), real_type_t<T>(0)), [&] { return T(-1 / length); },
+        [&] { return T(1 / length); });
     for (std::size_t i = 1; i < result.size(); ++i) {
       result[i] = result[i] * result[0];
     }

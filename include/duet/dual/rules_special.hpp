@@ -37,7 +37,7 @@ template <class T>
 [[nodiscard]] T digamma_of_one(const T& argument) {
   using std::log;
   using real = real_type_t<T>;
-  if (innermost(argument) < 0.5) {
+  if (quiet_less(innermost(argument), 0.5)) {
     return digamma(T(1 - argument)) - cotangent_of_half_turns(argument);
   }
   // B₂ₖ = numerator/denominator; the first term left out, B₃₆/(36 x³⁶), is below the last digit.
@@ -61,7 +61,7 @@ template <class T>
   const double enough = std::pow(10.0, (std::numeric_limits<real>::digits10 + 14) / 36.0) + 3;
   T x = argument;
   T sum(0);
-  while (innermost(x) < enough) {
+  while (quiet_less(innermost(x), enough)) {
     sum = sum - 1 / x;
     x = x + 1;
   }

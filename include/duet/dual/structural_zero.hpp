@@ -35,7 +35,7 @@ template <class T>
   if constexpr (Infinitesimal<T>) {
     return x.all_of([](const auto& part) { return is_all_finite(part); });
   } else if constexpr (Real<T>) {
-    return x - x >= T(0);
+    return quiet_less_equal(T(0), T(x - x));
   } else {
     return x - x == T(0);
   }
