@@ -58,11 +58,12 @@ inline bool draw(const std::string& folder, const std::string& name, const std::
                                           "set output\nset terminal pngcairo size " + size + "\n" +
                                           output("png") + script);
   duet::file_draft svg(path + ".svg"), png(path + ".png");
-  const auto absolute = [](const duet::file_draft& draft) {
-    return quoted(std::filesystem::absolute(draft.name()).string(), "''");
+  const auto absolute = [](const std::string& relative) {
+    return std::filesystem::absolute(relative).string();
   };
-  const std::string variables = "svg_file=" + absolute(svg) + "; png_file=" + absolute(png);
-  if (!run_command("cd -- " + quoted_for_shell(folder) + " && gnuplot -d -e " +
+  const std::string variables = "svg_file=" + quoted(absolute(svg.name()), "''") +
+                                "; png_file=" + quoted(absolute(png.name()), "''");
+  if (!run_command("cd " + quoted_for_shell(absolute(folder)) + " && gnuplot -d -e " +
                    quoted_for_shell(variables) + " '" + name + ".gnuplot' >/dev/null 2>&1")) {
     return false;
   }

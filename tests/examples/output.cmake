@@ -69,6 +69,14 @@ shell(screw_motion/screw_motion 0 "" "
     test \"$(cat message)\" = 'screw_motion: closed/out: nothing can be written to the folder closed'
   fi")
 
+# Standard output by name, with what else is printed.
+foreach(out IN ITEMS /dev/stdout both.txt)
+  shell(inverse_kinematics 0 "" "
+    \"$tool\" --out ${out} >both.txt
+    grep -q '^q0,q1,' both.txt
+    tail -n 1 both.txt | grep -q '^inverse kinematics: reached=1'")
+endforeach()
+
 # Pipes and links stay what they are.
 shell(screw_motion/screw_motion 0 "" "
   mkdir out elsewhere

@@ -67,6 +67,12 @@ private:
   return exists(status) && !is_regular_file(status) && !is_directory(status);
 }
 
+/// Is it where standard output goes, by whatever name? To replace a file there would lose the rest.
+[[nodiscard]] inline bool is_standard_output(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::equivalent(path, "/dev/stdout", ignored);
+}
+
 /// The file that a path leads to over all links, there or not.
 /// \throws file_error where something is there that is no file, or one that may not be written
 [[nodiscard]] inline std::filesystem::path link_target(const std::string& path) {
@@ -197,15 +203,22 @@ private:
 /// Finds out before the work whether `write_file` could write its result; changes nothing.
 /// \throws file_error
 inline void require_writable(const std::string& path) {
-  if (!detail::is_special_file(path)) {
+  if (!detail::is_special_file(path) && !detail::is_standard_output(path)) {
     file_draft{path};
   }
 }
 
 /// Writes a whole file or none: a `file_draft`, which then takes the file's place. Links are
-/// followed; to a device or a pipe it writes directly.
+/// followed; to a device, a pipe or standard output it writes directly.
 /// \throws file_error
 inline void write_file(const std::string& path, const std::string& content) {
+  if (detail::is_standard_output(path)) {
+    if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
+        std::fflush(stdout) != 0) {
+      throw detail::cannot_write(path, errno);
+    }
+    return;
+  }
   if (detail::is_special_file(path)) {
     detail::c_file out(path, "wb");
     if (!out.is_open() || !out.write(content) || !out.close()) {
