@@ -211,7 +211,7 @@ void run() {
   }
   duet::write_file("spline_comparison.csv", csv);
   if (!example::draw(".", "spline_comparison", "1200,560", picture_script())) {
-    std::cout << "No picture: gnuplot is not installed or failed\n";
+    std::cout << "No picture: gnuplot is not installed\n";
   }
 }
 

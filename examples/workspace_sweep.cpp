@@ -97,6 +97,9 @@ std::vector<sample> sweep(const chain& arm, std::size_t count) {
     return is_interrupted == 0;
   };
   const auto otherwise = std::signal(SIGINT, [](int) { is_interrupted = 1; });
+  if (otherwise == SIG_IGN) { // in the background: stays so
+    std::signal(SIGINT, SIG_IGN);
+  }
   try {
     parallel_for_blocks(count, sweep_block, {.threads = 0, .report = report}, 1024);
   } catch (const cancelled& early) {
@@ -180,7 +183,7 @@ void run(const chain& arm, std::size_t wanted, const std::string& folder) {
               "largest_manipulability=%.6g\n",
               count, sum / double(count), largest);
   if (!example::draw(folder, "workspace_sweep", "1200,620", picture)) {
-    std::cout << "No picture: gnuplot is not installed or failed\n";
+    std::cout << "No picture: gnuplot is not installed\n";
   }
 }
 

@@ -141,7 +141,7 @@ void run(const options& given) {
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {
-    std::cout << "No picture: gnuplot is not installed or failed\n";
+    std::cout << "No picture: gnuplot is not installed\n";
   }
   std::printf("bump ride: rows=%d steps=%zu height_difference=%.3g energy_error=%.3g "
               "speed_up=%.3g\n",

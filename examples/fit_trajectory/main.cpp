@@ -62,7 +62,7 @@ void run(const options& given) {
   std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {
-    std::cout << "No picture: gnuplot is not installed or failed\n";
+    std::cout << "No picture: gnuplot is not installed\n";
   }
   std::printf("fit trajectory: rows=%zu left_out=%zu controls=%zu outliers=%zu "
               "median_residual=%.3g rms=%.3g\n",

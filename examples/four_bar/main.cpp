@@ -211,7 +211,7 @@ void run(const options& given) {
   std::cout << "\nTables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {
-    std::cout << "No picture: gnuplot is not installed or failed\n";
+    std::cout << "No picture: gnuplot is not installed\n";
   }
   std::printf("four bar: samples=%zu angle_difference=%.2g velocity_difference=%.2g "
               "acceleration_difference=%.2g\n",

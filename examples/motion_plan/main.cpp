@@ -93,7 +93,7 @@ bool run(const problem& p) {
   std::cout << "Tables" << (drawn ? " and pictures (SVG, PNG)" : "") << " are in "
             << duet::printable(p.out) << "\n";
   if (!drawn) {
-    std::cout << "No pictures: gnuplot is not installed or failed, or nothing moves\n";
+    std::cout << "No pictures: gnuplot is not installed, or nothing moves\n";
   }
   std::printf("motion plan: reason=%s tau=%.4f waypoints=%zu deviation_m=%.2g deviation_rad=%.2g "
               "duration=%.4g\n",

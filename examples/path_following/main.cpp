@@ -39,7 +39,7 @@ void run(const options& given) {
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {
-    std::cout << "No picture: gnuplot is not installed or failed\n";
+    std::cout << "No picture: gnuplot is not installed\n";
   }
   duet::pose_deviation largest;
   for (const duet::pose_deviation& d : plan.deviations) {

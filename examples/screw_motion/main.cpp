@@ -38,7 +38,7 @@ void run(const options& given) {
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {
-    std::cout << "No picture: gnuplot is not installed or failed\n";
+    std::cout << "No picture: gnuplot is not installed\n";
   }
   std::printf("screw motion: kind=%s angle=%.6g translation=%.6g ad_vs_closed_form=%.2g\n",
               kind_text(between.kind), between.angle, between.translation, difference);

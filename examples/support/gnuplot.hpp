@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 #if __has_include(<sys/wait.h>)
@@ -29,21 +30,22 @@ namespace example {
   return quoted(text, "'\\''");
 }
 
-/// Runs a command of the shell; whether it ended well. Ctrl-C, which meanwhile only the command
-/// hears, ends this program too.
-inline bool run_command(const std::string& command) {
-  const int status = std::system(command.c_str());
+/// Runs a command of the shell; the status that it ends with. Ctrl-C, which meanwhile only the
+/// command hears, ends this program too.
+inline int run_command(const std::string& command) {
+  int status = std::system(command.c_str());
 #ifdef WIFSIGNALED
-  if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) ||
-      (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT)) {
+  status = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  if (status == 128 + SIGINT) {
     std::raise(SIGINT);
   }
 #endif
-  return status == 0;
+  return status;
 }
 
-/// Draws folder/name.svg and folder/name.png, both or neither; false where gnuplot is absent or
-/// fails.
+/// Draws folder/name.svg and folder/name.png, both or neither; false where gnuplot is not
+/// installed.
+/// \throws std::runtime_error where it fails, duet::file_error
 inline bool draw(const std::string& folder, const std::string& name, const std::string& size,
                  const std::string& script) {
   // By itself the script draws to these names; here it is given those of drafts.
@@ -63,9 +65,14 @@ inline bool draw(const std::string& folder, const std::string& name, const std::
   };
   const std::string variables = "svg_file=" + quoted(absolute(svg.name()), "''") +
                                 "; png_file=" + quoted(absolute(png.name()), "''");
-  if (!run_command("cd " + quoted_for_shell(absolute(folder)) + " && gnuplot -d -e " +
-                   quoted_for_shell(variables) + " '" + name + ".gnuplot' >/dev/null 2>&1")) {
+  const int status =
+      run_command("cd " + quoted_for_shell(absolute(folder)) + " && gnuplot -d -e " +
+                  quoted_for_shell(variables) + " '" + name + ".gnuplot' >/dev/null 2>&1");
+  if (status == 127) { // the shell has not found it
     return false;
+  }
+  if (status != 0) {
+    throw std::runtime_error("gnuplot fails to draw " + path + ".gnuplot");
   }
   svg.commit();
   png.commit();

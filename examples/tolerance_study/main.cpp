@@ -79,7 +79,7 @@ void summarise(const options& given, const hardpoints& points, const toleranced_
   std::printf("Tables%s are in %s\n", drawn ? " and a picture (SVG, PNG)" : "",
               duet::printable(given.out).c_str());
   if (!drawn) {
-    std::printf("No picture: gnuplot is not installed or failed\n");
+    std::printf("No picture: gnuplot is not installed\n");
   }
   // A standard deviation of N normal samples is itself uncertain by 1/sqrt(2 N).
   std::printf("tolerance study: samples=%d blocks=%zu sampled_against_linear=%.2g "

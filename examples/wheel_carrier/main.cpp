@@ -247,7 +247,7 @@ void run(const options& given) {
   std::printf("\nTables%s are in %s\n", has_reference && drawn ? " and pictures (SVG, PNG)" : "",
               duet::printable(given.out).c_str());
   if (!drawn) {
-    std::printf("No pictures: gnuplot is not installed or failed\n");
+    std::printf("No pictures: gnuplot is not installed\n");
   }
 
   std::printf("wheel carrier: rows=%zu", t.u.size());

@@ -79,24 +79,37 @@ endforeach()
 
 # Pipes and links stay what they are.
 shell(screw_motion/screw_motion 0 "" "
+  mkdir piped
+  mkfifo piped/frames.csv
+  cat piped/frames.csv >frames.csv &
+  PATH=/nowhere \"$tool\" --out piped # gnuplot would wait for somebody to write to the pipe again
+  wait $!
+  test -p piped/frames.csv
+  test \"$(wc -l <frames.csv)\" -gt 10
   mkdir out elsewhere
   ln -s out link
   ln -s ../elsewhere/path.csv ../elsewhere/path.svg out
-  mkfifo out/frames.csv
-  cat out/frames.csv >frames.csv &
   \"$tool\" --out link
-  wait $!
   test -L link
   test -L out/path.csv
-  test -p out/frames.csv
   test \"$(head -n 1 elsewhere/path.csv | cut -c 1-3)\" = tau
   test \"$(wc -l <elsewhere/path.csv)\" = 62
-  test \"$(wc -l <frames.csv)\" -gt 10
   if test -e out/path.png; then # by gnuplot
     test -L out/path.svg
     tail -n 1 elsewhere/path.svg | grep -q '</svg>\\|^$'
   fi
   test -z \"$(find . -name '.duet-*')\"")
+
+# A picture that cannot be drawn is missed, unless gnuplot is not there.
+file(WRITE ${folder}/failing/gnuplot "#!/bin/sh\nexit 1\n")
+file(CHMOD ${folder}/failing/gnuplot PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+shell(screw_motion/screw_motion 1 "screw_motion: gnuplot fails to draw none/path.gnuplot\n" "
+  PATH=$PWD/failing:$PATH \"$tool\" --out none")
+shell(screw_motion/screw_motion 0 "" "
+  PATH=/nowhere \"$tool\" --out bare >bare.txt
+  grep -q '^No picture: gnuplot is not installed' bare.txt
+  test \"$(ls -A bare | tr '\\n' ' ')\" = 'frames.csv path.csv path.gnuplot '
+  test \"$(ls -A none | tr '\\n' ' ')\" = 'frames.csv path.csv path.gnuplot '")
 
 # A signal while pictures are drawn leaves no parts of them, and one while samples are computed whole blocks.
 file(WRITE ${folder}/tools/gnuplot "#!/bin/sh\ntouch drawing\nuntil test -e enough; do sleep 0.1; done\n")
