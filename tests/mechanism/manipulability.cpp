@@ -66,7 +66,7 @@ TEST_CASE("manipulability is √det(JJᵀ), and its gradient that by dual number
 
 TEST_CASE("a planar arm of two links: w = a b |sin θ₂|") {
   const double a = .7, b = .4;
-  const auto arm = from_dh(std::array<dh_row<>, 2>{{{a, 0, 0}, {b, 0, 0}}});
+  const auto arm = from_dh(std::array<dh_row<>, 2>{{{.a = a}, {.a = b}}});
   const auto upper = [&](const auto& theta) { // its tip's two coordinates alone
     return jacobian(arm, theta, frame::hybrid).template topRows<2>().determinant();
   };

@@ -68,7 +68,9 @@ TEST_CASE("the four robots stand where their makers' drawings say") {
 
 TEST_CASE("both conventions of Denavit and Hartenberg against products of matrices") {
   const std::array<dh_row<>, 3> rows{
-      {{.3, .1, .4, .2}, {-.2, .5, -1.1, 0, {}, joint_kind::prismatic}, {.7, -.3, 2.5, -1}}};
+      {{.a = .3, .d = .1, .alpha = .4, .theta = .2},
+       {.a = -.2, .d = .5, .alpha = -1.1, .kind = joint_kind::prismatic},
+       {.a = .7, .d = -.3, .alpha = 2.5, .theta = -1}}};
   const auto standard = from_dh(rows);
   const auto modified = from_modified_dh(rows, {quaternion<double>(1), {0, 0, .5}});
   for (const auto& theta : duet_test::configurations(standard, 20)) {
@@ -159,7 +161,8 @@ TEST_CASE("poses in double precision against 50 digits, and unit") {
 TEST_CASE("a table in 50 digits has exact right angles") {
   using wide = real_50;
   const wide quarter = constant::pi<wide>() / 2;
-  const std::array<dh_row<wide>, 2> rows{{{0, 0, quarter}, {0, wide(1) / 10, -3 * quarter}}};
+  const std::array<dh_row<wide>, 2> rows{
+      {{.alpha = quarter}, {.d = wide(1) / 10, .alpha = -3 * quarter}}};
   const auto chain = from_dh(rows);
   const auto m = transform_matrix(chain.pose(Eigen::Matrix<wide, 2, 1>::Zero().eval()));
   CHECK(abs(m(1, 3) + wide(1) / 10) < 1e-49);
@@ -227,7 +230,7 @@ TEST_CASE("what is wrong with a chain is said in one line") {
   joints[1].origin.translation[2] = INFINITY;
   CHECK(message([&] { serial_chain chain(joints); }) ==
         "duet: serial_chain: joint 1: its origin is not finite");
-  joints[1].origin = {quaternion<double>(2), {0, 0, 0}};
+  joints[1].origin.rotation = quaternion<double>(2);
   CHECK(message([&] { serial_chain chain(joints); }) ==
         "duet: serial_chain: joint 1: the rotation of its origin is no unit quaternion");
   const auto arm = robots::panda();
@@ -235,10 +238,23 @@ TEST_CASE("what is wrong with a chain is said in one line") {
         "duet: a chain of 7 moving joints, but 6 coordinates");
   CHECK(message([&] { (void)arm.pose(coordinates<7>(coordinates<7>::Zero()), 8); }) ==
         "duet: serial_chain: no link 8 in a chain of 7 joints");
-  CHECK(message([&] {
-          (void)from_dh(std::array<dh_row<>, 1>{{{0, std::nan(""), 0}}});
-        }) ==
+  CHECK(message([&] { (void)from_dh(std::array<dh_row<>, 1>{{{.d = std::nan("")}}}); }) ==
         "duet: serial_chain: joint 0: its row of parameters has a number beyond 1e6, or none");
+  CHECK(message([&] { (void)from_dh(std::array<dh_row<>, 1>{{{.alpha = 90}}}); }) ==
+        "duet: serial_chain: joint 0: its row turns by more than a whole turn: angles are in "
+        "radians");
+  CHECK(message([] {
+          placement<>(quaternion<double>(1, 1, 0, 0), {0, 0, 0});
+        }) == "duet: placement: its rotation is no unit quaternion");
+}
+
+TEST_CASE("a tool and fixed joints whose rotations have few digits move nothing farther") {
+  joint<> fixed{.kind = joint_kind::fixed, .origin = {{.707, .707, 0, 0}, {0, 0, 0}}};
+  joint<> turning{.origin = {quaternion<double>(1), {0, 1, 0}}};
+  const serial_chain<1> chain(std::array{fixed, turning}, {{.707, 0, .707, 0}, {1, 0, 0}});
+  const auto a = chain.pose(std::array{0.0});
+  CHECK(is_unit(a));
+  CHECK(gap(translation(a), Eigen::Vector3d(1, 0, 1)) < 1e-15);
 }
 
 TEST_CASE("sines of all joints at once: as one after the other, under derivatives of any kind") {

@@ -209,8 +209,10 @@ TEST_CASE("what cannot be reached, and why") {
   const auto turned = inverse_kinematics(ur5e, at(.85, .2, .1, {0, -pi / 2, 0}), zero);
   CHECK(turned.reason == stop_reason::singular);
 
-  const std::array<dh_row<>, 4> rows{
-      {{.4, .2, 0}, {.3, 0, pi}, {0, 0, 0, 0, {0, .2}, joint_kind::prismatic}, {0, 0, 0}}};
+  const std::array<dh_row<>, 4> rows{{{.a = .4, .d = .2},
+                                      {.a = .3, .alpha = pi},
+                                      {.limits = {0, .2}, .kind = joint_kind::prismatic},
+                                      {}}};
   const chain scara = from_dh(rows);
   vector theta(4);
   theta << .3, .9, .1, -2;

@@ -4,6 +4,7 @@
 #include <duet/comparison/domain.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/structure.hpp>
 
 #include <algorithm>
@@ -40,7 +41,7 @@ template <class T, class Y>
 template <class T, class F, class Inputs>
 [[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
                                          std::span<const double> point) {
-  return components_of<T>(evaluated(std::apply(f, inputs.template make<T>(point))));
+  return components_of<T>(result_of_call(std::apply(f, inputs.template make<T>(point))));
 }
 
 /// The difference of two results in one precision.

@@ -3,6 +3,7 @@
 
 #include <duet/comparison/measure.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/structure.hpp>
 
 #include <Eigen/Core>
@@ -60,7 +61,7 @@ template <class F, std::floating_point T>
 [[nodiscard]] auto complex_step_derivative(const F& f, const T& x) {
   // h² vanishes beside 1 whatever the function, and h itself is far from the smallest number.
   const T h = std::ldexp(T(1), std::numeric_limits<T>::min_exponent / 2);
-  return detail::imaginary_part(detail::evaluated(f(std::complex<T>(x, h))), h);
+  return detail::imaginary_part(detail::result_of_call(f(std::complex<T>(x, h))), h);
 }
 
 template <class Y>
@@ -78,7 +79,7 @@ template <class F, Real T>
 [[nodiscard]] auto central_difference_derivative(const F& f, const T& x, const T& step = T(0.1)) {
   constexpr std::size_t rows = 12;
   const T ratio(1.4);
-  const auto shape = detail::evaluated(f(x));
+  const auto shape = detail::result_of_call(f(x));
   std::array<std::vector<T>, rows> previous;
   std::array<std::vector<T>, rows> current;
   std::vector<T> best;
@@ -87,8 +88,8 @@ template <class F, Real T>
   for (std::size_t row = 0; row < rows; ++row, h = T(h / ratio)) {
     const T forward = x + h;
     const T backward = x - h;
-    const auto right = detail::components_of<T>(detail::evaluated(f(forward)));
-    const auto left = detail::components_of<T>(detail::evaluated(f(backward)));
+    const auto right = detail::components_of<T>(detail::result_of_call(f(forward)));
+    const auto left = detail::components_of<T>(detail::result_of_call(f(backward)));
     current[0].resize(right.size());
     for (std::size_t i = 0; i < right.size(); ++i) {
       current[0][i] = (right[i] - left[i]) / (forward - backward);

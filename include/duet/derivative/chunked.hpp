@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/derivative/structure.hpp>
 
@@ -48,7 +49,7 @@ template <int Chunk = 0, class Tag = void, class F, VectorLike X, class G>
   using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
   using D = dual<typename argument::scalar, detail::partials_per_pass<X, Chunk>, tag>;
-  using output = std::decay_t<decltype(detail::evaluated(f(detail::constants<D>(x))))>;
+  using output = std::decay_t<decltype(detail::result_of_call(f(detail::constants<D>(x))))>;
   static_assert(Scalar<output>, "duet: gradient_into needs a function that returns a scalar");
   if (argument::size(x) == 0) {
     throw invalid_input("duet: gradient_into of a function of no variables");
@@ -73,7 +74,7 @@ template <int Chunk = 0, class Tag = void, class F, VectorLike X, class J>
   using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
   using D = dual<typename argument::scalar, detail::partials_per_pass<X, Chunk>, tag>;
-  using output = std::decay_t<decltype(detail::evaluated(f(detail::constants<D>(x))))>;
+  using output = std::decay_t<decltype(detail::result_of_call(f(detail::constants<D>(x))))>;
   static_assert(VectorLike<output>, "duet: jacobian_into needs a function that returns a vector");
   if (argument::size(x) == 0) {
     throw invalid_input("duet: jacobian_into of a function of no variables");

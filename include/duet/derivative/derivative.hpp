@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/structure.hpp>
 #include <duet/dual/math.hpp>
 
@@ -37,7 +38,7 @@ template <class Tag = void, class F, class X>
   using tag = detail::tag_for<Tag, F>;
   static_assert(std::invocable<F, dual<T, 1, tag>>,
                 "duet: derivative: the function must take any scalar: [](auto x) { ... }");
-  const auto y = detail::evaluated(std::forward<F>(f)(dual<T, 1, tag>::variable(T(x))));
+  const auto y = detail::result_of_call(std::forward<F>(f)(dual<T, 1, tag>::variable(T(x))));
   return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};
 }
 
@@ -49,7 +50,7 @@ template <int K, class Tag = void, class F, class X>
   using tag = detail::tag_for<Tag, F>;
   static_assert(std::invocable<F, taylor<T, K, tag>>,
                 "duet: derivatives: the function must take any scalar: [](auto x) { ... }");
-  const auto y = detail::evaluated(std::forward<F>(f)(taylor<T, K, tag>::variable(T(x))));
+  const auto y = detail::result_of_call(std::forward<F>(f)(taylor<T, K, tag>::variable(T(x))));
   return [&]<int... I>(std::integer_sequence<int, I...>) {
     return std::array{detail::parts<tag>(y, I)...};
   }

@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/derivative/chunked.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
 
 #include <Eigen/Core>
@@ -37,7 +38,7 @@ template <class Tag = void, class F, VectorLike X>
   using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
   using D = dual<typename argument::scalar, detail::partials_per_pass<X>, tag>;
-  using output = std::decay_t<decltype(detail::evaluated(f(detail::constants<D>(x))))>;
+  using output = std::decay_t<decltype(detail::result_of_call(f(detail::constants<D>(x))))>;
   static_assert(Scalar<output>, "duet: gradient needs a function that returns a scalar");
   using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
   using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
@@ -59,7 +60,7 @@ template <class Tag = void, class F, VectorLike X>
   static_assert(n > 0 && n <= detail::single_pass_limit,
                 "duet: hessian needs a vector of at most 32 components, known at compile time");
   using tag = detail::tag_for<Tag, F>;
-  const auto y = detail::evaluated(f(detail::seeded<second_dual<T, n, tag>>(x)));
+  const auto y = detail::result_of_call(f(detail::seeded<second_dual<T, n, tag>>(x)));
   static_assert(Scalar<std::remove_const_t<decltype(y)>>,
                 "duet: hessian needs a function that returns a scalar");
   using S = decltype(detail::part<tag>(y, 0));

@@ -5,6 +5,7 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/equilibrated_lu.hpp>
 #include <duet/derivative/manifold.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/derivative/structure.hpp>
 
@@ -32,7 +33,7 @@ namespace detail {
 /// What F returned, as something that counts as many residuals as the unknown has coordinates.
 template <int N, class R>
 [[nodiscard]] auto residuals(R&& returned) {
-  auto r = evaluated(std::forward<R>(returned));
+  auto r = result_of_call(std::forward<R>(returned));
   using type = decltype(r);
   if constexpr (Scalar<type>) {
     static_assert(N == 1, "duet: implicit_function: F returns one residual, but the unknown has "

@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
 
 #include <Eigen/Core>
@@ -39,7 +40,7 @@ template <class Tag = void, class F, VectorLike X>
   using tag = detail::tag_for<Tag, F>;
   constexpr int n = detail::partials_per_pass<X>;
   using output =
-      std::decay_t<decltype(detail::evaluated(f(detail::constants<dual<T, n, tag>>(x))))>;
+      std::decay_t<decltype(detail::result_of_call(f(detail::constants<dual<T, n, tag>>(x))))>;
   static_assert(VectorLike<output>,
                 "duet: jacobian needs a function that returns a vector; where it returns a "
                 "rotation, say the frame: jacobian(f, x, frame::body)");
@@ -88,10 +89,10 @@ template <class Tag = void, class F, class X, class V>
       for (Eigen::Index i = 0; i < argument::size(x); ++i) {
         point[std::size_t(i)] = D(T(argument::get(x, i)), T(direction::get(v, i)));
       }
-      return detail::evaluated(f(point));
+      return detail::result_of_call(f(point));
     } else {
       using T = promote_t<detail::differentiable_t<X>, detail::differentiable_t<V>>;
-      return detail::evaluated(f(dual<T, 1, tag>(T(x), T(v))));
+      return detail::result_of_call(f(dual<T, 1, tag>(T(x), T(v))));
     }
   }();
   return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};

@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/derivative/gradient.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/derivative/structure.hpp>
 
@@ -80,7 +81,7 @@ template <class Tag = void, class F, VectorLike X, VectorLike Y>
   using second = derivative_tag<tag, struct second_group>;
   using A = dual<typename detail::vector_argument<X>::scalar, n, first>;
   using B = dual<typename detail::vector_argument<Y>::scalar, m, second>;
-  const auto z = detail::evaluated(f(detail::seeded<A>(x), detail::seeded<B>(y)));
+  const auto z = detail::result_of_call(f(detail::seeded<A>(x), detail::seeded<B>(y)));
   static_assert(Scalar<std::remove_const_t<decltype(z)>>,
                 "duet: mixed_hessian needs a function that returns a scalar");
   const auto by_first = detail::part<first>(z, 0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/structure.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/partials.hpp>
@@ -109,7 +110,7 @@ void for_each_pass(F&& f, const X& x, Visit&& visit) {
   const Eigen::Index size = argument::size(x);
   if constexpr (0 < argument::size_at_compile_time && argument::size_at_compile_time <= n) {
     const auto variables = seeded<D>(x);
-    visit(evaluated(f(variables)), 0, size);
+    visit(result_of_call(f(variables)), 0, size);
   } else {
     auto variables = constants<D>(x);
     for (Eigen::Index first = 0; first < size; first += n) {
@@ -120,7 +121,7 @@ void for_each_pass(F&& f, const X& x, Visit&& visit) {
         }
       };
       set_diagonal(T(1));
-      visit(evaluated(f(std::as_const(variables))), first, count);
+      visit(result_of_call(f(std::as_const(variables))), first, count);
       set_diagonal(T(0));
     }
   }

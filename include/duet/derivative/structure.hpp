@@ -108,16 +108,6 @@ template <class F, class X>
 
 namespace detail {
 
-/// A result of its own: Eigen expressions are evaluated, everything else is taken as it is.
-template <class X>
-[[nodiscard]] constexpr auto evaluated(X&& x) {
-  if constexpr (requires { x.eval(); }) {
-    return std::decay_t<decltype(x.eval())>(std::forward<X>(x));
-  } else {
-    return std::decay_t<X>(std::forward<X>(x));
-  }
-}
-
 /// f applied to the value and to every infinitesimal part of a number: the same level over what f
 /// returns.
 template <class F, class T, int N, class Tag>
@@ -178,6 +168,19 @@ template <class Tag, class X>
 [[nodiscard]] constexpr auto parts(const X& x, int k) {
   return map_scalars([k](const auto& s) { return part<Tag>(s, k); }, x);
 }
+
+/// X, but of an expression of Eigen the vector or matrix that it stands for.
+template <class X>
+struct own {
+  using type = X;
+};
+template <class X>
+  requires std::derived_from<X, Eigen::MatrixBase<X>>
+struct own<X> {
+  using type = typename X::PlainObject;
+};
+template <class X>
+using own_t = typename own<X>::type;
 
 /// Integers are differentiated as reals.
 template <class X>

@@ -6,6 +6,7 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/manifold.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/derivative/structure.hpp>
 #include <duet/dual/partials.hpp>
@@ -61,7 +62,7 @@ void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
   constexpr int n = tangents_per_pass<X>;
   using D = dual<typename manifold<X>::scalar, n, Tag>;
   for (int first = 0; first < size; first += n) {
-    visit(evaluated(f(manifold<X>::plus(x, tangent_seeds<D, n, X>(first), frame))), first,
+    visit(result_of_call(f(manifold<X>::plus(x, tangent_seeds<D, n, X>(first), frame))), first,
           std::min(n, size - first));
   }
 }
@@ -96,7 +97,7 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
   using tag = detail::tag_for<Tag, F>;
   constexpr int n = detail::tangents_per_pass<X>;
   using D = dual<typename manifold<X>::scalar, n, tag>;
-  using output = std::decay_t<decltype(detail::evaluated(
+  using output = std::decay_t<decltype(detail::result_of_call(
       f(manifold<X>::plus(x, detail::tangent_seeds<D, n, X>(0), frame))))>;
   using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
   using target = manifold<value>;
@@ -155,6 +156,14 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
   using vector = Eigen::Matrix<typename manifold<X>::scalar, n, 1>;
   return hessian<std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
       moved, vector(vector::Zero()));
+}
+
+template <class Tag = void, class F, class X, FrameConstant Frame>
+  requires(!HasOwnJacobian<F> && !ManifoldPoint<X>)
+void jacobian(F&&, const X&, Frame) {
+  static_assert(ManifoldPoint<X>, "duet: no tangent coordinates are known of this type; those of "
+                                  "rotations are in <duet/quaternion/tangent.hpp>, of poses in "
+                                  "<duet/dual_quaternion/twist.hpp>");
 }
 
 template <class Tag = void, class F, detail::NeedsFrame X>

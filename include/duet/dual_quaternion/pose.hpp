@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 /// \file
@@ -18,16 +19,43 @@
 
 namespace duet {
 
-/// N17: α + εβ with β = ½ t α: first the rotation, a unit quaternion, then the translation.
+namespace detail {
+
+/// N17 for a rotation that is known to be a unit.
 template <class A, class B>
-  requires Promotable<A, B>
-[[nodiscard]] dual_quaternion<promote_t<A, B>> pose(const quaternion<A>& rotation,
-                                                    const vector3<B>& translation) {
+[[nodiscard]] dual_quaternion<promote_t<A, B>> pose_of_unit(const quaternion<A>& rotation,
+                                                            const vector3<B>& translation) {
   using T = promote_t<A, B>;
   const quaternion<T> alpha(rotation);
   const quaternion<T> half(T(0), T(translation[0]) / 2, T(translation[1]) / 2,
                            T(translation[2]) / 2);
   return make_dual_quaternion(alpha, half * alpha);
+}
+
+template <class Q>
+[[noreturn, gnu::cold]] void refuse_rotation(const Q& q) {
+  std::ostringstream message;
+  message << "duet: pose: the rotation " << q << " is no unit quaternion: normalized(q)";
+  throw invalid_input(message.str());
+}
+
+} // namespace detail
+
+/// N17: α + εβ with β = ½ t α: first the rotation, a unit quaternion, then the translation.
+/// \throws invalid_input where |α|² is not 1 within 1e-6 (1e-3 in single precision): points would
+/// be scaled by it; NaN passes
+template <class A, class B>
+  requires Promotable<A, B>
+[[nodiscard]] dual_quaternion<promote_t<A, B>> pose(const quaternion<A>& rotation,
+                                                    const vector3<B>& translation) {
+  using std::abs;
+  using real = lane_type_t<A>;
+  constexpr double tolerance = std::numeric_limits<real>::digits > 24 ? 1e-6 : 1e-3;
+  const auto alpha = detail::innermost_of(rotation);
+  if (any(abs(norm2(alpha) - 1) > tolerance)) [[unlikely]] {
+    detail::refuse_rotation(alpha);
+  }
+  return detail::pose_of_unit(rotation, translation);
 }
 
 /// α, the rotation of a pose.
@@ -108,7 +136,10 @@ template <class T>
   }
   const matrix3<T> r = m.template topLeftCorner<3, 3>();
   const vector3<T> t = m.template topRightCorner<3, 1>();
-  return pose(from_rotation_matrix(r), t);
+  return detail::pose_of_unit(from_rotation_matrix(r), t);
 }
 
 } // namespace duet
+
+// Whoever has poses can differentiate by them.
+#include <duet/dual_quaternion/twist.hpp>

@@ -46,14 +46,10 @@ struct with_node<Nodes, Node, false> {
   using type = followed_by<typename with_operands<Nodes, Node>::type, Node>;
 };
 
-/// One address for each type: to look for it costs compilers less than to deduce a base.
-template <class T>
-inline constexpr char identity = 0;
-
-/// Where one of them stands among some that end with a null pointer, -1 if nowhere.
-[[nodiscard]] constexpr int place_among(const char* const* all, const char* one) {
-  for (int i = 0; all[i] != nullptr; ++i) {
-    if (all[i] == one) {
+/// Where the one that is true stands among some, -1 if there is none.
+[[nodiscard]] constexpr int place_of_true(const bool* all, int count) {
+  for (int i = 0; i < count; ++i) {
+    if (all[i]) {
       return i;
     }
   }
@@ -63,13 +59,18 @@ inline constexpr char identity = 0;
 /// Nodes in an order.
 template <class... Nodes>
 class node_list {
-  static constexpr const char* identities[] = {&identity<Nodes>..., nullptr};
+  static constexpr int count = int(sizeof...(Nodes));
+  // By the compilers' own comparison: it costs them less than to deduce a base, and, unlike that of
+  // addresses, is a constant under sanitizers too. With one more at the end, as there are no arrays
+  // of none.
+  template <class Node>
+  static constexpr bool is_it[] = {__is_same(Nodes, Node)..., false};
 
 public:
-  using places = std::make_integer_sequence<int, int(sizeof...(Nodes))>;
+  using places = std::make_integer_sequence<int, count>;
   /// The number of a node, -1 of others.
   template <class Node>
-  static constexpr int place = place_among(identities, &identity<Node>);
+  static constexpr int place = place_of_true(is_it<Node>, count);
 };
 
 template <class Grown, class... Nodes>

@@ -209,6 +209,7 @@ private:
 };
 
 template <class F, class X, class P>
-closed_loop(F, X, P, closed_loop_options = {}) -> closed_loop<F, X, detail::differentiable_t<P>>;
+closed_loop(F, X, P, closed_loop_options = {})
+    -> closed_loop<F, detail::own_t<X>, detail::differentiable_t<detail::own_t<P>>>;
 
 } // namespace duet

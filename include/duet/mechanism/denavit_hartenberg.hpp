@@ -6,6 +6,7 @@
 #include <duet/mechanism/table_arithmetic.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -16,13 +17,30 @@
 
 namespace duet {
 
-/// One row; lengths in units of length, angles in radians. The coordinate is added to θ, or to d
-/// where the joint is prismatic.
+namespace detail {
+
+/// As the first member of an aggregate: a list of values without names is refused.
+struct fields_by_name {
+  constexpr fields_by_name() = default;
+  template <class X>
+  constexpr fields_by_name(const X&) {
+    static_assert(!std::same_as<X, X>,
+                  "duet: dh_row: name the parameters, whose order differs from book to book: "
+                  "{.a = 0, .d = .333, .alpha = 0}");
+  }
+};
+
+} // namespace detail
+
+/// One row, its parameters by name: `{.d = .333, .alpha = pi / 2}`; what is not named is zero.
+/// Lengths in units of length, angles in radians. The coordinate is added to θ, or to d where the
+/// joint is prismatic.
 template <class T = double>
 struct dh_row {
-  T a;            ///< length of the link
-  T d;            ///< offset along the joint's axis
-  T alpha;        ///< twist of the link
+  detail::fields_by_name by_name = {};
+  T a = T(0);     ///< length of the link
+  T d = T(0);     ///< offset along the joint's axis
+  T alpha = T(0); ///< twist of the link
   T theta = T(0); ///< angle at which the coordinate is zero
   joint_limits<T> limits = {};
   joint_kind kind = joint_kind::revolute;
@@ -52,6 +70,12 @@ constexpr void require_row(const dh_row<T>& row, std::size_t i) {
       bad_joint(i, "its row of parameters has a number beyond 1e6, or none");
     }
   }
+  const T turn(6.2832);
+  for (const T& x : {row.alpha, row.theta}) {
+    if (!(x <= turn && -x <= turn)) {
+      bad_joint(i, "its row turns by more than a whole turn: angles are in radians");
+    }
+  }
 }
 
 } // namespace detail
@@ -64,7 +88,7 @@ template <class T, std::size_t N>
                                                         const placement<T>& tool = {}) {
   std::array<joint<T>, N> joints{};
   std::array<placement<T>, N> link_frames{};
-  dh_row<T> before{T(0), T(0), T(0)};
+  dh_row<T> before{};
   for (std::size_t i = 0; i < N; ++i) {
     detail::require_row(rows[i], i);
     joints[i].kind = rows[i].kind;

@@ -104,7 +104,7 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
   if constexpr (std::same_as<Frame, body_frame>) {
     detail::turn_to_body(result.jacobian, state.rotation);
   }
-  result.value = pose(state.rotation, state.position);
+  result.value = detail::pose_of_unit(state.rotation, state.position);
   return result;
 }
 

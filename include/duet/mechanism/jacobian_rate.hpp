@@ -75,11 +75,15 @@ public:
   /// n
   [[nodiscard]] Eigen::Index size() const { return size_; }
   /// ∂J/∂θ_j
-  [[nodiscard]] auto operator[](Eigen::Index j) const {
+  [[nodiscard]] detail::joint_columns<S, 6, N> operator[](Eigen::Index j) const {
     return values_.template middleCols<(N > 0 ? N : Eigen::Dynamic)>(j * size_, size_);
   }
-  [[nodiscard]] auto operator[](Eigen::Index j) {
-    return values_.template middleCols<(N > 0 ? N : Eigen::Dynamic)>(j * size_, size_);
+  /// ∂J_ik/∂θ_j
+  [[nodiscard]] const S& operator()(Eigen::Index i, Eigen::Index k, Eigen::Index j) const {
+    return values_(i, j * size_ + k);
+  }
+  [[nodiscard]] S& operator()(Eigen::Index i, Eigen::Index k, Eigen::Index j) {
+    return values_(i, j * size_ + k);
   }
 
 private:
@@ -100,11 +104,14 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
   const Eigen::Index n = chain.size();
   chain_hessian<S, C::joints> h(n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    auto by_j = h[j];
     const auto column_j = detail::velocity_column(m, j);
     for (Eigen::Index k = 0; k < n; ++k) {
-      detail::set_column(
-          by_j, k, detail::column_by_joint<Frame>(detail::velocity_column(m, k), column_j, j <= k));
+      const auto column =
+          detail::column_by_joint<Frame>(detail::velocity_column(m, k), column_j, j <= k);
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        h(i, k, j) = column.v[i];
+        h(i + 3, k, j) = column.w[i];
+      }
     }
   }
   return h;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/errors.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/table_arithmetic.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -14,6 +15,23 @@
 
 namespace duet {
 
+namespace detail {
+
+/// The unit quaternion that one of few digits stands for.
+/// \throws invalid_input for what is none
+template <class T>
+[[nodiscard]] constexpr quaternion<T> unit_rotation(const quaternion<T>& q) {
+  const T square = norm2(q);
+  if (!is_nearly_one(square)) {
+    throw invalid_input("duet: placement: its rotation is no unit quaternion");
+  }
+  // A rotation that is a unit but for rounding stays what it is to the last bit.
+  const T rounding = 8 * std::numeric_limits<T>::epsilon();
+  return square - 1 <= rounding && 1 - square <= rounding ? q : q * inverse_root_near_one(square);
+}
+
+} // namespace detail
+
 /// A constant displacement x ↦ R x + t in a table. To compute with it, make it a pose.
 template <class T = double>
 struct placement {
@@ -21,15 +39,18 @@ struct placement {
   std::array<T, 3> translation{};
 
   constexpr placement() = default;
+  /// \param r  a unit quaternion, or one written with three digits or more, which is normalised
+  /// \throws invalid_input for any other
   constexpr placement(const quaternion<T>& r, const std::array<T, 3>& t)
-      : rotation(r), translation(t) {}
-  placement(const dual_quaternion<T>& a) : rotation(duet::rotation(a)) {
+      : rotation(detail::unit_rotation(r)), translation(t) {}
+  placement(const dual_quaternion<T>& a) : rotation(detail::unit_rotation(duet::rotation(a))) {
     const vector3<T> t = duet::translation(a);
     translation = {t[0], t[1], t[2]};
   }
 
   [[nodiscard]] dual_quaternion<T> pose() const {
-    return duet::pose(rotation, vector3<T>(translation[0], translation[1], translation[2]));
+    return detail::pose_of_unit(rotation,
+                                vector3<T>(translation[0], translation[1], translation[2]));
   }
   /// First b, then a, in fixed axes.
   [[nodiscard]] friend constexpr placement operator*(const placement& a, const placement& b) {

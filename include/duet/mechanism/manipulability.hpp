@@ -100,11 +100,10 @@ template <SerialChain C, VectorLike X, class... At>
   value_and_gradient<S, vector> result{w, vector(chain.size())};
   const auto h = kinematic_hessian(chain, theta, frame::hybrid, at...);
   for (Eigen::Index j = 0; j < chain.size(); ++j) {
-    const auto by_j = h[j];
     S trace(0);
     for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
       for (Eigen::Index k = 0; k < inverse.cols(); ++k) {
-        trace += inverse(i, k) * (chain.size() >= 6 ? by_j(i, k) : by_j(k, i));
+        trace += inverse(i, k) * (chain.size() >= 6 ? h(i, k, j) : h(k, i, j));
       }
     }
     result.gradient[j] = result.value * trace;

@@ -26,13 +26,14 @@ struct panda_arm {
   static constexpr auto chain = [] {
     using detail::quarter;
     using detail::within;
-    const std::array<dh_row<>, 7> rows{{{0, .333, 0, 0, within(2.8973)},
-                                        {0, 0, -quarter, 0, within(1.7628)},
-                                        {0, .316, quarter, 0, within(2.8973)},
-                                        {.0825, 0, quarter, 0, {-3.0718, -.0698}},
-                                        {-.0825, .384, -quarter, 0, within(2.8973)},
-                                        {0, 0, quarter, 0, {-.0175, 3.7525}},
-                                        {.088, 0, quarter, 0, within(2.8973)}}};
+    const std::array<dh_row<>, 7> rows{
+        {{.d = .333, .limits = within(2.8973)},
+         {.alpha = -quarter, .limits = within(1.7628)},
+         {.d = .316, .alpha = quarter, .limits = within(2.8973)},
+         {.a = .0825, .alpha = quarter, .limits = {-3.0718, -.0698}},
+         {.a = -.0825, .d = .384, .alpha = -quarter, .limits = within(2.8973)},
+         {.alpha = quarter, .limits = {-.0175, 3.7525}},
+         {.a = .088, .alpha = quarter, .limits = within(2.8973)}}};
     return from_modified_dh(rows, {quaternion<double>(1), {0, 0, .107}});
   }();
 };
@@ -42,13 +43,13 @@ struct iiwa14_arm {
   static constexpr auto chain = [] {
     using detail::quarter;
     using detail::within;
-    const std::array<dh_row<>, 7> rows{{{0, .36, -quarter, 0, within(2.9668)},
-                                        {0, 0, quarter, 0, within(2.0942)},
-                                        {0, .42, quarter, 0, within(2.9668)},
-                                        {0, 0, -quarter, 0, within(2.0942)},
-                                        {0, .4, -quarter, 0, within(2.9668)},
-                                        {0, 0, quarter, 0, within(2.0942)},
-                                        {0, .126, 0, 0, within(3.0541)}}};
+    const std::array<dh_row<>, 7> rows{{{.d = .36, .alpha = -quarter, .limits = within(2.9668)},
+                                        {.alpha = quarter, .limits = within(2.0942)},
+                                        {.d = .42, .alpha = quarter, .limits = within(2.9668)},
+                                        {.alpha = -quarter, .limits = within(2.0942)},
+                                        {.d = .4, .alpha = -quarter, .limits = within(2.9668)},
+                                        {.alpha = quarter, .limits = within(2.0942)},
+                                        {.d = .126, .limits = within(3.0541)}}};
     return from_dh(rows);
   }();
 };
@@ -59,12 +60,12 @@ struct ur5e_arm {
     using detail::quarter;
     const joint_limits<> turn = detail::within(2 * std::numbers::pi);
     const joint_limits<> elbow = detail::within(std::numbers::pi);
-    const std::array<dh_row<>, 6> rows{{{0, .1625, quarter, 0, turn},
-                                        {-.425, 0, 0, 0, turn},
-                                        {-.3922, 0, 0, 0, elbow},
-                                        {0, .1333, quarter, 0, turn},
-                                        {0, .0997, -quarter, 0, turn},
-                                        {0, .0996, 0, 0, turn}}};
+    const std::array<dh_row<>, 6> rows{{{.d = .1625, .alpha = quarter, .limits = turn},
+                                        {.a = -.425, .limits = turn},
+                                        {.a = -.3922, .limits = elbow},
+                                        {.d = .1333, .alpha = quarter, .limits = turn},
+                                        {.d = .0997, .alpha = -quarter, .limits = turn},
+                                        {.d = .0996, .limits = turn}}};
     return from_dh(rows);
   }();
 };
@@ -74,13 +75,14 @@ struct ur5e_arm {
 struct baxter_left_arm {
   static constexpr auto chain = [] {
     using detail::quarter;
-    const std::array<dh_row<>, 7> rows{{{.069, .27035, -quarter, 0, detail::within(1.70168)},
-                                        {0, 0, quarter, quarter, {-2.147, 1.047}},
-                                        {.069, .36442, -quarter, 0, detail::within(3.05418)},
-                                        {0, 0, quarter, 0, {-.05, 2.618}},
-                                        {.01, .37429, -quarter, 0, detail::within(3.059)},
-                                        {0, 0, quarter, 0, {-1.5708, 2.094}},
-                                        {0, .229525, 0, 0, detail::within(3.059)}}};
+    const std::array<dh_row<>, 7> rows{
+        {{.a = .069, .d = .27035, .alpha = -quarter, .limits = detail::within(1.70168)},
+         {.alpha = quarter, .theta = quarter, .limits = {-2.147, 1.047}},
+         {.a = .069, .d = .36442, .alpha = -quarter, .limits = detail::within(3.05418)},
+         {.alpha = quarter, .limits = {-.05, 2.618}},
+         {.a = .01, .d = .37429, .alpha = -quarter, .limits = detail::within(3.059)},
+         {.alpha = quarter, .limits = {-1.5708, 2.094}},
+         {.d = .229525, .limits = detail::within(3.059)}}};
     return from_dh(rows);
   }();
 };

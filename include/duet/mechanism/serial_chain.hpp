@@ -40,13 +40,6 @@ template <class T>
   bad_joint(i, reason.str());
 }
 
-/// How far from 1 the squared norm of an axis or of a constant rotation may be, as they are written
-/// with few digits.
-template <class T>
-[[nodiscard]] constexpr bool is_nearly_one(const T& square) {
-  return square - 1 <= 2e-3 && 1 - square <= 2e-3;
-}
-
 template <class T>
 constexpr void require_joint(const joint<T>& given, std::size_t i) {
   if (!is_finite(given.origin.translation)) {
@@ -80,7 +73,7 @@ struct poses_of {
     const C& chain = static_cast<const C&>(*this);
     const auto& frame = frame_on(chain, at...);
     const auto state = attach(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
-    return duet::pose(state.rotation, state.position);
+    return pose_of_unit(state.rotation, state.position);
   }
 };
 

@@ -50,6 +50,13 @@ template <class T>
   return sum(v, sum(scaled(twice, q.w()), cross(u, twice)));
 }
 
+/// How far from 1 the squared norm of an axis or of a constant rotation may be, as they are written
+/// with few digits.
+template <class T>
+[[nodiscard]] constexpr bool is_nearly_one(const T& square) {
+  return square - 1 <= 2e-3 && 1 - square <= 2e-3;
+}
+
 /// 1/√s for s near 1, by Newton's method.
 template <class T>
 [[nodiscard]] constexpr T inverse_root_near_one(const T& s) {

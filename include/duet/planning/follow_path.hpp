@@ -12,6 +12,7 @@
 #include <limits>
 #include <span>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -54,11 +55,9 @@ template <class Path>
 
 } // namespace detail
 
-/// Poses by a parameter.
+/// A function of a parameter, which is to return poses.
 template <class P>
-concept PosePath = requires(const P& path) {
-  { path(0.0) } -> std::convertible_to<dual_quaternion<double>>;
-};
+concept PosePath = std::invocable<const P&, double>;
 
 /// Joint coordinates that take the tip of a chain along a path from where it is at `start` (N25,
 /// note 1).
@@ -85,6 +84,10 @@ template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_o
 follow_path(const C& chain, const Start& start, const Path& path, double first, double last,
             const plan_options& options = {}, const Objective& objective = {},
             const Scene& around = {}) {
+  static_assert(
+      std::convertible_to<std::invoke_result_t<const Path&, double>, dual_quaternion<double>>,
+      "duet: follow_path: the path must return a dual_quaternion<double>: pose(q, t), or "
+      "from_eigen(...) of an Eigen::Isometry3d");
   detail::require_start(chain, start);
   if (!(first < last && last - first < std::numeric_limits<double>::infinity())) {
     std::ostringstream message;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/derivative/gradient.hpp>
+#include <duet/derivative/result.hpp>
 #include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 
@@ -39,7 +40,7 @@ struct preferred_posture {
   }
 };
 template <class V, class... W>
-preferred_posture(V, W...) -> preferred_posture<V>;
+preferred_posture(V, W...) -> preferred_posture<typename V::PlainObject>;
 
 /// −w log √det(J Jᵀ): away from singularities, with weight w.
 template <class C>
@@ -68,7 +69,7 @@ namespace detail {
 template <class F, class X>
 [[nodiscard]] auto objective_gradient(const F& f, const X& theta) {
   if constexpr (requires { f.gradient(theta); }) {
-    return f.gradient(theta);
+    return result_of_call(f.gradient(theta));
   } else {
     return duet::gradient(f, theta).gradient;
   }

@@ -289,3 +289,6 @@ template <class A, class B, class S>
 }
 
 } // namespace duet
+
+// Whoever has the exponential can differentiate by rotations.
+#include <duet/quaternion/tangent.hpp>

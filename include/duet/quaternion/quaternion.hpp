@@ -4,6 +4,7 @@
 #include <duet/core/batch_lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/promotion.hpp>
@@ -12,6 +13,7 @@
 
 #include <concepts>
 #include <ostream>
+#include <type_traits>
 
 /// \file
 /// Quaternions and their algebra (N1–N3).
@@ -86,6 +88,15 @@ public:
 
 private:
   T w_, x_, y_, z_;
+};
+
+template <class T>
+struct structure<quaternion<T>> {
+  template <class F>
+  [[nodiscard]] static constexpr auto map(F&& f, const quaternion<T>& q) {
+    using result = std::decay_t<std::invoke_result_t<F, const T&>>;
+    return quaternion<result>{f(q.w()), f(q.x()), f(q.y()), f(q.z())}; // in this order
+  }
 };
 
 template <class T>

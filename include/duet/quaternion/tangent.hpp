@@ -3,7 +3,8 @@
 
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/derivative/structure.hpp>
+#include <duet/dual/promotion.hpp>
+#include <duet/dual/tag.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>
@@ -11,22 +12,14 @@
 #include <type_traits>
 
 /// \file
-/// What `derivative/` must know of quaternions: their scalars, and the tangent space of rotations.
+/// The tangent space of rotations, as `derivative/` must know it.
 
 namespace duet {
-
-template <class T>
-struct structure<quaternion<T>> {
-  template <class F>
-  [[nodiscard]] static constexpr auto map(F&& f, const quaternion<T>& q) {
-    using result = std::decay_t<std::invoke_result_t<F, const T&>>;
-    return quaternion<result>{f(q.w()), f(q.x()), f(q.y()), f(q.z())}; // in this order
-  }
-};
 
 /// A unit quaternion is moved by a small rotation vector δ: exp(δ/2) q in spatial axes, q exp(δ/2)
 /// in those of the body. Its rate is told as the angular velocity (N7).
 template <class T>
+  requires(!detail::contains_tag<T, screw_tag>())
 struct manifold<quaternion<T>> {
   static constexpr int dimension = 3;
   using scalar = T;

@@ -12,8 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <sstream>
+#include <type_traits>
 #include <vector>
 
 /// \file
@@ -78,6 +80,9 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
                double tolerance, const Ends& ends = {}, const table_options& options = {}) {
   using T = typename Spline::scalar_type;
   using R = typename Spline::real_type;
+  static_assert(std::convertible_to<std::invoke_result_t<const F&, const R&>, quaternion<T>>,
+                "duet: adaptive_table: the function must return a rotation, quaternion<T>, or a "
+                "pose, dual_quaternion<T>");
   std::ostringstream message;
   if (!(first < last) || !(tolerance > 0)) {
     message << "duet: adaptive_table: from " << first << " to " << last << " with tolerance "

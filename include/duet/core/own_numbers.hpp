@@ -1,0 +1,53 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// Objects that hold their numbers themselves, and expressions that refer to those of others.
+
+namespace Eigen {
+
+template <class Derived>
+struct EigenBase;
+template <class Derived>
+class PlainObjectBase;
+
+} // namespace Eigen
+
+namespace duet::detail {
+
+template <class Derived>
+void as_eigen(const Eigen::EigenBase<Derived>&);
+template <class Derived>
+void as_plain(const Eigen::PlainObjectBase<Derived>&);
+
+/// Does an X refer to numbers that it does not hold? An expression of Eigen does, to what it was
+/// made of: as a rule the local variables of the function that returned it, which are gone.
+template <class X>
+inline constexpr bool refers_elsewhere = std::is_reference_v<X> ||
+                                         (
+                                             requires(const X& x) { as_eigen(x); } &&
+                                             !requires(const X& x) { as_plain(x); });
+template <class T, std::size_t N>
+inline constexpr bool refers_elsewhere<std::array<T, N>> = refers_elsewhere<T>;
+template <class... T>
+inline constexpr bool refers_elsewhere<std::tuple<T...>> = (refers_elsewhere<T> || ...);
+template <class A, class B>
+inline constexpr bool refers_elsewhere<std::pair<A, B>> =
+    refers_elsewhere<A> || refers_elsewhere<B>;
+
+/// Refuses what a function that duet calls must not return.
+template <class X>
+constexpr void require_own_numbers() {
+  static_assert(!refers_elsewhere<X>,
+                "duet: a function returns an expression of Eigen, which refers to variables that "
+                "are gone by then: return (...).eval(), or say what it returns: "
+                "[](const auto& x) -> duet::vector3<...> { ... }");
+}
+
+} // namespace duet::detail

@@ -1,0 +1,27 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/own_numbers.hpp>
+#include <duet/derivative/structure.hpp>
+
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// What a function that duet calls may return.
+
+namespace duet::detail {
+
+/// What a function of the caller's returned, as an object of its own.
+template <class X>
+[[nodiscard]] constexpr std::remove_cvref_t<X> result_of_call(X&& x) {
+  using result = std::remove_cvref_t<X>;
+  require_own_numbers<result>();
+  static_assert(
+      refers_elsewhere<result> || requires { sizeof(structure<result>); },
+      "duet: a function must return a scalar, an Eigen vector or matrix, a rotation, a "
+      "pose, or a std::array, std::tuple or std::pair of these");
+  return std::forward<X>(x);
+}
+
+} // namespace duet::detail
