@@ -9,7 +9,6 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace {
 
@@ -31,28 +30,16 @@ using joints = Eigen::Matrix<double, 7, 1>;
 using several = Eigen::VectorXd;
 
 // As arguments, expressions are welcome.
-void check_vectors(const vector& x, const several& y, const matrix3<double>& m) {
-  const auto square = [](const auto& v) { return v.squaredNorm(); };
+void check_vectors(const vector& x, const several& y) {
   const auto twice = [](const auto& v) { return (v + v).eval(); };
-  const auto curve = [&](const auto& t) { return column(t, t * t); };
   const auto [a, j] = jacobian(twice, x + x);
-  const auto [b, k] = jacobian(twice, y + y);
-  const auto [c, g] = gradient(square, x + x);
-  const auto [d, h, i] = hessian(square, x + x);
-  const auto [e, f] = directional_derivative(twice, x + x, x.cwiseAbs());
-  const auto [l, n, o] = hessian_vector_product(square, y + y, y + y);
-  const auto [p, q] =
-      mixed_hessian([](const auto& v, const auto& w) { return v.dot(w); }, x, x + x);
-  const auto [r, s] = derivative(curve, 1.0);
-  check(a, j, b, k, c, g, d, h, i, e, f, l, n, o, p, q, r, s, derivatives<2>(curve, 1.0));
-  check(solve(m + m, x + x), column(1.0, 2));
+  const auto [b, g] = gradient([](const auto& v) { return v.squaredNorm(); }, y + y);
   const auto equations = [](const auto& v, const auto& u) { return column(v[0] - u, v[1] + u); };
   using loop = decltype(closed_loop(equations, x.head<2>() * 2, 1));
   static_assert(
       std::is_same_v<
           loop, closed_loop<std::remove_const_t<decltype(equations)>, Eigen::Vector2d, double>>);
-  check(map_scalars([](double z) { return z; }, x + x));
-  check(complex_step_derivative(curve, 1.0), central_difference_derivative(curve, 1.0).derivative);
+  check(a, j, b, g, column(1.0, 2), map_scalars([](double z) { return z; }, x + x));
 }
 
 void check_rotations(const rotation_type& q, const vector& x) {
@@ -60,10 +47,6 @@ void check_rotations(const rotation_type& q, const vector& x) {
         angular_velocity(q, q, frame::body), quaternion_rate(q, x, frame::spatial),
         rate_matrix(q, frame::body), euler<zyx>(q), euler_rate_matrix<zyx>(.1, .2),
         from_euler<zyx>(.1, .2, 0), slerp(q, q, .5), left_jacobian(x), right_jacobian_inverse(x));
-  const auto [y, j] = jacobian([&](const auto& p) { return rotate(p, x); }, q, frame::body);
-  const auto [z, g] =
-      gradient([&](const auto& p) { return rotate(p, x).squaredNorm(); }, q, frame::spatial);
-  check(y, j, z, g);
 }
 
 void check_poses(const pose_type& a, const vector& x, const vector6<double>& v) {
@@ -82,20 +65,11 @@ void check_chains(const joints& theta, const vector6<double>& w) {
   check(arm.pose(theta + theta), jacobian(arm, theta + theta, spatial),
         kinematic_hessian(arm, theta, spatial)[0], jacobian_rate(arm, theta, theta, spatial),
         pose_coordinates_jacobian(arm, theta), euler_jacobian<zyx>(arm, theta),
-        joint_efforts(arm, theta, w, spatial), lower_limits(arm), upper_limits(arm),
-        manipulability(arm, theta), resolved_rate_matrix(arm, theta),
-        resolved_step(arm, theta + theta, arm.pose(theta), .5));
+        joint_efforts(arm, theta, w, spatial), lower_limits(arm), upper_limits(arm));
   const auto [a, j] = pose_and_jacobian(arm, theta + theta, spatial);
   const auto [m, rate] = jacobian_with_rate(arm, theta, theta + theta, spatial);
-  const auto [s, g] = manipulability_gradient(arm, theta);
   const preferred_posture posture{theta + theta, 2.0};
-  check(a, j, m, rate, s, g, posture.posture, posture.gradient(theta + theta),
-        high_manipulability{arm.table()}.gradient(theta));
-}
-
-void check_curve(const cumulative_bspline<double, 4>& s) {
-  const auto m = s.motion(.5, frame::body);
-  check(s(.5), s.derivatives(.5), m.value, m.velocity, m.acceleration, m.jerk);
+  check(a, j, m, rate, posture.posture, posture.gradient(theta + theta));
 }
 
 void check_ends(const vector& x) {
@@ -111,20 +85,16 @@ void check_formulas(const vector& x) {
   constexpr quaternion_symbol<"q"> q;
   const auto f = u * cross(w, x + x) + rotate(q, w);
   const rotation_type identity(1);
-  const auto [y, j] = jacobian(f, wrt(u, w), duet::frame::body)(u = 1, w = x + x, q = identity);
-  check(f(u = 1, w = x + x, q = identity), derivative(f, u)(u = 1, w = x, q = identity), y, j);
-  const auto [z, g] = gradient(dot(f, f), wrt(w))(u = 1, w = x, q = identity);
-  check(z, g);
+  check(f(u = 1, w = x + x, q = identity), derivative(f, u)(u = 1, w = x, q = identity));
 }
 
 } // namespace
 
 int main() {
-  check_vectors(vector(1, 2, 3), several::Ones(2), matrix3<double>::Identity());
+  check_vectors(vector(1, 2, 3), several::Ones(2));
   check_rotations(rotation_type(1), vector(1, 2, 3));
   check_poses(pose_type(rotation_type(1)), vector(1, 2, 3), vector6<double>::Ones());
   check_chains(joints::Zero(), vector6<double>::Ones());
   check_ends(vector(1, 2, 3));
   check_formulas(vector(1, 2, 3));
-  static_cast<void>(check_curve);
 }

@@ -6,6 +6,8 @@
 #   // flags: <flags for both compilations, optional>
 # The right way, the control, must compile: else the mistake may fail for the wrong reason.
 #
+# Of several mistakes in one snippet each line ends with `// mistake`: the compiler must name every one of them.
+#
 # A snippet without flags of its own is given a precompiled header, where one is named.
 #
 # cmake -Dcompile=<compiler and flags> -Dsnippet=<file> [-Dprecompiled=<header>] -P check.cmake
@@ -28,6 +30,9 @@ endif()
 read_comment(flags flags)
 separate_arguments(flags UNIX_COMMAND "${flags}")
 list(APPEND compile ${flags} -fsyntax-only)
+if(compile MATCHES "clang")
+  list(APPEND compile -ferror-limit=0)
+endif()
 if(precompiled AND NOT flags)
   list(APPEND compile -include ${precompiled})
 endif()
@@ -48,3 +53,12 @@ if(NOT complaints MATCHES "${expected}")
   message("${log}")
   message(FATAL_ERROR "it fails for another reason than: ${expected}")
 endif()
+file(STRINGS ${snippet} lines)
+set(number 0)
+foreach(line IN LISTS lines)
+  math(EXPR number "${number} + 1")
+  if(line MATCHES "// mistake$" AND NOT log MATCHES "${snippet}:${number}:")
+    message("${log}")
+    message(FATAL_ERROR "the mistake in line ${number} is not complained of")
+  endif()
+endforeach()

@@ -12,9 +12,10 @@
 
 namespace duet::detail {
 
-/// What a function of the caller's returned, as an object of its own.
+/// What a function of the caller's returned, as an object of its own. (Its type is deduced, so that
+/// compilers say first of all what is wrong, also where only the type is asked for.)
 template <class X>
-[[nodiscard]] constexpr std::remove_cvref_t<X> result_of_call(X&& x) {
+[[nodiscard]] constexpr auto result_of_call(X&& x) {
   using result = std::remove_cvref_t<X>;
   require_own_numbers<result>();
   static_assert(
