@@ -230,6 +230,7 @@ TEST_CASE("what is wrong with a chain is said in one line") {
   joints[1].origin.translation[2] = INFINITY;
   CHECK(message([&] { serial_chain chain(joints); }) ==
         "duet: serial_chain: joint 1: its origin is not finite");
+  joints[1].origin = {};
   joints[1].origin.rotation = quaternion<double>(2);
   CHECK(message([&] { serial_chain chain(joints); }) ==
         "duet: serial_chain: joint 1: the rotation of its origin is no unit quaternion");

@@ -63,9 +63,10 @@ sine_cosine_of_small(const batch<T, W>& x) {
 template <class T, int W>
 [[nodiscard, gnu::noinline, gnu::cold]] sine_cosine_batches<T, W>
 sine_cosine_of_mixed(const batch<T, W> x, const lane_mask<T, W> is_small) {
-  const auto small = sine_cosine_of_small(blended(is_small, x, batch<T, W>(0)));
+  const auto little = sine_cosine_of_small(blended(is_small, x, batch<T, W>(0)));
   const auto large = sine_cosine_of_lanes(x);
-  return {blended(is_small, small.sine, large.sine), blended(is_small, small.cosine, large.cosine)};
+  return {blended(is_small, little.sine, large.sine),
+          blended(is_small, little.cosine, large.cosine)};
 }
 
 /// sin x and cos x.

@@ -24,7 +24,7 @@ template <Infinitesimal D>
   return detail::lift(rule::sqrt{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D cbrt(const D& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE D cbrt(D x) {
   return detail::lift(rule::cbrt{}, x);
 }
 template <Infinitesimal D>
@@ -36,7 +36,7 @@ template <RealInfinitesimal D>
   return detail::lift(rule::exp2{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D expm1(const D& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE D expm1(D x) {
   return detail::lift(rule::expm1{}, x);
 }
 template <Infinitesimal D>
@@ -52,7 +52,7 @@ template <RealInfinitesimal D>
   return detail::lift(rule::log10{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D log1p(const D& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE D log1p(D x) {
   return detail::lift(rule::log1p{}, x);
 }
 template <Infinitesimal D>
@@ -92,31 +92,31 @@ template <Infinitesimal D>
   return detail::lift(rule::tanh{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D asinh(const D& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE D asinh(D x) {
   return detail::lift(rule::asinh{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D acosh(const D& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE D acosh(D x) {
   return detail::lift(rule::acosh{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D atanh(const D& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE D atanh(D x) {
   return detail::lift(rule::atanh{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D erf(const D& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE D erf(D x) {
   return detail::lift(rule::erf{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D erfc(const D& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE D erfc(D x) {
   return detail::lift(rule::erfc{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] D tgamma(const D& x) {
+[[nodiscard]] D tgamma(D x) {
   return detail::lift(rule::tgamma{}, x);
 }
 template <RealInfinitesimal D>
-[[nodiscard]] D lgamma(const D& x) {
+[[nodiscard]] D lgamma(D x) {
   return detail::lift(rule::lgamma{}, x);
 }
 
@@ -167,7 +167,7 @@ template <class A, class B>
 
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto hypot(const A& x, const B& y) {
+[[nodiscard]] DUET_ALWAYS_INLINE auto hypot(A x, B y) {
   return detail::lift_promoted(rule::hypot{}, x, y);
 }
 

@@ -18,7 +18,7 @@
 namespace duet {
 
 template <RealInfinitesimal D>
-[[nodiscard]] auto signbit(const D& x) {
+[[nodiscard]] auto signbit(D x) {
   using std::signbit;
   const auto is_negative = signbit(innermost(x));
   if constexpr (std::integral<std::remove_cvref_t<decltype(is_negative)>>) {
@@ -28,27 +28,27 @@ template <RealInfinitesimal D>
   }
 }
 template <RealInfinitesimal D>
-[[nodiscard]] auto isfinite(const D& x) {
+[[nodiscard]] auto isfinite(D x) {
   using std::isfinite;
   return isfinite(innermost(x));
 }
 template <RealInfinitesimal D>
-[[nodiscard]] auto isinf(const D& x) {
+[[nodiscard]] auto isinf(D x) {
   using std::isinf;
   return isinf(innermost(x));
 }
 template <RealInfinitesimal D>
-[[nodiscard]] auto isnan(const D& x) {
+[[nodiscard]] auto isnan(D x) {
   using std::isnan;
   return isnan(innermost(x));
 }
 template <RealInfinitesimal D>
-[[nodiscard]] auto isnormal(const D& x) {
+[[nodiscard]] auto isnormal(D x) {
   using std::isnormal;
   return isnormal(innermost(x));
 }
 template <RealInfinitesimal D>
-[[nodiscard]] int fpclassify(const D& x) {
+[[nodiscard]] int fpclassify(D x) {
   using std::fpclassify;
   return fpclassify(innermost(x));
 }

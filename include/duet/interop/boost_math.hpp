@@ -16,25 +16,10 @@
 
 namespace boost::math {
 
-template <duet::RealInfinitesimal D>
-[[nodiscard]] inline D tgamma(D x) {
-  return duet::tgamma(x);
-}
-template <duet::RealInfinitesimal D>
-[[nodiscard]] inline D lgamma(D x) {
-  return duet::lgamma(x);
-}
-template <duet::RealInfinitesimal D>
-[[nodiscard]] inline D erf(D x) {
-  return duet::erf(x);
-}
-template <duet::RealInfinitesimal D>
-[[nodiscard]] inline D erfc(D x) {
-  return duet::erfc(x);
-}
-template <duet::RealInfinitesimal D>
-[[nodiscard]] inline D hypot(D x, D y) {
-  return duet::hypot(x, y);
-}
+using duet::erf;
+using duet::erfc;
+using duet::hypot;
+using duet::lgamma;
+using duet::tgamma;
 
 } // namespace boost::math

@@ -61,12 +61,12 @@ template <class C, class J, class V>
 [[nodiscard]] step_beside_obstacles<V>
 step_beside(const C& chain, const V& theta, const J& jacobian, const vector6<double>& e,
             const V& wish, const V& lower, const V& upper, const scene& around) {
-  const auto near = margin_inequalities(chain, theta, around);
-  if (near.empty()) {
+  const auto inequalities = margin_inequalities(chain, theta, around);
+  if (inequalities.empty()) {
     return {};
   }
   const V down = lower - theta, up = upper - theta;
-  const auto result = constrained_step(jacobian, e, wish, down, up, near);
+  const auto result = constrained_step(jacobian, e, wish, down, up, inequalities);
   // What cannot be done without obstacles either is not for them to answer for.
   const bool is_free = !result.step && !constrained_step(jacobian, e, wish, down, up, {}).step;
   return {result, is_free};

@@ -40,8 +40,9 @@ public:
 
   /// Is it certain that no pose of the tip is as near to the goal as that, in length and radians?
   [[nodiscard]] bool is_beyond(const dual_quaternion<double>& goal, double tolerance) const {
-    const double far = (translation(goal * tool_) - first_).norm();
-    return has_joints_ && far > (links_ + travel_) * (1 + 1e-12) + tolerance * (1 + tool_length_);
+    const double distance = (translation(goal * tool_) - first_).norm();
+    return has_joints_ &&
+           distance > (links_ + travel_) * (1 + 1e-12) + tolerance * (1 + tool_length_);
   }
 
   /// A length typical of the chain, 1 where there is none in its table.
