@@ -297,6 +297,16 @@ TEST_CASE("a pitch too small for the difference of two quarter turns") {
   }
 }
 
+TEST_CASE("a pitch that small has a rate as exact") {
+  using D = duet::dual<double>;
+  for (const double size : {1e-5, 1e-20, 1e-300}) {
+    const auto pitch =
+        duet::euler<duet::zyx>(quaternion<D>(D(1), D(0), D(size, 3 * size), D(0)))[1];
+    CHECK(pitch.value() == doctest::Approx(2 * size).epsilon(1e-9));
+    CHECK(pitch.epsilon() == doctest::Approx(4.6 * size).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("the zero quaternion has no angles") {
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::euler<duet::zyx>(quaternion<double>())),
                        "duet: euler of the zero quaternion", duet::invalid_input);

@@ -52,24 +52,27 @@ template <class T>
                                                double tolerance = 1e-8) {
   const dual_quaternion<T> short_way = select(
       innermost(a.w()) < 0, [&] { return -a; }, [&] { return a; });
-  const dual_vector<T> half = detail::log_vector(short_way, "screw_parameters");
-  const vector3<T> turn = 2 * real_part(half);  // φ n
-  const vector3<T> shift = 2 * dual_part(half); // d n + φ m
-  const auto length = [](const vector3<T>& v) { return norm(quaternion<T>(T(0), v)); };
-  const vector3<T> none = vector3<T>::Zero();
-  if (!(innermost(length(turn)) > tolerance)) {
-    const T d = length(shift);
+  using std::abs;
+  using std::atan2;
+  using D = screw_dual<T>;
+  const quaternion<D> v(D(T(0)), short_way.x(), short_way.y(), short_way.z());
+  const auto values = detail::innermost_of(real_part(v));
+  if (!(2 * atan2(norm(values), innermost(short_way.w())) > tolerance)) {
+    const vector3<T> none = vector3<T>::Zero();
+    const vector3<T> shift =
+        2 * dual_part(detail::log_vector(short_way, "screw_parameters")); // d n + φ m
+    const T d = norm(quaternion<T>(T(0), shift));
     if (!(innermost(d) > tolerance)) {
       return {none, none, T(0), T(0), screw_kind::none};
     }
     return {vector3<T>(shift / d), none, T(0), d, screw_kind::translation};
   }
-  const T angle = length(turn);
-  const vector3<T> axis = turn / angle;
-  const T d = shift.dot(axis);
-  using std::abs;
-  return {axis, vector3<T>((shift - d * axis) / angle), angle, d,
-          abs(innermost(d)) > tolerance ? screw_kind::screw : screw_kind::rotation};
+  // The polar form over dual numbers: A = cos ½Φ + (n + εm) sin ½Φ, Φ = φ + εd.
+  const D sine = norm(v);
+  const D angle = 2 * atan2(sine, short_way.w());
+  const dual_vector<T> line = (v / sine).vec();
+  return {real_part(line), dual_part(line), angle.value(), angle.epsilon(),
+          abs(innermost(angle.epsilon())) > tolerance ? screw_kind::screw : screw_kind::rotation};
 }
 
 /// The pose exp(½ (φ + εd)(n + εm)) of a screw motion: unit axis n, moment m perpendicular to it.

@@ -147,12 +147,20 @@ template <euler_sequence Sequence, class T>
     using std::hypot;
     const auto values = euler<Sequence>(detail::innermost_of(q));
     // Infinitesimal parts of α + γ and α − γ keep their digits near gimbal lock too.
-    const auto [w, x, y, z] = detail::proper_components<Sequence>(detail::along_axes<Sequence>(q));
+    const std::array<T, 4> components = detail::along_axes<Sequence>(q);
+    const auto [w, x, y, z] = detail::proper_components<Sequence>(components);
     const T sum = atan2(x, w);
     const T difference = atan2(z, y);
+    T middle;
+    if constexpr (Sequence.is_proper()) {
+      middle = 2 * atan2(hypot(y, z), hypot(w, x));
+    } else { // both lengths are near each other where the angle is small
+      const auto& [s, i, j, k] = components;
+      middle = atan2(T(2 * (s * j + i * k)), T(hypot(w, x) * hypot(y, z)));
+    }
     constexpr int sign = Sequence.is_proper() ? 1 : -Sequence.sign();
     return {detail::with_innermost(T(sum + difference), values[0]),
-            detail::with_innermost(T(2 * atan2(hypot(y, z), hypot(w, x))), values[1]),
+            detail::with_innermost(middle, values[1]),
             detail::with_innermost(T(sign * (sum - difference)), values[2])};
   } else if constexpr (Batched<T>) {
     return detail::by_lane([](const auto& p) { return euler<Sequence>(p); }, q);
