@@ -87,7 +87,7 @@ if(EXISTS ${folder}/killed/summary.csv)
 endif()
 execute_process(COMMAND ${program} ${options} --out killed --summary WORKING_DIRECTORY ${folder}
   RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
-if(NOT result EQUAL 1 OR NOT error MATCHES "^tolerance_study: of blocks 0-3 in killed/samples are missing: 1; run again")
+if(NOT result EQUAL 1 OR NOT error MATCHES "(^|\n)tolerance_study: of blocks 0-3 in killed/samples are missing: 1; run again")
   message(FATAL_ERROR "status ${result}\n${output}${error}")
 endif()
 execute_process(COMMAND ${mpirun} -n 2 ${program} ${options} --out killed WORKING_DIRECTORY ${folder}
