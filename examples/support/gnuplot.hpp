@@ -65,8 +65,9 @@ inline bool draw(const std::string& folder, const std::string& name, const std::
   };
   const std::string variables = "svg_file=" + quoted(absolute(svg.name()), "''") +
                                 "; png_file=" + quoted(absolute(png.name()), "''");
+  // Neither the user's start files nor a terminal that the environment names count.
   const int status =
-      run_command("cd " + quoted_for_shell(absolute(folder)) + " && gnuplot -d -e " +
+      run_command("cd " + quoted_for_shell(absolute(folder)) + " && GNUTERM=svg gnuplot -d -e " +
                   quoted_for_shell(variables) + " '" + name + ".gnuplot' >/dev/null 2>&1");
   if (status == 127) { // the shell has not found it
     return false;

@@ -89,7 +89,7 @@ shell(screw_motion/screw_motion 0 "" "
   mkdir out elsewhere
   ln -s out link
   ln -s ../elsewhere/path.csv ../elsewhere/path.svg out
-  \"$tool\" --out link
+  GNUTERM=none \"$tool\" --out link # an environment that gnuplot cannot obey
   test -L link
   test -L out/path.csv
   test \"$(head -n 1 elsewhere/path.csv | cut -c 1-3)\" = tau
