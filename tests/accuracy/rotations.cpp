@@ -1,0 +1,19 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "accuracy/probe.hpp"
+#include "accuracy/rotation_functions.hpp"
+
+// Quaternions: exponential, logarithm, powers, interpolation, rotations in all their forms,
+// Jacobians and angular velocities, with derivatives to the fourth order.
+
+namespace duet_test::accuracy {
+
+rows rotation_rows(extent e) {
+  rows result;
+  for (const auto& f : rotation_functions<line>()) {
+    result.push_back(probe_lines(f, e == extent::test ? 4 : 32));
+  }
+  return result;
+}
+
+} // namespace duet_test::accuracy
