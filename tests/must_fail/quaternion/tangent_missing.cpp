@@ -1,0 +1,21 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+// expect: duet: no tangent coordinates are known of this type
+// flags: -Wall -Wno-ignored-attributes
+
+// What few headers lead to (which is why this has flags of its own: nothing is precompiled for it).
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#ifndef DUET_MUST_FAIL
+#include <duet/quaternion/exponential.hpp>
+#endif
+
+int main() {
+  using duet::quaternion;
+  const auto turn = [](auto t) { return quaternion<decltype(t)>(t, t, t, t); };
+  const auto [q, q_dot] = duet::derivative(turn, 1.0); // with this, quaternion.hpp alone will do
+  static_cast<void>(duet::jacobian([](const auto& p) { return conj(p); }, q, duet::frame::body));
+  return q_dot.w() == 1 ? 0 : 1;
+}
