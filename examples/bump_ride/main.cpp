@@ -116,7 +116,7 @@ std::string picture_script(const std::vector<result>& results) {
 
 void run(const options& given) {
   example::require_folder(given.out);
-  const wheel_carrier::carrier mechanism(wheel_carrier::published_hardpoints());
+  const wheel_carrier::carrier mechanism(wheel_carrier::example_hardpoints());
   vehicle v;
   v.bump_height = given.bump;
   const pose_table table = make_table(mechanism, given.rows);

@@ -90,7 +90,7 @@ void summarise(const options& given, const hardpoints& points, const toleranced_
 
 int run(const options& given, const processes& all) {
   const hardpoints points = given.hardpoints ? wheel_carrier::read_hardpoints(*given.hardpoints)
-                                             : wheel_carrier::published_hardpoints();
+                                             : wheel_carrier::example_hardpoints();
   const toleranced_carrier mechanism(points, heights(given));
   const block_store blocks(given, points);
   const auto missing = all.from_first([&] {

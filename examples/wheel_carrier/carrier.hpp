@@ -36,8 +36,8 @@ struct hardpoints {
   std::array<rod, 5> rods;
 };
 
-/// A published multi-link suspension.
-inline hardpoints published_hardpoints() {
+/// The carrier of our examples: a multi-link suspension of the size of a passenger car's.
+inline hardpoints example_hardpoints() {
   return {{0, 0.950, 0},
           {{{"upper front", {0.060, 0.547, 0.082}, {0.056, 0.864, 0.151}},
             {"upper rear", {-0.157, 0.508, 0.062}, {0.056, 0.864, 0.151}},

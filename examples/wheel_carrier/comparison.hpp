@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carrier.hpp"
+#include "error_measure.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/euler.hpp>
@@ -45,17 +46,21 @@ inline rates automatic(const spline& s, double u) {
   return rates_of(q[0], q[1], q[2]);
 }
 
-/// Through Euler angles R = Rz(ψ) Ry(θ) Rx(φ) (P5, true form): the angles' derivatives from Q, Q′,
-/// Q″ by Taylor numbers, then δ = A [ψ′ θ′ φ′]ᵀ and its derivative.
-inline rates through_euler_angles(const spline& s, double u) {
+/// ψ, θ, φ of R = Rz(ψ) Ry(θ) Rx(φ) with their first two derivatives, from Q, Q′, Q″.
+template <std::size_t N>
+std::array<duet::taylor<double, 2>, 3> angle_series(const std::array<rotation, N>& q) {
   using series = duet::taylor<double, 2>;
-  const auto q = s.derivatives(u);
   const auto component = [&](auto get) { return series({get(q[0]), get(q[1]), get(q[2]) / 2}); };
-  const auto angles = duet::euler<duet::zyx>(
+  return duet::euler<duet::zyx>(
       duet::quaternion<series>(component([](const auto& p) { return p.w(); }),
                                component([](const auto& p) { return p.x(); }),
                                component([](const auto& p) { return p.y(); }),
                                component([](const auto& p) { return p.z(); })));
+}
+
+/// Through Euler angles (P5, true form): δ = A [ψ′ θ′ φ′]ᵀ and its derivative.
+inline rates through_euler_angles(const spline& s, double u) {
+  const auto angles = angle_series(s.derivatives(u));
   using linear = duet::taylor<double, 1>;
   const auto angle = [&](std::size_t i) {
     return linear({angles[i].coefficient(0), angles[i].coefficient(1)});
@@ -69,10 +74,16 @@ inline rates through_euler_angles(const spline& s, double u) {
           delta.unaryExpr([](const linear& x) { return x.derivative(1); })};
 }
 
-/// P3 and P4 to the letter.
+/// P3 and P4 to the letter, with basis functions from B_{-1}.
 inline rates as_printed(const spline& s, double u) {
   const auto p = duet::printed_derivative(s, u);
   return rates_of(s(u), p.literal_first, p.literal_second);
+}
+
+/// P3 and P4 to the letter, with basis functions from B_0.
+inline rates as_printed_from_zero(const spline& s, double u) {
+  const auto p = duet::printed_derivative(s, u);
+  return rates_of(s(u), p.from_zero_first, p.from_zero_second);
 }
 
 /// P3 and P4 with the basis corrected, the ω_i still summed as if they commuted.
@@ -101,18 +112,15 @@ struct way {
 inline constexpr std::array ways{way{"closed form", closed_form},
                                  way{"automatic (Taylor)", automatic},
                                  way{"Euler angles, P5", through_euler_angles},
-                                 way{"P3, P4 as printed", as_printed},
-                                 way{"P4 commuting", commuting},
+                                 way{"printed, functions from B_-1", as_printed},
+                                 way{"printed, functions from B_0", as_printed_from_zero},
+                                 way{"basis corrected, commuting", commuting},
                                  way{"central differences", central_differences}};
 
 /// P6 at the samples, in percent: δ_E and dδ_E.
 struct error_curve {
   std::vector<double> delta, delta_first;
 };
-
-inline double relative(const vector3& x, const vector3& reference) {
-  return (x - reference).norm() / reference.norm();
-}
 
 inline error_curve errors(const std::vector<state>& reference, const spline& s, const way& w) {
   error_curve result;

@@ -3,6 +3,7 @@
 
 #include "carrier.hpp"
 #include "comparison.hpp"
+#include "configuration.hpp"
 #include "splines.hpp"
 #include "table.hpp"
 
@@ -53,6 +54,38 @@ inline std::string rates_csv(const curve& c, const std::vector<double>& samples)
   return text;
 }
 
+/// u, then x, y, z, φ, θ, ψ and their first and second derivatives.
+inline std::string configuration_csv(const std::vector<double>& samples,
+                                     const std::vector<configuration>& values) {
+  std::vector<std::string> names{"u"};
+  for (const char* const order : {"", "_first", "_second"}) {
+    for (const char* const name : {"x", "y", "z", "phi", "theta", "psi"}) {
+      names.push_back(std::string(name) + order);
+    }
+  }
+  std::string text = duet::csv_header(names);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    std::vector<double> row{samples[i]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const vector3& v : {values[i].place[k], values[i].angles[k]}) {
+        row.insert(row.end(), v.data(), v.data() + 3);
+      }
+    }
+    text += csv_line(row);
+  }
+  return text;
+}
+
+inline std::string configuration_errors_csv(const std::vector<double>& samples,
+                                            const configuration_errors& off) {
+  std::string text = "u,place,angles,place_first,angles_first,place_second,angles_second\n";
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    text += csv_line({samples[i], off.place[0][i], off.angles[0][i], off.place[1][i],
+                      off.angles[1][i], off.place[2][i], off.angles[2][i]});
+  }
+  return text;
+}
+
 using named_curve = std::pair<std::string, error_curve>;
 
 /// u, then δ_E and dδ_E in percent for every curve.
@@ -80,16 +113,16 @@ inline std::string errors_csv(const std::vector<double>& samples,
 inline std::string errors_script(const std::vector<named_curve>& curves) {
   std::string text = "set datafile separator ','\nset logscale y\nset format y '10^{%T}'\n"
                      "set xlabel 'wheel height u [m]'\nset grid\nset xrange [:] noextend\n"
-                     "set key outside right center reverse Left samplen 2\n"
+                     "set key noenhanced outside right center reverse Left samplen 2\n"
                      "set multiplot layout 2,1\n";
-  const char* const colours[] = {"#000000", "#d62728", "#1f77b4", "#ff7f0e", "#9a9a9a"};
+  const char* const colours[] = {"#000000", "#d62728", "#9467bd", "#1f77b4", "#ff7f0e", "#9a9a9a"};
   const std::array<std::string, 2> panels[] = {{"{/Symbol d}_E [%]", "[1e-8:1e3]"},
                                                {"d{/Symbol d}_E [%]", "[1e-5:1e5]"}};
   for (std::size_t panel = 0; panel < 2; ++panel) {
     text += "set ylabel '" + panels[panel][0] + "'\nset yrange " + panels[panel][1] + "\nplot ";
     for (std::size_t i = curves.size(); i-- > 0;) {
       text += "'errors.csv' using 1:" + std::to_string(2 + panel + 2 * i) +
-              " skip 1 with lines lw 1.5 lc rgb '" + colours[i % 5] + "' title '" +
+              " skip 1 with lines lw 1.5 lc rgb '" + colours[i % 6] + "' title '" +
               curves[i].first + "'" + (i > 0 ? ", \\\n     " : "\n");
     }
   }
@@ -104,7 +137,8 @@ inline std::string splines_script(const std::vector<named_curve>& curves) {
     const auto ends = [&](const std::string& text) {
       return name.size() > text.size() && name.substr(name.size() - text.size()) == text;
     };
-    const std::string colour = starts("cumulative")        ? "#d62728"
+    const std::string colour = starts("Hermite")           ? "#ff7f0e"
+                               : starts("cumulative")      ? "#d62728"
                                : starts("rotation-vector") ? "#1f77b4"
                                                            : "#2ca02c";
     const int dash = ends("natural")        ? 3

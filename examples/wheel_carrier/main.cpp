@@ -6,9 +6,12 @@
 // acceleration.
 
 #include "comparison.hpp"
+#include "configuration.hpp"
 #include "figures.hpp"
 #include "hardpoints_file.hpp"
+#include "hermite.hpp"
 #include "options.hpp"
+#include "report.hpp"
 #include "splines.hpp"
 #include "table.hpp"
 
@@ -51,127 +54,147 @@ std::vector<state> solve(const carrier& mechanism, const std::vector<double>& sa
   return states;
 }
 
-spline through(const table& t, const std::optional<end_rates>& rates) {
-  if (rates) {
-    return duet::interpolate<spline>(t.u, t.q, duet::clamped{rates->start, rates->end});
-  }
-  return duet::interpolate<spline>(t.u, t.q, duet::natural{});
-}
-
 end_rates rates_at(const state& first, const state& last) { return {first.omega(), last.omega()}; }
-
-void print_error_row(const std::string& name, const error_curve& curve) {
-  const summary d = summarise(curve.delta);
-  const summary dd = summarise(curve.delta_first);
-  std::printf("  %-34s %9.2g %9.2g %9.2g   %9.2g %9.2g %9.2g\n", name.c_str(), d.median, d.interior,
-              d.ends, dd.median, dd.interior, dd.ends);
-}
 
 /// δ_E and dδ_E of every way to the derivatives, for the chosen ends and beside them for the
 /// others.
-std::vector<named_curve> compare_ways(const std::vector<state>& states, const spline& chosen,
+std::vector<named_curve> compare_ways(const std::vector<double>& samples,
+                                      const std::vector<state>& states, const spline& chosen,
                                       const std::string& chosen_name, const spline& other,
                                       const std::string& other_name) {
-  std::printf("Errors against the mechanism in percent (median; maximum in the middle 90 %% of the "
-              "travel; at its ends)\n");
-  std::printf("  %-34s %29s   %29s\n", "", "delta_E", "ddelta_E");
+  std::printf("Errors against the mechanism, in percent\n\n");
+  print_header_of_errors();
   std::vector<named_curve> curves;
   for (const way& w : ways) {
-    const std::string name = chosen_name + ", " + w.name;
+    const std::string name = chosen_name + " ends: " + w.name;
     const error_curve curve = errors(states, chosen, w);
-    print_error_row(name, curve);
+    print_error_row(name, samples, curve);
     // On paper the first three lie on one another, and so do they in the figure.
     if (w.evaluate != automatic && w.evaluate != through_euler_angles) {
       curves.emplace_back(name, curve);
     }
   }
-  curves.emplace_back(other_name + ", closed form", errors(states, other, ways[0]));
-  print_error_row(curves.back().first, curves.back().second);
+  curves.emplace_back(other_name + " ends: closed form", errors(states, other, ways[0]));
+  print_error_row(curves.back().first, samples, curves.back().second);
   return curves;
 }
+
+/// q_K, q′_K and q″_K of the splines: the configuration as a table, and its errors.
+std::vector<std::pair<std::string, std::string>>
+configurations(const carrier& mechanism, const std::vector<double>& samples,
+               const std::vector<state>& states, const table& t, const spline& orientation) {
+  std::vector<vector3> rows;
+  for (const double u : t.u) {
+    rows.push_back(mechanism.at(u).centre);
+  }
+  const place_spline place(t.u, rows, states.front().centre_first, states.back().centre_first);
+  std::vector<configuration> values;
+  configuration_errors off;
+  for (const state& exact : states) {
+    values.push_back({place.at(exact.u), angles_of(orientation.derivatives(exact.u))});
+    off.add(values.back(), configuration_of(exact));
+  }
+  std::printf("\nErrors of the configuration, in metres and radians, per metre, per metre twice\n\n"
+              "| | median | maximum | at u | at both ends |\n|---|---|---|---|---|\n");
+  const char* const orders[] = {"", ", first derivative", ", second derivative"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::printf("| x, y, z%s |%s\n", orders[k], error_cells(samples, off.place[k], 1e-12).c_str());
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::printf("| phi, theta, psi%s |%s\n", orders[k],
+                error_cells(samples, off.angles[k], 1e-12).c_str());
+  }
+  return {{"configuration.csv", configuration_csv(samples, values)},
+          {"configuration_errors.csv", configuration_errors_csv(samples, off)}};
+}
+
+constexpr int convergence_rows[] = {25, 50, 100, 200, 400};
 
 /// Maximal errors for tables of 25 … 400 rows, with observed orders of convergence.
 std::string convergence(const carrier& mechanism, const arc_length& arcs,
                         const std::vector<state>& states) {
   std::printf("\nConvergence: maximal errors in percent over the whole travel, observed order in "
-              "parentheses\n");
-  std::printf("  %6s %18s %18s %18s %18s\n", "rows", "delta_E clamped", "ddelta_E clamped",
-              "delta_E natural", "ddelta_E natural");
+              "parentheses\n\n| rows | delta_E clamped | ddelta_E clamped | delta_E natural | "
+              "ddelta_E natural |\n|---|---|---|---|---|\n");
   std::string csv = "rows,delta_E_clamped,ddelta_E_clamped,delta_E_natural,ddelta_E_natural\n";
+  const known_ends known = ends_of(states.front(), states.back());
   std::array<double, 4> before{};
-  double arcs_before = 0;
-  for (const int rows : {25, 50, 100, 200, 400}) {
+  double steps_before = 0;
+  for (const int rows : convergence_rows) {
     const table t = equal_arc_table(mechanism, arcs, rows);
     std::array<double, 4> now{};
     std::size_t k = 0;
-    for (const bool is_clamped : {true, false}) {
-      const auto rates =
-          is_clamped ? std::optional(rates_at(states.front(), states.back())) : std::nullopt;
-      const error_curve curve = errors(states, through(t, rates), ways[0]);
+    for (const char* const ends : {"clamped", "natural"}) {
+      const error_curve curve = errors(states, cumulative_curve(t, ends, known), ways[0]);
       now[k++] = summarise(curve.delta).maximum;
       now[k++] = summarise(curve.delta_first).maximum;
     }
-    std::printf("  %6d", rows);
+    std::printf("| %d |", rows);
     for (std::size_t i = 0; i < 4; ++i) {
-      std::string order;
-      if (before[i] > 0) {
-        char text[32];
-        std::snprintf(text, sizeof text, "(%.1f)",
-                      std::log(before[i] / now[i]) / std::log((rows - 1) / arcs_before));
-        order = text;
-      }
-      std::printf(" %12.3g %5s", now[i], order.c_str());
+      std::printf(" %s |", convergence_cell(now[i], before[i], rows - 1, steps_before).c_str());
     }
     std::printf("\n");
     csv += csv_line({double(rows), now[0], now[1], now[2], now[3]});
     before = now;
-    arcs_before = rows - 1;
+    steps_before = rows - 1;
   }
   return csv;
 }
 
-/// δ_E and dδ_E of every spline with every end. What the table has too few rows for is left out.
-std::vector<named_curve> compare_splines(const std::vector<state>& states, const table& t) {
-  std::printf("\nEvery spline, every end, as above\n");
+/// δ_E and dδ_E of every spline with every end, and of Hermite's. What the table has too few rows
+/// for is left out.
+std::vector<named_curve> compare_splines(const carrier& mechanism,
+                                         const std::vector<double>& samples,
+                                         const std::vector<state>& states, const table& t) {
+  std::printf("\nEvery spline, every end, as above\n\n");
+  print_header_of_errors();
   const known_ends known = ends_of(states.front(), states.back());
   std::vector<named_curve> curves;
+  const auto add = [&](const curve& c) {
+    curves.emplace_back(c.name(), errors(states, c));
+    print_error_row(c.name(), samples, curves.back().second);
+  };
   for (const auto& [spline_name, ends] : all_curves) {
     try {
-      const curve c = make_curve(spline_name, t, ends, known);
-      curves.emplace_back(c.name(), errors(states, c));
-      print_error_row(c.name(), curves.back().second);
+      add(make_curve(spline_name, t, ends, known));
     } catch (const duet::invalid_input&) {
-      std::printf("  %s, %s: too few rows\n", spline_name, ends);
+      std::printf("| %s, %s | too few rows |\n", spline_name, ends);
     }
   }
+  add(hermite_curve(t, mechanism));
   return curves;
 }
 
 /// Maximal dδ_E of every spline with every end for tables of 25 … 400 rows.
 std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
                                const std::vector<state>& states) {
-  constexpr int tables[] = {25, 50, 100, 200, 400};
   const known_ends known = ends_of(states.front(), states.back());
-  std::printf("\nEvery spline, every end: maximal ddelta_E in percent for so many rows\n  %-34s",
-              "");
+  std::printf("\nEvery spline, every end: maximal ddelta_E in percent for so many rows\n\n|");
   std::vector<std::vector<double>> columns;
   std::vector<table> made;
-  for (const int rows : tables) {
-    std::printf(" %9d", rows);
+  for (const int rows : convergence_rows) {
+    std::printf(" | %d", rows);
     made.push_back(equal_arc_table(mechanism, arcs, rows));
     columns.push_back({double(rows)});
   }
+  std::printf(" |\n|---|---|---|---|---|---|\n");
   std::vector<std::string> names{"rows"};
-  for (const auto& [spline_name, ends] : all_curves) {
-    std::printf("\n  %-34s", (std::string(spline_name) + ", " + ends).c_str());
-    names.push_back(std::string(spline_name) + " " + ends);
+  const auto add = [&](const auto& make) {
+    std::string name;
+    std::string cells;
     for (std::size_t i = 0; i < made.size(); ++i) {
-      const error_curve e = errors(states, make_curve(spline_name, made[i], ends, known));
-      columns[i].push_back(summarise(e.delta_first).maximum);
-      std::printf(" %9.2g", columns[i].back());
+      const curve c = make(made[i]);
+      name = c.name();
+      columns[i].push_back(summarise(errors(states, c).delta_first).maximum);
+      cells += " " + error_text(columns[i].back(), least_delta_first) + " |";
     }
+    names.push_back(name);
+    std::printf("| %s |%s\n", name.c_str(), cells.c_str());
+  };
+  for (const auto& each : all_curves) {
+    add([&](const table& t) { return make_curve(each.spline, t, each.ends, known); });
   }
-  std::printf("\n");
+  add([&](const table& t) { return hermite_curve(t, mechanism); });
   std::string csv = duet::csv_header(names);
   for (const auto& column : columns) {
     csv += csv_line(column);
@@ -183,7 +206,7 @@ void run(const options& given) {
   example::require_folder(given.out);
   const bool has_reference = !given.table || given.hardpoints;
   const carrier mechanism(given.hardpoints ? read_hardpoints(*given.hardpoints)
-                                           : published_hardpoints());
+                                           : example_hardpoints());
   std::optional<arc_length> arcs;
   table t;
   if (given.table) {
@@ -222,8 +245,11 @@ void run(const options& given) {
   std::vector<named_curve> curves, splines;
   if (has_reference) {
     const std::string others = paper_ends == "natural" ? "clamped" : "natural";
-    curves = compare_ways(states, paper, paper_ends, cumulative_curve(t, others, known), others);
-    splines = compare_splines(states, t);
+    curves = compare_ways(samples, states, paper, paper_ends, cumulative_curve(t, others, known),
+                          others);
+    const auto configuration_files = configurations(mechanism, samples, states, t, paper);
+    files.insert(files.end(), configuration_files.begin(), configuration_files.end());
+    splines = compare_splines(mechanism, samples, states, t);
     files.emplace_back("errors.csv", errors_csv(samples, curves));
     files.emplace_back("splines.csv", errors_csv(samples, splines));
     files.emplace_back("path.csv", path_csv(states, mechanism.points().wheel_centre));
@@ -239,9 +265,9 @@ void run(const options& given) {
   }
   bool drawn = true;
   if (has_reference) {
-    drawn = example::draw(given.out, "errors", "1000,720", errors_script(curves)) &&
+    drawn = example::draw(given.out, "errors", "1150,720", errors_script(curves)) &&
             example::draw(given.out, "path", "1000,420", path_script()) &&
-            (!arcs || splines.size() < std::size(all_curves) ||
+            (!arcs || splines.size() <= std::size(all_curves) ||
              example::draw(given.out, "splines", "1000,900", splines_script(splines)));
   }
   std::printf("\nTables%s are in %s\n", has_reference && drawn ? " and pictures (SVG, PNG)" : "",

@@ -21,7 +21,8 @@ set(rest " ad_vs_closed_form=[0-9.e+-]+ printed_formula_error=[0-9.e+-]+\n$")
 
 run(0 "Options" --help)
 run(0 "${line}${errors}${rest}" --rows 30)
-foreach(file IN ITEMS table rates errors path convergence splines spline_convergence)
+foreach(file IN ITEMS table rates errors path convergence splines spline_convergence
+    configuration configuration_errors)
   if(NOT EXISTS ${folder}/out/${file}.csv)
     message(FATAL_ERROR "no ${file}.csv")
   endif()

@@ -55,7 +55,7 @@ sensitivity by_hand(const wheel_carrier::state& s, const hardpoints& points) {
 } // namespace
 
 TEST_CASE("without errors it is the wheel carrier") {
-  const hardpoints points = wheel_carrier::published_hardpoints();
+  const hardpoints points = wheel_carrier::example_hardpoints();
   const wheel_carrier::carrier design(points);
   const toleranced_carrier mechanism(points, heights);
   for (std::size_t row = 0; row < heights.size(); ++row) {
@@ -68,7 +68,7 @@ TEST_CASE("without errors it is the wheel carrier") {
 }
 
 TEST_CASE("sensitivities are those of the closed form") {
-  const hardpoints points = wheel_carrier::published_hardpoints();
+  const hardpoints points = wheel_carrier::example_hardpoints();
   const wheel_carrier::carrier design(points);
   const toleranced_carrier mechanism(points, heights);
   for (std::size_t row = 0; row < heights.size(); ++row) {
@@ -80,7 +80,7 @@ TEST_CASE("sensitivities are those of the closed form") {
 }
 
 TEST_CASE("what the first order misses is of the second") {
-  const toleranced_carrier mechanism(wheel_carrier::published_hardpoints(), heights);
+  const toleranced_carrier mechanism(wheel_carrier::example_hardpoints(), heights);
   const errors direction = sample_errors(1, 0, 1);
   for (std::size_t row = 0; row < heights.size(); ++row) {
     CAPTURE(heights[row]);

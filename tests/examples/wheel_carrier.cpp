@@ -5,6 +5,7 @@
 
 #include "../../examples/wheel_carrier/carrier.hpp"
 #include "../../examples/wheel_carrier/comparison.hpp"
+#include "../../examples/wheel_carrier/configuration.hpp"
 #include "../../examples/wheel_carrier/table.hpp"
 
 #include <doctest/doctest.h>
@@ -53,7 +54,7 @@ std::vector<state> sampled(const carrier& mechanism, int count) {
 } // namespace
 
 TEST_CASE("the closed loop meets the reference values, derivatives included") {
-  const carrier mechanism(published_hardpoints());
+  const carrier mechanism(example_hardpoints());
   for (const reference& expected : references) {
     CAPTURE(expected.u);
     const state s = mechanism.at(expected.u);
@@ -66,7 +67,7 @@ TEST_CASE("the closed loop meets the reference values, derivatives included") {
 }
 
 TEST_CASE("P7: 105 rows, 0.003 rad apart, over heights that are not uniform") {
-  const carrier mechanism(published_hardpoints());
+  const carrier mechanism(example_hardpoints());
   const arc_length arcs(mechanism);
   CHECK(std::abs(arcs.total() - 0.311551898) < 1e-9);
   const table t = equal_arc_table(mechanism, arcs, 105);
@@ -80,7 +81,7 @@ TEST_CASE("P7: 105 rows, 0.003 rad apart, over heights that are not uniform") {
 }
 
 TEST_CASE("P5, P6: errors of the spline against the mechanism") {
-  const carrier mechanism(published_hardpoints());
+  const carrier mechanism(example_hardpoints());
   const arc_length arcs(mechanism);
   const table t = equal_arc_table(mechanism, arcs, 105);
   const auto states = sampled(mechanism, 401);
@@ -114,11 +115,49 @@ TEST_CASE("P5, P6: errors of the spline against the mechanism") {
     CHECK(printed > 1e-4);
     CHECK(printed < 1e-3);
     CHECK(summarise(errors(states, clamped, ways[3]).delta_first).median > 100);
+    CHECK(summarise(errors(states, clamped, ways[4]).delta_first).median > 100);
+  }
+  SUBCASE("errors of the angular velocity peak inside with clamped ends, at both with natural") {
+    const std::vector<double> inside = errors(states, clamped, ways[0]).delta;
+    const std::vector<double> outside = errors(states, natural, ways[0]).delta;
+    const double middle = summarise(inside).interior;
+    CHECK(inside.front() < 1e-3 * middle);
+    CHECK(inside.back() < 1e-3 * middle);
+    CHECK(middle == summarise(inside).maximum);
+    CHECK(outside.front() > 10 * summarise(outside).interior);
+    CHECK(outside.back() > 2 * summarise(outside).interior);
+  }
+  SUBCASE("q_K, q′_K and q″_K") {
+    std::vector<vector3> rows;
+    for (const double u : t.u) {
+      rows.push_back(mechanism.at(u).centre);
+    }
+    const place_spline place(t.u, rows, states.front().centre_first, states.back().centre_first);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      CHECK((place.at(t.u[i])[0] - rows[i]).norm() < 1e-14);
+    }
+    CHECK((place.at(lowest)[1] - states.front().centre_first).norm() < 1e-13);
+    CHECK((place.at(highest)[1] - states.back().centre_first).norm() < 1e-13);
+    configuration_errors off;
+    for (const state& s : states) {
+      const configuration exact = configuration_of(s);
+      // P5: the angles' rates are those of the rotation.
+      const auto& [angles, first, second] = exact.angles;
+      const vector3 omega = duet::euler_rate_matrix<duet::zyx>(angles[2], angles[1]) *
+                            vector3(first[2], first[1], first[0]);
+      CHECK((omega - s.omega()).norm() < 1e-13 * s.omega().norm());
+      off.add({place.at(s.u), angles_of(clamped.derivatives(s.u))}, exact);
+    }
+    const double limits[2][3] = {{2e-9, 5e-7, 8e-4}, {5e-9, 2e-6, 4e-3}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(summarise(off.place[k]).maximum < limits[0][k]);
+      CHECK(summarise(off.angles[k]).maximum < limits[1][k]);
+    }
   }
 }
 
 TEST_CASE("rods that cannot close are reported") {
-  hardpoints points = published_hardpoints();
+  hardpoints points = example_hardpoints();
   points.rods[2].chassis[1] = 0.8;
   try {
     static_cast<void>(carrier(points).at(-0.19));

@@ -5,6 +5,7 @@
 #include "../../examples/wheel_carrier/carrier.hpp"
 #include "../../examples/wheel_carrier/table.hpp"
 
+#include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate_rotation_vectors.hpp>
 
 #include <doctest/doctest.h>
@@ -33,7 +34,7 @@ double worst_acceleration(const std::vector<state>& states, const Spline& s) {
 } // namespace
 
 TEST_CASE("P7: dδ_E of rotation-vector splines through the 0.003-rad table") {
-  const carrier mechanism(published_hardpoints());
+  const carrier mechanism(example_hardpoints());
   const table t = equal_arc_table(mechanism, arc_length(mechanism), 105);
   std::vector<state> states;
   for (int i = 0; i <= 800; ++i) {
@@ -44,6 +45,13 @@ TEST_CASE("P7: dδ_E of rotation-vector splines through the 0.003-rad table") {
   using quintic = duet::rotation_vector_spline<double, 6>;
   CHECK(worst_acceleration(states, duet::interpolate<cubic>(t.u, t.q, rates)) < 0.05);
   CHECK(worst_acceleration(states, duet::interpolate<quintic>(t.u, t.q, rates)) < 0.005);
+  // The rates of every row known.
+  std::vector<vector3> of_rows;
+  for (const double u : t.u) {
+    of_rows.push_back(mechanism.at(u).omega());
+  }
+  CHECK(worst_acceleration(states, duet::hermite_spline(t.u, t.q, of_rows, duet::frame::spatial)) <
+        0.05);
   // Nothing known beyond the table.
   CHECK(worst_acceleration(states, duet::interpolate<cubic>(t.u, t.q, duet::not_a_knot{})) < 0.4);
   CHECK(worst_acceleration(states, duet::interpolate<quintic>(t.u, t.q, duet::not_a_knot{})) <

@@ -9,39 +9,76 @@
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/jacobian.hpp>
+#include <duet/expression/matrix_entries.hpp>
 #include <duet/expression/motion.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/symbol.hpp>
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-// P2 and the four arms as expressions.
+// P1–P4 and the four arms as expressions.
 
 namespace duet_formulas {
 namespace {
 
 using namespace duet::expression;
 
+constexpr symbol<"u"> u;
+
+/// P1: the recurrence, on the span from knot 3 to knot 4.
+template <std::size_t I, std::size_t K>
+auto basis_function() {
+  constexpr std::tuple knots(-3_c, -1.5_c, -1_c, c<0>, c<1>, 1.25_c, 3_c, 4_c);
+  if constexpr (K == 1) {
+    return c < I == 3 ? 1 : 0 > ;
+  } else {
+    constexpr auto left = std::get<I>(knots);
+    constexpr auto right = std::get<I + K>(knots);
+    return (u - left) / (std::get<I + K - 1>(knots) - left) * basis_function<I, K - 1>() +
+           (right - u) / (right - std::get<I + 1>(knots)) * basis_function<I + 1, K - 1>();
+  }
+}
+
+expression_route basis_functions() {
+  const auto values = matrix<4, 1>(basis_function<0, 4>(), basis_function<1, 4>(),
+                                   basis_function<2, 4>(), basis_function<3, 4>());
+  const auto slopes = derivative(values, u);
+  return expression_route("P1", "bspline_basis",
+                          "`(u - t0) / (t3 - t0) * b0 + (t4 - u) / (t4 - t1) * b1`, `b0` and `b1` "
+                          "likewise, of the knots' differences, down to `1` on the span",
+                          "`derivative`", [=](const numbers<double>& x, const numbers<double>& d) {
+                            const auto y = values(u = x[0]);
+                            const auto dy = slopes(u = x[0]);
+                            return numbers<double>{y[0],         y[1],         y[2],
+                                                   y[3],         dy[0] * d[0], dy[1] * d[0],
+                                                   dy[2] * d[0], dy[3] * d[0]};
+                          });
+}
+
+const auto b1 = c<1> - pow(c<1> - u, c<3>) / c<6>;
+const auto b2 = (c<1> + c<3> * u * (c<1> + u * (c<1> - u)) + pow(u, c<3>)) / c<6>;
+const auto b3 = pow(u, c<3>) / c<6>;
+
+template <class Q, class B1, class W1, class B2, class W2, class B3, class W3>
+auto curve(const Q& q, const B1& f1, const W1& w1, const B2& f2, const W2& w2, const B3& f3,
+           const W3& w3) {
+  return q * exp(f1 * w1) * exp(f2 * w2) * exp(f3 * w3);
+}
+
 /// P2 on a span of the uniform cubic, from its control rotations.
 expression_route cumulative_curve() {
-  constexpr symbol<"u"> u;
   constexpr vector_symbol<"r0"> r0;
   constexpr vector_symbol<"r1"> r1;
   constexpr vector_symbol<"r2"> r2;
   constexpr vector_symbol<"r3"> r3;
-  const auto curve = [](const auto& q, const auto& b1, const auto& w1, const auto& b2,
-                        const auto& w2, const auto& b3,
-                        const auto& w3) { return q * exp(b1 * w1) * exp(b2 * w2) * exp(b3 * w3); };
   const auto nearer = [](const auto& p, const auto& q) { return select(dot(p, q) < c<0>, -q, q); };
   const auto increment = [](const auto& p, const auto& q) { return vec(log(conj(p) * q)); };
-  const auto b1 = c<1> - pow(c<1> - u, c<3>) / c<6>;
-  const auto b2 = (c<1> + c<3> * u * (c<1> + u * (c<1> - u)) + pow(u, c<3>)) / c<6>;
-  const auto b3 = pow(u, c<3>) / c<6>;
   const auto q0 = exp(r0 / c<2>);
   const auto q1 = nearer(q0, exp(r1 / c<2>));
   const auto q2 = nearer(q1, exp(r2 / c<2>));
@@ -65,6 +102,37 @@ expression_route cumulative_curve() {
         return all<double>(m.value, m.velocity, at_x(rate) * d[12],
                            duet::vector3<double>(m.acceleration * d[12]));
       });
+}
+
+/// P3 and P4: derivatives of P2 by u, from the first control rotation and the increments.
+expression_route rate_of_curve(std::size_t order) {
+  constexpr quaternion_symbol<"q0"> q0;
+  constexpr vector_symbol<"w1"> w1;
+  constexpr vector_symbol<"w2"> w2;
+  constexpr vector_symbol<"w3"> w3;
+  const auto first = derivative(curve(q0, b1, w1, b2, w2, b3, w3), u);
+  const auto second = derivative(first, u);
+  const auto third = derivative(second, u);
+  const std::string name = order == 1 ? "Q" : "derivative(Q, u)";
+  return expression_route(order == 1 ? "P3" : "P4", "cumulative_bspline::derivatives",
+                          "`derivative(" + name + ", u)`, Q that of P2", "`derivative`",
+                          [=](const numbers<double>& x, const numbers<double>& d) {
+                            std::array<duet::quaternion<double>, 4> q;
+                            std::array<duet::vector3<double>, 3> w;
+                            for (std::size_t i = 0; i < 4; ++i) {
+                              q[i] = duet::exp(duet::vector3<double>(v_of(x, 3 * i) / 2));
+                              if (i > 0) {
+                                q[i] = dot(q[i - 1], q[i]) < 0 ? -q[i] : q[i];
+                                w[i - 1] = log(conj(q[i - 1]) * q[i]).vec();
+                              }
+                            }
+                            const auto at_x = [&](const auto& f) {
+                              return duet::quaternion<double>(
+                                  f(u = x[12], q0 = q[0], w1 = w[0], w2 = w[1], w3 = w[2]));
+                            };
+                            return order == 1 ? all<double>(at_x(first), at_x(second) * d[12])
+                                              : all<double>(at_x(second), at_x(third) * d[12]);
+                          });
 }
 
 /// A by its spatial Jacobian, t by its derivative along the joints' rates.
@@ -113,7 +181,10 @@ std::vector<expression_route> motion_expressions() {
                       slide(axis::x, .069_c) * down * joint(theta4) * up * joint(theta5) *
                       slide(axis::z, .37429_c) * slide(axis::x, .01_c) * down * joint(theta6) * up *
                       joint(theta7) * slide(axis::z, .229525_c);
-  return {cumulative_curve(),
+  return {basis_functions(),
+          cumulative_curve(),
+          rate_of_curve(1),
+          rate_of_curve(2),
           arm("Panda", "robots::panda", std::get<7>(panda_frames()), seven, seven_rates),
           arm("iiwa 14", "robots::iiwa14", iiwa14, seven, seven_rates),
           arm("UR5e", "robots::ur5e", ur5e, six, six_rates),

@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-// N22–N24 as expressions. The system of six equations in B is solved by numbers, its derivative by
+// N22–N25 as expressions. The system of six equations in B is solved by numbers, its derivative by
 // the equations: x = Jᵀy with J x = V gives ẋ = J̇ᵀy + Jᵀẏ, J ẋ = V̇ − J̇x.
 
 namespace duet_formulas {
@@ -152,7 +152,8 @@ expression_route rates_of_joints() {
       });
 }
 
-expression_route joint_step() {
+/// N23 from joints towards the pose that stands behind them.
+auto step_of_joints(double beta) {
   const auto step = [](const auto& a) {
     const auto goal = exp(r / c<2>);
     const auto nearer = select(dot(goal, rotation(a)) < c<0>, -goal, goal);
@@ -161,18 +162,37 @@ expression_route joint_step() {
   const auto f = step(std::get<7>(panda_frames()));
   const auto twist = gradient(f, wrt(y, m));
   const auto twist_rate = gradient(along_joints(f, along(s, ds), along(r, dr)), wrt(y, m));
-  return expression_route(
-      "N23", "resolved_step",
-      text_of_power("s - translation(A)", "(q - rotation(A))") +
-          ", `q = exp(r / 2)` of the nearer sign",
-      by, [=](const numbers<double>& x, const numbers<double>& d) {
-        const duet::vector3<double> none(0, 0, 0);
-        const auto v = with_joints(twist, x, r = v_of(x, 7), s = v_of(x, 10), y = none, m = none);
-        const auto dv = with_rates(twist_rate, x, d, r = v_of(x, 7), s = v_of(x, 10),
-                                   dr = v_of(d, 7), ds = v_of(d, 10), y = none, m = none);
-        const auto [rates, slopes] = least_rates(x, d, v.gradient, dv.gradient);
-        return joined(joints_of(x) + 0.5 * rates, joints_of(d) + 0.5 * slopes);
-      });
+  return [=](const numbers<double>& x, const numbers<double>& d) {
+    const duet::vector3<double> none(0, 0, 0);
+    const auto v = with_joints(twist, x, r = v_of(x, 7), s = v_of(x, 10), y = none, m = none);
+    const auto dv = with_rates(twist_rate, x, d, r = v_of(x, 7), s = v_of(x, 10), dr = v_of(d, 7),
+                               ds = v_of(d, 10), y = none, m = none);
+    const auto [rates, slopes] = least_rates(x, d, v.gradient, dv.gradient);
+    return joined(joints_of(x) + beta * rates, joints_of(d) + beta * slopes);
+  };
+}
+
+std::string text_of_step() {
+  return text_of_power("s - translation(A)", "(q - rotation(A))") +
+         ", `q = exp(r / 2)` of the nearer sign";
+}
+
+expression_route joint_step() {
+  return expression_route("N23", "resolved_step", text_of_step(), by, step_of_joints(.5));
+}
+
+/// Twice N23, the second from where the first ends.
+expression_route steps_along_path() {
+  const auto step = step_of_joints(.25);
+  return expression_route("N25", "resolved_step", "twice that of N23", by,
+                          [=](const numbers<double>& x, const numbers<double>& d) {
+                            const numbers<double> y = step(x, d);
+                            numbers<double> next(y.begin(), y.begin() + 7),
+                                dnext(y.begin() + 7, y.end());
+                            next.insert(next.end(), x.begin() + 13, x.end());
+                            dnext.insert(dnext.end(), d.begin() + 13, d.end());
+                            return step(next, dnext);
+                          });
 }
 
 /// Only τ moves.
@@ -205,7 +225,7 @@ expression_route planning_step() {
 } // namespace
 
 std::vector<expression_route> planning_expressions() {
-  return {rates_of_joints(), joint_step(), planning_step()};
+  return {rates_of_joints(), joint_step(), planning_step(), steps_along_path()};
 }
 
 } // namespace duet_formulas

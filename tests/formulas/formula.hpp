@@ -46,7 +46,7 @@ struct formula {
   std::string label;
   std::string text;     ///< the formula, in TeX
   std::string function; ///< what computes it
-  std::string header;   ///< below include/duet/
+  std::string header;   ///< below include/duet/, or from examples/ on
   std::vector<argument> arguments;
   bounds limits;
   /// Do all arguments but the last stand still?
@@ -105,14 +105,6 @@ private:
   std::vector<std::function<void(numbers<double>&, const numbers<double>&)>> values_;
   std::vector<std::function<void(numbers<double>&, const numbers<double>&, const numbers<double>&)>>
       slopes_;
-};
-
-/// A row of which another test is the proof.
-struct reference {
-  std::string label;
-  std::string text;
-  std::string function;
-  std::string test;
 };
 
 /// `library` and `closed` are templates over the scalar: library(x) → f(x) with duet, and

@@ -15,11 +15,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
-// P2, and the four arms.
+// P1–P4, and the four arms.
 
 namespace by_hand {
 namespace {
@@ -33,10 +34,11 @@ v3<T> half_rotation_vector(const q4<T>& q) {
   return times(length > 0 ? T(atan2(length, q[0]) / length) : T(1), vec(q));
 }
 
-/// P2 on a span of the uniform cubic, with its velocity in body axes, and their rates.
+/// P2 on a span of the uniform cubic, with its velocity in body axes, and its rates: Q′ = Q w (P3),
+/// Q″ = Q (w² + w′) (P4) and Q‴ = Q (w³ + 2 w w′ + w′ w + w″).
 template <class T>
 struct cubic {
-  q4<T> q, dq;
+  q4<T> q, dq, ddq, dddq;
   v3<T> omega, domega;
 
   cubic(const std::array<v3<T>, 4>& rotations, const T& u) {
@@ -46,9 +48,10 @@ struct cubic {
                          T((1 + 3 * u * (1 + u * left) + u * u * u) / 6), T(u * u * u / 6)};
     const T rates[] = {T(left * left / 2), T(0.5) + u * left, T(u * u / 2)};
     const T second[] = {T(-left), T(1 - 2 * u), u};
+    const T third[] = {T(1), T(-2), T(1)};
     q4<T> before = unit<T>(rotations[0], none).q;
     q = before;
-    v3<T> w = none, a = none;
+    v3<T> w = none, a = none, j = none;
     for (std::size_t i = 0; i < 3; ++i) {
       q4<T> next = unit<T>(rotations[i + 1], none).q;
       next = times(T(dot(before, next) < 0 ? -1 : 1), next);
@@ -57,17 +60,39 @@ struct cubic {
       const auto carried = [&](const v3<T>& v) {
         return vec(product(product(conj(e), pure(v)), e));
       };
-      const v3<T> part = times(rates[i], increment);
-      w = plus(carried(w), part);
-      a = plus(carried(a), plus(times(second[i], increment), times(T(2), cross(w, part))));
+      const v3<T> part = times(rates[i], increment), dpart = times(second[i], increment);
+      const v3<T> old_w = carried(w), old_a = carried(a);
+      w = plus(old_w, part);
+      a = plus(old_a, plus(dpart, times(T(2), cross(w, part))));
+      j = plus(plus(carried(j), times(third[i], increment)),
+               plus(times(T(4), cross(plus(old_a, cross(old_w, part)), part)),
+                    times(T(2), cross(old_w, dpart))));
       q = product(q, e);
       before = next;
     }
+    const auto of = [](const v3<T>& x, const v3<T>& y) { return product(pure(x), pure(y)); };
+    const q4<T> square = plus(of(w, w), pure(a));
     dq = product(q, pure(w));
+    ddq = product(q, square);
+    dddq = product(q, plus(plus(product(pure(w), plus(square, pure(a))), of(a, w)), pure(j)));
     omega = times(T(2), w);
     domega = times(T(2), a);
   }
 };
+
+/// P1, and its derivative: 1 on the span from knot 3 to knot 4, and the recurrence.
+template <class T>
+std::pair<T, T> de_boor_cox(const double* knots, std::size_t i, std::size_t order, const T& u) {
+  if (order == 1) {
+    return {T(i == 3 ? 1 : 0), T(0)};
+  }
+  const T rise(T(knots[i + order - 1]) - T(knots[i]));
+  const T fall(T(knots[i + order]) - T(knots[i + 1]));
+  const auto [b, db] = de_boor_cox(knots, i, order - 1, u);
+  const auto [c, dc] = de_boor_cox(knots, i + 1, order - 1, u);
+  const T up = (u - knots[i]) / rise, down = (knots[i + order] - u) / fall;
+  return {T(up * b + down * c), T(b / rise + up * db - c / fall + down * dc)};
+}
 
 } // namespace
 } // namespace by_hand
@@ -88,6 +113,53 @@ std::vector<duet::quaternion<duet::real_type_t<T>>> still_rotations(const number
   return result;
 }
 
+/// Uneven ones, with one span in the domain: from 0 to 1.
+constexpr double knots[] = {-3, -1.5, -1, 0, 1, 1.25, 3, 4};
+
+/// The four basis functions of the span.
+formula basis_functions() {
+  return make_formula(
+      "P1",
+      R"(B_i^k = \frac{u-u_i}{u_{i+k-1}-u_i}B_i^{k-1} + \frac{u_{i+k}-u}{u_{i+k}-u_{i+1}}B_{i+1}^{k-1})",
+      "bspline_basis", "spline/basis.hpp", {argument::fraction},
+      []<class T>(const numbers<T>& x) {
+        const duet::bspline_basis<4> basis(std::vector<double>(std::begin(knots), std::end(knots)));
+        const auto [w] = basis.weights<0>(0, x[0]);
+        return numbers<T>{T(1 - w[0]), T(w[0] - w[1]), T(w[1] - w[2]), w[2]};
+      },
+      []<class T>(const numbers<T>& x, const numbers<T>& d) {
+        numbers<T> values, slopes;
+        for (std::size_t i = 0; i < 4; ++i) {
+          const auto [b, db] = by_hand::de_boor_cox(knots, i, 4, x[0]);
+          values.push_back(b);
+          slopes.push_back(db * d[0]);
+        }
+        values.insert(values.end(), slopes.begin(), slopes.end());
+        return values;
+      },
+      {8, 16}); // differences of cumulative functions
+}
+
+/// Is the shorter way from each rotation to the next unambiguous?
+bool turns_are_short(const numbers<double>& x) {
+  const auto q = still_rotations(x);
+  bool is_valid = true;
+  for (std::size_t i = 1; i < q.size(); ++i) {
+    is_valid = is_valid && std::abs(dot(q[i - 1], q[i])) > 1e-3;
+  }
+  return is_valid;
+}
+
+template <class T>
+by_hand::cubic<T> cubic_of(const numbers<T>& x) {
+  using by_hand::part;
+  return {{part<3>(x, 0), part<3>(x, 3), part<3>(x, 6), part<3>(x, 9)}, x[12]};
+}
+
+duet::cumulative_bspline<double> curve_through(const std::vector<duet::quaternion<double>>& q) {
+  return {{-3, -2, -1, 0, 1, 2, 3, 4}, q};
+}
+
 /// Control rotations stand still, only u moves.
 formula cumulative_curve() {
   auto f = make_formula(
@@ -95,25 +167,37 @@ formula cumulative_curve() {
       "spline/cumulative_bspline.hpp",
       {rotation_vector, rotation_vector, rotation_vector, rotation_vector, argument::fraction},
       []<class T>(const numbers<T>& x) {
-        const duet::cumulative_bspline<double> curve({-3, -2, -1, 0, 1, 2, 3, 4},
-                                                     still_rotations(x));
-        const auto m = curve.motion(x[12], duet::frame::body);
+        const auto m = curve_through(still_rotations(x)).motion(x[12], duet::frame::body);
         return all<T>(m.value, duet::vector3<T>(m.velocity));
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        const cubic<T> c({part<3>(x, 0), part<3>(x, 3), part<3>(x, 6), part<3>(x, 9)}, x[12]);
+        const cubic<T> c = cubic_of(x);
         return row<T>(c.q, c.omega, times(d[12], c.dq), times(d[12], c.domega));
       },
-      {16, 16},
-      [](const numbers<double>& x) {
-        const auto q = still_rotations(x);
-        bool is_valid = true;
-        for (std::size_t i = 1; i < q.size(); ++i) {
-          is_valid = is_valid && std::abs(dot(q[i - 1], q[i])) > 1e-3;
-        }
-        return is_valid;
-      });
+      {16, 16}, turns_are_short);
+  f.only_last_moves = true;
+  return f;
+}
+
+/// P3 and P4: Q′ or Q″.
+formula rate_of_curve(std::size_t order) {
+  auto f = make_formula(
+      order == 1 ? "P3" : "P4",
+      order == 1
+          ? R"(Q' = Q\,w,\; w \leftarrow e_j^*we_j + \tilde B_j'\omega_j)"
+          : R"(Q'' = Q\,(a + w^2),\; a \leftarrow e_j^*ae_j + \tilde B_j''\omega_j + 2w\times\tilde B_j'\omega_j)",
+      "cumulative_bspline::derivatives", "spline/piecewise_curve.hpp",
+      {rotation_vector, rotation_vector, rotation_vector, rotation_vector, argument::fraction},
+      [order]<class T>(const numbers<T>& x) {
+        return all<T>(curve_through(still_rotations(x)).derivatives(x[12])[order]);
+      },
+      [order]<class T>(const numbers<T>& x, const numbers<T>& d) {
+        const by_hand::cubic<T> c = cubic_of(x);
+        return order == 1 ? by_hand::row<T>(c.dq, by_hand::times(d[12], c.ddq))
+                          : by_hand::row<T>(c.ddq, by_hand::times(d[12], c.dddq));
+      },
+      {16, 16}, turns_are_short);
   f.only_last_moves = true;
   return f;
 }
@@ -146,7 +230,10 @@ formula arm(std::string label, std::string function, const Chain& chain,
 } // namespace
 
 std::vector<formula> motion_formulas() {
-  return {cumulative_curve(),
+  return {basis_functions(),
+          cumulative_curve(),
+          rate_of_curve(1),
+          rate_of_curve(2),
           arm("Panda", "robots::panda", duet::robots::panda().table(), by_hand::panda_table),
           arm("iiwa 14", "robots::iiwa14", duet::robots::iiwa14().table(), by_hand::iiwa14_table),
           arm("UR5e", "robots::ur5e", duet::robots::ur5e().table(), by_hand::ur5e_table),

@@ -18,7 +18,7 @@
 #include <cstddef>
 #include <utility>
 
-// N22–N24: motion planning, with the table of a Panda.
+// N22–N25: motion planning, with the table of a Panda.
 
 namespace by_hand {
 namespace {
@@ -81,6 +81,19 @@ resolved(const panda<T>& a, const v3<T>& u, const q4<T>& p, const v3<T>& du, con
     result.second[k] = dot(a.dcolumns[k], y) + dot(a.columns[k], dy);
   }
   return result;
+}
+
+/// N23 towards the displacement (α, t), and its derivative.
+template <class T>
+std::pair<joint_vector<T>, joint_vector<T>>
+stepped(const joint_vector<T>& theta, const joint_vector<T>& dtheta, const unit<T>& goal,
+        const v3<T>& t, const v3<T>& dt, const T& beta) {
+  const panda<T> a(panda_table, theta, dtheta);
+  const T sign(dot(goal.q, a.alpha) < 0 ? -1 : 1), minus(-1);
+  const auto [y, dy] =
+      resolved(a, plus(t, times(minus, a.t)), plus(times(sign, goal.q), times(minus, a.alpha)),
+               plus(dt, times(minus, a.dt)), plus(times(sign, goal.dq), times(minus, a.dalpha)));
+  return {plus(theta, times(beta, y)), plus(dtheta, times(beta, dy))};
 }
 
 } // namespace
@@ -154,15 +167,10 @@ formula joint_step() {
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        const panda<T> a(panda_table, part<7>(x, 0), part<7>(d, 0));
-        const unit<T> u(part<3>(x, 7), part<3>(d, 7));
-        const T sign(dot(u.q, a.alpha) < 0 ? -1 : 1), minus(-1);
-        const auto [y, dy] = resolved(a, plus(part<3>(x, 10), times(minus, a.t)),
-                                      plus(times(sign, u.q), times(minus, a.alpha)),
-                                      plus(part<3>(d, 10), times(minus, a.dt)),
-                                      plus(times(sign, u.dq), times(minus, a.dalpha)));
-        return row<T>(plus(part<7>(x, 0), times(T(0.5), y)),
-                      plus(part<7>(d, 0), times(T(0.5), dy)));
+        const auto [y, dy] =
+            stepped(part<7>(x, 0), part<7>(d, 0), unit<T>(part<3>(x, 7), part<3>(d, 7)),
+                    part<3>(x, 10), part<3>(d, 10), T(0.5));
+        return row<T>(y, dy);
       },
       of_least_rates,
       [](const numbers<double>& x) {
@@ -207,8 +215,45 @@ formula planning_step() {
   return f;
 }
 
+/// Note 1 of N25: two poses of a path.
+formula steps_along_path() {
+  return make_formula(
+      "N25",
+      R"(\Theta_{k+1} = \Theta_k + \beta B\,(\gamma_{k+1} - \gamma(A(\Theta_k))),\; k = 0, 1)",
+      "resolved_step", "planning/resolved_motion.hpp",
+      {vector, vector, number, rotation_vector, vector, rotation_vector, vector},
+      []<class T>(const numbers<T>& x) {
+        const auto half_way =
+            duet::resolved_step(robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .25);
+        return as_numbers(
+            duet::resolved_step(robot, half_way, duet::pose(unit_of(x, 13), v_of(x, 16)), .25));
+      },
+      []<class T>(const numbers<T>& x, const numbers<T>& d) {
+        using namespace by_hand;
+        std::pair theta(part<7>(x, 0), part<7>(d, 0));
+        for (const std::size_t i : {7, 13}) {
+          theta = stepped(theta.first, theta.second, unit<T>(part<3>(x, i), part<3>(d, i)),
+                          part<3>(x, i + 3), part<3>(d, i + 3), T(0.25));
+        }
+        return row<T>(theta.first, theta.second);
+      },
+      of_least_rates,
+      [](const numbers<double>& x) {
+        const auto is_clear = [&](const numbers<double>& theta, std::size_t i) {
+          return is_regular(theta) &&
+                 std::abs(dot(unit_of(x, i), duet::rotation(robot.pose(joints_of(theta))))) > 1e-3;
+        };
+        return is_clear(x, 7) &&
+               is_clear(as_numbers(duet::resolved_step(
+                            robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .25)),
+                        13);
+      });
+}
+
 } // namespace
 
-std::vector<formula> planning_formulas() { return {least_rates(), joint_step(), planning_step()}; }
+std::vector<formula> planning_formulas() {
+  return {least_rates(), joint_step(), planning_step(), steps_along_path()};
+}
 
 } // namespace duet_formulas

@@ -285,14 +285,12 @@ expression_route expression_of(const formula& f, const std::vector<expression_ro
 
 /// The part of a row that does not depend on a measurement.
 std::string row_of(const formula& f) {
-  return "| " + f.label + " | $" + f.text + "$ | [`" + f.function + "`](../include/duet/" +
-         f.header + ") |";
+  const bool is_example = f.header.rfind("examples/", 0) == 0;
+  return "| " + f.label + " | $" + f.text + "$ | [`" + f.function + "`](../" +
+         (is_example ? "" : "include/duet/") + f.header + ") |";
 }
 std::string row_of(const expression_route& e) {
   return "| " + e.label + " | " + e.text + " | " + e.derivative + " |";
-}
-std::string row_of(const reference& r) {
-  return "| " + r.label + " | " + r.text + " | " + r.function + " | " + r.test + " |";
 }
 
 } // namespace
@@ -314,8 +312,9 @@ TEST_CASE("every formula is as close to 50 digits as promised, and is in the tab
   };
 
   std::vector<expression_route> expressions;
-  for (const auto& group : {quaternion_expressions(), dual_quaternion_expressions(),
-                            planning_expressions(), motion_expressions()}) {
+  for (const auto& group :
+       {quaternion_expressions(), dual_quaternion_expressions(), planning_expressions(),
+        motion_expressions(), experiment_expressions()}) {
     expressions.insert(expressions.end(), group.begin(), group.end());
   }
   std::ostringstream written;
@@ -323,7 +322,7 @@ TEST_CASE("every formula is as close to 50 digits as promised, and is in the tab
            "input |\n"
            "|---|---|---|---|---|---|---|---|---|---|\n";
   for (const auto& group : {quaternion_formulas(), dual_formulas(), rigid_motion_formulas(),
-                            planning_formulas(), motion_formulas()}) {
+                            planning_formulas(), motion_formulas(), experiment_formulas()}) {
     for (const formula& f : group) {
       const expression_route expression = expression_of(f, expressions);
       const worst_errors worst = measured(f, expression);
@@ -346,10 +345,6 @@ TEST_CASE("every formula is as close to 50 digits as promised, and is in the tab
   table << "\n| | as an expression | its derivative by | from the dual | worst input |\n"
            "|---|---|---|---|---|\n"
         << written.str();
-  table << "\n| | formula | by | proof |\n|---|---|---|---|\n";
-  for (const reference& r : references()) {
-    add(r.label, row_of(r), "");
-  }
   std::cout << table.str();
   std::ofstream(DUET_FORMULAS_TABLE) << table.str();
 

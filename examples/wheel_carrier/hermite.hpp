@@ -1,0 +1,36 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "splines.hpp"
+#include "table.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/tangent.hpp>
+#include <duet/spline/hermite.hpp>
+
+#include <memory>
+#include <vector>
+
+/// \file
+/// The alternative that the paper names: Hermite interpolation, from the rates of every row.
+
+namespace wheel_carrier {
+
+inline curve hermite_curve(const table& t, const carrier& mechanism) {
+  std::vector<vector3> rates_of_rows;
+  for (const double u : t.u) {
+    rates_of_rows.push_back(mechanism.at(u).omega());
+  }
+  using hermite = duet::rotation_vector_spline<double>;
+  const auto s = std::make_shared<const hermite>(
+      duet::hermite_spline(t.u, t.q, rates_of_rows, duet::frame::spatial));
+  return {"Hermite",
+          "all rates",
+          [s](double u) {
+            const auto m = s->motion(u, duet::frame::spatial);
+            return rates{m.velocity, m.acceleration};
+          },
+          {}};
+}
+
+} // namespace wheel_carrier

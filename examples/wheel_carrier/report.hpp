@@ -1,0 +1,81 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "comparison.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+/// \file
+/// Tables for people, in Markdown: docs/wheel_carrier.md holds them as they are.
+
+namespace wheel_carrier {
+
+/// Two digits; what rounding alone decides is not told.
+inline std::string error_text(double x, double least) {
+  char text[32];
+  if (x < least) {
+    std::snprintf(text, sizeof text, "< %g", least);
+  } else if (x >= 9.95) {
+    const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+    std::snprintf(text, sizeof text, "%.0f", std::round(x / unit) * unit);
+  } else {
+    std::snprintf(text, sizeof text, "%.2g", x);
+  }
+  return text;
+}
+
+/// Percent: second derivatives of the mechanism and of dense tables have fewer digits.
+inline constexpr double least_delta = 1e-6, least_delta_first = 1e-4;
+
+/// Where the values have their maximum; the first place where they are within a millionth of it.
+inline std::size_t place_of_maximum(const std::vector<double>& values) {
+  const double enough = summarise(values).maximum * (1 - 1e-6);
+  std::size_t i = 0;
+  while (values[i] < enough) {
+    ++i;
+  }
+  return i;
+}
+
+/// ` median | maximum | u of the maximum | at the lower end, at the upper end |`
+inline std::string error_cells(const std::vector<double>& samples,
+                               const std::vector<double>& values, double least) {
+  const summary s = summarise(values);
+  char u[32] = "";
+  if (s.maximum >= least) {
+    std::snprintf(u, sizeof u, "%.3f", samples[place_of_maximum(values)]);
+  }
+  return " " + error_text(s.median, least) + " | " + error_text(s.maximum, least) + " | " + u +
+         " | " + error_text(values.front(), least) + ", " + error_text(values.back(), least) + " |";
+}
+
+inline void print_header_of_errors() {
+  std::printf(
+      "| | delta_E median | maximum | at u | at both ends | ddelta_E median | maximum | at u | "
+      "at both ends |\n|---|---|---|---|---|---|---|---|---|\n");
+}
+
+inline void print_error_row(const std::string& name, const std::vector<double>& samples,
+                            const error_curve& curve) {
+  std::printf("| %s |%s%s\n", name.c_str(), error_cells(samples, curve.delta, least_delta).c_str(),
+              error_cells(samples, curve.delta_first, least_delta_first).c_str());
+}
+
+/// With an observed order of convergence where there is a table before with `steps_before` steps.
+inline std::string convergence_cell(double error, double before, double steps,
+                                    double steps_before) {
+  std::string text = error_text(error, least_delta);
+  if (before > 0) {
+    char order[32];
+    const double observed = std::log(before / error) / std::log(steps / steps_before);
+    std::snprintf(order, sizeof order, " (%.1f)", std::abs(observed) < .05 ? 0 : observed);
+    text += order;
+  }
+  return text;
+}
+
+} // namespace wheel_carrier
