@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>
@@ -33,7 +34,7 @@ template <class A, class B>
 }
 
 template <class Q>
-[[noreturn, gnu::cold]] void refuse_rotation(const Q& q) {
+[[noreturn, gnu::cold, gnu::noinline]] void refuse_rotation(Q q) {
   std::ostringstream message;
   message << "duet: pose: the rotation " << q << " is no unit quaternion: normalized(q)";
   throw invalid_input(message.str());
@@ -46,8 +47,8 @@ template <class Q>
 /// be scaled by it; NaN passes
 template <class A, class B>
   requires Promotable<A, B>
-[[nodiscard]] dual_quaternion<promote_t<A, B>> pose(const quaternion<A>& rotation,
-                                                    const vector3<B>& translation) {
+[[nodiscard]] DUET_ALWAYS_INLINE dual_quaternion<promote_t<A, B>>
+pose(const quaternion<A>& rotation, const vector3<B>& translation) {
   using std::abs;
   using real = lane_type_t<A>;
   constexpr double tolerance = std::numeric_limits<real>::digits > 24 ? 1e-6 : 1e-3;
