@@ -104,4 +104,18 @@ TEST_CASE("matrices that are no poses") {
   CHECK_THROWS_AS(static_cast<void>(duet::from_transform_matrix(m)), duet::invalid_input);
 }
 
+TEST_CASE("a rotation that is no unit makes no pose, which would scale what it carries") {
+  const vector t(1, 2, 3);
+  CHECK_THROWS_WITH_AS(static_cast<void>(duet::pose(duet::quaternion<double>(2), t)),
+                       "duet: pose: the rotation (2, 0, 0, 0) is no unit quaternion: normalized(q)",
+                       duet::invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(duet::pose(duet::quaternion<double>(), t)),
+                  duet::invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(duet::pose(duet::quaternion<double>(.707, .707, 0, 0), t)),
+                  duet::invalid_input);
+  const auto rounded = duet::pose(duet::quaternion<double>(.7071068, .7071068, 0, 0), t);
+  CHECK(gap(duet::translation(rounded), t) < 1e-6);
+  CHECK(std::isnan(duet::pose(duet::quaternion<double>(NAN), t).w().value()));
+}
+
 } // namespace test_dual_quaternion_pose
