@@ -138,8 +138,7 @@ struct atan2 {
   }
   template <class T>
   std::array<T, 2> slopes(const T&, const T& y, const T& x) const {
-    // By the ratio of the smaller to the larger: x² + y² would overflow or vanish first, and what
-    // is differentiated once more would cancel.
+    // By the ratio of the smaller to the larger: x² + y² would overflow or vanish first.
     using std::abs;
     return select(
         detail::quiet_less_equal(abs(innermost(y)), abs(innermost(x))),
@@ -204,8 +203,7 @@ struct hypot {
   }
 
 private:
-  /// The slopes by ratios to the largest argument: of x/r the derivative, 1/r − x²/r³, would cancel
-  /// where x is the largest by far, and r is rounded where it is denormal.
+  /// By ratios to the largest: 1/r − x²/r³, the derivative of x/r, would cancel where x is that.
   template <class T, class... Rest>
   static std::array<T, 1 + sizeof...(Rest)> by_largest(const T& largest, const Rest&... rest) {
     using std::sqrt;
@@ -295,8 +293,7 @@ struct midpoint {
   }
   template <class T>
   std::array<T, 2> slopes(const T&, const T&, const T&) const {
-    const T half(real_type_t<T>(0.5));
-    return {half, half};
+    return {T(real_type_t<T>(0.5)), T(real_type_t<T>(0.5))};
   }
 };
 

@@ -2,17 +2,44 @@
 #pragma once
 
 #include <duet/dual/functions.hpp>
+#include <duet/dual/stumpff.hpp>
 
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/hypot.hpp>
+#include <boost/math/special_functions/lambert_w.hpp>
+#include <boost/math/special_functions/sinc.hpp>
+
+#include <cmath>
 
 /// \file
 /// Functions of Boost.Math that duet has too, with duet's derivatives.
 ///
 /// Boost answers some arguments from tables or special cases, as Γ(3) = 2 and erf(0) = 0, where the
-/// derivative would be lost: the result is a constant. Most of Boost.Math takes dual numbers
-/// without any header of duet's; docs/boost.md says what to look out for.
+/// derivative would be lost: the result is a constant. Series and Newton's method (sinc_pi,
+/// lambert_w0) stop where the value is right and higher derivatives are not. Most of Boost.Math
+/// takes dual numbers without any header of duet's; docs/boost.md says what to look out for.
+
+namespace duet::rule {
+
+/// Lambert's W on its principal branch: W′ = e^−W/(1 + W).
+struct lambert_w0 {
+  template <class T>
+  T value(const T& x) const {
+    if constexpr (Infinitesimal<T>) {
+      return detail::lift(*this, x);
+    } else {
+      return boost::math::lambert_w0(x);
+    }
+  }
+  template <class T>
+  T slope(const T&, const T& y) const {
+    using std::exp;
+    return exp(-y) / (1 + y);
+  }
+};
+
+} // namespace duet::rule
 
 namespace boost::math {
 
@@ -21,5 +48,15 @@ using duet::erfc;
 using duet::hypot;
 using duet::lgamma;
 using duet::tgamma;
+
+/// sin x/x
+template <duet::RealInfinitesimal D>
+[[nodiscard]] inline D sinc_pi(D x) {
+  return duet::stumpff<1>(D(x * x));
+}
+template <duet::RealInfinitesimal D>
+[[nodiscard]] inline D lambert_w0(D x) {
+  return duet::rule::lambert_w0{}.value(x);
+}
 
 } // namespace boost::math

@@ -1,0 +1,271 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/constants.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/dual/parts.hpp>
+
+#include <boost/math/policies/policy.hpp>
+#include <boost/math/special_functions/bessel.hpp>
+#include <boost/math/special_functions/beta.hpp>
+#include <boost/math/special_functions/ellint_1.hpp>
+#include <boost/math/special_functions/ellint_2.hpp>
+#include <boost/math/special_functions/ellint_3.hpp>
+#include <boost/math/special_functions/expint.hpp>
+#include <boost/math/special_functions/zeta.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+
+/// \file
+/// The derivatives of the special functions of special_functions.hpp; see dual/rules.hpp.
+
+namespace duet {
+namespace detail {
+
+namespace policies = boost::math::policies;
+/// Infinities and NaN instead of exceptions, as in `<cmath>`.
+using quiet_policy = policies::policy<policies::domain_error<policies::ignore_error>,
+                                      policies::pole_error<policies::ignore_error>,
+                                      policies::overflow_error<policies::ignore_error>,
+                                      policies::evaluation_error<policies::ignore_error>>;
+
+/// A rule applied to an infinitesimal number, or its value of a plain one.
+template <class Rule, class T>
+[[nodiscard]] T by_rule(const Rule& rule, const T& x) {
+  if constexpr (Infinitesimal<T>) {
+    return lift(rule, x);
+  } else {
+    return rule.plain(x);
+  }
+}
+
+/// What the rules below have in common: `plain(x)` is the value of a plain number.
+template <class Rule>
+struct rule_by_boost {
+  template <class T>
+  T value(const T& x) const {
+    return by_rule(static_cast<const Rule&>(*this), x);
+  }
+};
+
+enum class bessel { j, y, i, k };
+
+/// 2 C_ν′ = ±C_{ν−1} ± C_{ν+1}, without a division by x.
+template <bessel Kind>
+struct cylinder : rule_by_boost<cylinder<Kind>> {
+  double order;
+  constexpr explicit cylinder(double nu) : order(nu) {}
+
+  template <class T>
+  T plain(const T& x) const {
+    const T nu(order);
+    if constexpr (Kind == bessel::j) {
+      return boost::math::cyl_bessel_j(nu, x, quiet_policy());
+    } else if constexpr (Kind == bessel::y) {
+      return boost::math::cyl_neumann(nu, x, quiet_policy());
+    } else if constexpr (Kind == bessel::i) {
+      return boost::math::cyl_bessel_i(nu, x, quiet_policy());
+    } else {
+      return boost::math::cyl_bessel_k(nu, x, quiet_policy());
+    }
+  }
+  template <class T>
+  T slope(const T& x, const T&) const {
+    const T above = cylinder(order + 1).value(x);
+    if (order == 0) {
+      return Kind == bessel::i ? above : T(-above);
+    }
+    const T below = cylinder(order - 1).value(x);
+    const T sum = Kind == bessel::i || Kind == bessel::k ? T(below + above) : T(below - above);
+    return Kind == bessel::k ? T(-sum / 2) : T(sum / 2);
+  }
+};
+
+/// (2n + 1) f_n′ = n f_{n−1} − (n + 1) f_{n+1}
+template <bool IsNeumann>
+struct sphere : rule_by_boost<sphere<IsNeumann>> {
+  unsigned order;
+  constexpr explicit sphere(unsigned n) : order(n) {}
+
+  template <class T>
+  T plain(const T& x) const {
+    if constexpr (IsNeumann) {
+      return boost::math::sph_neumann(order, x, quiet_policy());
+    } else {
+      return boost::math::sph_bessel(order, x, quiet_policy());
+    }
+  }
+  template <class T>
+  T slope(const T& x, const T&) const {
+    using real = real_type_t<T>;
+    const T above = sphere(order + 1).value(x);
+    if (order == 0) {
+      return -above;
+    }
+    return (real(order) * sphere(order - 1).value(x) - real(order + 1) * above) /
+           real(2 * order + 1);
+  }
+};
+
+/// ∂/∂φ of the elliptic integrals: 1/Δ, Δ and 1/((1 − ν sin²φ)Δ), Δ² = 1 − k² sin²φ.
+template <int Kind>
+struct elliptic : rule_by_boost<elliptic<Kind>> {
+  double modulus;
+  double characteristic;
+  constexpr explicit elliptic(double k, double nu = 0) : modulus(k), characteristic(nu) {}
+
+  template <class T>
+  T plain(const T& phi) const {
+    const T k(modulus);
+    if constexpr (Kind == 1) {
+      return boost::math::ellint_1(k, phi, quiet_policy());
+    } else if constexpr (Kind == 2) {
+      return boost::math::ellint_2(k, phi, quiet_policy());
+    } else {
+      return boost::math::ellint_3(k, T(characteristic), phi, quiet_policy());
+    }
+  }
+  template <class T>
+  T slope(const T& phi, const T&) const {
+    using std::sin;
+    using std::sqrt;
+    using real = real_type_t<T>;
+    const T s = sin(phi);
+    const T p = real(modulus) * s;
+    const T delta = sqrt(one_minus_square(p));
+    if constexpr (Kind == 1) {
+      return 1 / delta;
+    } else if constexpr (Kind == 2) {
+      return delta;
+    } else {
+      return 1 / ((1 - real(characteristic) * s * s) * delta);
+    }
+  }
+};
+
+struct exponential_integral : rule_by_boost<exponential_integral> {
+  template <class T>
+  T plain(const T& x) const {
+    return boost::math::expint(x, quiet_policy());
+  }
+  template <class T>
+  T slope(const T& x, const T&) const {
+    using std::exp;
+    return exp(x) / x;
+  }
+};
+
+/// B(x, y), with ∂B/∂x = B (ψ(x) − ψ(x + y)).
+struct beta_rule {
+  template <class T>
+  T value(const T& x, const T& y) const {
+    if constexpr (Infinitesimal<T>) {
+      return lift(*this, x, y);
+    } else {
+      return boost::math::beta(x, y, quiet_policy());
+    }
+  }
+  template <class T>
+  std::array<T, 2> slopes(const T& b, const T& x, const T& y) const {
+    const T both = digamma(T(x + y));
+    return {b * (digamma(x) - both), b * (digamma(y) - both)};
+  }
+};
+
+/// K(k) = π/2 / agm(1, √(1 − k²)), and E(k) by the same means: E/K = 1 − Σ 2^{n−1} c_n². Both by
+/// means of dual numbers, whose derivatives converge one step after another.
+template <class D>
+[[nodiscard]] std::array<D, 2> complete_elliptic(const D& k) {
+  using std::sqrt;
+  using real = real_type_t<D>;
+  D a(1), b = sqrt(one_minus_square(k));
+  D sum = k * k / 2;
+  real weight(1);
+  const int steps = 12 + scalar_traits<D>::order; // from b = 10⁻³⁰⁰ to the last digit
+  for (int n = 0; n < steps; ++n) {
+    const D c = (a - b) / 2, mean = (a + b) / 2;
+    sum = sum + weight * c * c;
+    weight = 2 * weight;
+    b = sqrt(a * b);
+    a = mean;
+  }
+  const D first = constant::pi<real>() / (2 * a);
+  return {first, first * (1 - sum)};
+}
+
+/// ζ(s) by Euler's and Maclaurin's formula, for s < 0 by that of 1 − s.
+template <class D>
+[[nodiscard]] D zeta_of(const D& s) {
+  using real = real_type_t<D>;
+  if (innermost(s) < 0) { // 2 (2π)^(s−1) sin(πs/2) Γ(1 − s) ζ(1 − s); whole periods go first
+    const real whole = 4 * std::floor(innermost(s) / 4);
+    const D other = 1 - s;
+    const real pi = constant::pi<real>();
+    return 2 * pow(real(2 * pi), D(-other)) * sin(D((s - whole) * (pi / 2))) * tgamma(other) *
+           zeta_of(other);
+  }
+  constexpr int terms = 8;
+  const real n(terms);
+  D sum(1);
+  for (int k = 2; k < terms; ++k) {
+    sum = sum + pow(real(k), D(-s));
+  }
+  const D power = pow(n, D(-s));
+  D rising = s / n; // s (s + 1) … (s + 2k − 2)/n^(2k−1)
+  D tail = real(0.5) + n / (s - 1);
+  // B₂ₖ/(2k)!
+  constexpr std::array<long double, 12> factors{1.0L / 12,
+                                                -1.0L / 720,
+                                                1.0L / 30240,
+                                                -1.0L / 1209600,
+                                                1.0L / 47900160,
+                                                -691.0L / 1307674368000,
+                                                1.0L / 74724249600,
+                                                -3617.0L / 10670622842880000,
+                                                43867.0L / 5109094217170944000,
+                                                -174611.0L / 802857662698291200000.0L,
+                                                77683.0L / 14101100039391805440000.0L,
+                                                -236364091.0L / 1693824136731743669452800000.0L};
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    tail = tail + real(factors[k]) * rising;
+    rising = rising * (s + int(2 * k + 1)) * (s + int(2 * k + 2)) / (n * n);
+  }
+  return sum + power * tail;
+}
+
+/// P_l^m by its recurrence upwards from P_m^m = (2m − 1)!! sᵐ, s = √(1 − x²).
+template <class D>
+[[nodiscard]] D legendre_by_recurrence(unsigned l, unsigned m, const D& x, const D& power) {
+  using real = real_type_t<D>;
+  if (m > l) {
+    return D(0);
+  }
+  D below(0), p = power;
+  for (unsigned k = 1; k < m; ++k) {
+    p = p * real(2 * k + 1);
+  }
+  for (unsigned k = m; k < l; ++k) {
+    const D above = (real(2 * k + 1) * x * p - real(k + m) * below) / real(k + 1 - m);
+    below = p;
+    p = above;
+  }
+  return p;
+}
+
+/// xᵐ
+template <class D>
+[[nodiscard]] D whole_power(const D& x, unsigned m) {
+  D result(1);
+  for (unsigned k = 0; k < m; ++k) {
+    result = result * x;
+  }
+  return result;
+}
+
+} // namespace detail
+
+} // namespace duet

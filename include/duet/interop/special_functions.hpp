@@ -1,0 +1,186 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/constants.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/dual/parts.hpp>
+#include <duet/interop/special_function_rules.hpp>
+
+#include <boost/math/special_functions/ellint_1.hpp>
+#include <boost/math/special_functions/ellint_2.hpp>
+#include <boost/math/special_functions/zeta.hpp>
+
+#include <cmath>
+
+/// \file
+/// The special functions that `<cmath>` has since C++17, over dual and Taylor numbers: values by
+/// Boost.Math, derivatives of every order by recurrences. Names, arguments and signs are those of
+/// `<cmath>`. Orders, degrees, moduli and characteristics are plain numbers, see docs/boost.md.
+///
+/// A header of its own, for Boost's take a compiler seconds.
+
+namespace duet {
+
+/// A dual or Taylor number over one real number, no batch.
+template <class D>
+concept SpecialArgument = RealInfinitesimal<D> && !Batched<D>;
+
+template <Arithmetic N, SpecialArgument D>
+[[nodiscard]] D cyl_bessel_j(N nu, const D& x) {
+  return detail::by_rule(detail::cylinder<detail::bessel::j>(double(nu)), x);
+}
+template <Arithmetic N, SpecialArgument D>
+[[nodiscard]] D cyl_neumann(N nu, const D& x) {
+  return detail::by_rule(detail::cylinder<detail::bessel::y>(double(nu)), x);
+}
+template <Arithmetic N, SpecialArgument D>
+[[nodiscard]] D cyl_bessel_i(N nu, const D& x) {
+  return detail::by_rule(detail::cylinder<detail::bessel::i>(double(nu)), x);
+}
+template <Arithmetic N, SpecialArgument D>
+[[nodiscard]] D cyl_bessel_k(N nu, const D& x) {
+  return detail::by_rule(detail::cylinder<detail::bessel::k>(double(nu)), x);
+}
+template <SpecialArgument D>
+[[nodiscard]] D sph_bessel(unsigned n, const D& x) {
+  return detail::by_rule(detail::sphere<false>(n), x);
+}
+template <SpecialArgument D>
+[[nodiscard]] D sph_neumann(unsigned n, const D& x) {
+  return detail::by_rule(detail::sphere<true>(n), x);
+}
+
+/// F(φ, k), by φ.
+template <Arithmetic K, SpecialArgument D>
+[[nodiscard]] D ellint_1(K k, const D& phi) {
+  return detail::by_rule(detail::elliptic<1>(double(k)), phi);
+}
+/// E(φ, k), by φ.
+template <Arithmetic K, SpecialArgument D>
+[[nodiscard]] D ellint_2(K k, const D& phi) {
+  return detail::by_rule(detail::elliptic<2>(double(k)), phi);
+}
+/// Π(ν, φ, k), by φ.
+template <Arithmetic K, Arithmetic N, SpecialArgument D>
+[[nodiscard]] D ellint_3(K k, N nu, const D& phi) {
+  return detail::by_rule(detail::elliptic<3>(double(k), double(nu)), phi);
+}
+/// K(k), by the modulus.
+template <SpecialArgument D>
+[[nodiscard]] D comp_ellint_1(const D& k) {
+  const auto value = boost::math::ellint_1(innermost(k), detail::quiet_policy());
+  return detail::with_innermost(detail::complete_elliptic(k)[0], value);
+}
+/// E(k), by the modulus.
+template <SpecialArgument D>
+[[nodiscard]] D comp_ellint_2(const D& k) {
+  const auto value = boost::math::ellint_2(innermost(k), detail::quiet_policy());
+  return detail::with_innermost(detail::complete_elliptic(k)[1], value);
+}
+
+/// Ei(x)
+template <SpecialArgument D>
+[[nodiscard]] D expint(const D& x) {
+  return detail::by_rule(detail::exponential_integral{}, x);
+}
+/// ζ(s)
+template <SpecialArgument D>
+[[nodiscard]] D riemann_zeta(const D& s) {
+  const auto value = boost::math::zeta(innermost(s), detail::quiet_policy());
+  return detail::with_innermost(detail::zeta_of(s), value);
+}
+/// B(x, y), by both.
+template <class A, class B>
+  requires detail::MixedReals<A, B> && SpecialArgument<promote_t<A, B>>
+[[nodiscard]] auto beta(const A& x, const B& y) {
+  return detail::lift_promoted(detail::beta_rule{}, promote_t<A, B>(x), promote_t<A, B>(y));
+}
+
+/// P_n(x)
+template <SpecialArgument D>
+[[nodiscard]] D legendre(unsigned n, const D& x) {
+  return detail::legendre_by_recurrence(n, 0, x, D(1));
+}
+/// (1 − x²)^(m/2) dᵐP_l/dxᵐ, without the sign (−1)ᵐ.
+template <SpecialArgument D>
+[[nodiscard]] D assoc_legendre(unsigned l, unsigned m, const D& x) {
+  using std::sqrt;
+  const D square = detail::one_minus_square(x);
+  const D even = detail::whole_power(square, m / 2);
+  return detail::legendre_by_recurrence(l, m, x, m % 2 == 0 ? even : D(even * sqrt(square)));
+}
+/// Y_l^m(θ, 0), with the sign (−1)ᵐ.
+template <SpecialArgument D>
+[[nodiscard]] D sph_legendre(unsigned l, unsigned m, const D& theta) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  using real = real_type_t<D>;
+  real square = real(2 * l + 1) / (4 * constant::pi<real>());
+  for (unsigned k = l - m + 1; m <= l && k <= l + m; ++k) {
+    square = square / real(k);
+  }
+  const D power = detail::whole_power(D(-sin(theta)), m);
+  return real(sqrt(square)) * detail::legendre_by_recurrence(l, m, D(cos(theta)), power);
+}
+/// H_n(x), of physicists: H_1 = 2x.
+template <SpecialArgument D>
+[[nodiscard]] D hermite(unsigned n, const D& x) {
+  using real = real_type_t<D>;
+  D below(0), h(1);
+  for (unsigned k = 0; k < n; ++k) {
+    const D above = 2 * (x * h - real(k) * below);
+    below = h;
+    h = above;
+  }
+  return h;
+}
+/// L_n^m(x)
+template <SpecialArgument D>
+[[nodiscard]] D assoc_laguerre(unsigned n, unsigned m, const D& x) {
+  using real = real_type_t<D>;
+  D below(0), p(1);
+  for (unsigned k = 0; k < n; ++k) {
+    const D above = ((real(2 * k + m + 1) - x) * p - real(k + m) * below) / real(k + 1);
+    below = p;
+    p = above;
+  }
+  return p;
+}
+/// L_n(x)
+template <SpecialArgument D>
+[[nodiscard]] D laguerre(unsigned n, const D& x) {
+  return assoc_laguerre(n, 0, x);
+}
+
+// What has no derivative here says so.
+
+#define DUET_REFUSE_FIRST_ARGUMENT(function, what)                                                 \
+  template <Infinitesimal D, class... Rest>                                                        \
+  void function(const D&, const Rest&...) {                                                        \
+    static_assert(!Infinitesimal<D>, "duet: " #function " has no derivative by its " what          \
+                                     "; give a plain number there");                               \
+  }
+DUET_REFUSE_FIRST_ARGUMENT(cyl_bessel_j, "order")
+DUET_REFUSE_FIRST_ARGUMENT(cyl_neumann, "order")
+DUET_REFUSE_FIRST_ARGUMENT(cyl_bessel_i, "order")
+DUET_REFUSE_FIRST_ARGUMENT(cyl_bessel_k, "order")
+DUET_REFUSE_FIRST_ARGUMENT(ellint_1, "modulus")
+DUET_REFUSE_FIRST_ARGUMENT(ellint_2, "modulus")
+DUET_REFUSE_FIRST_ARGUMENT(ellint_3, "modulus")
+DUET_REFUSE_FIRST_ARGUMENT(comp_ellint_3, "modulus")
+#undef DUET_REFUSE_FIRST_ARGUMENT
+
+template <Arithmetic K, Infinitesimal D>
+void comp_ellint_3(K, const D&) {
+  static_assert(!Infinitesimal<D>, "duet: comp_ellint_3 has no derivative by its characteristic; "
+                                   "give a plain number there");
+}
+template <Arithmetic K, Infinitesimal D, class T>
+void ellint_3(K, const D&, const T&) {
+  static_assert(!Infinitesimal<D>, "duet: ellint_3 has no derivative by its characteristic; give a "
+                                   "plain number there");
+}
+
+} // namespace duet

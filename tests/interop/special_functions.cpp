@@ -1,0 +1,236 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/multiprecision.hpp"
+#include "support/ulp.hpp"
+
+#include <duet/interop/boost_math.hpp>
+#include <duet/interop/special_functions.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <string>
+
+// The special functions of <cmath> over Taylor numbers: values by the standard library, derivatives
+// to the third by differences of what defines the functions, integrals and series in 100 digits.
+
+namespace test_interop_special_functions {
+namespace {
+
+using duet_test::central_difference;
+using duet_test::worst_error;
+using R = duet_test::real_100;
+
+const R pi = acos(R(-1));
+
+/// f against the values `standard` and derivatives of `exact`.
+template <class F, class Standard, class Exact>
+void check(const char* name, F f, Standard standard, Exact exact, std::initializer_list<double> at,
+           double limit = 64) {
+  worst_error worst(name);
+  for (const double x : at) {
+    const auto y = f(duet::taylor<double, 3>::variable(x));
+    const R length = R(0.3);
+    std::array<R, 5> truth;
+    truth[0] = exact(R(x));
+    for (std::size_t k = 1; k < 5; ++k) {
+      truth[k] = central_difference(exact, R(x), int(k), length);
+    }
+    CHECK_MESSAGE(std::abs(y.value() - standard(x)) <= 1e-13 * (std::abs(standard(x)) + 1), name);
+    for (std::size_t k = 0; k <= 3; ++k) {
+      if (abs(truth[k]) < 1e-25) { // 0 but for what a difference makes of it
+        CHECK_MESSAGE(std::abs(y.derivative(int(k))) <= 1e-14, name);
+        continue;
+      }
+      const R scale = abs(truth[k]) + abs(R(truth[k + 1] * x));
+      worst.add(duet_test::ulps(y.derivative(int(k)), truth[k], scale), k, x);
+    }
+  }
+  CHECK_MESSAGE(worst <= limit, worst);
+}
+
+/// Σ_k (±z²/4)^k (z/2)^ν/(k! (k + ν)!) for whole ν
+R bessel_series(int nu, const R& z, int sign) {
+  R term = 1;
+  for (int k = 1; k <= nu; ++k) {
+    term *= z / (2 * k);
+  }
+  R sum = 0;
+  for (int k = 1; k < 120; ++k) {
+    sum += term;
+    term *= sign * z * z / (4 * k * (k + nu));
+  }
+  return sum;
+}
+
+} // namespace
+
+TEST_CASE("Bessel functions") {
+  for (const int nu : {0, 1, 2, 5}) {
+    check(
+        "J", [=](const auto& x) { return cyl_bessel_j(nu, x); },
+        [=](double x) { return std::cyl_bessel_j(double(nu), x); },
+        [=](const R& x) { return bessel_series(nu, x, -1); }, {0.25, 1, 2.4, 7.5, 13});
+    check(
+        "I", [=](const auto& x) { return cyl_bessel_i(nu, x); },
+        [=](double x) { return std::cyl_bessel_i(double(nu), x); },
+        [=](const R& x) { return bessel_series(nu, x, 1); }, {0.25, 1, 2.4, 7.5, 13});
+  }
+  // K_½ = √(π/2x) e^−x, Y_½ = −√(2/πx) cos x
+  check(
+      "K", [](const auto& x) { return cyl_bessel_k(0.5, x); },
+      [](double x) { return std::cyl_bessel_k(0.5, x); },
+      [](const R& x) -> R { return sqrt(R(pi / (2 * x))) * exp(R(-x)); }, {0.5, 1, 4});
+  check(
+      "Y", [](const auto& x) { return cyl_neumann(0.5, x); },
+      [](double x) { return std::cyl_neumann(0.5, x); },
+      [](const R& x) -> R { return -sqrt(R(2 / (pi * x))) * cos(x); }, {0.5, 1, 4, 9});
+  check(
+      "j", [](const auto& x) { return sph_bessel(1, x); },
+      [](double x) { return std::sph_bessel(1, x); },
+      [](const R& x) -> R { return sin(x) / (x * x) - cos(x) / x; }, {0.5, 1, 4, 9});
+  check(
+      "y", [](const auto& x) { return sph_neumann(1, x); },
+      [](double x) { return std::sph_neumann(1, x); },
+      [](const R& x) -> R { return -cos(x) / (x * x) - sin(x) / x; }, {0.5, 1, 4, 9});
+  const auto at_zero = cyl_bessel_j(1, duet::taylor<double, 3>::variable(0));
+  CHECK(at_zero.derivative(1) == 0.5);
+  CHECK(at_zero.derivative(3) == doctest::Approx(-0.375).epsilon(1e-15));
+}
+
+TEST_CASE("elliptic integrals") {
+  // π/2 Σ ((2n)!/(4ⁿ n!²))² k²ⁿ, and the same over 1 − 2n
+  const auto series = [](const R& k, bool is_second) {
+    R term = pi / 2, sum = 0;
+    for (int n = 0; n < 300; ++n) {
+      sum += is_second ? R(term / (1 - 2 * n)) : term;
+      const R ratio = R(2 * n + 1) / (2 * n + 2) * k;
+      term *= ratio * ratio;
+    }
+    return sum;
+  };
+  check(
+      "K", [](const auto& k) { return comp_ellint_1(k); },
+      [](double k) { return std::comp_ellint_1(k); }, [=](const R& k) { return series(k, false); },
+      {-0.4, 0, 0.001, 0.3, 0.45});
+  check(
+      "E", [](const auto& k) { return comp_ellint_2(k); },
+      [](double k) { return std::comp_ellint_2(k); }, [=](const R& k) { return series(k, true); },
+      {-0.4, 0, 0.001, 0.3, 0.45});
+
+  // By φ the integrand is the derivative.
+  const auto check_integral = [](const auto& f, const auto& standard, const auto& integrand) {
+    for (const double phi : {0.2, 1.0, 1.4}) {
+      const auto y = f(duet::taylor<double, 3>::variable(phi));
+      CHECK(y.value() == doctest::Approx(standard(phi)).epsilon(1e-14));
+      CHECK(y.derivative(1) == doctest::Approx(double(integrand(R(phi)))).epsilon(1e-14));
+      for (int k = 2; k <= 3; ++k) {
+        const double exact = double(central_difference(integrand, R(phi), k - 1, R(0.3)));
+        CHECK(y.derivative(k) == doctest::Approx(exact).epsilon(1e-13));
+      }
+    }
+  };
+  const auto root = [](const R& t) -> R { return sqrt(R(1 - R(0.7) * R(0.7) * sin(t) * sin(t))); };
+  check_integral([](const auto& t) { return ellint_1(0.7, t); },
+                 [](double t) { return std::ellint_1(0.7, t); },
+                 [=](const R& t) -> R { return 1 / root(t); });
+  check_integral([](const auto& t) { return ellint_2(0.7, t); },
+                 [](double t) { return std::ellint_2(0.7, t); }, root);
+  check_integral([](const auto& t) { return ellint_3(0.7, 0.25, t); },
+                 [](double t) { return std::ellint_3(0.7, 0.25, t); },
+                 [=](const R& t) -> R { return 1 / ((1 - R(0.25) * sin(t) * sin(t)) * root(t)); });
+}
+
+TEST_CASE("exponential integral, zeta and beta") {
+  check(
+      "Ei", [](const auto& x) { return expint(x); }, [](double x) { return std::expint(x); },
+      [](const R& x) -> R { // γ + log|x| + Σ xᵏ/(k k!)
+        R sum("0.57721566490153286060651209008240243104215933593992359880576723488486772677766467");
+        sum += log(R(abs(x)));
+        R term = 1;
+        for (int i = 1; i < 150; ++i) {
+          term *= x / i;
+          sum += term / i;
+        }
+        return sum;
+      },
+      {-3, -0.5, 0.6, 2, 7});
+  check(
+      "zeta", [](const auto& s) { return riemann_zeta(s); },
+      [](double s) { return std::riemann_zeta(s); },
+      [](const R& s) -> R { // by the alternating series, accelerated (Cohen, Villegas, Zagier)
+        const int n = 50;
+        R d = pow(R(3 + sqrt(R(8))), n);
+        d = (d + 1 / d) / 2;
+        R b = -1, c = -d, sum = 0;
+        for (int j = 0; j < n; ++j) {
+          c = b - c;
+          sum += c * exp(R(-s * log(R(j + 1))));
+          b = b * (j + n) * (j - n) / ((j + R(0.5)) * (j + 1));
+        }
+        return sum / d / (1 - exp(R((1 - s) * log(R(2)))));
+      },
+      {-1.5, 0, 0.5, 2, 4.5});
+  check(
+      "beta", [](const auto& x) { return beta(x, 3); }, [](double x) { return std::beta(x, 3.0); },
+      [](const R& x) -> R { return 2 / (x * (x + 1) * (x + 2)); }, {0.5, 1, 2, 4.5});
+  const auto mixed = beta(duet::second_dual<double, 2>::variable(1, 0),
+                          duet::second_dual<double, 2>::variable(1, 1));
+  CHECK(mixed.second_partial(0, 1) == // 2 − π²/6
+        doctest::Approx(0.35506593315177356).epsilon(1e-14));
+}
+
+TEST_CASE("orthogonal polynomials, at the ends too") {
+  const auto at = {-1.0, -0.6, 0.0, 0.3, 1.0};
+  check(
+      "P4", [](const auto& x) { return legendre(4, x); },
+      [](double x) { return std::legendre(4, x); },
+      [](const R& x) -> R { return (35 * x * x * x * x - 30 * x * x + 3) / 8; }, at);
+  check(
+      "P43", [](const auto& x) { return assoc_legendre(4, 2, x); },
+      [](double x) { return std::assoc_legendre(4, 2, x); },
+      [](const R& x) -> R { return (1 - x * x) * (105 * x * x - 15) / 2; }, at);
+  check(
+      "P31", [](const auto& x) { return assoc_legendre(3, 1, x); },
+      [](double x) { return std::assoc_legendre(3, 1, x); },
+      [](const R& x) -> R { return sqrt(R(1 - x * x)) * (15 * x * x - 3) / 2; }, {-0.6, 0, 0.3});
+  check(
+      "Y31", [](const auto& t) { return sph_legendre(3, 1, t); },
+      [](double t) { return std::sph_legendre(3, 1, t); },
+      [](const R& t) -> R {
+        return -sqrt(R(7 / (48 * pi))) * sin(t) * (15 * cos(t) * cos(t) - 3) / 2;
+      },
+      {0.3, 1, 2.5});
+  check(
+      "H4", [](const auto& x) { return hermite(4, x); },
+      [](double x) { return std::hermite(4, x); },
+      [](const R& x) -> R { return 16 * x * x * x * x - 48 * x * x + 12; }, at);
+  check(
+      "L3", [](const auto& x) { return laguerre(3, x); },
+      [](double x) { return std::laguerre(3, x); },
+      [](const R& x) -> R { return (-x * x * x + 9 * x * x - 18 * x + 6) / 6; }, {0, 0.3, 1});
+  check(
+      "L21", [](const auto& x) { return assoc_laguerre(2, 1, x); },
+      [](double x) { return std::assoc_laguerre(2, 1, x); },
+      [](const R& x) -> R { return x * x / 2 - 3 * x + 3; }, {0, 0.3, 1});
+}
+
+TEST_CASE("functions of Boost.Math that duet has in their place") {
+  const auto at_zero = boost::math::sinc_pi(duet::taylor<double, 6>::variable(0));
+  CHECK(at_zero.derivative(4) == doctest::Approx(0.2).epsilon(1e-15));
+  CHECK(at_zero.derivative(6) == doctest::Approx(-1.0 / 7).epsilon(1e-15));
+  // W(x) = Σ (−k)^(k−1) xᵏ/k!
+  const auto w = boost::math::lambert_w0(duet::taylor<double, 5>::variable(0));
+  for (int k = 1; k <= 5; ++k) {
+    CHECK(w.derivative(k) == doctest::Approx(std::pow(-k, k - 1)).epsilon(1e-14));
+  }
+  const auto y = boost::math::lambert_w0(duet::taylor<double, 3>::variable(2));
+  const double v = 0.8526055020137254913; // W(2); W‴ = (2W² + 8W + 9) W³/(x³ (1 + W)⁵)
+  CHECK(y.derivative(3) ==
+        doctest::Approx((2 * v * v + 8 * v + 9) * v * v * v / (8 * std::pow(1 + v, 5)))
+            .epsilon(1e-14));
+}
+
+} // namespace test_interop_special_functions
