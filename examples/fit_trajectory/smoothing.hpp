@@ -61,8 +61,8 @@ struct smoothed {
   double outlier; ///< residuals beyond this count as outliers
 };
 
-/// Least squares; once more with three times the median of the residuals as the limit of outliers,
-/// unless one is given.
+/// A robust fit, with three times the median of the residuals as the limit of outliers unless one
+/// is given.
 inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double length,
                        double outlier) {
   const std::vector<double> times = times_of(r);
@@ -71,13 +71,10 @@ inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double len
     poses.push_back(each.pose);
   }
   const std::vector<double> knots = knots_at_rows(times, rows_per_knot);
-  if (!(outlier > 0)) {
-    duet::fit_options gentle{.length = length, .outlier = std::numeric_limits<double>::infinity()};
-    outlier = 3 * median(duet::fit<curve>(times, poses, knots, gentle).residuals);
-  }
-  // Rows that fit to rounding have no outliers.
-  outlier = std::max(outlier, 1e-9);
-  return {duet::fit<curve>(times, poses, knots, {.length = length, .outlier = outlier}), outlier};
+  const duet::fit_options options{.length = length, .outlier = std::max(outlier, 0.0)};
+  fitted result = duet::fit<curve>(times, poses, knots, options);
+  const double limit = result.outlier;
+  return {std::move(result), limit};
 }
 
 inline std::size_t outliers(const smoothed& s) {

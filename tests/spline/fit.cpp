@@ -175,6 +175,98 @@ TEST_CASE_TEMPLATE("outliers pull with a bounded force", Q, rotation, pose_type)
   }
 }
 
+namespace {
+
+/// Moved by so much in a random direction, and turned by anything.
+pose_type thrown(const pose_type& a, random_source& random, double size) {
+  const auto turn = duet::from_rotation_vector(random_vector(random, random.uniform(0, 3.1415)));
+  const vector3<double> shift = random_vector(random, size);
+  return duet::pose(rotation(duet::rotation(a) * turn),
+                    vector3<double>(duet::translation(a) + shift));
+}
+rotation thrown(const rotation& a, random_source& random, double) {
+  return a * duet::from_rotation_vector(random_vector(random, random.uniform(0.1, 3.1415)));
+}
+
+} // namespace
+
+TEST_CASE_TEMPLATE("outliers of any size leave the curve where it is", Q, rotation, pose_type) {
+  constexpr double noise = 0.001, limit = 3 * noise;
+  const auto truth = some_curve<Q>();
+  const auto u = steps(8, 120);
+  const auto& knots = truth.basis().knots();
+  const auto check = [&](double share, double size, bool all_alike, double outlier, double most) {
+    CAPTURE(share);
+    CAPTURE(size);
+    random_source random(17);
+    auto rows = rows_of(truth, u);
+    std::vector<double> good_u;
+    std::vector<Q> good;
+    const Q common = thrown(Q(1.0), random, size);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      rows[i] = moved(rows[i], random, noise);
+      if (i == 57 || random.uniform(0, 1) < share) {
+        rows[i] = all_alike ? common * rows[i] : thrown(rows[i], random, size);
+      } else {
+        good_u.push_back(u[i]);
+        good.push_back(rows[i]);
+      }
+    }
+    const auto expected = duet::fit<curve<Q>>(good_u, good, knots, {.outlier = limit});
+    const auto found = duet::fit<curve<Q>>(u, rows, knots, {.outlier = outlier});
+    CHECK(largest_distance(found.curve, expected.curve) <= most);
+    CHECK(found.residuals[57] > 4 * limit);
+    CHECK(std::isfinite(found.rms));
+    CHECK(found.outlier == doctest::Approx(limit).epsilon(0.5));
+  };
+  // Where the good rows alone take it, to what the iteration leaves; if a limit is to be found that
+  // is another one, to a part of the noise.
+  check(0.3, 1, false, limit, 1e-9);
+  check(0.2, 1, false, 0, 0.3 * noise);
+  if constexpr (std::is_same_v<Q, pose_type>) {
+    check(0, 1e300, false, limit, 1e-9);
+    check(0.3, 1e160, false, limit, 1e-9);
+    check(0.2, 100, true, limit, 1e-9);
+  }
+}
+
+TEST_CASE("least squares name the row that is too far to be squared") {
+  const auto truth = some_curve<pose_type>();
+  const auto u = steps(8, 100);
+  auto rows = rows_of(truth, u);
+  rows[40] = duet::pose(rotation(1.0), vector3<double>(1e160, 0, 0));
+  const auto message = duet_test::message_of<duet::invalid_row>(
+      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, rows, truth.basis().knots())); });
+  CHECK(message.rfind("duet: row 40: is 1", 0) == 0);
+  CHECK(
+      message.find("e+160 from the rows around it, too far for least squares: fit_options::outlier "
+                   "makes the fit robust") != std::string::npos);
+}
+
+TEST_CASE("rows that are all the same, and two kinds of them") {
+  const auto u = steps(8, 100);
+  const auto knots = duet::clamped_knots(steps(8, 8), 4);
+  const rotation q = duet::from_rotation_vector(vector3<double>(1, 2, 3));
+  for (const double outlier : {0.0, 0.1, double(std::numeric_limits<double>::infinity())}) {
+    CAPTURE(outlier);
+    const auto result =
+        duet::fit<curve<rotation>>(u, std::vector<rotation>(101, q), knots, {.outlier = outlier});
+    CHECK(result.rms <= 1e-15);
+    CHECK(between(result.curve(4.3), q) <= 1e-15);
+  }
+}
+
+TEST_CASE("messages give the last step") {
+  const auto truth = some_curve<rotation>();
+  const auto u = steps(8, 100);
+  const auto message = duet_test::message_of<duet::no_convergence>([&] {
+    static_cast<void>(duet::fit<curve<rotation>>(u, rows_of(truth, u), truth.basis().knots(),
+                                                 {.max_iterations = 1}));
+  });
+  CHECK(message.rfind("duet: fit: the iteration does not converge after 1 steps, the last one 0.",
+                      0) == 0);
+}
+
 TEST_CASE("the length weighs shifts against turns") {
   const auto truth = some_curve<pose_type>();
   const auto u = steps(8, 100);

@@ -157,7 +157,7 @@ TEST_CASE("what no curve goes through") {
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<4>>(knots, half_turn)),
                        doctest::Contains("row 4: half a turn"), duet::invalid_row);
   CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>(us(3), rows(3), {{zero}, {zero}})),
-                       doctest::Contains("3 rows need as many rates, got 2"), duet::invalid_input);
+                       doctest::Contains("3 rows need 3 rates, got 2"), duet::invalid_input);
 }
 
 } // namespace test_spline_rotation_vector_motion

@@ -1,11 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch_lanes.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 /// \file
@@ -33,12 +36,53 @@ template <class T>
   return move.dot(move) + real_type_t<T>(length * length) * turn.dot(turn);
 }
 
+namespace detail {
+
+/// The same in units of length 2^e: squares of the largest and the smallest numbers are not.
+template <class T>
+[[nodiscard, gnu::cold]] T distance_of_extreme(const dual_quaternion<T>& a,
+                                               const dual_quaternion<T>& b, double length,
+                                               const T& square) {
+  using std::abs;
+  using std::ldexp;
+  using std::max;
+  using std::sqrt;
+  using R = real_type_t<T>;
+  const vector3<T> move = translation(b) - translation(a);
+  const vector3<T> turn = rotation_vector(quaternion<T>(conj(rotation(a)) * rotation(b)));
+  R largest(0);
+  T sum(R(0));
+  for (int i = 0; i < 3; ++i) {
+    largest = max(largest, R(abs(innermost(move[i]))));
+    largest = max(largest, R(abs(R(R(length) * innermost(turn[i])))));
+  }
+  if (!(largest > 0 && largest <= std::numeric_limits<R>::max())) {
+    return sqrt(square); // zero, infinite or not a number
+  }
+  const int e = binary_exponent(largest);
+  for (int i = 0; i < 3; ++i) {
+    const T x = ldexp(move[i], -e);
+    const T y = ldexp(T(R(length) * turn[i]), -e);
+    sum = sum + x * x + y * y;
+  }
+  return ldexp(T(sqrt(sum)), e);
+}
+
+} // namespace detail
+
 /// d, the root of `squared_distance`: a metric of poses, in units of length. Its derivative at
 /// d = 0 does not exist.
 template <class T>
 [[nodiscard]] T distance(const dual_quaternion<T>& a, const dual_quaternion<T>& b, double length) {
   using std::sqrt;
-  return sqrt(squared_distance(a, b, length));
+  const T square = squared_distance(a, b, length);
+  if constexpr (Batched<T>) {
+    return sqrt(square);
+  } else {
+    return detail::is_moderate(innermost(square))
+               ? T(sqrt(square))
+               : detail::distance_of_extreme(a, b, length, square);
+  }
 }
 
 } // namespace duet

@@ -117,9 +117,11 @@ template <class T>
                                     const std::vector<double>& weights = {}) {
   using R = real_type_t<T>;
   detail::require_weights(q.size(), weights);
+  // In relation to the largest, so that they do not overflow.
+  const double largest = weights.empty() ? 1 : *std::max_element(weights.begin(), weights.end());
   double sum = 0;
   for (std::size_t k = 0; k < q.size(); ++k) {
-    sum += weights.empty() ? 1 : weights[k];
+    sum += weights.empty() ? 1 : weights[k] / largest;
   }
   std::vector<R> w;
   std::vector<quaternion<R>> values;
@@ -129,7 +131,7 @@ template <class T>
       message << "duet: average: element " << k << " is not finite: " << q[k];
       throw invalid_input(message.str());
     }
-    w.push_back(R(weights.empty() ? 1 : weights[k]) / R(sum));
+    w.push_back(R(weights.empty() ? 1 : weights[k] / largest) / R(sum));
     values.push_back(detail::innermost_of(q[k]));
   }
   const detail::rotation_mean<R> mean(values, w);

@@ -129,6 +129,26 @@ public:
     return weights_of<Derivatives>(data, u);
   }
 
+  /// B̃_j(to) − B̃_j(from) of the varying functions of a span, as accurate relative to that of them
+  /// which changes most as `to − from` is, however near the two are.
+  [[nodiscard]] std::array<R, std::size_t(Order) - 1> changes(std::size_t span, const R& from,
+                                                              const R& to) const {
+    const R a = from - spans_[span].middle;
+    const R b = to - spans_[span].middle;
+    std::array<R, std::size_t(Order) - 1> result{};
+    R power(1), quotient(1); // a^{d−1}, (b^d − a^d)/(b − a)
+    R factor = b - a;
+    for (std::size_t d = 1; d < std::size_t(Order); ++d) {
+      factor /= R(d);
+      for (std::size_t j = 0; j + 1 < std::size_t(Order); ++j) {
+        result[j] += spans_[span].polynomials[j][d] * (quotient * factor);
+      }
+      power *= a;
+      quotient = quotient * b + power;
+    }
+    return result;
+  }
+
 private:
   [[nodiscard]] DUET_ALWAYS_INLINE std::size_t guessed_span(const R& u) const {
     return std::min(static_cast<std::size_t>((u - breaks_.front()) * spans_per_unit_),

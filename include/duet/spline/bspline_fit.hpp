@@ -3,14 +3,15 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/dual/dual.hpp>
-#include <duet/dual/tag.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/basis.hpp>
+#include <duet/spline/bspline_residuals.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/fit_start.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -33,8 +34,10 @@ namespace duet {
 struct fit_options {
   /// Of poses: the distance that counts as much as a turn by one radian.
   double length = 1;
-  /// A residual beyond this counts by its size, not by its square (Huber's loss), so that outliers
-  /// pull the curve with a bounded force. Infinite: plain least squares.
+  /// A residual beyond this counts by its size, not by its square (Huber's loss), and rows that are
+  /// farther off than four times this, and twelve times the median of those around, do not count:
+  /// outliers of any size leave the curve where it is. Zero: three times the median residual.
+  /// Infinite: plain least squares.
   double outlier = std::numeric_limits<double>::infinity();
   int max_iterations = 100;
 };
@@ -44,27 +47,42 @@ namespace detail {
 /// The least-squares problem: control elements c, moved by tangent vectors in body axes, such that
 /// Σ ρ(rᵢ) is least. Normal equations are banded, as a row meets `Order` neighbouring controls.
 template <class T, int Order>
-class bspline_fit {
-  using R = real_type_t<T>;
-  using element = quaternion<T>;
-  static constexpr int dimension = manifold<element>::dimension;
-  static constexpr int unknowns = Order * dimension;
-  using D = dual<R, dimension, derivative_tag<bspline_fit>>; // one control element at a time
+class bspline_fit : bspline_residuals<T, Order> {
+  using residual_type = bspline_residuals<T, Order>;
+  using typename residual_type::basis_type;
+  using typename residual_type::element;
+  using typename residual_type::R;
   template <class S>
-  using tangent = Eigen::Matrix<S, dimension, 1>;
-  using basis_type = bspline_basis<Order, R>;
-  using weights_type = std::array<R, std::size_t(Order) - 1>;
+  using tangent = typename residual_type::template tangent<S>;
+  using residual_type::dimension;
+  using residual_type::first;
+  using residual_type::residual_at;
+  using residual_type::rows;
+  using residual_type::size_of;
+  using residual_type::unknowns;
 
 public:
   bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> rows,
               const fit_options& options)
-      : rows_(std::move(rows)), options_(options), controls_(start(basis, u)) {
-    for (const R& parameter : u) {
-      const std::size_t span = basis.span_of(parameter);
-      first_.push_back(basis.first_function(span));
-      weights_.push_back(basis.template weights<0>(span, parameter)[0]);
+      : residual_type(basis, u, std::move(rows), R(options.length)), options_(options),
+        limits_(u.size(), R(options.outlier)) {
+    if (is_robust()) {
+      controls_ = medoids(basis, u, this->rows(), R(options.length));
+      approach();
+    } else {
+      controls_ = elements_at_averages(basis, u, this->rows());
+      const std::vector<R> sizes = residuals();
+      if (!(*std::max_element(sizes.begin(), sizes.end()) < too_far())) {
+        controls_ = medoids(basis, u, this->rows(), R(options.length));
+        fail_at_farthest();
+      }
     }
   }
+
+  /// Does row i count? Outliers that are too far off do not.
+  [[nodiscard]] bool counts(std::size_t i) const { return limits_[i] > 0; }
+  /// The limit of Huber's loss.
+  [[nodiscard]] R outlier() const { return R(options_.outlier); }
 
   [[nodiscard]] cumulative_bspline<T, Order> curve(const basis_type& basis) const {
     std::vector<vector3<T>> increments{vector3<T>::Zero()};
@@ -74,27 +92,34 @@ public:
     return {basis, controls_, std::move(increments)};
   }
 
-  [[nodiscard]] std::vector<R> residuals() const {
-    std::vector<R> result;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      result.push_back(residual_at(i, controls_).norm());
-    }
-    return result;
+  [[nodiscard]] std::vector<R> residuals() const { return residual_type::residuals(controls_); }
+
+  /// Moves the controls to where the cost is least: the number of steps.
+  /// \throws no_convergence
+  int solve() { return iterations_ + descend(options_.max_iterations, true); }
+
+private:
+  static constexpr R tolerance = R(1e-11); // rad
+  static constexpr R longest_turn = R(0.5);
+  static constexpr R least_outlier = R(1e-9); ///< rows that fit to rounding have no outliers
+
+  [[nodiscard]] bool is_robust() const {
+    return options_.outlier < std::numeric_limits<double>::infinity();
   }
 
-  /// Levenberg's and Marquardt's iteration: the number of steps.
-  /// \throws no_convergence
-  int solve() {
+  /// Levenberg's and Marquardt's iteration, to its end or as long as it gains much: the number of
+  /// steps. \throws no_convergence
+  int descend(int most, bool must_converge) {
+    const R gain = must_converge ? std::numeric_limits<R>::epsilon() : R(0.1);
     R cost = cost_of(controls_);
-    R damping(0);
-    for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
+    R damping(0), step(0);
+    for (int iteration = 1; iteration <= most; ++iteration) {
       assemble();
       const R last = cost;
-      R step(0);
       for (;;) {
         std::vector<element> moved = moved_controls(damping, step);
         const R next = moved.empty() ? std::numeric_limits<R>::infinity() : cost_of(moved);
-        if (next <= cost) {
+        if (!moved.empty() && next <= cost) {
           controls_ = std::move(moved);
           cost = next;
           damping = damping > R(1e-9) ? R(damping / 10) : R(0);
@@ -105,104 +130,81 @@ public:
         }
         damping = damping > 0 ? R(damping * 10) : R(1e-6);
         if (!(damping < R(1e12))) {
+          if (!must_converge) {
+            return iteration;
+          }
           fail("finds no step that brings the curve nearer", iteration, step);
         }
       }
-      if (step <= tolerance || last - cost <= std::numeric_limits<R>::epsilon() * cost) {
+      if (step <= tolerance || last - cost <= gain * cost) {
         return iteration;
       }
     }
-    fail("does not converge", options_.max_iterations, R(0));
+    if (must_converge) {
+      fail("does not converge", most, step);
+    }
+    return most;
   }
 
-private:
-  static constexpr R tolerance = R(1e-11); // rad
-  static constexpr R longest_step = R(0.5);
-
-  /// Where the rows are at the knots' averages (Greville's abscissae).
-  [[nodiscard]] std::vector<element> start(const basis_type& basis, const std::vector<R>& u) const {
-    std::vector<element> result;
-    for (std::size_t i = 0; i < basis.size(); ++i) {
-      R sum(0);
-      for (std::size_t j = 1; j < std::size_t(Order); ++j) {
-        sum += basis.knots()[i + j];
+  /// To the rows, by medians: what is an outlier depends on how far the rows around it are from the
+  /// curve so far, and the nearer that comes, the less is left to be one.
+  void approach() {
+    constexpr int rounds = 12, steps = 4;
+    R scale = std::numeric_limits<R>::infinity(); // sum of the limits
+    for (int round = 0; round < rounds; ++round) {
+      const R last = scale;
+      scale = set_limits();
+      if (!(scale < R(0.9) * last)) {
+        break;
       }
-      const R at = sum / R(Order - 1);
-      const auto above = std::size_t(std::upper_bound(u.begin(), u.end(), at) - u.begin());
-      const std::size_t right = std::clamp<std::size_t>(above, 1, u.size() - 1);
-      const R fraction = std::clamp(R((at - u[right - 1]) / (u[right] - u[right - 1])), R(0), R(1));
-      result.push_back(slerp(rows_[right - 1], rows_[right], fraction));
-      if (i > 0 && innermost(dot(result[i - 1], result[i])) < 0) {
-        result[i] = -result[i];
-      }
+      iterations_ += descend(steps, false);
     }
-    return result;
-  }
-
-  /// 2 log(S* Q), the shorter way; of poses [v/length; ω].
-  template <class S>
-  [[nodiscard]] tangent<S> residual(std::size_t i,
-                                    const std::array<quaternion<promote_t<T, S>>, Order>& c) const {
-    using P = promote_t<T, S>;
-    quaternion<P> value = c[0];
-    for (std::size_t j = 0; j + 1 < c.size(); ++j) {
-      const vector3<P> increment = log(conj(c[j]) * c[j + 1]).vec();
-      value = value * duet::exp(vector3<P>(increment * P(weights_[i][j])));
+    if (!(options_.outlier > 0)) {
+      options_.outlier = double(std::max(R(3 * median(residuals())), least_outlier));
     }
-    quaternion<P> error = conj(value) * quaternion<P>(rows_[i]);
-    if (innermost(error.w()) < 0) {
-      error = -error;
-    }
-    const vector3<P> half = log(error).vec();
-    if constexpr (dimension == 3) {
-      return half * S(R(2));
-    } else {
-      vector6<S> r = twist_of<S>(half) * S(R(2));
-      r.template head<3>() /= S(R(options_.length));
-      return r;
+    set_limits();
+    for (R& limit : limits_) {
+      limit = std::min(limit, R(options_.outlier));
     }
   }
 
-  [[nodiscard]] tangent<R> residual_at(std::size_t i, const std::vector<element>& controls) const {
-    std::array<element, Order> c;
-    std::copy_n(controls.begin() + std::ptrdiff_t(first_[i]), Order, c.begin());
-    return residual<R>(i, c);
+  /// Three times the median residual around each row, at least `options.outlier`; zero for rows
+  /// that are four times as far off and more. Returns the sum of the limits.
+  R set_limits() {
+    const std::vector<R> sizes = residuals();
+    const std::vector<R> medians = local_medians(sizes, first());
+    R sum(0);
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      const R limit = std::max({R(3 * medians[i]), R(options_.outlier), least_outlier});
+      limits_[i] = sizes[i] <= 4 * limit && sizes[i] < too_far() ? limit : R(0);
+      sum += std::min(limit, too_far());
+    }
+    return sum;
   }
 
-  struct linear_residual {
-    tangent<R> value;
-    Eigen::Matrix<R, dimension, unknowns> slope;
-  };
-
-  [[nodiscard]] linear_residual linearised(std::size_t i) const {
-    linear_residual result;
-    std::array<quaternion<promote_t<T, D>>, Order> c;
-    std::copy_n(controls_.begin() + std::ptrdiff_t(first_[i]), Order, c.begin());
-    tangent<D> delta;
-    for (int b = 0; b < dimension; ++b) {
-      delta[b] = D::variable(R(0), b);
-    }
-    for (int j = 0; j < Order; ++j) {
-      const element& control = controls_[first_[i] + std::size_t(j)];
-      c[std::size_t(j)] = manifold<element>::plus(control, delta, frame::body);
-      const tangent<D> r = residual<D>(i, c);
-      c[std::size_t(j)] = quaternion<promote_t<T, D>>(control);
-      for (int a = 0; a < dimension; ++a) {
-        result.value[a] = r[a].value();
-        for (int b = 0; b < dimension; ++b) {
-          result.slope(a, dimension * j + b) = r[a].partial(b);
-        }
-      }
-    }
-    return result;
+  /// Squares of larger residuals, and products of those, would overflow.
+  [[nodiscard]] static R too_far() {
+    using std::sqrt;
+    return sqrt(sqrt(std::numeric_limits<R>::max()));
+  }
+  [[noreturn]] void fail_at_farthest() const {
+    const std::vector<R> sizes = residuals();
+    const auto farthest = std::max_element(sizes.begin(), sizes.end());
+    std::ostringstream reason;
+    reason << "is " << *farthest << " from the rows around it, too far for least squares: "
+           << "fit_options::outlier makes the fit robust";
+    throw invalid_row(std::size_t(farthest - sizes.begin()), reason.str());
   }
 
   /// ½ r² up to the limit, from there on along the tangent
   [[nodiscard]] R cost_of(const std::vector<element>& controls) const {
-    const R limit(options_.outlier);
     R sum(0);
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const R r = residual_at(i, controls).norm();
+    for (std::size_t i = 0; i < rows().size(); ++i) {
+      if (!counts(i)) {
+        continue;
+      }
+      const R limit = limits_[i];
+      const R r = size_of(residual_at(i, controls));
       sum += r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
     }
     return sum;
@@ -213,14 +215,22 @@ private:
     const auto size = Eigen::Index(controls_.size()) * dimension;
     gradient_.setZero(size);
     std::vector<Eigen::Triplet<R>> entries;
-    entries.reserve(rows_.size() * std::size_t(unknowns * (unknowns + 1) / 2));
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto [value, slope] = linearised(i);
-      const R length = value.norm();
-      const R weight = length <= R(options_.outlier) ? R(1) : R(R(options_.outlier) / length);
-      const Eigen::Index at = Eigen::Index(first_[i]) * dimension;
+    entries.reserve(rows().size() * std::size_t(unknowns * (unknowns + 1) / 2));
+    for (std::size_t i = 0; i < rows().size(); ++i) {
+      if (!counts(i)) {
+        continue;
+      }
+      const auto [value, slope] = this->linearised(i, controls_);
+      const R size = size_of(value);
+      const R weight = size <= limits_[i] ? R(1) : R(limits_[i] / size);
+      const Eigen::Index at = Eigen::Index(first()[i]) * dimension;
       gradient_.segment(at, unknowns) -= weight * (slope.transpose() * value);
-      const Eigen::Matrix<R, unknowns, unknowns> square = weight * (slope.transpose() * slope);
+      Eigen::Matrix<R, unknowns, unknowns> square = weight * (slope.transpose() * slope);
+      if (weight <
+          1) { // Huber's loss grows linearly: away from the row it has no second derivative
+        const Eigen::Matrix<R, unknowns, 1> along = slope.transpose() * (value / size);
+        square -= R(0.9) * weight * (along * along.transpose());
+      }
       for (int a = 0; a < unknowns; ++a) {
         for (int b = 0; b <= a; ++b) {
           entries.emplace_back(at + a, at + b, square(a, b));
@@ -250,7 +260,11 @@ private:
     if (!delta.allFinite()) {
       return {};
     }
-    const R fraction = step > longest_step ? R(longest_step / step) : R(1);
+    R turn(0); // of the controls: shifts are linear, and may be of any length
+    for (Eigen::Index i = dimension; i <= delta.size(); i += dimension) {
+      turn = std::max(turn, R(delta.template segment<3>(i - 3).norm()));
+    }
+    const R fraction = turn > longest_turn ? R(longest_turn / turn) : R(1);
     std::vector<element> moved = controls_;
     for (std::size_t i = 0; i < moved.size(); ++i) {
       const tangent<R> d =
@@ -267,11 +281,10 @@ private:
     throw no_convergence(message.str());
   }
 
-  std::vector<element> rows_;
   fit_options options_;
+  std::vector<R> limits_; ///< of Huber's loss, row by row; zero: does not count
   std::vector<element> controls_;
-  std::vector<std::size_t> first_;
-  std::vector<weights_type> weights_;
+  int iterations_ = 0;
   Eigen::SparseMatrix<R> normal_;
   Eigen::Matrix<R, Eigen::Dynamic, 1> gradient_;
 };

@@ -10,9 +10,9 @@
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/orientations.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <sstream>
 #include <type_traits>
 #include <utility>
@@ -33,31 +33,35 @@ struct fit_result {
   std::vector<real_type> residuals;
   real_type rms; ///< root of the mean of their squares
   int iterations;
+  real_type outlier; ///< residuals beyond this counted as outliers
 };
 
 namespace detail {
 
 /// Schoenberg's and Whitney's condition: every control element needs a row of its own where its
 /// basis function is not zero, or it would be arbitrary.
+/// \param counts  counts(i): does row i?
 /// \throws invalid_input
-template <int Order, Real R>
-void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u) {
+template <int Order, Real R, class Counts>
+void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u,
+                               const Counts& counts, const char* advice) {
   const std::vector<R>& knots = basis.knots();
   std::size_t row = 0;
   for (std::size_t i = 0; i < basis.size(); ++i) {
     const R low = knots[i];
     const R high = knots[i + std::size_t(Order)];
-    const auto is_inside = [&](const R& x) {
-      return (x > low && x < high) || (x == low && i == 0) || (x == high && i + 1 == basis.size());
+    const auto is_inside = [&](std::size_t k) {
+      const R& x = u[k];
+      return counts(k) && ((x > low && x < high) || (x == low && i == 0) ||
+                           (x == high && i + 1 == basis.size()));
     };
-    while (row < u.size() && u[row] < high && !is_inside(u[row])) {
+    while (row < u.size() && u[row] < high && !is_inside(row)) {
       ++row;
     }
-    if (row == u.size() || !is_inside(u[row])) {
+    if (row == u.size() || !is_inside(row)) {
       std::ostringstream message;
       message << "duet: fit: too few rows for control element " << i
-              << ", which acts on parameters from " << low << " to " << high
-              << ": use fewer knots there";
+              << ", which acts on parameters from " << low << " to " << high << ": " << advice;
       throw invalid_input(message.str());
     }
     ++row;
@@ -87,7 +91,7 @@ template <class Spline, class R, class T>
     throw invalid_input(message.str());
   }
   detail::check_rows(parameters, rows.size(), 0);
-  if (!(options.length > 0) || !(options.outlier > 0)) {
+  if (!(options.length > 0) || !(options.outlier >= 0)) {
     message << "duet: fit: length " << options.length << " and outlier " << options.outlier
             << " must be positive";
     throw invalid_input(message.str());
@@ -105,14 +109,23 @@ template <class Spline, class R, class T>
       throw invalid_row(i, message.str());
     }
   }
-  detail::require_rows_for_controls(basis, parameters);
+  detail::require_rows_for_controls(
+      basis, parameters, [](std::size_t) { return true; }, "use fewer knots there");
   detail::bspline_fit<T, Spline::order> problem(basis, parameters,
                                                 unit_quaternions(std::move(rows)), options);
+  detail::require_rows_for_controls(
+      basis, parameters, [&](std::size_t i) { return problem.counts(i); },
+      "the others are outliers; use fewer knots there");
   const int iterations = problem.solve();
   const std::vector<R> residuals = problem.residuals();
   using std::sqrt;
-  const R squares = std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), R(0));
-  return {problem.curve(basis), residuals, R(sqrt(squares / R(residuals.size()))), iterations};
+  const R largest = *std::max_element(residuals.begin(), residuals.end());
+  R squares(0); // in relation to the largest, so that they do not overflow
+  for (const R& r : residuals) {
+    squares += largest > 0 ? R((r / largest) * (r / largest)) : R(0);
+  }
+  return {problem.curve(basis), residuals, R(largest * sqrt(squares / R(residuals.size()))),
+          iterations, problem.outlier()};
 }
 
 } // namespace duet

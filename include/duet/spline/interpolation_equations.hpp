@@ -15,6 +15,7 @@
 #include <duet/spline/motion.hpp>
 #include <duet/spline/small_turns.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <type_traits>
@@ -25,21 +26,6 @@
 /// What the increments of an interpolating cubic have to fulfil.
 
 namespace duet::detail {
-
-/// The knots of the cubic through data at u_0 … u_n.
-template <class Ends, class R>
-[[nodiscard]] std::vector<R> interpolation_knots(const std::vector<R>& u, const Ends&) {
-  if constexpr (std::is_same_v<Ends, periodic>) {
-    return periodic_knots(u, 4);
-  } else if constexpr (std::is_same_v<Ends, not_a_knot>) {
-    std::vector<R> distinct = u;
-    distinct.erase(distinct.end() - 2);
-    distinct.erase(distinct.begin() + 1);
-    return clamped_knots(distinct, 4);
-  } else {
-    return clamped_knots(u, 4);
-  }
-}
 
 /// A rate as half a vector, or half a dual vector.
 template <class T, class V>
@@ -76,19 +62,22 @@ public:
     const std::size_t n = u.size() - 1;
     turns_.reserve(n);
     arcs_.reserve(n);
+    R shortest = u[1] - u[0], longest = shortest;
     for (std::size_t i = 0; i < n; ++i) {
-      turns_.push_back(conj(data_[i]) * data_[i + 1]);
+      turns_.push_back(turn_between(data_[i], data_[i + 1]));
       std::size_t span = i;
       if constexpr (skips_knots) {
         span = i == 0 ? 0 : i == n - 1 ? n - 3 : i - 1;
       }
-      arc a{span, basis_.template weights<0>(span, u[i])[0],
-            basis_.template weights<0>(span, u[i + 1])[0]};
+      arc a{span, basis_.template weights<0>(span, u[i])[0], basis_.changes(span, u[i], u[i + 1])};
       if (u[i] == basis_.breaks()[span]) {
         a.from[2] = R(0);
       }
       arcs_.push_back(a);
+      shortest = std::min(shortest, R(u[i + 1] - u[i]));
+      longest = std::max(longest, R(u[i + 1] - u[i]));
     }
+    unevenness_ = longest / shortest;
     if constexpr (!std::is_same_v<Ends, natural> && has_end_rates) {
       end_rates_ = {rotate(conj(data_.front()), half_rate<T>(ends.start)),
                     rotate(conj(data_.back()), half_rate<T>(ends.end))};
@@ -105,6 +94,13 @@ public:
 
   /// Where Newton's method starts. For real T.
   [[nodiscard]] unknowns start() const { return small_turn_solution<R>(*this); }
+
+  /// How large a step from x is in relation to what it changes. For real T.
+  [[nodiscard]] R relative_step(const unknowns& x, const unknowns& step) const {
+    return detail::relative_step<R>(*this, x, step);
+  }
+  /// The longest interval of the parameter as a multiple of the shortest.
+  [[nodiscard]] const R& unevenness() const { return unevenness_; }
 
   /// The largest angle from one row to the next, and the row before it.
   [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
@@ -157,14 +153,19 @@ public:
       --row;
     }
     const arc& a = arcs_[row];
-    const auto factor = [&](std::size_t j, const R& weight) {
-      return duet::exp(detail::scaled(weight, omega[j]));
-    };
-    quaternion<D> turn = factor(1, -a.from[1]) * factor(0, a.to[0] - a.from[0]) *
-                         factor(1, a.to[1]) * factor(2, a.to[2]);
-    if (a.from[2] != 0) {
-      turn = factor(2, -a.from[2]) * turn;
+    // Factors that stand on both sides are left out: they turn those between them. What is left is
+    // as small as the turn, and keeps all its digits.
+    std::array<vector3<D>, 3> turned;
+    for (std::size_t j = 0; j < 3; ++j) {
+      turned[j] = detail::scaled(a.change[j], omega[j]);
+      if (j > 0 && a.from[j] != 0) {
+        const quaternion<D> back = duet::exp(detail::scaled(R(-a.from[j]), omega[j]));
+        for (std::size_t k = 0; k < j; ++k) {
+          turned[k] = rotate(back, turned[k]);
+        }
+      }
     }
+    const quaternion<D> turn = duet::exp(turned[0]) * duet::exp(turned[1]) * duet::exp(turned[2]);
     return log_vector(quaternion<D>(conj(turn) * quaternion<D>(turns_[row])), "interpolate");
   }
 
@@ -181,9 +182,7 @@ public:
       }
       --row;
     }
-    const arc& a = arcs_[row];
-    return {{a.to[0] - a.from[0], a.to[1] - a.from[1], a.to[2] - a.from[2]},
-            log_vector(turns_[row], "interpolate")};
+    return {arcs_[row].change, log_vector(turns_[row], "interpolate")};
   }
 
   /// All of them.
@@ -255,10 +254,11 @@ public:
   }
 
 private:
-  /// From row i to row i + 1: the span, and the weights of its three increments at both.
+  /// From row i to row i + 1: the span, the weights of its three increments at row i, and by how
+  /// much these change.
   struct arc {
     std::size_t span;
-    std::array<R, 3> from, to;
+    std::array<R, 3> from, change;
   };
 
   /// The weights at an end of the curve, and what brings its rate to the size of an increment.
@@ -290,6 +290,7 @@ private:
   std::vector<quaternion<T>> data_;
   std::vector<quaternion<T>> turns_;
   std::vector<arc> arcs_;
+  R unevenness_;
   std::array<vector3<T>, 2> end_rates_{vector3<T>::Zero(), vector3<T>::Zero()};
 };
 

@@ -64,6 +64,14 @@ void check_rows(const std::vector<R>& parameters, std::size_t elements, std::siz
   }
 }
 
+/// a* b with all digits of a small turn: a* a has no vector part, and subtracting it first is
+/// exact.
+template <class T>
+[[nodiscard]] quaternion<T> turn_between(const quaternion<T>& a, const quaternion<T>& b) {
+  const quaternion<T> difference = conj(a) * (b - a);
+  return {dot(a, b), difference.x(), difference.y(), difference.z()};
+}
+
 } // namespace detail
 
 /// The same quaternions, normalised.

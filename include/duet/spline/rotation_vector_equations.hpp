@@ -5,10 +5,12 @@
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_ends.hpp>
 #include <duet/spline/rotation_vector_segment.hpp>
 #include <duet/spline/wide_block_tridiagonal.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -24,7 +26,7 @@ namespace duet::detail {
 /// Unknown are the k/2 − 1 rates of each knot: derivatives of w in body axes. As many further
 /// derivatives must be the same on both sides of an inner knot, which involves the knot and its two
 /// neighbours; as many end conditions complete the system. The parameter is counted in units of
-/// about one step, so that all derivatives have one size.
+/// about the longest step, so that all derivatives there have one size.
 template <class T, int Order>
 class rotation_vector_equations {
   static constexpr std::size_t own = std::size_t(Order) / 2 - 1;
@@ -34,6 +36,7 @@ class rotation_vector_equations {
   using piece = rotation_vector_segment<T, Order>;
   template <class S>
   using knot_rates = typename piece::template knot_rates<S>;
+  using polynomial = std::array<vector3<T>, std::size_t(Order)>;
 
 public:
   using real_type = R;
@@ -49,13 +52,17 @@ public:
     using std::frexp;
     using std::ldexp;
     int exponent = 0;
-    static_cast<void>(frexp(R((u.back() - u.front()) / R(last_)), &exponent));
+    R longest(0);
+    for (std::size_t i = 0; i < last_; ++i) {
+      longest = std::max(longest, R(u[i + 1] - u[i]));
+    }
+    static_cast<void>(frexp(longest, &exponent));
     unit_ = ldexp(R(1), exponent);
     steps_.reserve(last_);
     turns_.reserve(last_);
     for (std::size_t i = 0; i < last_; ++i) {
       steps_.push_back((u[i + 1] - u[i]) / unit_);
-      turns_.push_back(log_vector(quaternion<T>(conj(q[i]) * q[i + 1]), "interpolate"));
+      turns_.push_back(log_vector(turn_between(q[i], q[i + 1]), "interpolate"));
     }
     make_pieces();
   }
@@ -76,6 +83,17 @@ public:
     }
     result.make_pieces();
     return result;
+  }
+
+  /// The longest interval of the parameter as a multiple of the shortest.
+  [[nodiscard]] R unevenness() const {
+    const auto [shortest, longest] = std::minmax_element(steps_.begin(), steps_.end());
+    return *longest / *shortest;
+  }
+
+  /// How large a step from x is in relation to what it changes. For real T.
+  [[nodiscard]] R relative_step(const unknowns& x, const unknowns& step) const {
+    return relative_step_of_rates(x, step, turns_, steps_);
   }
 
   /// The largest turn from one row to the next, rad, and the row it starts from.
@@ -165,18 +183,24 @@ public:
     return ends_.is_cyclic ? jacobian.factorise_cyclic() : jacobian.factorise(ends, reach_ + 1);
   }
 
-  /// Rates of every knot as `rotation_vector_spline` takes them, in units of the parameter.
-  [[nodiscard]] std::vector<knot_rates<T>> rates(const unknowns& x) const {
-    std::vector<knot_rates<T>> result;
-    result.reserve(last_ + 1);
-    for (std::size_t i = 0; i <= last_; ++i) {
-      auto rates = rates_of(x[i % x.size()]);
+  /// The curve's polynomials as `rotation_vector_spline` takes them, in units of the parameter.
+  /// Those that meet at a knot are made of the same numbers there.
+  [[nodiscard]] std::vector<polynomial> polynomials(const unknowns& x) const {
+    std::vector<polynomial> result;
+    result.reserve(last_);
+    for (std::size_t i = 0; i < last_; ++i) {
+      result.push_back(
+          pieces_[i].template polynomial<T>(rates_of(x[i]), rates_of(x[(i + 1) % x.size()])));
+    }
+    if constexpr (Order == 4) {
+      share_accelerations(pieces_, steps_, x.size(), result);
+    }
+    for (polynomial& each : result) {
       R per_unit(1);
-      for (auto& w : rates) {
+      for (vector3<T>& coefficient : each) {
+        coefficient = detail::scaled(per_unit, coefficient);
         per_unit /= unit_;
-        w = detail::scaled(per_unit, w);
       }
-      result.push_back(rates);
     }
     return result;
   }
@@ -197,15 +221,14 @@ private:
   void for_each_term(At&& at, Take&& take) const {
     const typename piece::identity_coefficients at_identity(R(0));
     for (std::size_t i = 0; i < last_; ++i) {
+      const auto x = pieces_[i].template polynomial<S>(at(0, i), at(1, i));
       const bool is_at_joint = reach_ > 0 && (i <= reach_ || i + reach_ + 1 >= last_);
       if (is_at_joint) {
-        const auto w =
-            pieces_[i].template rates<ends_type::highest + 1, S>(at_identity, at(0, i), at(1, i));
+        const auto w = pieces_[i].template rates<ends_type::highest + 1, S>(at_identity, x);
         smoothness_terms(i, w, take);
         end_terms(i, w, take);
       } else {
-        const auto w =
-            pieces_[i].template rates<ends_type::highest, S>(at_identity, at(0, i), at(1, i));
+        const auto w = pieces_[i].template rates<ends_type::highest, S>(at_identity, x);
         smoothness_terms(i, w, take);
         if (!ends_.is_cyclic && (i == 0 || i + 1 == last_)) {
           end_terms(i, w, take);

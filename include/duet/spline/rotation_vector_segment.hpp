@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <type_traits>
+#include <vector>
 
 /// \file
 /// One piece of a rotation-vector spline: exp(x(t)) with a polynomial x of half-angle vectors that
@@ -83,9 +84,7 @@ public:
         x[3][i] = (b - 2 * a) * (per_h * per_h);
       }
     } else {
-      const vector3<S> zero = x[0];
-      const auto without = half_body_rates(jacobian_, d_, std::array<vector3<S>, 2>{v, zero});
-      const vector3<S> twice = times_inverse(vector3<S>(end[1] - without[1])); // ẍ at the end
+      const vector3<S> twice = second_at_end(end);
       for (int i = 0; i < 3; ++i) {
         const S& second = start[1][i];
         x[2][i] = second / 2;
@@ -100,6 +99,27 @@ public:
     return x;
   }
 
+  /// The cubic once more, where velocities and accelerations of the knots are known that agree with
+  /// each other: from its ends and ẍ there. However short the piece, differences of velocities are
+  /// not divided by h: the accelerations are met to rounding, and so are the velocities.
+  template <class S>
+  [[nodiscard]] std::array<vector3<S>, 4>
+  polynomial_of_accelerations(const std::array<vector3<S>, 2>& start,
+                              const std::array<vector3<S>, 2>& end) const {
+    static_assert(Order == 4);
+    std::array<vector3<S>, 4> x;
+    x[0] = vector3<S>::Constant(S(real(0)));
+    const vector3<S> last = second_at_end(end);
+    const real per_h = 1 / h_;
+    for (int i = 0; i < 3; ++i) {
+      const S& first = start[1][i];
+      x[1][i] = d_[i] * per_h - (2 * first + last[i]) * (h_ / 6);
+      x[2][i] = first / 2;
+      x[3][i] = (last[i] - first) * (per_h / 6);
+    }
+    return x;
+  }
+
   template <std::size_t Count, class S>
   struct end_rates {
     std::array<vector3<S>, Count> start, end;
@@ -110,10 +130,9 @@ public:
 
   /// w_0 … w_{Count−1} at both ends of the piece.
   template <std::size_t Count, class S>
-  [[nodiscard]] end_rates<Count, S> rates(const identity_coefficients& at_identity,
-                                          const knot_rates<S>& start,
-                                          const knot_rates<S>& end) const {
-    const auto x = polynomial(start, end);
+  [[nodiscard]] end_rates<Count, S>
+  rates(const identity_coefficients& at_identity,
+        const std::array<vector3<S>, std::size_t(Order)>& x) const {
     const auto shifted = taylor_shift<Count + 1>(x, h_);
     std::array<vector3<S>, Count> before, after;
     for (std::size_t k = 0; k < Count; ++k) {
@@ -125,6 +144,15 @@ public:
   }
 
 private:
+  /// ẍ at the end, where w and its derivative are given.
+  template <class S>
+  [[nodiscard]] vector3<S> second_at_end(const std::array<vector3<S>, 2>& end) const {
+    const vector3<S> zero = vector3<S>::Constant(S(real(0)));
+    const auto without =
+        half_body_rates(jacobian_, d_, std::array<vector3<S>, 2>{times_inverse(end[0]), zero});
+    return times_inverse(vector3<S>(end[1] - without[1]));
+  }
+
   template <class S>
   [[nodiscard]] vector3<S> times_inverse(const vector3<S>& w) const {
     vector3<S> v;
@@ -139,5 +167,33 @@ private:
   jacobian_coefficients<std::size_t(Order) - 1, T> jacobian_;
   matrix3<T> inverse_; ///< J(d)⁻¹
 };
+
+/// The cubic polynomials of a curve once more, from accelerations at its knots that are those of
+/// the longer piece there, which knows them best. \param steps  the lengths of the pieces \param
+/// knots  their number: one less than needed where the last is the first again
+template <class T>
+void share_accelerations(const std::vector<rotation_vector_segment<T, 4>>& pieces,
+                         const std::vector<real_type_t<T>>& steps, std::size_t knots,
+                         std::vector<std::array<vector3<T>, 4>>& polynomials) {
+  using R = real_type_t<T>;
+  const typename rotation_vector_segment<T, 4>::identity_coefficients at_identity(R(0));
+  std::vector<std::array<vector3<T>, 2>> rates(knots);
+  std::vector<R> lengths(knots, R(0));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const std::size_t next = (i + 1) % knots;
+    const auto w = pieces[i].template rates<2, T>(at_identity, polynomials[i]);
+    if (steps[i] > lengths[i]) {
+      rates[i] = w.start;
+      lengths[i] = steps[i];
+    }
+    if (steps[i] > lengths[next]) {
+      rates[next] = w.end;
+      lengths[next] = steps[i];
+    }
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    polynomials[i] = pieces[i].polynomial_of_accelerations(rates[i], rates[(i + 1) % knots]);
+  }
+}
 
 } // namespace duet::detail

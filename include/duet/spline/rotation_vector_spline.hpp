@@ -56,13 +56,35 @@ public:
   rotation_vector_spline(
       const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
       const std::vector<std::array<vector3<T>, std::size_t(Order) / 2 - 1>>& half_rates)
-      : spans_(clamped_knots(checked(parameters, elements, half_rates), 2)),
+      : spans_(clamped_knots(checked(parameters, elements, half_rates, "rates", 0), 2)),
         elements_(aligned_orientations(std::move(elements))) {
     pieces_.reserve(parameters.size() - 1);
     for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
       const segment s(parameters[i + 1] - parameters[i],
-                      log(conj(elements_[i]) * elements_[i + 1]).vec());
+                      detail::log_vector(detail::turn_between(elements_[i], elements_[i + 1]),
+                                         "rotation_vector_spline"));
       pieces_.push_back(s.polynomial(half_rates[i], half_rates[i + 1]));
+    }
+  }
+
+  /// The same with its polynomials as they are, constant term first: how to make a copy from
+  /// another curve's `knots()`, `elements()` and `pieces()`. Elements are normalised; signs are as
+  /// they are. \throws invalid_row as `unit_quaternions`, for parameters that do not increase and
+  /// where a piece does not lead to the next element; invalid_input for fewer than two rows or
+  /// counts that differ
+  rotation_vector_spline(const std::vector<real_type>& parameters,
+                         std::vector<quaternion<T>> elements,
+                         std::vector<std::array<vector3<T>, std::size_t(Order)>> pieces)
+      : spans_(clamped_knots(checked(parameters, elements, pieces, "pieces", 1), 2)),
+        elements_(unit_quaternions(std::move(elements))), pieces_(std::move(pieces)) {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const auto x =
+          detail::taylor_shift<1>(pieces_[i], real_type(parameters[i + 1] - parameters[i]));
+      const auto step = conj(elements_[i]) * elements_[i + 1];
+      const auto miss = detail::innermost_of(step - duet::exp(x[0]));
+      if (!(norm(miss) <= real_type(unit_norm_tolerance))) {
+        throw invalid_row(i + 1, "the piece before does not lead here");
+      }
     }
   }
 
@@ -70,19 +92,25 @@ public:
   [[nodiscard]] const std::vector<real_type>& knots() const { return spans_.breaks(); }
   /// Q_0 … Q_n
   [[nodiscard]] const std::vector<quaternion<T>>& elements() const { return elements_; }
+  /// x_i, by their coefficients.
+  [[nodiscard]] const std::vector<std::array<vector3<T>, std::size_t(Order)>>& pieces() const {
+    return pieces_;
+  }
 
 private:
   using polynomial = std::array<vector3<T>, std::size_t(Order)>;
   friend class piecewise_curve<rotation_vector_spline, real_type_t<T>>;
 
-  template <class Elements, class Rates>
+  /// \param missing  by how many fewer than the elements the parts must be
+  template <class Elements, class Parts>
   static const std::vector<real_type>& checked(const std::vector<real_type>& parameters,
-                                               const Elements& elements, const Rates& rates) {
+                                               const Elements& elements, const Parts& parts,
+                                               const char* what, std::size_t missing) {
     detail::check_rows(parameters, elements.size(), 2);
-    if (rates.size() != elements.size()) {
+    if (parts.size() + missing != elements.size()) {
       std::ostringstream message;
-      message << "duet: rotation_vector_spline: " << elements.size() << " rows need as many rates, "
-              << "got " << rates.size();
+      message << "duet: rotation_vector_spline: " << elements.size() << " rows need "
+              << elements.size() - missing << " " << what << ", got " << parts.size();
       throw invalid_input(message.str());
     }
     return parameters;

@@ -53,8 +53,13 @@ public:
   }
 
 private:
+  static constexpr double smallest_lambda = 1e-4;
+
   /// From x_ to the solution near it: steps with the last Jacobian while they gain much, with a new
-  /// one otherwise. False where a step with a new one does not halve the residual.
+  /// one otherwise. False where a step with a new one is not half as long as the one before.
+  ///
+  /// Steps are measured in relation to what they change, so that it does not matter how different
+  /// the equations' or the unknowns' sizes are.
   [[nodiscard]] bool descend(const equations& f) {
     using std::sqrt;
     const R epsilon = std::numeric_limits<R>::epsilon();
@@ -63,31 +68,33 @@ private:
     }
     bool is_new = true; // the Jacobian
     R moved(0);         // since it was new
-    for (R left = largest(residual_);;) {
+    R before = std::numeric_limits<R>::max();
+    for (;;) {
       matrix_.solve(residual_);
+      const R size = f.relative_step(x_, residual_);
+      if (!is_new && !(size <= before / 32)) {
+        if (!linearise(f)) {
+          return false;
+        }
+        is_new = true;
+        moved = R(0);
+        continue;
+      }
+      if (!(size <= before / 2)) {
+        return size <= sqrt(epsilon); // nothing but rounding is left
+      }
+      moved += largest(residual_);
       for (std::size_t k = 0; k < x_.size(); ++k) {
         x_[k] -= residual_[k];
       }
       ++iterations_;
-      const R step = largest(residual_);
-      moved += step;
       // The Jacobian is about as far off as x has moved: the next step would be less than rounding.
-      if (4 * moved * step <= epsilon) {
+      if (4 * moved * size <= epsilon) {
         return true;
       }
-      const R before = left;
+      before = size;
+      is_new = false;
       f.residuals(x_, residual_);
-      left = largest(residual_);
-      if (is_new && !(left <= before / 2)) {
-        return step <= sqrt(epsilon); // nothing but rounding is left
-      }
-      is_new = !(left <= before / 32);
-      if (is_new) {
-        if (!linearise(f)) {
-          return false;
-        }
-        moved = R(0);
-      }
     }
   }
 
@@ -113,7 +120,7 @@ private:
       } else {
         x_ = at;
         h /= 2;
-        if (h < R(1e-4)) {
+        if (h < smallest_lambda) {
           fail(lambda);
         }
       }
@@ -123,10 +130,18 @@ private:
   [[noreturn]] void fail(const R& lambda) const {
     const auto [angle, row] = full_.largest_turn();
     std::ostringstream message;
-    message << "duet: interpolate: with all steps between rows turning by no more than " << lambda
-            << " of their angles there is a curve, but it ends there; after " << iterations_
-            << " iterations. The largest step is " << angle << " rad, from row " << row
-            << " to the next";
+    message << "duet: interpolate: ";
+    if (lambda > 0) {
+      message << "with all steps between rows turning by no more than " << lambda
+              << " of their angles there is a curve, but it ends there";
+    } else {
+      message << "no curve was found, though steps between rows were let turn by no more than "
+              << smallest_lambda
+              << " of their angles: with these ends the parameters are too uneven,"
+              << " the longest interval is " << full_.unevenness() << " times the shortest";
+    }
+    message << "; after " << iterations_ << " iterations. The largest step is " << angle
+            << " rad, from row " << row << " to the next";
     throw no_convergence(message.str());
   }
 

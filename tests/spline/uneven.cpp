@@ -1,0 +1,247 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/message.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/tangent.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/interpolate_rotation_vectors.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+// Tables whose parameters are as uneven as they come, with rates that are not.
+
+namespace test_spline_uneven {
+namespace {
+
+using rotation = duet::quaternion<double>;
+using pose_type = duet::dual_quaternion<double>;
+using vector = duet::vector3<double>;
+using duet_test::random_source;
+template <class Q>
+using cumulative = duet::cumulative_bspline<typename Q::scalar_type>;
+template <class Q, int Order>
+using rotation_vectors = duet::rotation_vector_spline<typename Q::scalar_type, Order>;
+
+vector random_vector(random_source& random, double size) {
+  const auto d = random.direction<3>();
+  return vector(d[0], d[1], d[2]) * size;
+}
+
+template <class Q>
+struct table {
+  std::vector<double> u{0};
+  std::vector<Q> rows{Q(1.0)};
+};
+
+/// Rows at these intervals that turn, and move, at this rate about random axes. One that closes
+/// goes back the same way.
+template <class Q>
+table<Q> random_table(random_source& random, std::vector<double> intervals, double rate,
+                      bool closes = false) {
+  table<Q> t;
+  const std::size_t n = intervals.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    t.u.push_back(t.u.back() + intervals[i]);
+    const double turn = rate * intervals[i];
+    rotation step = duet::from_rotation_vector(random_vector(random, turn));
+    if constexpr (std::is_same_v<Q, rotation>) {
+      t.rows.push_back(t.rows.back() * step);
+    } else {
+      t.rows.push_back(t.rows.back() * duet::pose(step, random_vector(random, turn)));
+    }
+  }
+  for (std::size_t i = n; i-- > 0 && closes;) {
+    t.u.push_back(t.u.back() + intervals[i]);
+    t.rows.push_back(t.rows[i]);
+  }
+  return t;
+}
+
+std::vector<double> random_intervals(random_source& random, int count, double decades) {
+  std::vector<double> result;
+  for (int i = 0; i < count; ++i) {
+    result.push_back(std::pow(10, random.uniform(-decades / 2, decades / 2)));
+  }
+  return result;
+}
+
+double largest(const std::vector<double>& x) { return *std::max_element(x.begin(), x.end()); }
+
+/// By how much the curve with these ends misses the rows.
+template <class Spline, class Q, class Ends>
+double miss(const table<Q>& t, const Ends& ends) {
+  const Spline s = duet::interpolate<Spline>(t.u, t.rows, ends);
+  double worst = 0;
+  for (std::size_t i = 0; i < t.u.size(); ++i) {
+    const Q error = conj(t.rows[i]) * s(t.u[i]);
+    if constexpr (std::is_same_v<Q, rotation>) {
+      worst = std::max(worst, duet::rotation_vector(error).norm());
+    } else {
+      worst = std::max(worst, duet::rotation_vector(duet::rotation(error)).norm());
+      worst = std::max(worst, duet::translation(error).norm());
+    }
+  }
+  return worst;
+}
+
+template <template <class> class Spline, class Q>
+void check_ends(random_source& random) {
+  const std::vector<double> intervals = random_intervals(random, 4 + int(random.uniform(0, 8)), 12);
+  const double longest = largest(intervals);
+  const table<Q> t = random_table<Q>(random, intervals, 1 / longest);
+  using rate = typename duet::motion<typename Q::scalar_type>::rate_type;
+  const auto random_rate = [&](double size) {
+    rate r;
+    for (int i = 0; i < r.size(); ++i) {
+      r[i] = random.uniform(-size, size);
+    }
+    return r;
+  };
+  const rate first = random_rate(1 / longest), last = random_rate(1 / longest);
+  CHECK(miss<Spline<Q>>(t, duet::natural{}) < 1e-13);
+  CHECK(miss<Spline<Q>>(t, duet::clamped{first, last}) < 1e-13);
+  CHECK(miss<Spline<Q>>(t, duet::end_acceleration{rate(first / longest), rate(last / longest)}) <
+        1e-13);
+  const table<Q> round = random_table<Q>(random, intervals, 1 / longest, true);
+  CHECK(miss<Spline<Q>>(round, duet::periodic{}) < 1e-13);
+}
+
+template <class Q>
+using cubic = rotation_vectors<Q, 4>;
+
+} // namespace
+
+TEST_CASE("intervals of 1e-6 between those of 1e3, the same rate everywhere") {
+  random_source random(1);
+  for (int i = 0; i < 20; ++i) {
+    CAPTURE(i);
+    std::vector<double> intervals(5, 1e-6);
+    intervals[1] = intervals[3] = 1e3;
+    const auto t = random_table<rotation>(random, intervals, 1e-3);
+    CHECK(miss<cumulative<rotation>>(t, duet::natural{}) < 1e-13);
+    CHECK(miss<cubic<rotation>>(t, duet::natural{}) < 1e-13);
+  }
+}
+
+TEST_CASE("intervals over twelve decades, all ends that do not go on with a short piece") {
+  random_source random(2);
+  for (int i = 0; i < 6; ++i) {
+    CAPTURE(i);
+    check_ends<cumulative, rotation>(random);
+    check_ends<cubic, rotation>(random);
+  }
+  check_ends<cumulative, pose_type>(random);
+  check_ends<cubic, pose_type>(random);
+}
+
+TEST_CASE("a curve that does not exist is said not to: not-a-knot ends go on with a short piece") {
+  // The first piece is a cubic through three rows next to each other and one far away.
+  random_source random(3);
+  const auto t = random_table<rotation>(random, {1, 1e-5, 1e-5, 1e-5, 1}, 1);
+  const auto message = duet_test::message_of<duet::no_convergence>([&] {
+    static_cast<void>(duet::interpolate<cumulative<rotation>>(t.u, t.rows, duet::not_a_knot{}));
+  });
+  CHECK(message.find("with these ends the parameters are too uneven, the longest interval is "
+                     "100000 times the shortest") != std::string::npos);
+  CHECK(miss<cumulative<rotation>>(t, duet::natural{}) < 1e-13);
+}
+
+namespace {
+
+/// What the rounding of a derivative at a knot is compared with.
+enum class measure {
+  derivative, ///< the largest of the same derivative at the ends of the two pieces
+  terms ///< the largest of the terms h^{j−k} Q^(j) of their Taylor series, h a piece's length
+};
+
+/// The largest jumps of Q, Q′ … at the inner knots, in roundings.
+template <std::size_t Count, class Spline>
+std::array<double, Count> jumps(const Spline& s, const std::vector<double>& u, measure by) {
+  const auto at = [&](double x) {
+    const auto q = duet::derivatives<int(Count)>([&](const auto& p) { return s(p); }, x);
+    std::array<rotation, Count + 1> result;
+    std::copy(q.begin(), q.end(), result.begin());
+    return result;
+  };
+  const auto size = [](const rotation& q) { return std::sqrt(norm2(q)); };
+  std::array<double, Count> worst{};
+  for (std::size_t i = 1; i + 1 < u.size(); ++i) {
+    const double before = std::nextafter(u[i], u[0]);
+    const std::array at_ends = {at(u[i - 1]), at(before), at(u[i]), at(u[i + 1])};
+    for (std::size_t k = 0; k < Count; ++k) {
+      const double jump = size(at_ends[2][k] - at_ends[1][k]);
+      double step = 0, scale = 0;
+      for (std::size_t end = 0; end < 4; ++end) {
+        const auto& q = at_ends[end];
+        step = std::max(step, (u[i] - before) * size(q[k + 1]));
+        scale = std::max(scale, size(q[k]));
+        for (std::size_t j = 0; j < Count && by == measure::terms; ++j) {
+          const double h = end < 2 ? u[i] - u[i - 1] : u[i + 1] - u[i];
+          scale = std::max(scale, size(q[j]) * std::pow(h, int(j) - int(k)));
+        }
+      }
+      worst[k] = std::max(worst[k], (jump - step) / scale);
+    }
+  }
+  for (double& each : worst) {
+    each /= std::numeric_limits<double>::epsilon();
+  }
+  return worst;
+}
+
+} // namespace
+
+TEST_CASE("C² to rounding, the rotation vectors as the cumulative curve") {
+  random_source random(4);
+  std::array<double, 3> a{}, b{};
+  for (int i = 0; i < 20; ++i) {
+    const auto intervals = random_intervals(random, 6, i < 10 ? 6 : 9);
+    const auto t = random_table<rotation>(random, intervals, 1 / largest(intervals));
+    const auto x =
+        jumps<3>(duet::interpolate<cumulative<rotation>>(t.u, t.rows), t.u, measure::derivative);
+    const auto y =
+        jumps<3>(duet::interpolate<cubic<rotation>>(t.u, t.rows), t.u, measure::derivative);
+    for (std::size_t k = 0; k < 3; ++k) {
+      a[k] = std::max(a[k], x[k]);
+      b[k] = std::max(b[k], y[k]);
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    CAPTURE(k);
+    CHECK(a[k] < 1);
+    CHECK(b[k] < 1);
+  }
+}
+
+TEST_CASE("C⁴ to rounding: the quintic") {
+  random_source random(5);
+  std::array<double, 5> worst{};
+  for (int i = 0; i < 10; ++i) {
+    const auto intervals = random_intervals(random, 6, 2);
+    const auto t = random_table<rotation>(random, intervals, 1 / largest(intervals));
+    const auto s = duet::interpolate<rotation_vectors<rotation, 6>>(t.u, t.rows);
+    const auto x = jumps<5>(s, t.u, measure::terms);
+    for (std::size_t k = 0; k < 5; ++k) {
+      worst[k] = std::max(worst[k], x[k]);
+    }
+  }
+  for (std::size_t k = 0; k < 5; ++k) {
+    CAPTURE(k);
+    CHECK(worst[k] < 1);
+  }
+}
+
+} // namespace test_spline_uneven
