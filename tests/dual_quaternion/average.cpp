@@ -145,4 +145,16 @@ TEST_CASE("what has no mean") {
   CHECK(message(q, {0, 0}) == "duet: average: all weights are 0");
 }
 
+TEST_CASE("weights count in proportion, however large or small") {
+  const std::vector<duet::quaternion<double>> q = {
+      duet::from_rotation_vector(duet::vector3<double>(0.2, 0, 0)),
+      duet::from_rotation_vector(duet::vector3<double>(0, 0.4, 0))};
+  const auto expected = duet::average(q, {1, 3});
+  for (const double unit : {4e-324, 1e-310, 5e307}) {
+    CAPTURE(unit);
+    const auto found = duet::average(q, {unit, 3 * unit});
+    CHECK(duet::rotation_vector(conj(expected) * found).norm() <= 1e-15);
+  }
+}
+
 } // namespace test_dual_quaternion_average

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 // Distances of poses and of screw motions; poses as seven coordinates (N20, N21).
 
@@ -42,6 +43,31 @@ TEST_CASE("the distance is a metric that knows no fixed frame") {
   CHECK(distance(a, b, 0.0) == doctest::Approx(1).epsilon(1e-15));
   CHECK_THROWS_WITH_AS(static_cast<void>(distance(a, b, -1)),
                        "duet: distance: length is -1, not a number from 0 up", duet::invalid_input);
+}
+
+TEST_CASE("distances whose squares overflow, and the nearest place among such") {
+  const auto at = [](double x) {
+    return duet::pose(duet::quaternion<double>(1.0), vector(x, 0, 0));
+  };
+  for (const double size : {1e-320, 1e-200, 1e-160, 1e160, 1e300}) {
+    CAPTURE(size);
+    CHECK(distance(at(0), at(size), 1e-300) == doctest::Approx(size).epsilon(1e-15));
+    const auto slope = duet::derivative(
+        [&](const auto& x) {
+          using S = std::decay_t<decltype(x)>;
+          return distance(
+              duet::dual_quaternion<S>(at(0)),
+              duet::pose(duet::quaternion<S>(S(1.0)), duet::vector3<S>(x, S(0.0), S(0.0))), 0);
+        },
+        size);
+    CHECK(slope == doctest::Approx(1).epsilon(1e-15));
+  }
+  for (const double size : {1e-200, 1e200}) {
+    CAPTURE(size);
+    const auto motion = screw_parameters(conj(at(0)) * at(size));
+    CHECK(nearest_on_screw(at(0), motion, at(0.3 * size), size).tau ==
+          doctest::Approx(0.3).epsilon(1e-14));
+  }
 }
 
 TEST_CASE("a pose on a screw motion, and one beside it, is found again") {

@@ -4,13 +4,16 @@
 #include <duet/core/constants.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/distance.hpp>
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 
 #include <boost/math/tools/minima.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <type_traits>
 
@@ -51,6 +54,24 @@ template <class R, class F>
       .first;
 }
 
+/// e where the largest length is about 2^e and its square would overflow or vanish, otherwise 0.
+template <class T>
+[[nodiscard]] int extreme_exponent_of_lengths(const dual_quaternion<T>& start,
+                                              const screw_motion<T>& motion,
+                                              const dual_quaternion<T>& p, double length) {
+  using std::abs;
+  using R = real_type_t<T>;
+  R largest = std::max(R(abs(length)), R(abs(innermost(motion.translation))));
+  for (const vector3<T>& v : {translation(start), translation(p), motion.moment}) {
+    for (int i = 0; i < 3; ++i) {
+      largest = std::max(largest, R(abs(innermost(v[i]))));
+    }
+  }
+  const int e = binary_exponent(largest);
+  constexpr int limit = std::numeric_limits<R>::max_exponent;
+  return abs(e) > 2 * (limit / 5) ? std::clamp(e, 4 - limit, limit - 4) : 0;
+}
+
 } // namespace detail
 
 /// Where a screw motion comes nearest to a pose.
@@ -75,6 +96,18 @@ template <class T>
                                                  const screw_motion<T>& motion,
                                                  const dual_quaternion<T>& p, double length) {
   using R = real_type_t<T>;
+  if (const int e = detail::extreme_exponent_of_lengths(start, motion, p, length); e != 0) {
+    using std::ldexp;
+    const R unit = ldexp(R(1), -e);
+    const auto in_unit = [&](const dual_quaternion<T>& a) {
+      return duet::pose(rotation(a), vector3<T>(translation(a) * unit));
+    };
+    const screw_motion<T> scaled{motion.axis, vector3<T>(motion.moment * unit), motion.angle,
+                                 T(motion.translation * unit), motion.kind};
+    const T tau = nearest_on_screw(in_unit(start), scaled, in_unit(p), double(length * unit)).tau;
+    const dual_quaternion<T> there = detail::pose_on_screw(start, motion, tau);
+    return {tau, there, squared_distance(there, p, length)};
+  }
   const auto distance_at = [&](const auto& tau) {
     using S = std::decay_t<decltype(tau)>;
     return squared_distance(detail::pose_on_screw(start, motion, tau), dual_quaternion<S>(p),
