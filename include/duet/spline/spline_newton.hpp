@@ -133,15 +133,17 @@ private:
     message << "duet: interpolate: ";
     if (lambda > 0) {
       message << "with all steps between rows turning by no more than " << lambda
-              << " of their angles there is a curve, but it ends there";
+              << " of their angles there is a curve, but none was found that goes on from there";
     } else {
       message << "no curve was found, though steps between rows were let turn by no more than "
-              << smallest_lambda
-              << " of their angles: with these ends the parameters are too uneven,"
-              << " the longest interval is " << full_.unevenness() << " times the shortest";
+              << smallest_lambda << " of their angles";
     }
     message << "; after " << iterations_ << " iterations. The largest step is " << angle
             << " rad, from row " << row << " to the next";
+    if (const R ratio = full_.unevenness(); ratio >= 100) {
+      message << "; for these ends the parameters may be too uneven, the longest interval is "
+              << ratio << " times the shortest";
+    }
     throw no_convergence(message.str());
   }
 
