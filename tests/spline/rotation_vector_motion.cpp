@@ -96,6 +96,20 @@ TEST_CASE("Hermite curves take the rates they are given") {
   }
 }
 
+TEST_CASE("a copy from pieces is the same curve") {
+  const auto s = curve<4>(1.2);
+  const auto copy = spline<4>::from_pieces(s.knots(), s.elements(), s.pieces());
+  CHECK(copy.motion(0.3, duet::frame::body).jerk == s.motion(0.3, duet::frame::body).jerk);
+  auto pieces = s.pieces();
+  pieces[2][1] += vector(0.1, 0, 0);
+  CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>::from_pieces(s.knots(), s.elements(), pieces)),
+                       doctest::Contains("row 3: the piece before does not lead here"),
+                       duet::invalid_row);
+  pieces.pop_back();
+  CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>::from_pieces(s.knots(), s.elements(), pieces)),
+                       doctest::Contains("7 rows need 6 pieces, got 5"), duet::invalid_input);
+}
+
 TEST_CASE("hints change nothing; outside its domain the curve does as told") {
   auto s = curve<6>(1.2);
   duet::span_hint hint{77};

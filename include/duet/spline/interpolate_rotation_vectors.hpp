@@ -46,7 +46,7 @@ template <class Spline, class T, class Ends>
       *report = {newton.iterations(), 2 * double(newton.residual()),
                  double(equations.largest_turn().first)};
     }
-    return Spline(parameters, std::move(q), equations.polynomials(solution));
+    return Spline::from_pieces(parameters, std::move(q), equations.polynomials(solution));
   };
   if constexpr (Real<T>) {
     spline_newton newton(equations);

@@ -67,25 +67,27 @@ public:
     }
   }
 
-  /// The same with its polynomials as they are, constant term first: how to make a copy from
-  /// another curve's `knots()`, `elements()` and `pieces()`. Elements are normalised; signs are as
-  /// they are. \throws invalid_row as `unit_quaternions`, for parameters that do not increase and
-  /// where a piece does not lead to the next element; invalid_input for fewer than two rows or
-  /// counts that differ
-  rotation_vector_spline(const std::vector<real_type>& parameters,
-                         std::vector<quaternion<T>> elements,
-                         std::vector<std::array<vector3<T>, std::size_t(Order)>> pieces)
-      : spans_(clamped_knots(checked(parameters, elements, pieces, "pieces", 1), 2)),
-        elements_(unit_quaternions(std::move(elements))), pieces_(std::move(pieces)) {
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+  /// The curve with these polynomials, constant terms first: how to make a copy from another
+  /// curve's `knots()`, `elements()` and `pieces()`. Elements are normalised; signs are as they
+  /// are. \throws invalid_row as `unit_quaternions`, for parameters that do not increase and where
+  /// a piece does not lead to the next element; invalid_input for fewer than two rows or counts
+  /// that differ
+  [[nodiscard]] static rotation_vector_spline
+  from_pieces(const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
+              std::vector<std::array<vector3<T>, std::size_t(Order)>> pieces) {
+    checked(parameters, elements, pieces, "pieces", 1);
+    rotation_vector_spline result(made_of_pieces{}, clamped_knots(parameters, 2),
+                                  unit_quaternions(std::move(elements)), std::move(pieces));
+    for (std::size_t i = 0; i < result.pieces_.size(); ++i) {
       const auto x =
-          detail::taylor_shift<1>(pieces_[i], real_type(parameters[i + 1] - parameters[i]));
-      const auto step = conj(elements_[i]) * elements_[i + 1];
+          detail::taylor_shift<1>(result.pieces_[i], real_type(parameters[i + 1] - parameters[i]));
+      const auto step = conj(result.elements_[i]) * result.elements_[i + 1];
       const auto miss = detail::innermost_of(step - duet::exp(x[0]));
       if (!(norm(miss) <= real_type(unit_norm_tolerance))) {
         throw invalid_row(i + 1, "the piece before does not lead here");
       }
     }
+    return result;
   }
 
   /// u_0 … u_n
@@ -100,6 +102,11 @@ public:
 private:
   using polynomial = std::array<vector3<T>, std::size_t(Order)>;
   friend class piecewise_curve<rotation_vector_spline, real_type_t<T>>;
+
+  struct made_of_pieces {};
+  rotation_vector_spline(made_of_pieces, bspline_basis<2, real_type> spans,
+                         std::vector<quaternion<T>> elements, std::vector<polynomial> pieces)
+      : spans_(std::move(spans)), elements_(std::move(elements)), pieces_(std::move(pieces)) {}
 
   /// \param missing  by how many fewer than the elements the parts must be
   template <class Elements, class Parts>
