@@ -64,7 +64,8 @@ TEST_CASE("distances whose squares overflow, and the nearest place among such") 
   }
   for (const double size : {1e-200, 1e200}) {
     CAPTURE(size);
-    const auto motion = screw_parameters(conj(at(0)) * at(size));
+    auto motion = screw_parameters(at(1));
+    motion.translation = size;
     CHECK(nearest_on_screw(at(0), motion, at(0.3 * size), size).tau ==
           doctest::Approx(0.3).epsilon(1e-14));
   }

@@ -59,7 +59,8 @@ template <class T>
   if (!(largest > 0 && largest <= std::numeric_limits<R>::max())) {
     return sqrt(square); // zero, infinite or not a number
   }
-  const int e = binary_exponent(largest);
+  // 2^−e is a number too.
+  const int e = max(binary_exponent(largest), 4 - std::numeric_limits<R>::max_exponent);
   for (int i = 0; i < 3; ++i) {
     const T x = ldexp(move[i], -e);
     const T y = ldexp(T(R(length) * turn[i]), -e);
