@@ -26,7 +26,7 @@ namespace duet::detail {
 /// Unknown are the k/2 − 1 rates of each knot: derivatives of w in body axes. As many further
 /// derivatives must be the same on both sides of an inner knot, which involves the knot and its two
 /// neighbours; as many end conditions complete the system. The parameter is counted in units of
-/// about the longest step, so that all derivatives there have one size.
+/// about one step, so that all derivatives have one size.
 template <class T, int Order>
 class rotation_vector_equations {
   static constexpr std::size_t own = std::size_t(Order) / 2 - 1;
@@ -52,11 +52,7 @@ public:
     using std::frexp;
     using std::ldexp;
     int exponent = 0;
-    R longest(0);
-    for (std::size_t i = 0; i < last_; ++i) {
-      longest = std::max(longest, R(u[i + 1] - u[i]));
-    }
-    static_cast<void>(frexp(longest, &exponent));
+    static_cast<void>(frexp(R((u.back() - u.front()) / R(last_)), &exponent));
     unit_ = ldexp(R(1), exponent);
     steps_.reserve(last_);
     turns_.reserve(last_);
