@@ -62,9 +62,9 @@ class bspline_fit : bspline_residuals<T, Order> {
   using residual_type::unknowns;
 
 public:
-  bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> rows,
+  bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> elements,
               const fit_options& options)
-      : residual_type(basis, u, std::move(rows), R(options.length)), options_(options),
+      : residual_type(basis, u, std::move(elements), R(options.length)), options_(options),
         limits_(u.size(), R(options.outlier)) {
     if (is_robust()) {
       controls_ = medoids(basis, u, this->rows(), R(options.length));
@@ -199,13 +199,12 @@ private:
   /// ½ r² up to the limit, from there on along the tangent
   [[nodiscard]] R cost_of(const std::vector<element>& controls) const {
     R sum(0);
+    typename residual_type::last_span last;
     for (std::size_t i = 0; i < rows().size(); ++i) {
-      if (!counts(i)) {
-        continue;
+      if (const R limit = limits_[i]; limit > 0) { // the row counts
+        const R r = size_of(residual_at(i, controls, last));
+        sum += r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
       }
-      const R limit = limits_[i];
-      const R r = size_of(residual_at(i, controls));
-      sum += r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
     }
     return sum;
   }
@@ -215,28 +214,36 @@ private:
     const auto size = Eigen::Index(controls_.size()) * dimension;
     gradient_.setZero(size);
     std::vector<Eigen::Triplet<R>> entries;
-    entries.reserve(rows().size() * std::size_t(unknowns * (unknowns + 1) / 2));
+    typename residual_type::last_span last;
+    Eigen::Matrix<R, unknowns, unknowns> squares = Eigen::Matrix<R, unknowns, unknowns>::Zero();
+    const auto flush = [&] { // once for all rows on a span: else a million of them take gigabytes
+      const Eigen::Index at = Eigen::Index(last.first) * dimension;
+      for (int a = 0; a < unknowns && !last.varied.empty(); ++a) {
+        for (int b = 0; b <= a; ++b) {
+          entries.emplace_back(at + a, at + b, squares(a, b));
+        }
+      }
+      squares.setZero();
+    };
     for (std::size_t i = 0; i < rows().size(); ++i) {
       if (!counts(i)) {
         continue;
       }
-      const auto [value, slope] = this->linearised(i, controls_);
-      const R size = size_of(value);
-      const R weight = size <= limits_[i] ? R(1) : R(limits_[i] / size);
-      const Eigen::Index at = Eigen::Index(first()[i]) * dimension;
-      gradient_.segment(at, unknowns) -= weight * (slope.transpose() * value);
-      Eigen::Matrix<R, unknowns, unknowns> square = weight * (slope.transpose() * slope);
-      if (weight <
-          1) { // Huber's loss grows linearly: away from the row it has no second derivative
-        const Eigen::Matrix<R, unknowns, 1> along = slope.transpose() * (value / size);
-        square -= R(0.9) * weight * (along * along.transpose());
+      if (first()[i] != last.first) {
+        flush();
       }
-      for (int a = 0; a < unknowns; ++a) {
-        for (int b = 0; b <= a; ++b) {
-          entries.emplace_back(at + a, at + b, square(a, b));
-        }
+      const auto [value, slope] = this->linearised(i, controls_, last);
+      const R length = size_of(value);
+      const R weight = length <= limits_[i] ? R(1) : R(limits_[i] / length);
+      gradient_.segment(Eigen::Index(last.first) * dimension, unknowns) -=
+          weight * (slope.transpose() * value);
+      squares += weight * slope.transpose().lazyProduct(slope);
+      if (weight < 1) { // Huber's loss is linear there: along the residual it does not curve
+        const Eigen::Matrix<R, unknowns, 1> along = slope.transpose() * (value / length);
+        squares -= R(0.9) * weight * along.lazyProduct(along.transpose());
       }
     }
+    flush();
     normal_.resize(size, size);
     normal_.setFromTriplets(entries.begin(), entries.end());
   }
