@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// What the paper prints, and what is true: the printed formulas that duet knows to be wrong,
-/// judged against automatic differentiation beside the true ones, and where a verdict may depend on
-/// how the basis functions are numbered, under both readings. Prints the table of
-/// docs/printed_formulas.md; ends with 1 where a verdict is not the expected one.
+/// What the paper prints, and what is true: the formulas of the copy at hand that are, as
+/// they stand, not true, judged against automatic differentiation beside the true ones, and where a
+/// verdict may depend on how the basis functions are numbered, under both readings. Prints the
+/// table of docs/printed_formulas.md; ends with 1 where a verdict is not the expected one.
 
 #include "support/program.hpp"
 

@@ -68,9 +68,9 @@ void check(const std::string& name, const F& f, double a, double b) {
 }
 
 #define DUET_FUNCTION(f)                                                                           \
-#f, [](const auto&... x) {                                                                       \
+#f, [](const auto&... argument) {                                                                       \
     using std::f;                                                                                  \
-    return f(x...);                                                                                \
+    return f(argument...);                                                                                \
   }
 
 template <class Visit>

@@ -114,8 +114,8 @@ TEST_CASE_TEMPLATE("derivatives of gamma functions to the fifth", T, float, doub
       inputs.push_back(x);
     }
     for (const T offset : {T(0.01), T(1e-4), T(64 * epsilon)}) { // the poles
-      inputs.push_back(-T(n) + offset * (n + 1));
-      inputs.push_back(-T(n) - offset * (n + 1));
+      inputs.push_back(-T(n) + offset * T(n + 1));
+      inputs.push_back(-T(n) - offset * T(n + 1));
     }
   }
   // Zeros of lgamma and of ψ, the ends of the cases, far out.

@@ -16,7 +16,7 @@
 #include <vector>
 
 // Every function as a formula beside the same over dual numbers: values and derivatives by the
-// same rules, so the same digits, wherever it is.
+// same rules, so within 4 ulp of each other, wherever it is.
 
 namespace test_expression_functions {
 namespace {

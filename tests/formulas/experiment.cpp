@@ -63,7 +63,7 @@ constexpr auto vector = argument::vector;
 
 formula angular_velocity_from_angles() {
   return make_formula(
-      "P5", R"(\delta = A_K\,[\psi', \theta', \phi']^\top)", "euler_rate_matrix",
+      "P5", R"(\delta = A\,[\psi', \theta', \phi']^\top)", "euler_rate_matrix",
       "quaternion/euler.hpp", {vector, vector},
       []<class T>(const numbers<T>& x) {
         return all<T>(
@@ -80,7 +80,7 @@ formula angular_velocity_from_angles() {
 formula its_derivative() {
   return make_formula(
       "P5",
-      R"(\tfrac{\partial\delta}{\partial u} = A_K'\,[\psi', \theta', \phi']^\top + A_K\,[\psi'', \theta'', \phi'']^\top)",
+      R"(\tfrac{\partial\delta}{\partial u} = A'\,[\psi', \theta', \phi']^\top + A\,[\psi'', \theta'', \phi'']^\top)",
       "derivative, euler_rate_matrix", "quaternion/euler.hpp", {vector, vector, vector},
       []<class T>(const numbers<T>& x) {
         const auto delta = [&](const auto& u) {

@@ -82,7 +82,7 @@ expression_route twists() {
   return route;
 }
 
-/// N19 as printed; the exponent moves.
+/// N19; the exponent moves.
 expression_route screw_interpolation() {
   constexpr vector_symbol<"s"> s;
   constexpr symbol<"tau"> tau;

@@ -33,7 +33,7 @@ constexpr vector_symbol<"dv"> dv;
 constexpr symbol<"rho"> rho;
 constexpr symbol<"drho"> drho;
 
-/// N8: E and G row by row as printed.
+/// N8: E and G row by row.
 expression_route rate_matrices() {
   constexpr symbol<"q0"> q0;
   constexpr symbol<"q1"> q1;
@@ -56,7 +56,7 @@ expression_route rate_matrices() {
   return expression_route("N8", "rate_matrix").part(c<2> * e, inputs).part(c<2> * g, inputs);
 }
 
-/// N9 as printed; the exponent moves.
+/// N9; the exponent moves.
 expression_route interpolation() {
   const auto a = exp(v / c<2>);
   const auto b = exp(w / c<2>);

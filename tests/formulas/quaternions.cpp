@@ -184,7 +184,7 @@ formula rate_matrices() {
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        // Row by row as printed.
+        // Row by row.
         const auto e = [](const q4<T>& q, const q4<T>& p) {
           return v3<T>{T(2 * (-q[1] * p[0] + q[0] * p[1] - q[3] * p[2] + q[2] * p[3])),
                        T(2 * (-q[2] * p[0] + q[3] * p[1] + q[0] * p[2] - q[1] * p[3])),

@@ -189,7 +189,7 @@ TEST_CASE("orthogonal polynomials, at the ends too") {
       [](double x) { return std::legendre(4, x); },
       [](const R& x) -> R { return (35 * x * x * x * x - 30 * x * x + 3) / 8; }, at);
   check(
-      "P43", [](const auto& x) { return assoc_legendre(4, 2, x); },
+      "P42", [](const auto& x) { return assoc_legendre(4, 2, x); },
       [](double x) { return std::assoc_legendre(4, 2, x); },
       [](const R& x) -> R { return (1 - x * x) * (105 * x * x - 15) / 2; }, at);
   check(

@@ -124,7 +124,7 @@ TEST_CASE("N7: rate and angular velocity are inverse") {
   }
 }
 
-TEST_CASE("N8: E and G as printed, ω = 2 E q̇ = 2 R G q̇, E Gᵀ = R") {
+TEST_CASE("N8: E and G, ω = 2 E q̇ = 2 R G q̇, E Gᵀ = R") {
   const quaternion<double> named(10, 1, 2, 3);
   Eigen::Matrix<double, 3, 4> e;
   e << -1, 10, -3, 2, -2, 3, 10, -1, -3, -2, 1, 10;

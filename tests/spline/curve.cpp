@@ -67,8 +67,8 @@ TEST_CASE("P2: the curve is the product over all control quaternions") {
   });
 }
 
-TEST_CASE(
-    "P2 as printed: the first exponent B̃_0 is right but for the first span, where it is B̃_{−1}") {
+TEST_CASE("P2 as printed, functions from B_{−1}: the first exponent B̃_0 is right but for the first "
+          "span") {
   const auto knots = knot_vectors(4)[1].knots;
   const auto s = random_curve<4>(knots, 1);
   const quaternion first = s.controls().front();

@@ -126,7 +126,7 @@ TEST_CASE_TEMPLATE("the loops by which time runs", Spline, cumulative, quintic) 
   CHECK(beyond_the_end > 50); // else the loops tell nothing
 }
 
-TEST_CASE("the issue's own step beyond; float; the printed formulas; rows of a fit") {
+TEST_CASE("a step of 3e-16 beyond the end; float; the printed formulas; rows of a fit") {
   const auto s = curve_over<cumulative>(0, 4);
   CHECK(s(4 * (1 + 3e-16)) == s(4));
   CHECK(duet::printed_derivative(s, 4 * (1 + 3e-16)).commuting_second ==

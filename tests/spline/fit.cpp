@@ -311,7 +311,8 @@ TEST_CASE("bad input is named") {
   CHECK(message(steps(1, 40), rows) ==
         "duet: fit: too few rows for control element 4, which acts on parameters from 1 to 5: use "
         "fewer knots there");
-  CHECK(message(u, rows, {.length = 0}) == "duet: fit: length 0 and outlier inf must be positive");
+  CHECK(message(u, rows, {.length = 0}) ==
+        "duet: fit: length 0 and outlier inf: the length must be positive, the limit not negative");
   auto repeated = u;
   repeated[8] = repeated[7];
   CHECK(message(repeated, rows) ==

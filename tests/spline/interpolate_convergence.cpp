@@ -62,7 +62,8 @@ struct truth {
   vector velocity, acceleration;
 };
 
-/// Largest errors: value, ω, α, Q″ of the curve, Q″ by the commuting sum (P4 as printed).
+/// Largest errors: value, ω, α, Q″ of the curve, Q″ by the commuting sum (P4 with its basis
+/// corrected).
 using errors = std::array<double, 5>;
 
 /// Errors between the parameters a and b of a table with so many steps.

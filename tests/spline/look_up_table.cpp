@@ -153,7 +153,7 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
   const auto is_told = [](const std::string& message) {
     return message.ends_with(duet::detail::known_columns);
   };
-  // The table, and that of a recording without its comment: w last or first?
+  // A table without names, and that of a recording without its comment: w last or first?
   for (const char* unnamed :
        {"0,.3,.9,.3,.1\n", "1305031098.6659,1.3563,0.6305,1.6380,0.6132,0.5962,"
                            "-0.3311,-0.3986\n"}) {

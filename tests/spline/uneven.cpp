@@ -139,7 +139,8 @@ TEST_CASE("intervals over twelve decades, all ends that do not go on with a shor
   CHECK(miss<cumulative<pose_type>>(t, duet::natural{}) < 1e-13);
 }
 
-TEST_CASE("a curve that does not exist is said not to: not-a-knot ends go on with a short piece") {
+TEST_CASE(
+    "where no curve is found the unevenness is told: not-a-knot ends go on with a short piece") {
   // The first piece is a cubic through three rows next to each other and one far away.
   random_source random(3);
   const auto t = random_table<rotation>(random, {1, 1e-5, 1e-5, 1e-5, 1}, 1);

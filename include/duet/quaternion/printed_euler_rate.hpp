@@ -6,14 +6,15 @@
 #include <cmath>
 
 /// \file
-/// A formula as the literature prints it, kept beside the true one of euler.hpp for comparison.
+/// A formula as the copy at hand of the paper has it, kept beside the true one of euler.hpp for
+/// comparison.
 
 namespace duet {
 
 /// P5 as the copy at hand has it: the matrix A_K with ω = A_K [φ′, θ′, ψ′]ᵀ in spatial axes, for
-/// R = R_z(ψ) R_y(θ) R_x(φ), **with a slip**: its element (3, 1) reads −sin ψ. Columns are axes of
-/// rotation, of length 1; with −sin ψ the first is not, so that no sequence of Euler angles has
-/// this matrix.
+/// R = R_z(ψ) R_y(θ) R_x(φ), **with a slip, of the copy or of the print**: its element (3, 1) reads
+/// −sin ψ. Columns are axes of rotation, of length 1; with −sin ψ the first is not, so that no
+/// sequence of Euler angles has this matrix.
 ///
 /// The true one, −sin θ, is in `euler_rate_matrix<zyx>(psi, theta)`, whose columns are in the
 /// order of the letters: ψ′, θ′, φ′. The two agree where sin ψ = sin θ.

@@ -36,8 +36,8 @@ struct fit_options {
   double length = 1;
   /// A residual beyond this counts by its size, not by its square (Huber's loss), and rows that are
   /// farther off than four times this, and twelve times the median of those around, do not count:
-  /// outliers of any size leave the curve where it is. Zero: three times the median residual.
-  /// Infinite: plain least squares.
+  /// outliers however far leave the curve where the others take it. Zero: three times the median
+  /// residual. Infinite: plain least squares.
   double outlier = std::numeric_limits<double>::infinity();
   int max_iterations = 100;
 };

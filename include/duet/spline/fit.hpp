@@ -71,13 +71,14 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 } // namespace detail
 
 /// The curve of type `Spline` with these knots that is nearest to given rotations or poses: Σ
-/// ρ(|2 log(S(uᵢ)* Qᵢ)|) is least, ρ(r) = ½ r² up to `options.outlier`.
+/// ρ(|2 log(S(uᵢ)* Qᵢ)|) is least, ρ(r) = ½ r² up to `options.outlier`,
+/// and rows far beyond it do not count (`fit_options::outlier`).
 ///
 /// Time and memory are linear in the number of rows. The signs of the rows do not matter.
 /// \param knots  of the curve, `clamped_knots(few_parameters, Order)` say; more smoothing by fewer
 /// \throws invalid_row for a row that is not finite, not a unit, outside the knots' domain or does
 ///         not follow the row before; invalid_input for counts that differ, too few rows somewhere,
-///         a length or limit that is not positive; no_convergence
+///         a length that is not positive, a limit that is negative; no_convergence
 template <class Spline, class R, class T>
 [[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> rows,
                                      std::vector<R> knots, const fit_options& options = {}) {
@@ -93,7 +94,7 @@ template <class Spline, class R, class T>
   detail::check_rows(parameters, rows.size(), 0);
   if (!(options.length > 0) || !(options.outlier >= 0)) {
     message << "duet: fit: length " << options.length << " and outlier " << options.outlier
-            << " must be positive";
+            << ": the length must be positive, the limit not negative";
     throw invalid_input(message.str());
   }
   const bspline_basis<Spline::order, R> basis(std::move(knots));

@@ -162,8 +162,8 @@ interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<qua
 /// rounding. Against smooth motion the cubic is third-order accurate in value, second in velocity,
 /// first in acceleration.
 /// \throws invalid_row for a row that no curve can go through; invalid_input where there are too
-/// few rows, the counts differ or an end rate is not finite; no_convergence where neighbours are so
-/// far apart that there is no curve any more
+/// few rows, the counts differ or an end rate is not finite; no_convergence where no curve was
+/// found: neighbours very far apart, or parameters too uneven for the ends
 template <class Spline, class T, class Ends = natural>
   requires std::same_as<Spline, cumulative_bspline<T, 4>>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,

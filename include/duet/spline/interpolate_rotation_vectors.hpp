@@ -88,8 +88,8 @@ template <class Spline, class T, class Ends>
 /// acceleration; the quintic sixth, fifth and fourth.
 /// \throws invalid_row for a row that no curve can go through; invalid_input where there are too
 /// few rows (not_a_knot takes as many as the order, clamped and accelerated quintics four), the
-/// counts differ or an end rate is not finite; no_convergence where neighbours are so far apart
-/// that there is no curve any more
+/// counts differ or an end rate is not finite; no_convergence where no curve was found:
+/// neighbours very far apart, or parameters too uneven for the ends
 template <class Spline, class T, class Ends = natural>
   requires detail::is_rotation_vector_spline<Spline>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,

@@ -111,9 +111,9 @@ template <Real R>
 /// B_i^k(u) by the recurrence of de Boor and Cox (P1): order k, degree k − 1.
 ///
 /// The intervals are half-open, [u_i, u_{i+1}); only the last non-empty one of the domain [u_{k−1},
-/// u_m] is closed. (Closed at both ends, as the paper prints them, two would count at every knot
-/// and the functions would not sum to 1.) A term whose denominator is zero is zero. This is the
-/// definition; `bspline_basis` is the fast way.
+/// u_m] is closed. (Closed at both ends, as our copy of the paper has them, two would count at
+/// every knot and the functions would not sum to 1.) A term whose denominator is zero is zero. This
+/// is the definition; `bspline_basis` is the fast way.
 template <Real R>
 [[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u) {
   return detail::bspline_value(knots, i, order, u, knots[knots.size() - std::size_t(order)]);
