@@ -159,7 +159,7 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
 }
 
 template <class Tag = void, class F, class X, FrameConstant Frame>
-  requires(!HasOwnJacobian<F> && !ManifoldPoint<X>)
+  requires(!HasOwnJacobian<F> && !ManifoldPoint<X> && requires { sizeof(structure<X>); })
 void jacobian(F&&, const X&, Frame) {
   static_assert(ManifoldPoint<X>, "duet: no tangent coordinates are known of this type; those of "
                                   "rotations are in <duet/quaternion/tangent.hpp>, of poses in "
