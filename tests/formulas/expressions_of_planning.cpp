@@ -186,9 +186,9 @@ expression_route steps_along_path() {
   const auto step = step_of_joints(.25);
   return expression_route("N25", "resolved_step", "twice that of N23", by,
                           [=](const numbers<double>& x, const numbers<double>& d) {
-                            const numbers<double> y = step(x, d);
-                            numbers<double> next(y.begin(), y.begin() + 7),
-                                dnext(y.begin() + 7, y.end());
+                            const numbers<double> end = step(x, d);
+                            numbers<double> next(end.begin(), end.begin() + 7),
+                                dnext(end.begin() + 7, end.end());
                             next.insert(next.end(), x.begin() + 13, x.end());
                             dnext.insert(dnext.end(), d.begin() + 13, d.end());
                             return step(next, dnext);
