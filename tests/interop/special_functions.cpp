@@ -24,6 +24,7 @@ using duet_test::worst_error;
 using R = duet_test::real_100;
 
 const R pi = acos(R(-1));
+constexpr double pi_half = 1.5707963267948966;
 
 /// f against the values `standard` and derivatives of `exact`.
 template <class F, class Standard, class Exact>
@@ -182,6 +183,24 @@ TEST_CASE("exponential integral, zeta and beta") {
         doctest::Approx(0.35506593315177356).epsilon(1e-14));
 }
 
+TEST_CASE("zeta where its factors leave the range, and beside 0") {
+  using D = duet::dual<double>;
+  const auto slope = [](double s) { return riemann_zeta(D::variable(s)).epsilon(); };
+  CHECK(slope(50) == doctest::Approx(-std::log(2) * std::pow(2.0, -50)).epsilon(1e-8).scale(0));
+  for (const double s : {400.0, 1e14, 1e30, 1e300}) {
+    CHECK(std::abs(slope(s)) <= std::pow(2.0, -s));
+  }
+  CHECK(slope(-1e-20) == doctest::Approx(-0.91893853320467274178).epsilon(1e-14)); // −½ log 2π
+  CHECK(slope(-0.2) == doctest::Approx(slope(-0.2 - 1e-14)).epsilon(1e-12));
+  CHECK(slope(-0.25) == doctest::Approx(slope(-0.25 - 1e-14)).epsilon(1e-12));
+  // At −2n: (−1)ⁿ (2n)! ζ(2n + 1)/(2 (2π)²ⁿ)
+  for (const int n : {1, 60, 85, 86, 100, 125}) {
+    const double size = 0.5 * double(exp(R(lgamma(R(2 * n + 1)) - 2 * n * log(R(2 * pi)))) *
+                                     std::riemann_zeta(2 * n + 1));
+    CHECK(slope(-2 * n) == doctest::Approx(n % 2 == 0 ? size : -size).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("orthogonal polynomials, at the ends too") {
   const auto at = {-1.0, -0.6, 0.0, 0.3, 1.0};
   check(
@@ -217,7 +236,47 @@ TEST_CASE("orthogonal polynomials, at the ends too") {
       [](const R& x) -> R { return x * x / 2 - 3 * x + 3; }, {0, 0.3, 1});
 }
 
+TEST_CASE("associated Legendre functions of odd order at the ends") {
+  using D = duet::dual<double>;
+  for (const double x : {-1.0, 1.0}) {
+    for (const unsigned m : {3u, 5u}) { // of (1 − x²)^(m/2)
+      CHECK(assoc_legendre(5, m, D::variable(x)).value() == 0);
+      CHECK(assoc_legendre(5, m, D::variable(x)).epsilon() == 0);
+    }
+  }
+  // P_5^5 = 945 (1 − x²)^(5/2): its second derivative is 945 · 15 x² √(1 − x²) − 945 · 5 (1 −
+  // x²)^(3/2)
+  CHECK(assoc_legendre(5, 5, duet::taylor<double, 2>::variable(1)).derivative(2) == 0);
+}
+
+TEST_CASE("spherical harmonics of orders whose factorials leave the range") {
+  using D = duet::dual<double>;
+  struct place {
+    unsigned l, m;
+    double theta;
+  };
+  for (const auto [l, m, theta] : {place{100, 100, pi_half}, place{100, 99, 1.1}, place{60, 7, 1.1},
+                                   place{60, 60, 2.0}, place{40, 33, 0.7}, place{5, 0, 0.4}}) {
+    const D y = sph_legendre(l, m, D::variable(theta));
+    const double value = std::sph_legendre(l, m, theta);
+    CHECK(y.value() == doctest::Approx(value).epsilon(1e-11).scale(0));
+    // Y′ = m cot θ Y_l^m + √((l − m)(l + m + 1)) Y_l^(m+1)
+    const double next =
+        m < l ? std::sqrt(double((l - m) * (l + m + 1))) * std::sph_legendre(l, m + 1, theta) : 0;
+    const double slope = m / std::tan(theta) * value + next;
+    CHECK(std::abs(y.epsilon() - slope) <= 1e-10 * (l + 1) * std::abs(value));
+  }
+  CHECK(sph_legendre(3, 4, D::variable(0.7)).value() == 0);
+}
+
 TEST_CASE("functions of Boost.Math that duet has in their place") {
+  for (const double x : {9.0, 1e5, 1e80, 1e155, -1e300}) { // sin x/x
+    const auto y = boost::math::sinc_pi(duet::taylor<double, 2>::variable(x));
+    const double s = std::sin(x) / x, c = std::cos(x) / x;
+    CHECK(y.value() == doctest::Approx(s).epsilon(1e-15).scale(0));
+    CHECK(y.derivative(1) == doctest::Approx(c - s / x).epsilon(1e-14).scale(0));
+    CHECK(y.derivative(2) == doctest::Approx(-s - 2 * (c - s / x) / x).epsilon(1e-13).scale(0));
+  }
   const auto at_zero = boost::math::sinc_pi(duet::taylor<double, 6>::variable(0));
   CHECK(at_zero.derivative(4) == doctest::Approx(0.2).epsilon(1e-15));
   CHECK(at_zero.derivative(6) == doctest::Approx(-1.0 / 7).epsilon(1e-15));

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/dual/functions.hpp>
 #include <duet/dual/stumpff.hpp>
 
@@ -52,7 +54,10 @@ using duet::tgamma;
 /// sin x/x
 template <duet::RealInfinitesimal D>
 [[nodiscard]] inline D sinc_pi(D x) {
-  return duet::stumpff<1>(D(x * x));
+  const auto value = duet::innermost(x);
+  return duet::select( // of large numbers the square leaves the range, or its powers do
+      value * value > 64, [&] { return D(sin(x) / x); },
+      [&] { return D(duet::stumpff<1>(D(x * x))); });
 }
 template <duet::RealInfinitesimal D>
 [[nodiscard]] inline D lambert_w0(D x) {

@@ -197,16 +197,18 @@ template <class D>
   return {first, first * (1 - sum)};
 }
 
-/// ζ(s) by Euler's and Maclaurin's formula, for s < 0 by that of 1 − s.
+/// ζ(s) by Euler's and Maclaurin's formula, for s clearly below 0 by that of 1 − s.
 template <class D>
 [[nodiscard]] D zeta_of(const D& s) {
   using real = real_type_t<D>;
-  if (innermost(s) < 0) { // 2 (2π)^(s−1) sin(πs/2) Γ(1 − s) ζ(1 − s); whole periods go first
+  if (innermost(s) < real(-0.25)) {
+    // 2 (2π)^(s−1) sin(πs/2) Γ(1 − s) ζ(1 − s); whole periods go first, and Γ, which would
+    // overflow, is taken in halves: Γ(x) = 2^(x−1)/√π Γ(x/2) Γ((x + 1)/2).
     const real whole = 4 * std::floor(innermost(s) / 4);
     const D other = 1 - s;
     const real pi = constant::pi<real>();
-    return 2 * pow(real(2 * pi), D(-other)) * sin(D((s - whole) * (pi / 2))) * tgamma(other) *
-           zeta_of(other);
+    return pow(pi, D(-other - real(0.5))) * tgamma(D(other / 2)) * tgamma(D((other + 1) / 2)) *
+           sin(D((s - whole) * (pi / 2))) * zeta_of(other);
   }
   constexpr int terms = 8;
   const real n(terms);
@@ -215,6 +217,9 @@ template <class D>
     sum = sum + pow(real(k), D(-s));
   }
   const D power = pow(n, D(-s));
+  if (innermost(power) == 0) {
+    return sum; // what it multiplies overflows
+  }
   D rising = s / n; // s (s + 1) … (s + 2k − 2)/n^(2k−1)
   D tail = real(0.5) + n / (s - 1);
   // B₂ₖ/(2k)!
@@ -256,14 +261,30 @@ template <class D>
   return p;
 }
 
-/// xᵐ
+/// √((2l + 1)/4π (l − m)!/(l + m)!) P_l^m, upwards from that of l = m, x = cos θ and s = −sin θ.
+/// Factors near 1 in place of factorials, which leave the range.
 template <class D>
-[[nodiscard]] D whole_power(const D& x, unsigned m) {
-  D result(1);
-  for (unsigned k = 0; k < m; ++k) {
-    result = result * x;
+[[nodiscard]] D normalized_legendre(unsigned l, unsigned m, const D& x, const D& s) {
+  using std::sqrt;
+  using real = real_type_t<D>;
+  if (m > l) {
+    return D(0);
   }
-  return result;
+  D below(0), p(real(sqrt(1 / (4 * constant::pi<real>()))));
+  for (unsigned k = 1; k <= m; ++k) {
+    p = p * (real(sqrt(1 + 1 / (2 * real(k)))) * s);
+  }
+  const real order(m);
+  real b(0);
+  for (unsigned k = m; k < l; ++k) {
+    const real n = real(k) + 1;
+    const real a = sqrt((4 * n * n - 1) / ((n - order) * (n + order)));
+    const D above = a * (x * p - b * below);
+    b = 1 / a;
+    below = p;
+    p = above;
+  }
+  return p;
 }
 
 } // namespace detail

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/parts.hpp>
@@ -15,8 +14,10 @@
 
 /// \file
 /// The special functions that `<cmath>` has since C++17, over dual and Taylor numbers: values by
-/// Boost.Math, derivatives of every order by recurrences. Names, arguments and signs are those of
-/// `<cmath>`. Orders, degrees, moduli and characteristics are plain numbers, see docs/boost.md.
+/// Boost.Math, but of Legendre's, Hermite's and Laguerre's by recurrences; derivatives of every
+/// order by recurrences, but not of comp_ellint_1 and comp_ellint_2 at k = ±1. Names, arguments and
+/// signs are those of `<cmath>`. Orders, degrees, moduli and characteristics are plain numbers, see
+/// docs/boost.md.
 ///
 /// A header of its own, for Boost's take a compiler seconds.
 
@@ -105,24 +106,16 @@ template <SpecialArgument D>
 /// (1 − x²)^(m/2) dᵐP_l/dxᵐ, without the sign (−1)ᵐ.
 template <SpecialArgument D>
 [[nodiscard]] D assoc_legendre(unsigned l, unsigned m, const D& x) {
-  using std::sqrt;
-  const D square = detail::one_minus_square(x);
-  const D even = detail::whole_power(square, m / 2);
-  return detail::legendre_by_recurrence(l, m, x, m % 2 == 0 ? even : D(even * sqrt(square)));
+  using std::pow;
+  const D power = pow(detail::one_minus_square(x), real_type_t<D>(m) / 2);
+  return detail::legendre_by_recurrence(l, m, x, power);
 }
 /// Y_l^m(θ, 0), with the sign (−1)ᵐ.
 template <SpecialArgument D>
 [[nodiscard]] D sph_legendre(unsigned l, unsigned m, const D& theta) {
   using std::cos;
   using std::sin;
-  using std::sqrt;
-  using real = real_type_t<D>;
-  real square = real(2 * l + 1) / (4 * constant::pi<real>());
-  for (unsigned k = l - m + 1; m <= l && k <= l + m; ++k) {
-    square = square / real(k);
-  }
-  const D power = detail::whole_power(D(-sin(theta)), m);
-  return real(sqrt(square)) * detail::legendre_by_recurrence(l, m, D(cos(theta)), power);
+  return detail::normalized_legendre(l, m, D(cos(theta)), D(-sin(theta)));
 }
 /// H_n(x), of physicists: H_1 = 2x.
 template <SpecialArgument D>
