@@ -192,4 +192,32 @@ TEST_CASE("third and mixed derivatives are those of the rules too") {
   CHECK(swapped(x = a, y = b) == doctest::Approx(exact).epsilon(1e-14));
 }
 
+namespace {
+
+int slopes_counted = 0;
+
+struct counted_rule {
+  template <class T>
+  T value(const T& t) const {
+    return t * t * t;
+  }
+  template <class T>
+  T slope(const T& t, const T&) const {
+    ++slopes_counted;
+    return 3 * t * t;
+  }
+};
+struct counted : duet::expression::detail::function<counted, counted_rule> {
+  static constexpr duet::expression::detail::function_name name = {"counted", ""};
+};
+
+} // namespace
+
+TEST_CASE("a second derivative evaluates the rule's slope once") {
+  const auto second = derivative(derivative(duet::expression::apply<counted>(x), x), x);
+  slopes_counted = 0;
+  CHECK(second(x = 2.0) == 12);
+  CHECK(slopes_counted == 1);
+}
+
 } // namespace test_expression_functions

@@ -85,7 +85,13 @@ struct partial {
             return a;
           }
         };
-        const D moving_value(R(y), R(Function::template slope_at<last_argument>(R(y), x...)));
+        const auto moving_value = [&] {
+          if constexpr (Function::slopes_take_value) {
+            return D(R(y), R(Function::template slope_at<last_argument>(R(y), x...)));
+          } else {
+            return R(y);
+          }
+        }();
         using lower = partial<Function, (Orders - int(K == last_argument))...>;
         return lower::at(moving_value, moved(std::bool_constant<K == last_argument>{}, x)...)
             .epsilon();
