@@ -16,6 +16,8 @@
 /// The smooth functions of `<cmath>`, and `midpoint`, over dual and Taylor numbers. Values are
 /// those of the standard library; derivatives are in rules.hpp and its like. Complex numbers have
 /// those of `<complex>` that are in complex.hpp's list.
+///
+/// By value where Boost.Math declares f(T): with const D& neither would be more specialised.
 
 namespace duet {
 

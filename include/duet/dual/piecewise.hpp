@@ -14,6 +14,8 @@
 /// \file
 /// The functions of `<cmath>` that are linear, constant or chosen piece by piece, over dual and
 /// Taylor numbers; and classification. All decide by the innermost value.
+///
+/// By value where Boost.Math declares f(T): with const D& neither would be more specialised.
 
 namespace duet {
 
