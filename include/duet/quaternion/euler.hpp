@@ -62,6 +62,16 @@ template <euler_sequence Sequence, class T>
           T(Sequence.sign() * v[std::size_t(Sequence.other())])};
 }
 
+/// q times a power of 2 that brings it near 1: products of its components stay in range.
+template <class T>
+[[nodiscard]] quaternion<T> of_moderate_norm(const quaternion<T>& q) {
+  if constexpr (Batched<T>) {
+    return q; // one power would not suit all lanes
+  } else {
+    return scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
+  }
+}
+
 /// Numbers in proportion to cos β cos(α+γ), cos β sin(α+γ), sin β cos(α−γ), sin β sin(α−γ), which
 /// with half angles α, β, γ are those components of R_i R_j R_i.
 ///
@@ -106,7 +116,7 @@ template <euler_sequence Sequence, Real R>
   // In gimbal lock only α + γ or α − γ is determined: β is given to neither.
   const int sign = Sequence.is_proper() ? 1 : -Sequence.sign();
   const auto both = [&](const R& half_sum, int sign_of_last) {
-    return std::array<R, 3>{half_sum, middle, R(sign_of_last * half_sum)};
+    return std::array<R, 3>{half_sum, middle, R(R(sign_of_last) * half_sum)};
   };
   return select(
       y == 0 && z == 0, [&] { return both(atan2(x, w), sign); },
@@ -147,7 +157,7 @@ template <euler_sequence Sequence, class T>
     using std::hypot;
     const auto values = euler<Sequence>(detail::innermost_of(q));
     // Infinitesimal parts of α + γ and α − γ keep their digits near gimbal lock too.
-    const std::array<T, 4> components = detail::along_axes<Sequence>(q);
+    const std::array<T, 4> components = detail::along_axes<Sequence>(detail::of_moderate_norm(q));
     const auto [w, x, y, z] = detail::proper_components<Sequence>(components);
     const T sum = atan2(x, w);
     const T difference = atan2(z, y);
