@@ -274,7 +274,7 @@ template <class D>
   for (unsigned k = 1; k <= m; ++k) {
     p = p * (real(sqrt(1 + 1 / (2 * real(k)))) * s);
   }
-  const real order(m);
+  const auto order = real(m);
   real b(0);
   for (unsigned k = m; k < l; ++k) {
     const real n = real(k) + 1;
