@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include <duet/core/larger.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -10,6 +11,7 @@
 #include <duet/spline/interpolation_equations.hpp>
 #include <duet/spline/rotation_vector_equations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
+#include <duet/spline/small_turns.hpp>
 #include <duet/spline/spline_newton.hpp>
 
 #include <doctest/doctest.h>
@@ -17,12 +19,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <vector>
 
 namespace test_spline_newton_start {
 namespace {
 
+using vector3 = duet::vector3<double>;
 using cumulative = duet::cumulative_bspline<double>;
 template <int Order>
 using rotation_vector = duet::rotation_vector_spline<double, Order>;
@@ -97,6 +101,25 @@ void check_all_ends(const way& most) {
 }
 
 } // namespace
+
+TEST_CASE("no step is small where one is not a number") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(duet::detail::larger_or_nan(1.0, 2.0) == 2);
+  CHECK(duet::detail::larger_or_nan(2.0, 1.0) == 2);
+  CHECK(std::isnan(duet::detail::larger_or_nan(nan, 1.0)));
+  CHECK(std::isnan(duet::detail::larger_or_nan(1.0, nan)));
+  // The rates at three knots, the middle one's not a number.
+  const std::vector<vector3> x(3, vector3(1, 0, 0)), turns(2, vector3(1, 0, 0));
+  std::vector<vector3> step(3, vector3(.1, 0, 0));
+  step[1][0] = nan;
+  const std::vector<double> lengths{1, 1};
+  CHECK(std::isnan(duet::detail::relative_step_of_rates<double, 3>(x, step, turns, lengths)));
+  const rows data = small_steps();
+  const auto f = equations(static_cast<const cumulative*>(nullptr), data, duet::natural{});
+  auto change = f.start();
+  change[change.size() / 2][0] = nan;
+  CHECK(std::isnan(f.relative_step(f.start(), change)));
+}
 
 TEST_CASE("cumulative cubic: Newton's method starts next to its solution where turns are small") {
   check_all_ends<cumulative>({2e-4, 2});

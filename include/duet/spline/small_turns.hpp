@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/larger.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/block_tridiagonal.hpp>
@@ -79,7 +80,7 @@ template <class R, class Equations>
   R result(0);
   for (std::size_t row = 0; row < n; ++row) {
     const R ratio = moved[row] > 0 ? R(moved[row] / std::max(term[row], least)) : moved[row];
-    result = ratio <= result ? result : ratio; // NaN comes through
+    result = larger_or_nan(result, ratio);
   }
   return result;
 }
@@ -103,7 +104,7 @@ template <class R, int N>
       const R moved = step[i].template segment<3>(k).norm();
       const R now = x[i].template segment<3>(k).norm();
       const R ratio = moved > 0 ? R(moved / std::max(size, std::max(now, moved))) : moved;
-      result = ratio <= result ? result : ratio; // NaN comes through
+      result = larger_or_nan(result, ratio);
       size /= std::max(lengths[left], lengths[right]);
     }
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/larger.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -152,8 +153,7 @@ private:
   [[nodiscard]] static R largest(const unknowns& x) {
     R result(0);
     for (const unknown& v : x) {
-      const R size = v.norm();
-      result = size <= result ? result : size; // NaN comes through
+      result = larger_or_nan(result, R(v.norm()));
     }
     return result;
   }
