@@ -45,6 +45,19 @@ TEST_CASE("headers, names, blanks, line ends and byte order marks") {
   CHECK(csv_file(path).header().empty());
 }
 
+TEST_CASE("headers are read as headers, with as many columns as were written") {
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"#", "a"}, {"", ""}, {"a", " "}, {"1", "inf"}, {"1e400", "+2"}}) {
+    write(duet::csv_header(names) + "3,4\n");
+    CAPTURE(duet::csv_header(names));
+    const csv_file file(path);
+    CHECK(file.header().size() == 2);
+    CHECK(file.rows().size() == 1);
+  }
+  CHECK(duet::csv_header({"#", "a", "1"}) == "_,a,_1\n");
+  CHECK(duet::csv_line({}) == "\n");
+}
+
 TEST_CASE("what is no file of rows says why") {
   CHECK(complaint("no/such/file") == "no/such/file: cannot be read");
   CHECK(complaint(".") == ".: is a folder, not a file");

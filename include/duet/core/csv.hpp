@@ -84,7 +84,8 @@ private:
   std::size_t header_line_ = 0;
 };
 
-/// A name as a cell: without what would end the cell or the line, or begin a comment.
+/// A name as a cell: without what would end the cell or the line, or begin a comment. What is then
+/// blank or a number has `_` before it.
 [[nodiscard]] inline std::string csv_name(const std::string& text) {
   std::string name;
   for (const char c : printable(text)) {
@@ -92,14 +93,16 @@ private:
       name += c;
     }
   }
-  return name;
+  double number = 0; // would make the reader take a header for a row, or a row's name for a number
+  const bool is_number = detail::read_number(name, number) != std::errc::invalid_argument;
+  return is_number || detail::trimmed(name).empty() ? "_" + name : name;
 }
 
 /// The first line of a table: the names of its columns.
 [[nodiscard]] inline std::string csv_header(const std::vector<std::string>& names) {
   std::string line;
-  for (const std::string& name : names) {
-    line += (line.empty() ? "" : ",") + csv_name(name);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    line += (i > 0 ? "," : "") + csv_name(names[i]);
   }
   return line + "\n";
 }
