@@ -6,12 +6,16 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -64,6 +68,67 @@ TEST_CASE("a file is replaced as a whole and keeps its permissions") {
   write_file(path, "");
   CHECK(content_of(path).empty());
   CHECK(here.count() == 1);
+}
+
+TEST_CASE("who may not read a file may not read its draft") {
+  const playground here("private");
+  const std::string path = here.at("a.csv");
+  write_file(path, "first\n");
+  for (const auto permissions : {fs::perms(0600), fs::perms(0666)}) {
+    fs::permissions(path, permissions);
+    duet::file_draft draft(path);
+    CHECK(fs::status(draft.name()).permissions() == permissions);
+    draft.write("second\n");
+    draft.commit();
+    CHECK(fs::status(path).permissions() == permissions);
+  }
+}
+
+TEST_CASE("drafts are removed while others come and go") {
+  const playground here("many");
+  std::thread other([&] {
+    for (int i = 0; i < 200; ++i) {
+      const duet::file_draft draft(here.at("a.csv"));
+    }
+  });
+  for (int i = 0; i < 200; ++i) {
+    duet::remove_drafts();
+  }
+  other.join();
+  { // more than the list holds, and more than once: none is left in it
+    std::vector<std::unique_ptr<duet::file_draft>> drafts;
+    for (int i = 0; i < 100; ++i) {
+      drafts.push_back(std::make_unique<duet::file_draft>(here.at("a.csv")));
+    }
+    CHECK(here.count() == 100);
+    duet::remove_drafts();
+    CHECK(here.count() == 100 - 64);
+  }
+  CHECK(here.count() == 0);
+}
+
+TEST_CASE("what was printed to a pipe comes before what is written to it by name") {
+  if (!fs::exists("/dev/stdout")) {
+    MESSAGE("not tested: standard output has no name");
+    return;
+  }
+  std::fflush(stdout);
+  std::array<int, 2> ends{};
+  const int before = dup(STDOUT_FILENO);
+  REQUIRE(before >= 0);
+  REQUIRE(pipe(ends.data()) == 0);
+  REQUIRE(dup2(ends[1], STDOUT_FILENO) >= 0);
+  std::printf("printed ");
+  const std::string error = message("/dev/stdout");
+  std::fflush(stdout);
+  dup2(before, STDOUT_FILENO);
+  close(before);
+  close(ends[1]);
+  std::array<char, 64> text{};
+  CHECK(read(ends[0], text.data(), text.size() - 1) > 0);
+  close(ends[0]);
+  CHECK(error.empty());
+  CHECK(std::string(text.data()) == "printed x");
 }
 
 TEST_CASE("a draft that is given up leaves what was there") {

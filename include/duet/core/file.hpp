@@ -3,6 +3,7 @@
 
 #include <duet/core/printable.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -14,6 +15,10 @@
 #include <string>
 #include <system_error>
 #include <utility>
+
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
 
 /// \file
 /// Files written as a whole or not at all.
@@ -67,7 +72,8 @@ private:
   return exists(status) && !is_regular_file(status) && !is_directory(status);
 }
 
-/// Is it where standard output goes, by whatever name? To replace a file there would lose the rest.
+/// Is it the file that standard output goes to, by whatever name? To replace it would lose the
+/// rest. Of terminals and pipes `equivalent` may not know.
 [[nodiscard]] inline bool is_standard_output(const std::string& path) {
   std::error_code ignored;
   return std::filesystem::equivalent(path, "/dev/stdout", ignored);
@@ -83,7 +89,11 @@ private:
     if (links == most_links) {
       throw cannot_write(path, ELOOP);
     }
-    result = result.parent_path() / std::filesystem::read_symlink(result);
+    const std::filesystem::path next = std::filesystem::read_symlink(result, error);
+    if (error) {
+      throw cannot_write(path, error.value());
+    }
+    result = result.parent_path() / next;
   }
   const auto status = std::filesystem::status(result, error);
   if (!status_known(status)) {
@@ -100,17 +110,33 @@ private:
   return result;
 }
 
-/// The names of all drafts, for handlers of signals: these can neither lock nor allocate.
-inline std::array<std::atomic<const char*>, 64> draft_names{};
+/// The name of a draft, for handlers of signals: these can neither lock nor allocate, and may run
+/// while another thread is done with the draft. Only who has changed `owner` to `busy` uses `name`.
+struct listed_draft {
+  static constexpr unsigned long nobody = 0, busy = 1;
+  static_assert(std::atomic<unsigned long>::is_always_lock_free);
+
+  std::atomic<unsigned long> owner{nobody};
+  std::array<char, 4096> name{}; ///< as long as a path can be on Linux
+};
+inline constinit std::array<listed_draft, 64> listed_drafts{};
+inline std::atomic<unsigned long> last_draft{listed_draft::busy};
 
 } // namespace detail
 
-/// Removes drafts: for the handler of a signal that ends the program. Signal-safe where
-/// `std::remove` is, as on POSIX.
+/// Removes drafts: for the handler of a signal that ends the program. Signal-safe on POSIX.
 inline void remove_drafts() noexcept {
-  for (std::atomic<const char*>& name : detail::draft_names) {
-    if (const char* const draft = name.exchange(nullptr)) {
-      std::remove(draft);
+  using detail::listed_draft;
+  for (listed_draft& draft : detail::listed_drafts) {
+    unsigned long owner = draft.owner.load();
+    if (owner > listed_draft::busy &&
+        draft.owner.compare_exchange_strong(owner, listed_draft::busy)) {
+#if __has_include(<unistd.h>)
+      ::unlink(draft.name.data()); // POSIX does not say so of std::remove
+#else
+      std::remove(draft.name.data());
+#endif
+      draft.owner.store(listed_draft::nobody);
     }
   }
 }
@@ -124,14 +150,20 @@ public:
   /// Makes the draft, an empty file.
   /// \throws file_error where the file cannot be written
   explicit file_draft(const std::string& path) : path_(path), target_(detail::link_target(path)) {
+    using enum std::filesystem::perms;
     for (int number = 0;; ++number) {
       // Nobody else has this name: files are made, not opened.
       const auto time = std::chrono::system_clock::now().time_since_epoch().count();
       name_ = (target_.parent_path() /
                (".duet-" + std::to_string(time) + "-" + std::to_string(number) + ".part"))
                   .string();
-      enlist();
+      enlist(); // before it is made: a signal in between would leave it
       if (detail::c_file(name_, "wbx").is_open()) {
+        // Who may not read the file may not read its draft.
+        if (const auto error = take_permissions(owner_read | owner_write)) {
+          remove();
+          throw detail::cannot_write(path, error.value());
+        }
         return;
       }
       const int error = errno;
@@ -145,8 +177,7 @@ public:
   file_draft& operator=(const file_draft&) = delete;
   ~file_draft() {
     if (!name_.empty()) {
-      std::remove(name_.c_str());
-      strike();
+      remove();
     }
   }
 
@@ -164,12 +195,10 @@ public:
   /// Puts it in its place.
   /// \throws file_error
   void commit() {
-    std::error_code error;
-    const auto before = std::filesystem::status(target_, error);
-    if (exists(before)) {
-      std::filesystem::permissions(name_, before.permissions(), error);
+    std::error_code error = take_permissions(std::filesystem::perms::none);
+    if (!error) {
+      std::filesystem::rename(name_, target_, error);
     }
-    std::filesystem::rename(name_, target_, error);
     if (error) {
       throw detail::cannot_write(path_, error.value());
     }
@@ -178,26 +207,51 @@ public:
   }
 
 private:
+  /// Those of the file that is there, if one is, and these.
+  [[nodiscard]] std::error_code take_permissions(std::filesystem::perms also) const {
+    std::error_code error;
+    const auto before = std::filesystem::status(target_, error);
+    if (!exists(before)) {
+      return {};
+    }
+    const auto wanted = before.permissions() | also;
+    const auto now = std::filesystem::status(name_, error);
+    if (!error && now.permissions() != wanted) { // some file systems have the same for all files
+      std::filesystem::permissions(name_, wanted, error);
+    }
+    return error;
+  }
+
   void enlist() {
-    for (std::atomic<const char*>& name : detail::draft_names) {
-      const char* free = nullptr;
-      if (name.compare_exchange_strong(free, name_.c_str())) {
+    using detail::listed_draft;
+    id_ = ++detail::last_draft;
+    for (listed_draft& draft : detail::listed_drafts) {
+      unsigned long owner = listed_draft::nobody;
+      if (name_.size() < draft.name.size() &&
+          draft.owner.compare_exchange_strong(owner, listed_draft::busy)) {
+        *std::copy(name_.begin(), name_.end(), draft.name.begin()) = '\0';
+        draft.owner.store(id_);
         return;
       }
     }
   }
-  void strike() {
-    for (std::atomic<const char*>& name : detail::draft_names) {
-      const char* mine = name_.c_str();
-      if (name.compare_exchange_strong(mine, nullptr)) {
+  void strike() const {
+    for (detail::listed_draft& draft : detail::listed_drafts) {
+      unsigned long mine = id_;
+      if (draft.owner.compare_exchange_strong(mine, detail::listed_draft::nobody)) {
         return;
       }
     }
+  }
+  void remove() const {
+    std::remove(name_.c_str());
+    strike();
   }
 
   std::string path_;
   std::filesystem::path target_;
   std::string name_;
+  unsigned long id_ = 0; ///< in the list of drafts; of this one alone
 };
 
 /// Finds out before the work whether `write_file` could write its result; changes nothing.
@@ -220,6 +274,7 @@ inline void write_file(const std::string& path, const std::string& content) {
     return;
   }
   if (detail::is_special_file(path)) {
+    std::fflush(stdout); // it may go there, too: what was printed before comes first
     detail::c_file out(path, "wb");
     if (!out.is_open() || !out.write(content) || !out.close()) {
       throw detail::cannot_write(path, errno);
