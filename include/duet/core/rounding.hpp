@@ -1,14 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/number_text.hpp>
 #include <duet/core/scalar_traits.hpp>
 
 #include <cmath>
-#include <concepts>
 #include <limits>
-#include <sstream>
-#include <string>
 
 /// \file
 /// What rounding takes beyond the end of a range.
@@ -31,19 +27,6 @@ template <Real R>
     return low;
   }
   return u > high && u - high <= rounding ? high : u;
-}
-
-/// A number for messages, told apart from its neighbours.
-template <Real R>
-[[nodiscard]] std::string all_digits(const R& x) {
-  if constexpr (std::floating_point<R>) {
-    return to_text(x);
-  } else {
-    std::ostringstream text;
-    text.precision(std::numeric_limits<R>::max_digits10);
-    text << x;
-    return text.str();
-  }
 }
 
 } // namespace duet::detail

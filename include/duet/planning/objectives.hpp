@@ -3,6 +3,7 @@
 
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/result.hpp>
+#include <duet/derivative/structure.hpp>
 #include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 
@@ -40,7 +41,7 @@ struct preferred_posture {
   }
 };
 template <class V, class... W>
-preferred_posture(V, W...) -> preferred_posture<typename V::PlainObject>;
+preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
 
 /// −w log √det(J Jᵀ): away from singularities, with weight w.
 template <class C>

@@ -11,7 +11,6 @@
 #include <duet/spline/basis.hpp>
 #include <duet/spline/block_tridiagonal.hpp>
 #include <duet/spline/end_conditions.hpp>
-#include <duet/spline/knots.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/small_turns.hpp>
 
