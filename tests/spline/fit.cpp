@@ -230,6 +230,16 @@ TEST_CASE_TEMPLATE("outliers of any size leave the curve where it is", Q, rotati
   }
 }
 
+TEST_CASE("where a residual is beyond the range of numbers, so is their mean") {
+  const auto truth = some_curve<pose_type>();
+  const auto u = steps(8, 100);
+  auto rows = rows_of(truth, u);
+  rows[40] = duet::pose(rotation(1.0), vector3<double>(1.2e308, 1.2e308, 1.2e308));
+  const auto found = duet::fit<curve<pose_type>>(u, rows, truth.basis().knots(), {.outlier = 0.01});
+  CHECK(std::isinf(found.residuals[40]));
+  CHECK(std::isinf(found.rms));
+}
+
 TEST_CASE("least squares name the row that is too far to be squared") {
   const auto truth = some_curve<pose_type>();
   const auto u = steps(8, 100);
@@ -265,6 +275,18 @@ TEST_CASE("messages give the last step") {
   });
   CHECK(message.rfind("duet: fit: the iteration does not converge after 1 steps, the last one 0.",
                       0) == 0);
+  // Of robust fits all steps, those before the last stage included.
+  random_source random(17);
+  auto noisy = rows_of(truth, u);
+  for (rotation& q : noisy) {
+    q = moved(q, random, 0.1);
+  }
+  const auto robust = duet_test::message_of<duet::no_convergence>([&] {
+    static_cast<void>(duet::fit<curve<rotation>>(u, noisy, truth.basis().knots(),
+                                                 {.outlier = 0.02, .max_iterations = 1}));
+  });
+  CHECK(robust.rfind("duet: fit: the iteration does not converge after ", 0) == 0);
+  CHECK(robust.find(" after 1 steps") == std::string::npos);
 }
 
 TEST_CASE("the length weighs shifts against turns") {

@@ -17,7 +17,6 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -283,7 +282,7 @@ private:
 
   [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
     std::ostringstream message;
-    message << "duet: fit: the iteration " << what << " after " << iterations
+    message << "duet: fit: the iteration " << what << " after " << iterations_ + iterations
             << " steps, the last one " << step;
     throw no_convergence(message.str());
   }

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/all_digits.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/rounding.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/bspline_fit.hpp>
@@ -125,8 +125,8 @@ template <class Spline, class R, class T>
   for (const R& r : residuals) {
     squares += largest > 0 ? R((r / largest) * (r / largest)) : R(0);
   }
-  return {problem.curve(basis), residuals, R(largest * sqrt(squares / R(residuals.size()))),
-          iterations, problem.outlier()};
+  const R rms = largest - largest == 0 ? R(largest * sqrt(squares / R(residuals.size()))) : largest;
+  return {problem.curve(basis), residuals, rms, iterations, problem.outlier()};
 }
 
 } // namespace duet
