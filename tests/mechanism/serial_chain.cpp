@@ -233,7 +233,8 @@ TEST_CASE("what is wrong with a chain is said in one line") {
   joints[1].origin = {};
   joints[1].origin.rotation = quaternion<double>(2);
   CHECK(message([&] { serial_chain chain(joints); }) ==
-        "duet: serial_chain: joint 1: the rotation of its origin is no unit quaternion");
+        "duet: serial_chain: joint 1: the rotation (2, 0, 0, 0) of its origin is no unit "
+        "quaternion: normalized(q)");
   const auto arm = robots::panda();
   CHECK(message([&] { (void)arm.pose(Eigen::VectorXd::Zero(6).eval()); }) ==
         "duet: a chain of 7 moving joints, but 6 coordinates");
@@ -246,7 +247,7 @@ TEST_CASE("what is wrong with a chain is said in one line") {
         "radians");
   CHECK(message([] {
           placement<>(quaternion<double>(1, 1, 0, 0), {0, 0, 0});
-        }) == "duet: placement: its rotation is no unit quaternion");
+        }) == "duet: placement: its rotation (1, 1, 0, 0) is no unit quaternion: normalized(q)");
 }
 
 TEST_CASE("a tool and fixed joints whose rotations have few digits move nothing farther") {

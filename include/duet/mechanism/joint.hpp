@@ -8,6 +8,7 @@
 
 #include <array>
 #include <limits>
+#include <sstream>
 
 /// \file
 /// What a mechanism is built from: constant displacements and joints, as tables that the compiler
@@ -17,13 +18,20 @@ namespace duet {
 
 namespace detail {
 
+template <class T>
+[[noreturn]] void refuse_placement(const quaternion<T>& q) {
+  std::ostringstream message;
+  message << "duet: placement: its rotation " << q << " is no unit quaternion: normalized(q)";
+  throw invalid_input(message.str());
+}
+
 /// The unit quaternion that one of few digits stands for.
 /// \throws invalid_input for what is none
 template <class T>
 [[nodiscard]] constexpr quaternion<T> unit_rotation(const quaternion<T>& q) {
   const T square = norm2(q);
   if (!is_nearly_one(square)) {
-    throw invalid_input("duet: placement: its rotation is no unit quaternion");
+    refuse_placement(q);
   }
   // A rotation that is a unit but for rounding stays what it is to the last bit.
   const T rounding = 8 * std::numeric_limits<T>::epsilon();

@@ -41,12 +41,19 @@ template <class T>
 }
 
 template <class T>
+[[noreturn]] void bad_rotation(std::size_t i, const quaternion<T>& q) {
+  std::ostringstream reason;
+  reason << "the rotation " << q << " of its origin is no unit quaternion: normalized(q)";
+  bad_joint(i, reason.str());
+}
+
+template <class T>
 constexpr void require_joint(const joint<T>& given, std::size_t i) {
   if (!is_finite(given.origin.translation)) {
     bad_joint(i, "its origin is not finite");
   }
   if (!is_nearly_one(norm2(given.origin.rotation))) {
-    bad_joint(i, "the rotation of its origin is no unit quaternion");
+    bad_rotation(i, given.origin.rotation);
   }
   const auto& n = given.axis;
   if (given.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
