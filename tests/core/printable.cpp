@@ -25,6 +25,8 @@ TEST_CASE("what a terminal would obey is spelt out") {
   CHECK(printable("\u009b2J \u0085") == "\\xc2\\x9b2J \\xc2\\x85"); // C1, of eight bits
   CHECK(printable("\u202e \u2066 \u2028") ==
         "\\xe2\\x80\\xae \\xe2\\x81\\xa6 \\xe2\\x80\\xa8"); // direction, separator of lines
+  CHECK(printable("\u061c \u200e \u200f") ==
+        "\\xd8\\x9c \\xe2\\x80\\x8e \\xe2\\x80\\x8f"); // direction
 }
 
 TEST_CASE("bytes that are no UTF-8") {

@@ -37,8 +37,8 @@ namespace detail {
   const bool is_character = count == 2   ? code >= 0x80
                             : count == 3 ? code >= 0x800 && (code < 0xd800 || code > 0xdfff)
                                          : code >= 0x10000 && code <= 0x10ffff;
-  const bool is_control =
-      code < 0xa0 || (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  const bool is_control = code < 0xa0 || code == 0x61c || code == 0x200e || code == 0x200f ||
+                          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
   return is_character && !is_control ? count : 0;
 }
 
