@@ -61,8 +61,8 @@ inline duet::detail::table_layout layout_of(const std::string& path, std::size_t
                                             bool has_commas,
                                             const std::optional<duet::detail::table_layout>& header,
                                             recording& r, time_scale& scale) {
-  using duet::detail::column;
-  using enum column;
+  using duet::detail::table_column;
+  using enum table_column;
   constexpr double least_nanoseconds = 1e17; // 1973; as seconds the age of the universe
   const auto time_of = [&](std::size_t at) {
     return at < cells.size() ? duet::parse_number(cells[at]).value_or(0) : 0.0;

@@ -95,16 +95,16 @@ inline table equal_arc_table(const carrier& mechanism, const arc_length& arcs, i
 /// Reads u, qw, qx, qy, qz, in the order that a header gives. Rows a curve cannot go through are
 /// reported here, where their line is known. \throws file_error
 inline table read_table(const std::string& path) {
-  using duet::detail::column;
+  using duet::detail::table_column;
   table result;
   std::vector<std::size_t> lines;
   const auto start = [&](std::size_t line, const auto& cells, const auto& header, bool) {
     if (!header && cells.size() != 5) {
       throw file_error(path, line, "5 numbers expected, got " + std::to_string(cells.size()));
     }
-    return header.value_or(
-        duet::detail::table_layout({column::u, column::qw, column::qx, column::qy, column::qz},
-                                   {"u", "qw", "qx", "qy", "qz"}));
+    return header.value_or(duet::detail::table_layout(
+        {table_column::u, table_column::qw, table_column::qx, table_column::qy, table_column::qz},
+        {"u", "qw", "qx", "qy", "qz"}));
   };
   duet::detail::for_each_table_row(
       path, true, false, start,

@@ -20,7 +20,7 @@
 namespace duet::detail {
 
 /// What a column of such a table may hold; `other` is passed over.
-enum class column : std::size_t { u, x, y, z, qw, qx, qy, qz, other };
+enum class table_column : std::size_t { u, x, y, z, qw, qx, qy, qz, other };
 
 inline constexpr const char* known_columns = "known are u (tau, t, time, timestamp), x y z (tx, "
                                              "px, p_x, p_RS_R_x ...) and qw qx qy qz (q_w, "
@@ -28,7 +28,7 @@ inline constexpr const char* known_columns = "known are u (tau, t, time, timesta
 
 /// A name in a header: of what, and in which unit.
 struct column_name {
-  column what = column::other;
+  table_column what = table_column::other;
   std::string name;
   std::string unit; ///< as written, empty where none is
 
@@ -50,34 +50,34 @@ private:
     return result;
   }
 
-  [[nodiscard]] column meaning() {
+  [[nodiscard]] table_column meaning() {
     if (name == "u" || name == "tau" || is_time(name)) {
-      return column::u;
+      return table_column::u;
     }
     const std::size_t cut = name.rfind('_');
     const std::string last = cut == std::string::npos ? "" : name.substr(cut + 1);
     if ((last == "s" || last == "ms" || last == "us" || last == "ns") &&
         is_time(name.substr(0, cut)) && unit.empty()) {
       unit = last; // timestamp_ns
-      return column::u;
+      return table_column::u;
     }
     const std::string_view axes = "wxyz";
     const std::size_t axis = name.empty() ? axes.npos : axes.find(name.back());
     if (axis == axes.npos) {
-      return column::other;
+      return table_column::other;
     }
     const bool has_cut = cut != std::string::npos && cut + 2 == name.size();
     const std::string of = name.substr(0, has_cut ? cut : name.size() - 1);
     const auto ends_with = [&](std::string_view end) { return has_cut && of.ends_with(end); };
     if (of == "q" || (has_cut && of.starts_with("q_")) || ends_with("quat") ||
         ends_with("quaternion") || ends_with("orientation")) {
-      return column(std::size_t(column::qw) + axis);
+      return table_column(std::size_t(table_column::qw) + axis);
     }
     if (axis > 0 && (of.empty() || of == "t" || of == "p" || (has_cut && of.starts_with("p_")) ||
                      ends_with("pos") || ends_with("position") || ends_with("translation"))) {
-      return column(std::size_t(column::x) + axis - 1);
+      return table_column(std::size_t(table_column::x) + axis - 1);
     }
-    return column::other;
+    return table_column::other;
   }
 
   [[nodiscard]] static bool is_time(const std::string& text) {
@@ -97,7 +97,7 @@ struct table_layout {
 
   table_layout() { at.fill(absent); }
   /// Columns in this order.
-  table_layout(const std::vector<column>& order, const std::vector<std::string>& their_names)
+  table_layout(const std::vector<table_column>& order, const std::vector<std::string>& their_names)
       : table_layout() {
     columns = order.size();
     for (std::size_t i = 0; i < columns; ++i) {
@@ -113,7 +113,7 @@ struct table_layout {
     columns = header.size();
     for (std::size_t i = 0; i < columns; ++i) {
       const column_name cell(header[i]);
-      if (cell.what == column::other) {
+      if (cell.what == table_column::other) {
         continue;
       }
       const auto k = std::size_t(cell.what);
@@ -122,9 +122,9 @@ struct table_layout {
       }
       at[k] = i;
       names[k] = header[i];
-      if (cell.what == column::u) {
+      if (cell.what == table_column::u) {
         time_unit = cell.unit;
-      } else if (cell.what == column::x) {
+      } else if (cell.what == table_column::x) {
         place_unit = cell.unit;
         is_euroc = cell.name.starts_with("p_rs_");
       }
@@ -154,7 +154,7 @@ public:
     }
     const bool has_quaternion = has[4] && has[5] && has[6] && has[7];
     if (has_quaternion ||
-        (!is_certain_ && cells.size() > 1 && column_name(cells[0]).what == column::u)) {
+        (!is_certain_ && cells.size() > 1 && column_name(cells[0]).what == table_column::u)) {
       line_ = line;
       cells_.assign(cells.begin(), cells.end());
       is_certain_ = has_quaternion;
@@ -188,8 +188,8 @@ private:
 };
 
 /// Calls row(line, numbers, fault) for every row of a file, with its eight numbers in the order of
-/// `column`, those that the file does not have 0; `fault` says what is wrong with one that is not
-/// finite, or is empty.
+/// `table_column`, those that the file does not have 0; `fault` says what is wrong with one that is
+/// not finite, or is empty.
 ///
 /// The columns are told by a header: a first line of names, or a comment before the first row.
 /// Columns of other names are passed over.
