@@ -252,7 +252,7 @@ TEST_CASE("hypot and atan2 of arguments decades apart, to the fourth derivative"
         worst_hypot, [y = y](const auto& u) { return hypot(u, y); }, x, length);
     add_series(
         worst_hypot_3, [y = y](const auto& u) { return hypot(y * 0.6, u, y * 0.8); }, x,
-        [&] {
+        [&, y = y] {
           const R z = wide_y * wide_y * (R(0.6 * y) * R(0.6 * y) + R(0.8 * y) * R(0.8 * y)) / t;
           const R q = s + z, n = sqrt(q);
           return std::array<R, 5>{n, R(wide_x / n), R(z / (n * q)),

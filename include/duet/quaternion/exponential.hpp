@@ -186,7 +186,7 @@ template <class T, class S>
     using real = real_type_t<R>;
     const real value(innermost(exponent));
     const real square(innermost(norm2(q)));
-    const auto reaches = [&](int k) { return value >= real(k) - real(0.5) && is_moderate(square); };
+    const auto reaches = [&](int k) { return value > real(k) - real(0.5) && is_moderate(square); };
     real whole(0);
     for (int k = 1; k <= 3; ++k) {
       whole = select(
