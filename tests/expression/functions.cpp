@@ -105,7 +105,7 @@ void check_function_of_two(const char* name, const F& function) {
   }
 }
 
-#define CHECK_FUNCTION(function)                                                                   \
+#define CHECK_BESIDE_DUALS(function)                                                               \
   check_function(#function, [](const auto& t) {                                                    \
     using std::function;                                                                           \
     return function(t);                                                                            \
@@ -119,32 +119,32 @@ void check_function_of_two(const char* name, const F& function) {
 } // namespace
 
 TEST_CASE("functions of one scalar") {
-  CHECK_FUNCTION(sqrt);
-  CHECK_FUNCTION(cbrt);
-  CHECK_FUNCTION(exp);
-  CHECK_FUNCTION(exp2);
-  CHECK_FUNCTION(expm1);
-  CHECK_FUNCTION(log);
-  CHECK_FUNCTION(log2);
-  CHECK_FUNCTION(log10);
-  CHECK_FUNCTION(log1p);
-  CHECK_FUNCTION(sin);
-  CHECK_FUNCTION(cos);
-  CHECK_FUNCTION(tan);
-  CHECK_FUNCTION(asin);
-  CHECK_FUNCTION(acos);
-  CHECK_FUNCTION(atan);
-  CHECK_FUNCTION(sinh);
-  CHECK_FUNCTION(cosh);
-  CHECK_FUNCTION(tanh);
-  CHECK_FUNCTION(asinh);
-  CHECK_FUNCTION(acosh);
-  CHECK_FUNCTION(atanh);
-  CHECK_FUNCTION(erf);
-  CHECK_FUNCTION(erfc);
-  CHECK_FUNCTION(tgamma);
-  CHECK_FUNCTION(lgamma);
-  CHECK_FUNCTION(abs);
+  CHECK_BESIDE_DUALS(sqrt);
+  CHECK_BESIDE_DUALS(cbrt);
+  CHECK_BESIDE_DUALS(exp);
+  CHECK_BESIDE_DUALS(exp2);
+  CHECK_BESIDE_DUALS(expm1);
+  CHECK_BESIDE_DUALS(log);
+  CHECK_BESIDE_DUALS(log2);
+  CHECK_BESIDE_DUALS(log10);
+  CHECK_BESIDE_DUALS(log1p);
+  CHECK_BESIDE_DUALS(sin);
+  CHECK_BESIDE_DUALS(cos);
+  CHECK_BESIDE_DUALS(tan);
+  CHECK_BESIDE_DUALS(asin);
+  CHECK_BESIDE_DUALS(acos);
+  CHECK_BESIDE_DUALS(atan);
+  CHECK_BESIDE_DUALS(sinh);
+  CHECK_BESIDE_DUALS(cosh);
+  CHECK_BESIDE_DUALS(tanh);
+  CHECK_BESIDE_DUALS(asinh);
+  CHECK_BESIDE_DUALS(acosh);
+  CHECK_BESIDE_DUALS(atanh);
+  CHECK_BESIDE_DUALS(erf);
+  CHECK_BESIDE_DUALS(erfc);
+  CHECK_BESIDE_DUALS(tgamma);
+  CHECK_BESIDE_DUALS(lgamma);
+  CHECK_BESIDE_DUALS(abs);
 }
 
 TEST_CASE("functions of several scalars") {
