@@ -53,7 +53,11 @@ expression_route dual_vectors() {
 /// N15: a point 1 + εv, and the line v through the origin.
 expression_route conjugates() {
   const auto point = pose(duet::quaternion<double>(1), c<2> * v);
-  const auto line = pose(pure(v), duet::vector3<double>(0, 0, 0));
+  const auto along = [](int i) {
+    return duet::dual_quaternion<double>(duet::quaternion<double>(0, i == 0, i == 1, i == 2));
+  };
+  const auto line =
+      component<0>(v) * along(0) + component<1>(v) * along(1) + component<2>(v) * along(2);
   const tuple a(moving{A, dA, 0});
   const tuple a_and_v(moving{A, dA, 0}, moving{v, dv, 8});
   return expression_route("N15", "point_conj, conj, dual_conj")
