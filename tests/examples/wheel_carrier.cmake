@@ -3,7 +3,7 @@
 # Runs the wheel carrier on good and bad input: bad input must end with status 1, one line that says what and
 # where, and nothing written.
 #
-# cmake -Dprogram=<wheel_carrier> -Dfolder=<for files> -P command_line.cmake
+# cmake -Dprogram=<wheel_carrier> -Dfolder=<for files> -P wheel_carrier.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
