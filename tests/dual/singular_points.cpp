@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -38,7 +39,7 @@ using nested = dual<inner, 1, outer_tag>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-const double pi = std::acos(-1.0);
+using std::numbers::pi;
 const double ln2 = std::log(2.0);
 
 /// The same value and sign, or both NaN.

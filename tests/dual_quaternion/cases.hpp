@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include <numbers>
 #include <vector>
 
 /// \file
@@ -25,7 +26,7 @@ using vector = Eigen::Vector3d;
 inline std::vector<pose_type> poses() {
   std::vector<pose_type> result;
   const vector zero = vector::Zero();
-  const double pi = 3.141592653589793;
+  using std::numbers::pi;
   for (const vector& w : {zero, vector(1e-160, 0, 0), vector(0, 1e-8, 0), vector(1e-4, -2e-4, 0),
                           vector(0, 0, 1), vector(0.3, -1.2, 0.7), vector(pi, 0, 0),
                           vector(0, 0.6 * pi, 0.8 * pi), vector(0, 0, 2 * pi - 1e-6)}) {

@@ -34,7 +34,7 @@ namespace tools = boost::math::tools;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int digits = std::numeric_limits<double>::digits;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// x³ = p
 template <class P>

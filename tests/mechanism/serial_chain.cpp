@@ -22,7 +22,7 @@ using namespace duet;
 using duet_test::coordinates;
 using duet_test::gap;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double gap_of_poses(const dual_quaternion<double>& a, const dual_quaternion<double>& b) {
   return gap(transform_matrix(a), transform_matrix(b));

@@ -23,7 +23,7 @@ using namespace duet;
 using chain = serial_chain<-16>;
 using result = inverse_kinematics_result<-16>;
 using vector = detail::joint_vector<double, -16>;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<chain> arms() {
   return {robots::panda().table(), robots::iiwa14().table(), robots::ur5e().table(),

@@ -22,6 +22,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 // All twelve sequences of Euler angles.
@@ -34,7 +35,7 @@ using duet_test::random_source;
 
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 template <class F>
 void for_each_sequence(const F& f) {

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 // N4: exp(w + v) = e^w (cos |v| + v sin |v|/|v|), against 100 digits.
@@ -28,7 +29,7 @@ namespace {
 /// 9.8696, for s and, in derivatives, for 4s.
 std::vector<double> lengths() {
   std::vector<double> result{0, 1e-300, 1e-160, 1e-30, 1e-8, 1e-4, 0.01, 0.3};
-  constexpr double pi = 3.141592653589793;
+  using std::numbers::pi;
   const double switches[] = {1, std::sqrt(9.8696), 0.5, std::sqrt(9.8696) / 2};
   for (const double middle :
        {switches[0], switches[1], switches[2], switches[3], pi / 2, pi, 2 * pi}) {

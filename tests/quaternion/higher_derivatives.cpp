@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -109,7 +110,7 @@ void measure(errors& e, const computed& both,
 
 /// Half angles at and near 0, a half turn, a full turn, and where the algorithm changes.
 std::vector<double> half_angles() {
-  constexpr double pi = 3.141592653589793;
+  using std::numbers::pi;
   std::vector<double> result{0, 1e-300, 1e-160, 1e-8, 1e-4, 0.1};
   for (const double middle : {pi / 2, 1.0, 0.5}) {
     for (const double distance : {0.0, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4}) {

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 
 // Unit quaternions as rotations of vectors; axis and angle, rotation vectors, pairs of vectors.
 
@@ -24,7 +25,7 @@ namespace truth = duet_test::truth;
 
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 vector3<double> direction(random_source& random) {
   const auto d = random.direction<3>();

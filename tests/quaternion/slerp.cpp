@@ -13,6 +13,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -36,7 +37,7 @@ quaternion<double> random_rotation(random_source& random) {
 std::vector<std::pair<quaternion<double>, quaternion<double>>> pairs() {
   random_source random(21);
   std::vector<std::pair<quaternion<double>, quaternion<double>>> result;
-  constexpr double pi = 3.141592653589793;
+  using std::numbers::pi;
   for (const double half_angle : {0.0, 1e-300, 1e-160, 1e-15, 1e-8, 5e-7, 1e-4, 0.3, 1.0, pi / 4,
                                   1.5, pi / 2 - 1e-4, pi / 2 - 1e-8}) {
     for (int i = 0; i < 8; ++i) {

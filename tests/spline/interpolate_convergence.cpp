@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 namespace test_spline_interpolate_convergence {
@@ -43,7 +44,7 @@ struct returning {
   template <class S>
   duet::quaternion<S> operator()(const S& u) const {
     using std::cos;
-    const double pi = std::acos(-1.0);
+    using std::numbers::pi;
     return duet::from_euler<duet::zyx>(S(pi * u), S(0.9 * cos(pi * u)), S(0.3 * cos(pi * u)));
   }
 };

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -147,7 +148,7 @@ TEST_CASE("increments of any length: the long way round, and several times") {
   using line = duet::cumulative_bspline<double, 2>;
   const duet::quaternion<double> one(1);
   const duet::vector3<double> axis(0, 0.6, 0.8);
-  const double pi = std::acos(-1.0);
+  using std::numbers::pi;
   const line t(round, {one, one, -one},
                {duet::vector3<double>::Zero(), 2 * pi * axis, -3 * pi * axis});
   CHECK((t.motion(0.5, duet::frame::body).velocity - 4 * pi * axis).norm() < 1e-14);

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 // Orders of convergence of rotation-vector splines, for every end.
@@ -40,7 +41,7 @@ truth at(double u) {
         using std::cos;
         using std::sin;
         if constexpr (Periodic) {
-          const double pi = std::acos(-1.0);
+          using std::numbers::pi;
           using S = std::decay_t<decltype(x)>;
           return duet::from_euler<duet::zyx>(S(0.7 * sin(pi * x)), S(0.5 * cos(pi * x)),
                                              S(0.3 * sin(2 * pi * x + 1)));
