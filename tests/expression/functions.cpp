@@ -6,6 +6,7 @@
 #include <duet/expression/functions_of_many.hpp>
 #include <duet/expression/special_functions.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/vector.hpp>
 
 #include <doctest/doctest.h>
 
@@ -13,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 // Every function as a formula beside the same over dual numbers: values and derivatives by the
@@ -74,7 +76,8 @@ void check_function(const char* name, const F& function) {
 
 /// By each argument where the other is constant, and by both.
 template <class F>
-void check_function_of_two(const char* name, const F& function) {
+void check_function_of_two(const char* name, const F& function,
+                           const std::vector<double>& at = extremes()) {
   CAPTURE(name);
   const auto f = function(x, y);
   const auto by_first = derivative(f, x);
@@ -82,8 +85,8 @@ void check_function_of_two(const char* name, const F& function) {
   const auto twice_first = derivative(by_first, x);
   const auto mixed = derivative(by_first, y);
   const auto twice_second = derivative(by_second, y);
-  for (const double a : extremes()) {
-    for (const double b : extremes()) {
+  for (const double a : at) {
+    for (const double b : at) {
       CAPTURE(a);
       CAPTURE(b);
       const auto values = [&](const auto& g) { return g(x = a, y = b); };
@@ -155,6 +158,27 @@ TEST_CASE("functions of several scalars") {
     using std::hypot;
     return hypot(s, 0.3, t);
   });
+}
+
+TEST_CASE("norms of vectors") {
+  std::vector<double> at = extremes(); // those with inverses: of std::hypot(∞, 1, 1) some make NaN
+  std::erase_if(at, [](double size) {
+    return size != 0 && !(std::abs(size) >= 1e-300 && std::abs(size) < infinity);
+  });
+  for (const double third : {0.0, 0.3, 1e-200, 1e200}) {
+    CAPTURE(third);
+    check_function_of_two(
+        "norm",
+        [third](const auto& s, const auto& t) {
+          using std::hypot;
+          if constexpr (Term<std::remove_cvref_t<decltype(s)>>) {
+            return norm(column(s, third, t));
+          } else {
+            return hypot(s, third, t);
+          }
+        },
+        at);
+  }
 }
 
 TEST_CASE("constant exponents and bases") {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/dual/rules_of_many.hpp>
 #include <duet/expression/arithmetic.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/formula.hpp>
@@ -130,6 +131,26 @@ struct cross {
 };
 
 /// |v|, of vectors and quaternions
+struct norm;
+
+/// v/|v|, the slopes of the norm, by the rule of the dual numbers.
+struct direction {
+  static constexpr kind kind_of(kind v) { return v; }
+  template <class V>
+  static auto value(const V& v) {
+    using T = typename V::Scalar;
+    const auto u = duet::rule::hypot{}.slopes(T(0), T(v[0]), T(v[1]), T(v[2]));
+    return vector3<T>(u[0], u[1], u[2]);
+  }
+  /// (u × dv) × u/|v|: in dv − u (u · dv) what differs from dv by little would cancel.
+  template <class V, class DV>
+  static constexpr auto differential(V v, DV dv) {
+    const auto u = apply<direction>(v);
+    return apply<cross>(apply<cross>(u, dv) / apply<norm>(v), u);
+  }
+  static printed print(notation style, const printed& v);
+};
+
 struct norm {
   static constexpr kind kind_of(kind) { return kind::scalar; }
   template <class V>
@@ -143,13 +164,21 @@ struct norm {
   }
   template <class V, class DV>
   static constexpr auto differential(V v, DV dv) {
-    return apply<dot>(v, dv) / apply<norm>(v);
+    if constexpr (V::kind_of == kind::vector) {
+      return apply<dot>(apply<direction>(v), dv);
+    } else {
+      return apply<dot>(v, dv) / apply<norm>(v);
+    }
   }
   static printed print(notation style, const printed& v) {
     return style == notation::latex ? printed{"\\left|" + v.text + "\\right|"}
                                     : printed{"norm(" + v.text + ")"};
   }
 };
+
+inline printed direction::print(notation style, const printed& v) {
+  return quotient::print(style, v, norm::print(style, v));
+}
 
 /// The I-th component.
 template <int I>
