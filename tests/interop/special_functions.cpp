@@ -3,6 +3,8 @@
 #include "support/multiprecision.hpp"
 #include "support/ulp.hpp"
 
+#include <duet/core/batch.hpp>
+#include <duet/core/batch_math.hpp>
 #include <duet/interop/boost_math.hpp>
 #include <duet/interop/special_functions.hpp>
 
@@ -277,6 +279,11 @@ TEST_CASE("functions of Boost.Math that duet has in their place") {
     CHECK(y.derivative(1) == doctest::Approx(c - s / x).epsilon(1e-14).scale(0));
     CHECK(y.derivative(2) == doctest::Approx(-s - 2 * (c - s / x) / x).epsilon(1e-13).scale(0));
   }
+  using D = duet::dual<double>; // for which Boost has a template of its own
+  CHECK(boost::math::sinc_pi(D::variable(0.001)).epsilon() ==
+        doctest::Approx(-0.001 / 3 * (1 - 1e-7)).epsilon(1e-13).scale(0));
+  using lanes = duet::batch<double, 2>;
+  CHECK(all(boost::math::sinc_pi(duet::dual<lanes>(lanes(0.0))).value() == 1));
   const auto at_zero = boost::math::sinc_pi(duet::taylor<double, 6>::variable(0));
   CHECK(at_zero.derivative(4) == doctest::Approx(0.2).epsilon(1e-15));
   CHECK(at_zero.derivative(6) == doctest::Approx(-1.0 / 7).epsilon(1e-15));

@@ -6,6 +6,7 @@
 #include <duet/dual/functions.hpp>
 #include <duet/dual/stumpff.hpp>
 
+#include <boost/math/special_functions/cbrt.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <boost/math/special_functions/hypot.hpp>
@@ -43,8 +44,20 @@ struct lambert_w0 {
 
 } // namespace duet::rule
 
+namespace duet::detail {
+
+template <class D>
+[[nodiscard]] D sinc(const D& x) {
+  const auto value = innermost(x);
+  return select( // of large numbers the square leaves the range, or its powers do
+      value * value > 64, [&] { return D(sin(x) / x); }, [&] { return D(stumpff<1>(D(x * x))); });
+}
+
+} // namespace duet::detail
+
 namespace boost::math {
 
+using duet::cbrt;
 using duet::erf;
 using duet::erfc;
 using duet::hypot;
@@ -54,11 +67,13 @@ using duet::tgamma;
 /// sin x/x
 template <duet::RealInfinitesimal D>
 [[nodiscard]] inline D sinc_pi(D x) {
-  const auto value = duet::innermost(x);
-  return duet::select( // of large numbers the square leaves the range, or its powers do
-      value * value > 64, [&] { return D(sin(x) / x); },
-      [&] { return D(duet::stumpff<1>(D(x * x))); });
+  return duet::detail::sinc(x);
 }
+/// Boost has one of its own for every type with one parameter, as `dual<double>` is to compilers
+/// that look at the parameters without default alone.
+template <class T, template <class> class U>
+  requires duet::RealInfinitesimal<U<T>>
+[[nodiscard]] inline U<T> sinc_pi(const U<T> x) { return duet::detail::sinc(x); }
 template <duet::RealInfinitesimal D>
 [[nodiscard]] inline D lambert_w0(D x) {
   return duet::rule::lambert_w0{}.value(x);
