@@ -4,11 +4,11 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/cubic_equations.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/interpolate_rotation_vectors.hpp>
-#include <duet/spline/interpolation_equations.hpp>
 #include <duet/spline/rotation_vector_equations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 #include <duet/spline/small_turns.hpp>
@@ -51,7 +51,8 @@ rows small_steps() {
 
 template <class Ends>
 auto equations(const cumulative*, const rows& data, const Ends& ends) {
-  return duet::detail::cubic_equations<double, Ends>(data.parameters, data.orientations, ends);
+  return duet::detail::cubic_equations<double>(data.parameters, data.orientations,
+                                               duet::detail::cubic_ends<double>(ends));
 }
 template <int Order, class Ends>
 auto equations(const rotation_vector<Order>*, const rows& data, const Ends& ends) {

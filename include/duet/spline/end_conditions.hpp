@@ -3,14 +3,10 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/spline/knots.hpp>
 
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <sstream>
-#include <type_traits>
-#include <vector>
 
 /// \file
 /// What an interpolating curve does at its ends.
@@ -86,27 +82,4 @@ end_acceleration(V, V) -> end_acceleration<typename V::PlainObject>;
 template <class A, class B>
 end_acceleration(A, B) -> end_acceleration<typename A::PlainObject>;
 
-namespace detail {
-
-template <class Ends>
-inline constexpr bool is_clamped = false;
-template <class V>
-inline constexpr bool is_clamped<clamped<V>> = true;
-
-/// The knots of the cubic through data at u_0 … u_n.
-template <class Ends, class R>
-[[nodiscard]] std::vector<R> interpolation_knots(const std::vector<R>& u, const Ends&) {
-  if constexpr (std::is_same_v<Ends, periodic>) {
-    return periodic_knots(u, 4);
-  } else if constexpr (std::is_same_v<Ends, not_a_knot>) {
-    std::vector<R> distinct = u;
-    distinct.erase(distinct.end() - 2);
-    distinct.erase(distinct.begin() + 1);
-    return clamped_knots(distinct, 4);
-  } else {
-    return clamped_knots(u, 4);
-  }
-}
-
-} // namespace detail
 } // namespace duet

@@ -4,7 +4,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/interpolation_equations.hpp>
+#include <duet/spline/half_rate.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 

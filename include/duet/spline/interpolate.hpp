@@ -3,9 +3,10 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/spline/cubic_ends.hpp>
+#include <duet/spline/cubic_equations.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
-#include <duet/spline/interpolation_equations.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/spline_newton.hpp>
 
@@ -32,27 +33,6 @@ struct fit_report {
 };
 
 namespace detail {
-
-/// The end conditions of the rotations' real parts.
-template <class Ends>
-[[nodiscard]] const Ends& real_ends(const Ends& ends) {
-  return ends;
-}
-template <class V>
-[[nodiscard]] auto real_rate(const V& rate) {
-  using R = real_type_t<typename V::Scalar>;
-  constexpr int angular = V::SizeAtCompileTime - 3;
-  return vector3<R>(innermost(rate[angular]), innermost(rate[angular + 1]),
-                    innermost(rate[angular + 2]));
-}
-template <class V>
-[[nodiscard]] auto real_ends(const clamped<V>& ends) {
-  return clamped{real_rate(ends.start), real_rate(ends.end)};
-}
-template <class V>
-[[nodiscard]] auto real_ends(const end_acceleration<V>& ends) {
-  return end_acceleration{real_rate(ends.start), real_rate(ends.end)};
-}
 
 /// The solution over T by that of the real parts: one step with their Jacobian for every order of
 /// infinitesimals.
@@ -88,10 +68,11 @@ template <class T>
   const vector3<T> half = log_vector(quaternion<T>(conj(again) * q.back()), "interpolate");
   const auto tolerance = sqrt(std::numeric_limits<real_type_t<T>>::epsilon());
   const auto check = [&](const auto& x, const char* unit) {
-    if (!(2 * real_type_t<T>(real_rate(x).norm()) <= tolerance)) {
+    using R = real_type_t<T>;
+    const R off = 2 * vector3<R>(innermost(x[0]), innermost(x[1]), innermost(x[2])).norm();
+    if (!(off <= tolerance)) {
       std::ostringstream reason;
-      reason << "periodic ends: differs from row 0 by " << 2 * real_rate(x).norm() << unit
-             << ", but must repeat it";
+      reason << "periodic ends: differs from row 0 by " << off << unit << ", but must repeat it";
       throw invalid_row(q.size() - 1, reason.str());
     }
   };
@@ -105,19 +86,16 @@ template <class T>
   return q;
 }
 
-template <class T, class Ends>
+template <class T>
 [[nodiscard]] cumulative_bspline<T, 4>
 interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<quaternion<T>> q,
-                  const Ends& ends, fit_report* report) {
-  constexpr bool is_periodic = std::is_same_v<Ends, periodic>;
-  constexpr bool is_not_a_knot = std::is_same_v<Ends, not_a_knot>;
-  check_rows(parameters, q.size(), is_not_a_knot ? 4 : is_periodic ? 3 : 2);
-  ends.check();
+                  const cubic_ends<T>& ends, fit_report* report) {
+  check_rows(parameters, q.size(), ends.least_rows());
   q = aligned_orientations(std::move(q));
-  if constexpr (is_periodic) {
+  if (ends.kind == end_kind::periodic) {
     q = closed(std::move(q));
   }
-  cubic_equations<T, Ends> equations(parameters, q, ends);
+  cubic_equations<T> equations(parameters, q, ends);
   const auto curve = [&](auto&& newton, const auto& solution) {
     if (report != nullptr) {
       *report = {newton.iterations(), 2 * double(newton.residual()),
@@ -138,9 +116,7 @@ interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<qua
     for (const quaternion<T>& each : q) {
       rotations.push_back(innermost_of(each));
     }
-    const auto rates = real_ends(ends);
-    using real_ends_type = std::decay_t<decltype(rates)>;
-    const cubic_equations<R, real_ends_type> real(parameters, std::move(rotations), rates);
+    const cubic_equations<R> real(parameters, std::move(rotations), ends.real_part());
     spline_newton newton(real);
     return curve(newton, lifted_solution(equations, newton));
   }
@@ -169,7 +145,8 @@ template <class Spline, class T, class Ends = natural>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
                                  const std::vector<quaternion<T>>& orientations,
                                  const Ends& ends = {}) {
-  return detail::interpolate_cubic(parameters, orientations, ends, nullptr);
+  ends.check();
+  return detail::interpolate_cubic(parameters, orientations, detail::cubic_ends<T>(ends), nullptr);
 }
 /// The same, and how it went.
 template <class Spline, class T, class Ends>
@@ -177,7 +154,8 @@ template <class Spline, class T, class Ends>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
                                  const std::vector<quaternion<T>>& orientations, const Ends& ends,
                                  fit_report& report) {
-  return detail::interpolate_cubic(parameters, orientations, ends, &report);
+  ends.check();
+  return detail::interpolate_cubic(parameters, orientations, detail::cubic_ends<T>(ends), &report);
 }
 
 /// Rows over another scalar than the curve's.

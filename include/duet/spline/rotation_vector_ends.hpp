@@ -3,7 +3,7 @@
 
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/end_conditions.hpp>
-#include <duet/spline/interpolation_equations.hpp>
+#include <duet/spline/half_rate.hpp>
 
 #include <algorithm>
 #include <array>

@@ -3,21 +3,20 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/block_tridiagonal.hpp>
-#include <duet/spline/end_conditions.hpp>
+#include <duet/spline/cubic_ends.hpp>
 #include <duet/spline/motion.hpp>
+#include <duet/spline/orientations.hpp>
 #include <duet/spline/small_turns.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -26,38 +25,24 @@
 
 namespace duet::detail {
 
-/// A rate as half a vector, or half a dual vector.
-template <class T, class V>
-[[nodiscard]] vector3<T> half_rate(const V& rate) {
-  const real_type_t<T> half(0.5);
-  if constexpr (V::SizeAtCompileTime == 6) {
-    using S = typename scalar_traits<T>::value_type;
-    return dual_vector_of(vector6<S>(rate.template cast<S>())) * half;
-  } else {
-    return rate.template cast<T>() * half;
-  }
-}
-
 /// Equations for the half-angle vectors ω_1, ω_2 … of the cubic through Q_0 … Q_n: with the piece
 /// S of its span,
 ///   S(u_i)⁻¹ S(u_{i+1}) = Q_i⁻¹ Q_{i+1},   i = 0 … n − 1,
 /// and, where the ends ask for it, one for the rates at either end. Three increments meet in every
 /// equation, not as logarithms of controls but as vectors of any length. Unknown k is ω_{k+1}; of
 /// a periodic curve ω_{k+2}, counted round.
-template <class T, class Ends>
+template <class T>
 class cubic_equations {
   using R = real_type_t<T>;
-  static constexpr bool is_cyclic = std::is_same_v<Ends, periodic>;
-  static constexpr bool skips_knots = std::is_same_v<Ends, not_a_knot>;
-  static constexpr bool has_end_rates = !is_cyclic && !skips_knots;
 
 public:
   using real_type = R;
   using unknowns = std::vector<vector3<T>>;
   using matrix = block_tridiagonal<R, 3>;
 
-  cubic_equations(const std::vector<R>& u, std::vector<quaternion<T>> q, const Ends& ends)
-      : basis_(interpolation_knots(u, ends)), data_(std::move(q)) {
+  cubic_equations(const std::vector<R>& u, std::vector<quaternion<T>> q, const cubic_ends<T>& ends)
+      : kind_(ends.kind), has_end_rates_(ends.has_rates()), basis_(ends.knots(u)),
+        data_(std::move(q)) {
     const std::size_t n = u.size() - 1;
     turns_.reserve(n);
     arcs_.reserve(n);
@@ -65,7 +50,7 @@ public:
     for (std::size_t i = 0; i < n; ++i) {
       turns_.push_back(turn_between(data_[i], data_[i + 1]));
       std::size_t span = i;
-      if constexpr (skips_knots) {
+      if (kind_ == end_kind::not_a_knot) {
         span = i == 0 ? 0 : i == n - 1 ? n - 3 : i - 1;
       }
       arc a{span, basis_.template weights<0>(span, u[i])[0], basis_.changes(span, u[i], u[i + 1])};
@@ -77,16 +62,14 @@ public:
       longest = std::max(longest, R(u[i + 1] - u[i]));
     }
     unevenness_ = longest / shortest;
-    if constexpr (!std::is_same_v<Ends, natural> && has_end_rates) {
-      end_rates_ = {rotate(conj(data_.front()), half_rate<T>(ends.start)),
-                    rotate(conj(data_.back()), half_rate<T>(ends.end))};
-    }
+    end_rates_ = {rotate(conj(data_.front()), ends.rates[0]),
+                  rotate(conj(data_.back()), ends.rates[1])};
   }
 
   /// Number of equations, which is that of the unknowns.
-  [[nodiscard]] std::size_t size() const { return arcs_.size() + (has_end_rates ? 2 : 0); }
+  [[nodiscard]] std::size_t size() const { return arcs_.size() + (has_end_rates_ ? 2 : 0); }
   [[nodiscard]] corners corner_columns() const {
-    return is_cyclic ? corners{size() - 1, 0} : corners{2, size() - 3};
+    return is_cyclic() ? corners{size() - 1, 0} : corners{2, size() - 3};
   }
   /// What the curve is made of; nothing else works afterwards.
   [[nodiscard]] bspline_basis<4, R> basis() && { return std::move(basis_); }
@@ -129,15 +112,14 @@ public:
   /// The j-th of the three unknowns in an equation.
   [[nodiscard]] std::size_t unknown(std::size_t row, std::size_t j) const {
     const std::size_t n = size();
-    if constexpr (is_cyclic) {
+    if (is_cyclic()) {
       return (row + n - 1 + j) % n;
-    } else {
-      return (row == 0 ? 0 : row == n - 1 ? n - 3 : row - 1) + j;
     }
+    return (row == 0 ? 0 : row == n - 1 ? n - 3 : row - 1) + j;
   }
   /// Its block's place: 0 lower, 1 diagonal, 2 upper, corners included.
   [[nodiscard]] int place(std::size_t row, std::size_t j) const {
-    const int shift = is_cyclic ? 0 : row == 0 ? 1 : row == size() - 1 ? 2 : 0;
+    const int shift = is_cyclic() ? 0 : row == 0 ? 1 : row == size() - 1 ? 2 : 0;
     return (int(j) + shift) % 3;
   }
 
@@ -145,7 +127,7 @@ public:
   /// increment.
   template <class D>
   [[nodiscard]] vector3<D> residual(std::size_t row, const std::array<vector3<D>, 3>& omega) const {
-    if constexpr (has_end_rates) {
+    if (has_end_rates_) {
       if (row == 0 || row + 1 == size()) {
         return end_residual(row == 0, omega);
       }
@@ -170,10 +152,10 @@ public:
 
   /// The same for turns so small that their order does not matter: Σ weights_j x_j = right.
   [[nodiscard]] small_turn_equation<T> small_turns(std::size_t row) const {
-    if constexpr (has_end_rates) {
+    if (has_end_rates_) {
       if (row == 0 || row + 1 == size()) {
         const curve_end end = end_of_curve(row == 0);
-        std::array<R, 3> weights = end.weights[is_clamped<Ends> ? 1 : 2];
+        std::array<R, 3> weights = end.weights[kind_ == end_kind::velocity ? 1 : 2];
         for (R& weight : weights) {
           weight *= end.scale;
         }
@@ -227,7 +209,7 @@ public:
     std::vector<vector3<T>> omega{vector3<T>::Zero()};
     omega.reserve(basis_.size());
     for (std::size_t i = 1; i < basis_.size(); ++i) {
-      omega.push_back(x[is_cyclic ? (i + 2 * size() - 2) % size() : i - 1]);
+      omega.push_back(x[is_cyclic() ? (i + 2 * size() - 2) % size() : i - 1]);
     }
     return omega;
   }
@@ -253,6 +235,8 @@ public:
   }
 
 private:
+  [[nodiscard]] bool is_cyclic() const { return kind_ == end_kind::periodic; }
+
   /// From row i to row i + 1: the span, the weights of its three increments at row i, and by how
   /// much these change.
   struct arc {
@@ -269,7 +253,7 @@ private:
     const std::size_t span = at_start ? 0 : basis_.breaks().size() - 2;
     const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
     return {basis_.template weights<2>(span, at_start ? basis_.front() : basis_.back()),
-            is_clamped<Ends> ? R(h / 3) : R(h * h / 6)};
+            kind_ == end_kind::velocity ? R(h / 3) : R(h * h / 6)};
   }
 
   template <class D>
@@ -278,19 +262,18 @@ private:
     const curve_end end = end_of_curve(at_start);
     const auto m = product_of_exponentials<2>(quaternion<D>(D(1)), omega.data(), end.weights);
     const vector3<D> rate = end_rates_[at_start ? 0 : 1].template cast<D>();
-    if constexpr (is_clamped<Ends>) {
-      return detail::scaled(end.scale, vector3<D>(m.velocity - rate));
-    } else {
-      return detail::scaled(end.scale, vector3<D>(m.acceleration - rate));
-    }
+    return detail::scaled(
+        end.scale, vector3<D>((kind_ == end_kind::velocity ? m.velocity : m.acceleration) - rate));
   }
 
+  end_kind kind_;
+  bool has_end_rates_;
   bspline_basis<4, R> basis_;
   std::vector<quaternion<T>> data_;
   std::vector<quaternion<T>> turns_;
   std::vector<arc> arcs_;
   R unevenness_;
-  std::array<vector3<T>, 2> end_rates_{vector3<T>::Zero(), vector3<T>::Zero()};
+  std::array<vector3<T>, 2> end_rates_;
 };
 
 } // namespace duet::detail
