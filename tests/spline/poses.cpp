@@ -138,4 +138,36 @@ TEST_CASE("hybrid rates are the derivatives of the translation") {
   }
 }
 
+TEST_CASE("far from the origin the body's own motion keeps its digits") {
+  // Turning about itself alone, and moving along its own axes at a rate of 1.
+  using scalar = duet::screw_dual<double>;
+  const double far = 1e8;
+  const auto start = duet::pose(duet::from_rotation_vector(duet::vector3<double>(0.3, -0.2, 1.1)),
+                                duet::vector3<double>(far, -far, 2 * far));
+  const auto curve = [&](double shift) {
+    std::vector<duet::vector3<scalar>> increments;
+    std::vector<duet::dual_quaternion<double>> controls;
+    for (int i = 0; i < 5; ++i) {
+      increments.push_back({scalar(0.1 * i, shift / 2), scalar(0.4), scalar(-0.2 * i)});
+      controls.push_back(i == 0 ? start : controls.back() * duet::exp(increments.back()));
+    }
+    return duet::cumulative_bspline<scalar>(
+        duet::bspline_basis<4, double>({-3, -2, -1, 0, 1, 2, 3, 4, 5}), controls, increments);
+  };
+  for (const double u : {0.0, 0.3, 1.0, 1.9}) {
+    const auto still = curve(0).motion(u, duet::frame::hybrid);
+    CHECK(still.velocity.tail<3>().norm() > 0.1);
+    CHECK(still.velocity.head<3>().norm() == 0);
+    CHECK(still.acceleration.head<3>().norm() == 0);
+    CHECK(still.jerk.head<3>().norm() == 0);
+    const auto s = curve(1);
+    const auto body = s.motion(u, duet::frame::body);
+    const auto m = s.motion(u, duet::frame::hybrid);
+    CHECK(m.velocity.head<3>().norm() ==
+          doctest::Approx(body.velocity.head<3>().norm()).epsilon(1e-14));
+    CHECK(m.velocity.tail<3>().norm() ==
+          doctest::Approx(body.velocity.tail<3>().norm()).epsilon(1e-14));
+  }
+}
+
 } // namespace test_spline_poses

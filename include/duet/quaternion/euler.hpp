@@ -164,9 +164,9 @@ template <euler_sequence Sequence, class T>
     T middle;
     if constexpr (Sequence.is_proper()) {
       middle = 2 * atan2(hypot(y, z), hypot(w, x));
-    } else { // both lengths are near each other where the angle is small
+    } else { // the sine and the cosine, from numbers as small as it is
       const auto& [s, i, j, k] = components;
-      middle = atan2(T(2 * (s * j + i * k)), T(hypot(w, x) * hypot(y, z)));
+      middle = atan2(T(2 * (s * j + i * k)), hypot(T(w * y + x * z), T(w * z - x * y)));
     }
     constexpr int sign = Sequence.is_proper() ? 1 : -Sequence.sign();
     return {detail::with_innermost(T(sum + difference), values[0]),

@@ -166,20 +166,27 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
   return m;
 }
 
-/// From spatial twists to the motion of the body's origin: ṫ = v + ω × t, and its derivatives.
+/// From twists in body axes to the motion of the body's origin, ṫ = R v, and of fixed axes. However
+/// far out the body is, nothing cancels: ẗ = R(v̇ + ω × v), t⃛ = R(v̈ + ω̇ × v + 2ω × v̇ + ω × (ω × v)).
 template <class T>
 void follow_origin(motion<T>& m) {
-  using vector = vector3<typename motion<T>::rate_type::Scalar>;
-  const vector t = translation(m.value);
-  const vector omega = m.velocity.template tail<3>();
-  const vector alpha = m.acceleration.template tail<3>();
-  const vector jerk = m.jerk.template tail<3>();
-  const vector first = vector(m.velocity.template head<3>()) + omega.cross(t);
-  const vector second =
-      vector(m.acceleration.template head<3>()) + alpha.cross(t) + omega.cross(first);
-  m.jerk.template head<3>() += jerk.cross(t) + 2 * alpha.cross(first) + omega.cross(second);
-  m.velocity.template head<3>() = first;
-  m.acceleration.template head<3>() = second;
+  using rate = typename motion<T>::rate_type;
+  using vector = vector3<typename rate::Scalar>;
+  const rotation_of_many turn(rotation(m.value));
+  const auto linear = [](const rate& r) { return vector(r.template head<3>()); };
+  const auto angular = [](const rate& r) { return vector(r.template tail<3>()); };
+  const vector v = linear(m.velocity), omega = angular(m.velocity);
+  const vector v_dot = linear(m.acceleration), alpha = angular(m.acceleration);
+  const vector across = omega.cross(v);
+  const auto set = [&](rate& r, const vector& along, const vector& about) {
+    r.template head<3>() = turn(along);
+    r.template tail<3>() = turn(about);
+  };
+  set(m.jerk,
+      linear(m.jerk) + alpha.cross(v) + vector(2 * omega.cross(v_dot)) + omega.cross(across),
+      angular(m.jerk) + omega.cross(alpha));
+  set(m.acceleration, v_dot + across, alpha);
+  set(m.velocity, v, omega);
 }
 
 /// Full rates. Axes that turn along change the second derivative of V^s = A V^b A* only:
@@ -190,7 +197,7 @@ template <class T, class Frame>
   constexpr bool is_hybrid = is_pose && std::is_same_v<Frame, hybrid_frame>;
   constexpr bool is_turned = [] {
     if constexpr (is_hybrid) {
-      return true;
+      return false; // but by the rotation alone, below
     } else {
       return is_spatial(Frame{});
     }
