@@ -56,9 +56,9 @@ void run(const options& given) {
   std::filesystem::create_directories(given.out);
   duet::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, rate));
   duet::write_file(given.out + "/rows.csv", rows_csv(r, s));
-  const bool drawn =
-      example::draw(given.out, "fit", "1000,900",
-                    picture_script(r.rows.front().time, duration, s.outlier, r.rows.size()));
+  const bool drawn = example::draw(given.out, "fit", "1000,900",
+                                   picture_script(r.rows.front().time, duration, s.outlier,
+                                                  r.rows.size(), std::size_t(duration * rate)));
   std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {

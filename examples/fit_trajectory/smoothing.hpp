@@ -64,14 +64,15 @@ struct smoothed {
 /// is given.
 inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double length,
                        double outlier) {
-  const std::vector<double> times = times_of(r);
+  std::vector<double> times = times_of(r);
   std::vector<pose_type> poses;
+  poses.reserve(r.rows.size());
   for (const row& each : r.rows) {
     poses.push_back(each.pose);
   }
-  const std::vector<double> knots = knots_at_rows(times, rows_per_knot);
+  std::vector<double> knots = knots_at_rows(times, rows_per_knot);
   const duet::fit_options options{.length = length, .outlier = std::max(outlier, 0.0)};
-  fitted result = duet::fit<curve>(times, poses, knots, options);
+  fitted result = duet::fit<curve>(std::move(times), std::move(poses), std::move(knots), options);
   const double limit = result.outlier;
   return {std::move(result), limit};
 }
@@ -126,42 +127,52 @@ inline std::string rows_csv(const recording& r, const smoothed& s) {
   return text;
 }
 
-/// \param rows  their number: more than some thousand would hide the curve, so they are left out
-inline std::string picture_script(double start, double duration, double outlier, std::size_t rows) {
-  const std::string t = "($1-(" + duet::to_text(start) + "))";
-  const std::string rows_t = "($2-(" + duet::to_text(start) + "))";
-  std::string text =
-      "set datafile separator ','\nset grid\nunset logscale\nset format y\nunset xlabel\n"
-      "set multiplot layout 4,1\n"
-      "set lmargin 11\nset rmargin 14\nset key outside right\nset xrange [0:" +
-      duet::to_text(duration) + "]\nset ylabel 'position / m'\nplot ";
+/// What gnuplot reads of a table with so many lines: some thousand, evenly, kept for both pictures.
+inline std::string picture_data(const std::string& name, std::size_t lines,
+                                const std::string& columns) {
+  constexpr std::size_t most = 5000;
+  return "set table $" + name + "\nplot '" + name + ".csv' skip 1 every " +
+         std::to_string(lines / most + 1) + " using " + columns + " with table\nunset table\n";
+}
+
+/// \param rows, poses  their numbers: more rows than some thousand would hide the curve, so they
+/// are
+///                     left out
+inline std::string picture_script(double start, double duration, double outlier, std::size_t rows,
+                                  std::size_t poses) {
+  const std::string first = "-(" + duet::to_text(start) + ")";
+  std::string text = "if (!exists('is_read')) {\nset datafile separator ','\n" +
+                     picture_data("trajectory", poses, "($1" + first + "):2:3:4:9:10:11:12:13:14") +
+                     picture_data("rows", rows, "($2" + first + "):3:4:5:6") +
+                     "set datafile separator whitespace\nis_read = 1\n}\n"
+                     "set grid\nunset logscale\nset format y\nunset xlabel\n"
+                     "set multiplot layout 4,1\n"
+                     "set lmargin 11\nset rmargin 14\nset key outside right\nset xrange [0:" +
+                     duet::to_text(duration) + "]\nset ylabel 'position / m'\nplot ";
   const char* const colours[] = {"#d62728", "#2ca02c", "#1f77b4"};
   const char* const axes[] = {"x", "y", "z"};
   if (rows <= 5000) {
     for (int k = 0; k < 3; ++k) {
-      text += "'rows.csv' using " + rows_t + ":" + std::to_string(3 + k) +
-              " skip 1 with points pt 7 ps 0.5 lc rgb '#888888' " +
+      text += "$rows using 1:" + std::to_string(2 + k) +
+              " with points pt 7 ps 0.5 lc rgb '#888888' " +
               (k < 2 ? "notitle, \\\n" : "title 'rows', \\\n");
     }
   }
-  for (int k = 0; k < 3; ++k) {
-    text += "'trajectory.csv' using " + t + ":" + std::to_string(2 + k) +
-            " skip 1 with lines lw 1.5 lc rgb '" + colours[k] + "' title '" + axes[k] + "'" +
-            (k < 2 ? ", \\\n" : "\n");
-  }
-  const auto panel = [&](const char* label, int column) {
-    text += std::string("set ylabel '") + label + "'\nplot ";
+  const auto curves = [&](int column) {
     for (int k = 0; k < 3; ++k) {
-      text += "'trajectory.csv' using " + t + ":" + std::to_string(column + k) +
-              " skip 1 with lines lw 1.5 lc rgb '" + colours[k] + "' title '" + axes[k] + "'" +
-              (k < 2 ? ", \\\n" : "\n");
+      text += "$trajectory using 1:" + std::to_string(column + k) + " with lines lw 1.5 lc rgb '" +
+              colours[k] + "' title '" + axes[k] + "'" + (k < 2 ? ", \\\n" : "\n");
     }
   };
-  panel("velocity / (m/s)", 9);
-  panel("angular velocity / (rad/s)", 12);
+  curves(2);
+  const auto panel = [&](const char* label, int column) {
+    text += std::string("set ylabel '") + label + "'\nplot ";
+    curves(column);
+  };
+  panel("velocity / (m/s)", 5);
+  panel("angular velocity / (rad/s)", 8);
   text += "set ylabel 'residual'\nset xlabel 'time / s'\nset logscale y\nset format y '10^{%T}'\n"
-          "plot 'rows.csv' using " +
-          rows_t + ":6 skip 1 with points pt 7 ps 0.25 lc rgb '#444444' title 'rows', \\\n" +
+          "plot $rows using 1:5 with points pt 7 ps 0.25 lc rgb '#444444' title 'rows', \\\n" +
           duet::to_text(outlier) +
           " with lines lw 1.5 lc rgb '#d62728' title 'outliers'\nunset multiplot\n";
   return text;

@@ -8,13 +8,14 @@
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/basis.hpp>
+#include <duet/spline/block_cholesky.hpp>
 #include <duet/spline/bspline_residuals.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/fit_options.hpp>
 #include <duet/spline/fit_start.hpp>
 #include <duet/spline/orientations.hpp>
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -27,38 +28,23 @@
 /// \file
 /// The least-squares problem behind `fit`.
 
-namespace duet {
-
-/// Settings of `fit`.
-struct fit_options {
-  /// Of poses: the distance that counts as much as a turn by one radian.
-  double length = 1;
-  /// A residual beyond this counts by its size, not by its square (Huber's loss), and rows that are
-  /// farther off than four times this, and twelve times the median of those around, do not count:
-  /// outliers however far leave the curve where the others take it. Zero: three times the median
-  /// residual. Infinite: plain least squares.
-  double outlier = std::numeric_limits<double>::infinity();
-  int max_iterations = 100;
-};
-
-namespace detail {
+namespace duet::detail {
 
 /// The least-squares problem: control elements c, moved by tangent vectors in body axes, such that
 /// Σ ρ(rᵢ) is least. Normal equations are banded, as a row meets `Order` neighbouring controls.
 template <class T, int Order>
 class bspline_fit : bspline_residuals<T, Order> {
   using residual_type = bspline_residuals<T, Order>;
-  using typename residual_type::basis_type;
-  using typename residual_type::element;
-  using typename residual_type::R;
-  template <class S>
-  using tangent = typename residual_type::template tangent<S>;
   using residual_type::dimension;
   using residual_type::first;
   using residual_type::residual_at;
   using residual_type::rows;
   using residual_type::size_of;
   using residual_type::unknowns;
+  using typename residual_type::basis_type;
+  using typename residual_type::element;
+  using typename residual_type::R;
+  using typename residual_type::tangent;
 
 public:
   bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> elements,
@@ -66,13 +52,13 @@ public:
       : residual_type(basis, u, std::move(elements), R(options.length)), options_(options),
         limits_(u.size(), R(options.outlier)) {
     if (is_robust()) {
-      controls_ = medoids(basis, u, this->rows(), R(options.length));
+      controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
       approach();
     } else {
       controls_ = elements_at_averages(basis, u, this->rows());
       const std::vector<R> sizes = residuals();
       if (!(*std::max_element(sizes.begin(), sizes.end()) < too_far())) {
-        controls_ = medoids(basis, u, this->rows(), R(options.length));
+        controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
         fail_at_farthest();
       }
     }
@@ -110,22 +96,31 @@ private:
   /// steps. \throws no_convergence
   int descend(int most, bool must_converge) {
     const R gain = must_converge ? std::numeric_limits<R>::epsilon() : R(0.1);
+    using std::sqrt;
+    const R rounding = 8 * std::numeric_limits<R>::epsilon() * sqrt(R(rows().size()));
     R cost = cost_of(controls_);
     R damping(0), step(0);
     for (int iteration = 1; iteration <= most; ++iteration) {
-      assemble();
+      bool is_bold = must_converge && is_robust();
+      assemble(is_bold);
       const R last = cost;
       for (;;) {
         std::vector<element> moved = moved_controls(damping, step);
-        const R next = moved.empty() ? std::numeric_limits<R>::infinity() : cost_of(moved);
-        if (!moved.empty() && next <= cost) {
+        const bool is_step = !moved.empty();
+        const R next = is_step ? cost_of(moved) : std::numeric_limits<R>::infinity();
+        if (next <= cost * (1 + rounding)) {
           controls_ = std::move(moved);
           cost = next;
           damping = damping > R(1e-9) ? R(damping / 10) : R(0);
           break;
         }
-        if (step <= tolerance && !moved.empty()) { // as low as rounding lets it be
+        if (is_step && step <= tolerance) { // as low as rounding lets it be
           return iteration;
+        }
+        if (is_bold) {
+          is_bold = false;
+          assemble(false);
+          continue;
         }
         damping = damping > 0 ? R(damping * 10) : R(1e-6);
         if (!(damping < R(1e12))) {
@@ -159,7 +154,7 @@ private:
       iterations_ += descend(steps, false);
     }
     if (!(options_.outlier > 0)) {
-      options_.outlier = double(std::max(R(3 * median(residuals())), least_outlier));
+      options_.outlier = double(std::max(R(3 * median_of(residuals())), least_outlier));
     }
     set_limits();
     for (R& limit : limits_) {
@@ -209,17 +204,19 @@ private:
   }
 
   /// JᵀWJ and −JᵀW r at the controls, W the weights of Huber's loss.
-  void assemble() {
-    const auto size = Eigen::Index(controls_.size()) * dimension;
-    gradient_.setZero(size);
-    std::vector<Eigen::Triplet<R>> entries;
+  /// \param is_bold  most of the curvature that the loss lacks along residuals beyond the limit is
+  ///                 taken out: steps are right near the end and may be too long before, while the
+  ///                 weights alone make them too short
+  void assemble(bool is_bold) {
+    gradient_.setZero(Eigen::Index(controls_.size()) * dimension);
+    normal_.set_zero(controls_.size());
     typename residual_type::last_span last;
     Eigen::Matrix<R, unknowns, unknowns> squares = Eigen::Matrix<R, unknowns, unknowns>::Zero();
-    const auto flush = [&] { // once for all rows on a span: else a million of them take gigabytes
-      const Eigen::Index at = Eigen::Index(last.first) * dimension;
-      for (int a = 0; a < unknowns && !last.varied.empty(); ++a) {
-        for (int b = 0; b <= a; ++b) {
-          entries.emplace_back(at + a, at + b, squares(a, b));
+    const auto flush = [&](std::size_t span) { // once for all rows on it
+      for (std::size_t a = 0; a < std::size_t(Order); ++a) {
+        for (std::size_t b = 0; b <= a; ++b) {
+          normal_.at(span + a, span + b) += squares.template block<dimension, dimension>(
+              Eigen::Index(a) * dimension, Eigen::Index(b) * dimension);
         }
       }
       squares.setZero();
@@ -228,40 +225,39 @@ private:
       if (!counts(i)) {
         continue;
       }
-      if (first()[i] != last.first) {
-        flush();
+      if (first()[i] != last.first && last.first != std::size_t(-1)) {
+        flush(last.first);
       }
       const auto [value, slope] = this->linearised(i, controls_, last);
       const R length = size_of(value);
       const R weight = length <= limits_[i] ? R(1) : R(limits_[i] / length);
-      gradient_.segment(Eigen::Index(last.first) * dimension, unknowns) -=
-          weight * (slope.transpose() * value);
-      squares += weight * slope.transpose().lazyProduct(slope);
-      if (weight < 1) { // Huber's loss is linear there: along the residual it does not curve
-        const Eigen::Matrix<R, unknowns, 1> along = slope.transpose() * (value / length);
+      gradient_.template segment<unknowns>(Eigen::Index(last.first) * dimension) -=
+          weight * (slope * value);
+      const Eigen::Matrix<R, unknowns, dimension> weighted = weight * slope;
+      for (int a = 0; a < unknowns; ++a) { // columns are what Eigen is fast at
+        squares.col(a).noalias() += slope.lazyProduct(weighted.row(a).transpose());
+      }
+      if (weight < 1 && is_bold) {
+        const Eigen::Matrix<R, unknowns, 1> along = slope * (value / length);
         squares -= R(0.9) * weight * along.lazyProduct(along.transpose());
       }
     }
-    flush();
-    normal_.resize(size, size);
-    normal_.setFromTriplets(entries.begin(), entries.end());
+    if (last.first != std::size_t(-1)) {
+      flush(last.first);
+    }
   }
 
   /// The controls after one step, none where there is no step with this damping.
-  [[nodiscard]] std::vector<element> moved_controls(const R& damping, R& step) const {
-    Eigen::SparseMatrix<R> damped = normal_;
+  [[nodiscard]] std::vector<element> moved_controls(const R& damping, R& step) {
+    factors_ = normal_;
     if (damping > 0) {
-      for (Eigen::Index i = 0; i < damped.rows(); ++i) {
-        damped.coeffRef(i, i) *= 1 + damping;
-      }
+      factors_.scale_diagonal(1 + damping);
     }
-    // The band is as narrow as any order of the unknowns would make it.
-    const Eigen::SimplicialLLT<Eigen::SparseMatrix<R>, Eigen::Lower, Eigen::NaturalOrdering<int>>
-        factors(damped);
-    if (factors.info() != Eigen::Success) {
+    if (!factors_.factorise()) {
       return {};
     }
-    const Eigen::Matrix<R, Eigen::Dynamic, 1> delta = factors.solve(gradient_);
+    Eigen::Matrix<R, Eigen::Dynamic, 1> delta = gradient_;
+    factors_.solve(delta);
     step = delta.template lpNorm<Eigen::Infinity>();
     if (!delta.allFinite()) {
       return {};
@@ -273,8 +269,7 @@ private:
     const R fraction = turn > longest_turn ? R(longest_turn / turn) : R(1);
     std::vector<element> moved = controls_;
     for (std::size_t i = 0; i < moved.size(); ++i) {
-      const tangent<R> d =
-          fraction * delta.template segment<dimension>(Eigen::Index(i) * dimension);
+      const tangent d = fraction * delta.template segment<dimension>(Eigen::Index(i) * dimension);
       moved[i] = normalized(element(manifold<element>::plus(moved[i], d, frame::body)));
     }
     return moved;
@@ -291,9 +286,8 @@ private:
   std::vector<R> limits_; ///< of Huber's loss, row by row; zero: does not count
   std::vector<element> controls_;
   int iterations_ = 0;
-  Eigen::SparseMatrix<R> normal_;
+  block_band_matrix<R, dimension, std::size_t(Order) - 1> normal_, factors_;
   Eigen::Matrix<R, Eigen::Dynamic, 1> gradient_;
 };
 
-} // namespace detail
-} // namespace duet
+} // namespace duet::detail

@@ -2,19 +2,18 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
-#include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/dual/dual.hpp>
-#include <duet/dual/tag.hpp>
+#include <duet/dual_quaternion/exponential_jacobian.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/basis.hpp>
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -34,14 +33,15 @@ protected:
   using element = quaternion<T>;
   static constexpr int dimension = manifold<element>::dimension;
   static constexpr int unknowns = Order * dimension;
-  using D = dual<R, dimension, derivative_tag<bspline_residuals>>; // one control element at a time
-  template <class S>
-  using tangent = Eigen::Matrix<S, dimension, 1>;
+  static constexpr std::size_t factors = std::size_t(Order) - 1;
+  using tangent = Eigen::Matrix<R, dimension, 1>;
   using basis_type = bspline_basis<Order, R>;
 
   bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> rows,
                     const R& length)
       : rows_(std::move(rows)), length_(length) {
+    first_.reserve(u.size());
+    weights_.reserve(u.size());
     for (const R& parameter : u) {
       const std::size_t span = basis.span_of(parameter);
       first_.push_back(basis.first_function(span));
@@ -54,13 +54,14 @@ protected:
   [[nodiscard]] const std::vector<std::size_t>& first() const { return first_; }
 
   /// The norm, without overflow.
-  [[nodiscard]] static R size_of(const tangent<R>& r) {
+  [[nodiscard]] static R size_of(const tangent& r) {
     const R norm = r.norm();
     return norm <= std::numeric_limits<R>::max() ? norm : R(r.stableNorm());
   }
 
   [[nodiscard]] std::vector<R> residuals(const std::vector<element>& controls) const {
     std::vector<R> result;
+    result.reserve(rows_.size());
     last_span last;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       result.push_back(size_of(residual_at(i, controls, last)));
@@ -68,123 +69,133 @@ protected:
     return result;
   }
 
-  /// What rows on one span have in common: the control element at its start, and the increments.
-  template <class P>
+  /// What rows on one span have in common: the control element at its start, the increments, and
+  /// what they do when the control elements move.
   struct segment {
-    quaternion<P> start;
-    std::array<vector3<P>, std::size_t(Order) - 1> increments;
-
-    explicit segment(const std::array<quaternion<P>, std::size_t(Order)>& c) : start(c[0]) {
-      for (std::size_t j = 0; j + 1 < c.size(); ++j) {
-        increments[j] = log(conj(c[j]) * c[j + 1]).vec();
-      }
-    }
+    element start;
+    std::array<vector3<T>, factors> increments; ///< half-angle vectors
+    /// J_r⁻¹ and J_l⁻¹ of the increments: their rates by those of the elements after and before.
+    std::array<matrix3<T>, factors> by_next, by_last;
   };
   /// The caller's memory of the span that the last row was on, for as long as the control elements
-  /// stay as they are: its segment, and the same with tangents at one of these elements each.
+  /// stay as they are.
   struct last_span {
     std::size_t first = std::size_t(-1);
-    std::vector<segment<T>> numbers;
-    std::vector<segment<promote_t<T, D>>> varied;
+    bool has_rates = false;
+    segment shared;
   };
 
-  /// 2 log(S* Q), the shorter way; of poses [v/length; ω].
-  /// \param factor  factor(j) is exp of the j-th increment times its weight
-  template <class S, class P, class F>
-  [[nodiscard]] tangent<S> residual(std::size_t i, quaternion<P> value, const F& factor) const {
-    for (std::size_t j = 0; j + 1 < std::size_t(Order); ++j) {
-      value = value * factor(j);
+  [[nodiscard]] tangent residual_at(std::size_t i, const std::vector<element>& controls,
+                                    last_span& last) const {
+    move_to(first_[i], controls, last);
+    element value = last.shared.start;
+    for (std::size_t j = 0; j < factors; ++j) {
+      value = value * duet::exp(part(i, j, last));
     }
-    quaternion<P> error = conj(value) * quaternion<P>(rows_[i]);
-    if (innermost(error.w()) < 0) {
-      error = -error;
-    }
-    const vector3<P> half = log(error).vec();
-    if constexpr (dimension == 3) {
-      return half * S(R(2));
-    } else {
-      vector6<S> r = twist_of<S>(half) * S(R(2));
-      r.template head<3>() /= S(length_);
-      return r;
-    }
-  }
-  template <class P>
-  [[nodiscard]] quaternion<P> factor(std::size_t i, const segment<P>& s, std::size_t j) const {
-    return duet::exp(vector3<P>(s.increments[j] * P(weights_[i][j])));
-  }
-
-  [[nodiscard]] tangent<R> residual_at(std::size_t i, const std::vector<element>& controls,
-                                       last_span& last) const {
-    if (last.first != first_[i]) {
-      last.first = first_[i];
-      last.numbers.assign(1, segment<T>(controls_at(controls, last.first)));
-    }
-    const segment<T>& s = last.numbers[0];
-    return residual<R>(i, s.start, [&](std::size_t j) { return factor(i, s, j); });
+    return in_lengths(twice(residual(value, i)));
   }
 
   struct linear_residual {
-    tangent<R> value;
-    Eigen::Matrix<R, dimension, unknowns> slope;
+    tangent value;
+    /// By the rates of the control elements in body axes, one after the other, transposed.
+    Eigen::Matrix<R, unknowns, dimension> slope;
   };
 
+  /// With c exp(δ/2) for a control element c, φ = 2 log(c* c⁺) has the rate J_r⁻¹(φ) δ⁺ −
+  /// J_l⁻¹(φ) δ and the factor exp(wφ/2) the rate w J_r(wφ) times that, in its own body axes, where
+  /// the factors behind it take it to those of the value; the residual r goes by −J_l⁻¹(r) times
+  /// the value's.
   [[nodiscard]] linear_residual linearised(std::size_t i, const std::vector<element>& controls,
                                            last_span& last) const {
-    using P = promote_t<T, D>;
-    if (last.first != first_[i]) {
-      vary(controls, first_[i], last);
-    }
-    std::array<quaternion<P>, std::size_t(Order) - 1> numbers;
-    for (std::size_t k = 0; k < numbers.size(); ++k) {
-      numbers[k] = quaternion<P>(factor(i, last.numbers[0], k));
+    move_to(first_[i], controls, last);
+    add_rates(last);
+    std::array<element, factors> turns;
+    element value = last.shared.start;
+    for (std::size_t j = 0; j < factors; ++j) {
+      turns[j] = duet::exp(part(i, j, last));
+      value = value * turns[j];
     }
     linear_residual result;
-    for (std::size_t j = 0; j < std::size_t(Order); ++j) {
-      const segment<P>& s = last.varied[j];
-      // A control element is in the increments on both of its sides alone.
-      const tangent<D> r = residual<D>(i, s.start, [&](std::size_t k) {
-        return k == j || k + 1 == j ? factor(i, s, k) : numbers[k];
-      });
-      for (int a = 0; a < dimension; ++a) {
-        result.value[a] = r[a].value();
-        for (int b = 0; b < dimension; ++b) {
-          result.slope(a, dimension * int(j) + b) = r[a].partial(b);
-        }
+    const vector3<T> r = twice(residual(value, i));
+    result.value = in_lengths(r);
+    matrix3<T> by_value = -left_jacobian_inverse(r);
+    matrix3<T> by_element = matrix3<T>::Zero();
+    for (std::size_t j = factors; j-- > 0;) {
+      matrix3<T> by_increment = product(by_value, right_jacobian(twice(part(i, j, last))));
+      for (T& each : by_increment.reshaped()) {
+        each *= weights_[i][j];
       }
+      put(by_element + product(by_increment, last.shared.by_next[j]), j + 1, result.slope);
+      by_element = -product(by_increment, last.shared.by_last[j]);
+      by_value = product(by_value, rotation_matrix(conj(turns[j])));
     }
+    put(by_element + by_value, 0, result.slope);
     return result;
   }
 
 private:
-  [[nodiscard]] static std::array<element, std::size_t(Order)>
-  controls_at(const std::vector<element>& controls, std::size_t first) {
-    std::array<element, std::size_t(Order)> c;
-    std::copy_n(controls.begin() + std::ptrdiff_t(first), Order, c.begin());
-    return c;
-  }
-
-  void vary(const std::vector<element>& controls, std::size_t first, last_span& last) const {
-    const auto numbers = controls_at(controls, first);
-    std::array<quaternion<promote_t<T, D>>, std::size_t(Order)> c;
-    std::copy(numbers.begin(), numbers.end(), c.begin());
-    tangent<D> delta;
-    for (int b = 0; b < dimension; ++b) {
-      delta[b] = D::variable(R(0), b);
+  /// Onto the span of the control elements from `first` on.
+  static void move_to(std::size_t first, const std::vector<element>& controls, last_span& last) {
+    if (last.first == first) {
+      return;
     }
     last.first = first;
-    last.numbers.assign(1, segment<T>(numbers));
-    last.varied.clear();
-    for (std::size_t j = 0; j < std::size_t(Order); ++j) {
-      c[j] = manifold<element>::plus(numbers[j], delta, frame::body);
-      last.varied.emplace_back(c);
-      c[j] = quaternion<promote_t<T, D>>(numbers[j]);
+    last.has_rates = false;
+    last.shared.start = controls[first];
+    for (std::size_t j = 0; j < factors; ++j) {
+      last.shared.increments[j] = log(conj(controls[first + j]) * controls[first + j + 1]).vec();
+    }
+  }
+  static void add_rates(last_span& last) {
+    for (std::size_t j = 0; j < factors && !last.has_rates; ++j) {
+      const vector3<T> turn = twice(last.shared.increments[j]);
+      last.shared.by_next[j] = right_jacobian_inverse(turn);
+      last.shared.by_last[j] = left_jacobian_inverse(turn);
+    }
+    last.has_rates = true;
+  }
+
+  [[nodiscard]] vector3<T> part(std::size_t i, std::size_t j, const last_span& last) const {
+    return scaled(weights_[i][j], last.shared.increments[j]);
+  }
+
+  /// log(S* Q), the shorter way.
+  [[nodiscard]] vector3<T> residual(const element& value, std::size_t i) const {
+    const element error = conj(value) * rows_[i];
+    return log(innermost(error.w()) < 0 ? element(-error) : error).vec();
+  }
+
+  [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return scaled(R(2), half); }
+  [[nodiscard]] static matrix3<T> product(const matrix3<T>& a, const matrix3<T>& b) {
+    return a.lazyProduct(b);
+  }
+
+  /// Of poses [v/length; ω].
+  [[nodiscard]] tangent in_lengths(const vector3<T>& r) const {
+    if constexpr (dimension == 3) {
+      return r;
+    } else {
+      vector6<R> twist = twist_of<R>(r);
+      twist.template head<3>() /= length_;
+      return twist;
+    }
+  }
+
+  /// The linear map m from rates of control element j, transposed.
+  void put(const matrix3<T>& m, std::size_t j, Eigen::Matrix<R, unknowns, dimension>& slope) const {
+    auto block = slope.template middleRows<dimension>(Eigen::Index(j) * dimension);
+    if constexpr (dimension == 3) {
+      block = m.transpose();
+    } else {
+      block = unfolded(m).transpose();
+      block.template leftCols<3>() /= length_;
     }
   }
 
   std::vector<element> rows_;
   R length_;
   std::vector<std::size_t> first_;
-  std::vector<std::array<R, std::size_t(Order) - 1>> weights_;
+  std::vector<std::array<R, factors>> weights_;
 };
 
 } // namespace duet::detail

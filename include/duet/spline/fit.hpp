@@ -7,6 +7,7 @@
 #include <duet/spline/basis.hpp>
 #include <duet/spline/bspline_fit.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/fit_options.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/orientations.hpp>
 

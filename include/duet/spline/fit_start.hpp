@@ -6,14 +6,17 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
 #include <duet/spline/basis.hpp>
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 /// \file
@@ -52,15 +55,20 @@ elements_at_averages(const bspline_basis<Order, real_type_t<T>>& basis,
   return result;
 }
 
-/// The upper median; at least one x. NaN counts as infinite.
+/// The upper median of x, which it puts into another order; at least one x. NaN counts as infinite.
 template <Real R>
-[[nodiscard]] R median(std::vector<R> x) {
+[[nodiscard]] R median_within(std::vector<R>& x) {
   for (R& each : x) {
     each = each == each ? each : std::numeric_limits<R>::infinity();
   }
   const auto middle = x.begin() + std::ptrdiff_t(x.size() / 2);
   std::nth_element(x.begin(), middle, x.end());
   return *middle;
+}
+
+template <Real R>
+[[nodiscard]] R median_of(std::vector<R> x) {
+  return median_within(x);
 }
 
 /// Row by row the median of x over the rows around, 61 or more if there are as many: those that
@@ -70,112 +78,145 @@ template <Real R>
                                            const std::vector<std::size_t>& piece) {
   constexpr std::size_t enough = 61;
   const std::size_t n = x.size();
-  std::vector<R> result;
+  std::vector<R> result, around;
   result.reserve(n);
-  while (result.size() < n) {
-    const std::size_t first = result.size();
-    const auto last =
-        std::size_t(std::upper_bound(piece.begin(), piece.end(), piece[first]) - piece.begin());
+  for (std::size_t first = 0, last = 0; first < n; first = last) {
+    while (last < n && piece[last] == piece[first]) {
+      ++last;
+    }
     const std::size_t more = last - first < enough ? (enough - (last - first) + 1) / 2 : 0;
     const std::size_t count = std::min(n, last - first + 2 * more);
     const std::size_t from = std::min(first > more ? first - more : 0, n - count);
     const auto begin = x.begin() + std::ptrdiff_t(from);
-    result.resize(last, median(std::vector<R>(begin, begin + std::ptrdiff_t(count))));
+    around.assign(begin, begin + std::ptrdiff_t(count));
+    result.resize(last, median_within(around));
   }
   return result;
 }
 
-/// A length that grows no faster than the distance, so that squares do not overflow: the sum of the
-/// angle and of distance/length.
+/// Rows in coordinates that have medians: the matrix of a rotation, whatever the sign of its
+/// quaternion, and of a pose its shift as a multiple of the length that counts as much as 1 rad.
 template <class T>
-[[nodiscard]] real_type_t<T> separation(const quaternion<T>& a, const quaternion<T>& b,
-                                        const real_type_t<T>& length) {
-  using std::abs;
-  using std::acos;
-  using R = real_type_t<T>;
-  const R cosine = abs(innermost(dot(a, b)));
-  R sum = cosine < 1 ? R(2 * acos(cosine)) : R(0);
-  if constexpr (contains_tag<T, screw_tag>()) {
-    const vector3<R> move = translation(b) - translation(a);
-    sum += move.template lpNorm<1>() / length;
-  }
-  return sum;
-}
+class median_coordinates {
+  static constexpr bool is_pose = contains_tag<T, screw_tag>();
 
-/// Of rows [from, to) and among those no farther than `radius` from row `centre`, the one that is
-/// nearest to the others, by the sum of the logarithms of separations: however far off some are, no
-/// sum forgets the near ones. The radius becomes three times the median separation from it.
-template <class T>
-void move_to_medoid(const std::vector<quaternion<T>>& rows, std::size_t from, std::size_t to,
-                    const real_type_t<T>& length, std::size_t& centre, real_type_t<T>& radius) {
-  using std::log1p;
+public:
   using R = real_type_t<T>;
-  std::vector<std::size_t> near_rows;
-  for (std::size_t i = from; i < to; ++i) {
-    if (separation(rows[centre], rows[i], length) <= radius) {
-      near_rows.push_back(i);
+  using point = std::array<R, is_pose ? 12 : 9>;
+
+  [[nodiscard]] static point of(const quaternion<T>& q, const R& length) {
+    point result;
+    const auto put = [&](const auto& entries, std::size_t at) {
+      for (Eigen::Index i = 0; i < entries.size(); ++i) {
+        result[at + std::size_t(i)] = entries(i);
+      }
+    };
+    if constexpr (is_pose) {
+      constexpr R most = std::numeric_limits<R>::max() / 64; // sums of differences stay finite
+      put(rotation_matrix(rotation(q)), 0);
+      put(vector3<R>((translation(q) / length).cwiseMin(most).cwiseMax(-most)), 9);
+    } else {
+      put(rotation_matrix(q), 0);
     }
+    return result;
   }
-  if (3 * near_rows.size() < to - from) {
-    if (to - from < 21) {
-      return; // by chance: few rows do not prove the others wrong
-    }
-    near_rows.resize(to - from); // the motion is another one here
-    std::iota(near_rows.begin(), near_rows.end(), from);
-  }
-  std::vector<std::vector<R>> table;
-  R typical = std::numeric_limits<R>::infinity();
-  for (const std::size_t a : near_rows) {
-    std::vector<R> line;
-    for (const std::size_t b : near_rows) {
-      line.push_back(separation(rows[a], rows[b], length));
-    }
-    typical = std::min(typical, median(line));
-    table.push_back(std::move(line));
-  }
-  typical = std::max(typical, std::numeric_limits<R>::epsilon());
-  R lowest = std::numeric_limits<R>::infinity();
-  for (std::size_t k = 0; k < table.size(); ++k) {
+
+  /// The sum of the coordinates' distances.
+  [[nodiscard]] static R separation(const point& a, const point& b) {
+    using std::abs;
     R sum(0);
-    for (const R& each : table[k]) {
-      sum += log1p(std::min(R(each / typical), std::numeric_limits<R>::max()));
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      sum += abs(a[i] - b[i]);
     }
-    if (sum < lowest) {
-      lowest = sum;
-      centre = near_rows[k];
-      radius = 3 * median(table[k]);
-    }
+    return sum;
   }
-}
+};
 
-/// Control elements for a robust fit: a medoid of the rows around each knot average (Greville's
-/// abscissa), sought from many rows to few, so that outliers do not pass for a motion where by
-/// chance they are many.
-template <class T, int Order>
-[[nodiscard]] std::vector<quaternion<T>>
-medoids(const bspline_basis<Order, real_type_t<T>>& basis, const std::vector<real_type_t<T>>& u,
-        const std::vector<quaternion<T>>& rows, const real_type_t<T>& length) {
+/// The middle of rows of which up to half are anywhere: coordinate by coordinate the median, and
+/// the row that is nearest to that.
+template <class T>
+class robust_centre {
+  using coordinates = median_coordinates<T>;
+  using point = typename coordinates::point;
   using R = real_type_t<T>;
-  const auto place = [&](const R& x) {
-    return std::size_t(std::lower_bound(u.begin(), u.end(), x) - u.begin());
-  };
-  std::vector<quaternion<T>> result;
-  for (std::size_t i = 0; i < basis.size(); ++i) {
-    const std::size_t middle = place(knot_average(basis, i));
-    std::size_t centre = std::min(middle, rows.size() - 1);
-    R radius = std::numeric_limits<R>::infinity();
-    for (const std::size_t most : {81, 41, 21, 11, 5}) {
-      const std::size_t count = std::min(rows.size(), most);
-      const std::size_t from =
-          std::min(middle > count / 2 ? middle - count / 2 : 0, rows.size() - count);
-      move_to_medoid(rows, from, from + count, length, centre, radius);
+
+public:
+  /// Control elements for a robust fit: around each knot average (Greville's abscissa) the middle
+  /// of the rows, sought from many rows to few, so that outliers do not pass for a motion where by
+  /// chance they are many.
+  template <int Order>
+  [[nodiscard]] std::vector<quaternion<T>>
+  controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u,
+           const std::vector<quaternion<T>>& rows, const R& length) {
+    constexpr std::array<std::size_t, 5> windows{81, 41, 21, 11, 5};
+    std::vector<quaternion<T>> result;
+    for (std::size_t i = 0; i < basis.size(); ++i) {
+      const auto above = std::lower_bound(u.begin(), u.end(), knot_average(basis, i));
+      const std::size_t middle = std::min(std::size_t(above - u.begin()), rows.size() - 1);
+      const auto first_of = [&](std::size_t count) {
+        return std::min(middle > count / 2 ? middle - count / 2 : 0, rows.size() - count);
+      };
+      const std::size_t all = std::min(rows.size(), windows.front()), from = first_of(all);
+      points_.clear();
+      for (std::size_t k = from; k < from + all; ++k) {
+        points_.push_back(coordinates::of(rows[k], length));
+      }
+      centre_ = middle - from;
+      radius_ = std::numeric_limits<R>::infinity();
+      for (const std::size_t window : windows) {
+        const std::size_t count = std::min(all, window);
+        move(first_of(count) - from, count);
+      }
+      result.push_back(rows[from + centre_]);
+      if (i > 0 && innermost(dot(result[i - 1], result[i])) < 0) {
+        result[i] = -result[i];
+      }
     }
-    result.push_back(rows[centre]);
-    if (i > 0 && innermost(dot(result[i - 1], result[i])) < 0) {
-      result[i] = -result[i];
-    }
+    return result;
   }
-  return result;
-}
+
+private:
+  /// To the middle of those of `count` points that are within the radius, which becomes three times
+  /// the median separation from there.
+  void move(std::size_t first, std::size_t count) {
+    near_rows_.clear();
+    for (std::size_t k = first; k < first + count; ++k) {
+      if (coordinates::separation(points_[centre_], points_[k]) <= radius_) {
+        near_rows_.push_back(k);
+      }
+    }
+    if (3 * near_rows_.size() < count) {
+      if (count < 21) {
+        return; // by chance: few rows do not prove the others wrong
+      }
+      near_rows_.resize(count); // the motion is another one here
+      std::iota(near_rows_.begin(), near_rows_.end(), first);
+    }
+    point middle;
+    for (std::size_t i = 0; i < middle.size(); ++i) {
+      numbers_.clear();
+      for (const std::size_t k : near_rows_) {
+        numbers_.push_back(points_[k][i]);
+      }
+      middle[i] = median_within(numbers_);
+    }
+    const auto nearest = [&](std::size_t a, std::size_t b) {
+      return coordinates::separation(points_[a], middle) <
+             coordinates::separation(points_[b], middle);
+    };
+    centre_ = *std::min_element(near_rows_.begin(), near_rows_.end(), nearest);
+    numbers_.clear();
+    for (const std::size_t k : near_rows_) {
+      numbers_.push_back(coordinates::separation(points_[k], points_[centre_]));
+    }
+    radius_ = 3 * median_within(numbers_);
+  }
+
+  std::vector<point> points_; ///< of the rows around
+  std::vector<std::size_t> near_rows_;
+  std::vector<R> numbers_;
+  std::size_t centre_ = 0;
+  R radius_ = 0;
+};
 
 } // namespace duet::detail
