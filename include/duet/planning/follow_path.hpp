@@ -21,6 +21,10 @@
 
 namespace duet {
 
+/// A function of a parameter, which is to return poses.
+template <class P>
+concept PosePath = std::invocable<const P&, double>;
+
 namespace detail {
 
 /// A plan along a path that is known to hold unit poses; none where its end is known to be out of
@@ -44,7 +48,7 @@ template <class C, class Start, class Objective, class Scene>
   return is_out_of_reach ? follower.stay(theta, stop_reason::out_of_reach) : follower.plan(theta);
 }
 
-template <class Path>
+template <PosePath Path>
 [[nodiscard]] auto checked(const Path& path) {
   return [&path](double u) {
     const dual_quaternion<double> a = path(u);
@@ -54,10 +58,6 @@ template <class Path>
 }
 
 } // namespace detail
-
-/// A function of a parameter, which is to return poses.
-template <class P>
-concept PosePath = std::invocable<const P&, double>;
 
 /// Joint coordinates that take the tip of a chain along a path from where it is at `start` (N25,
 /// note 1).
@@ -99,7 +99,7 @@ follow_path(const C& chain, const Start& start, const Path& path, double first, 
 }
 
 /// The same along a spline of poses, over all of its domain.
-template <SerialChain C, VectorLike Start, class Spline, class Objective = no_objective,
+template <SerialChain C, VectorLike Start, PosePath Spline, class Objective = no_objective,
           class Scene = no_scene>
   requires requires(const Spline& s) { s.breaks().front(); }
 [[nodiscard]] motion_plan<C::joints> follow_path(const C& chain, const Start& start,

@@ -8,6 +8,7 @@
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_ends.hpp>
 #include <duet/spline/rotation_vector_segment.hpp>
+#include <duet/spline/shared_accelerations.hpp>
 #include <duet/spline/wide_block_tridiagonal.hpp>
 
 #include <algorithm>

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <type_traits>
-#include <vector>
 
 /// \file
 /// One piece of a rotation-vector spline: exp(x(t)) with a polynomial x of half-angle vectors that
@@ -167,33 +166,5 @@ private:
   jacobian_coefficients<std::size_t(Order) - 1, T> jacobian_;
   matrix3<T> inverse_; ///< J(d)⁻¹
 };
-
-/// The cubic polynomials of a curve once more, from accelerations at its knots that are those of
-/// the longer piece there, which knows them best. \param steps  the lengths of the pieces \param
-/// knots  their number: one less than needed where the last is the first again
-template <class T>
-void share_accelerations(const std::vector<rotation_vector_segment<T, 4>>& pieces,
-                         const std::vector<real_type_t<T>>& steps, std::size_t knots,
-                         std::vector<std::array<vector3<T>, 4>>& polynomials) {
-  using R = real_type_t<T>;
-  const typename rotation_vector_segment<T, 4>::identity_coefficients at_identity(R(0));
-  std::vector<std::array<vector3<T>, 2>> rates(knots);
-  std::vector<R> lengths(knots, R(0));
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const std::size_t next = (i + 1) % knots;
-    const auto w = pieces[i].template rates<2, T>(at_identity, polynomials[i]);
-    if (steps[i] > lengths[i]) {
-      rates[i] = w.start;
-      lengths[i] = steps[i];
-    }
-    if (steps[i] > lengths[next]) {
-      rates[next] = w.end;
-      lengths[next] = steps[i];
-    }
-  }
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    polynomials[i] = pieces[i].polynomial_of_accelerations(rates[i], rates[(i + 1) % knots]);
-  }
-}
 
 } // namespace duet::detail
