@@ -98,19 +98,17 @@ private:
     const R gain = must_converge ? std::numeric_limits<R>::epsilon() : R(0.1);
     using std::sqrt;
     const R rounding = 8 * std::numeric_limits<R>::epsilon() * sqrt(R(rows().size()));
-    R cost = cost_of(controls_);
     R damping(0), step(0);
     for (int iteration = 1; iteration <= most; ++iteration) {
       bool is_bold = must_converge && is_robust();
-      assemble(is_bold);
-      const R last = cost;
+      const R cost = assemble(is_bold);
+      R next(0);
       for (;;) {
         std::vector<element> moved = moved_controls(damping, step);
         const bool is_step = !moved.empty();
-        const R next = is_step ? cost_of(moved) : std::numeric_limits<R>::infinity();
+        next = is_step ? cost_of(moved) : std::numeric_limits<R>::infinity();
         if (next <= cost * (1 + rounding)) {
           controls_ = std::move(moved);
-          cost = next;
           damping = damping > R(1e-9) ? R(damping / 10) : R(0);
           break;
         }
@@ -119,7 +117,7 @@ private:
         }
         if (is_bold) {
           is_bold = false;
-          assemble(false);
+          static_cast<void>(assemble(false));
           continue;
         }
         damping = damping > 0 ? R(damping * 10) : R(1e-6);
@@ -130,7 +128,7 @@ private:
           fail("finds no step that brings the curve nearer", iteration, step);
         }
       }
-      if (step <= tolerance || last - cost <= gain * cost) {
+      if (step <= tolerance || cost - next <= gain * next) {
         return iteration;
       }
     }
@@ -143,7 +141,7 @@ private:
   /// To the rows, by medians: what is an outlier depends on how far the rows around it are from the
   /// curve so far, and the nearer that comes, the less is left to be one.
   void approach() {
-    constexpr int rounds = 12, steps = 4;
+    constexpr int rounds = 12;
     R scale = std::numeric_limits<R>::infinity(); // sum of the limits
     for (int round = 0; round < rounds; ++round) {
       const R last = scale;
@@ -151,7 +149,7 @@ private:
       if (!(scale < R(0.9) * last)) {
         break;
       }
-      iterations_ += descend(steps, false);
+      iterations_ += descend(round == 0 ? 1 : 4, false);
     }
     if (!(options_.outlier > 0)) {
       options_.outlier = double(std::max(R(3 * median_of(residuals())), least_outlier));
@@ -190,24 +188,27 @@ private:
     throw invalid_row(std::size_t(farthest - sizes.begin()), reason.str());
   }
 
-  /// ½ r² up to the limit, from there on along the tangent
+  /// Huber's loss: ½ r² up to the limit, from there on along the tangent.
+  [[nodiscard]] static R loss(const R& r, const R& limit) {
+    return r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
+  }
   [[nodiscard]] R cost_of(const std::vector<element>& controls) const {
     R sum(0);
     typename residual_type::last_span last;
     for (std::size_t i = 0; i < rows().size(); ++i) {
-      if (const R limit = limits_[i]; limit > 0) { // the row counts
-        const R r = size_of(residual_at(i, controls, last));
-        sum += r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
+      if (counts(i)) {
+        sum += loss(size_of(residual_at(i, controls, last)), limits_[i]);
       }
     }
     return sum;
   }
 
-  /// JᵀWJ and −JᵀW r at the controls, W the weights of Huber's loss.
+  /// JᵀWJ and −JᵀW r at the controls, W the weights of Huber's loss; the cost there.
   /// \param is_bold  most of the curvature that the loss lacks along residuals beyond the limit is
   ///                 taken out: steps are right near the end and may be too long before, while the
   ///                 weights alone make them too short
-  void assemble(bool is_bold) {
+  [[nodiscard]] R assemble(bool is_bold) {
+    R cost(0);
     gradient_.setZero(Eigen::Index(controls_.size()) * dimension);
     normal_.set_zero(controls_.size());
     typename residual_type::last_span last;
@@ -230,6 +231,7 @@ private:
       }
       const auto [value, slope] = this->linearised(i, controls_, last);
       const R length = size_of(value);
+      cost += loss(length, limits_[i]);
       const R weight = length <= limits_[i] ? R(1) : R(limits_[i] / length);
       gradient_.template segment<unknowns>(Eigen::Index(last.first) * dimension) -=
           weight * (slope * value);
@@ -245,6 +247,7 @@ private:
     if (last.first != std::size_t(-1)) {
       flush(last.first);
     }
+    return cost;
   }
 
   /// The controls after one step, none where there is no step with this damping.
