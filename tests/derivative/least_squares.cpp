@@ -210,6 +210,29 @@ TEST_CASE("what does not depend on a variable has zero partials") {
   }
 }
 
+TEST_CASE("entries whose squares leave the range") {
+  const fit f = random_fit(7, 3);
+  const auto b = seeded<dual<double>, Dynamic, 1>(f.b, f.b_slope);
+  const auto x = least_squares(seeded<dual<double>, Dynamic, Dynamic>(f.a, f.a_slope), b);
+  for (const int e : {-1000, -530, 530, 1000}) { // by a power of two every bit stays
+    const double factor = std::ldexp(1, e);
+    const auto a = seeded<dual<double>, Dynamic, Dynamic>(f.a * factor, f.a_slope * factor);
+    const auto y = least_squares(a, b);
+    const VectorXd values = least_squares(MatrixXd(f.a * factor), VectorXd(f.b));
+    for (int i = 0; i < 3; ++i) {
+      CHECK(y[i].value() * factor == x[i].value());
+      CHECK(y[i].epsilon() * factor == x[i].epsilon());
+      CHECK(values[i] == y[i].value());
+    }
+  }
+  // The largest and the smallest that there are.
+  const VectorXd largest = VectorXd::Constant(3, 4e307);
+  CHECK(least_squares(MatrixXd(largest), largest)[0] == doctest::Approx(1).epsilon(1e-15));
+  const VectorXd smallest = VectorXd::Constant(3, 5e-324);
+  const VectorXd right = VectorXd::Constant(3, 0x1p-1000); // 5e-324 = 2^-1074
+  CHECK(least_squares(MatrixXd(smallest), right)[0] == doctest::Approx(0x1p74).epsilon(1e-15));
+}
+
 TEST_CASE("what has no unique solution is refused") {
   const VectorXd b = VectorXd::Ones(3);
   CHECK(message(MatrixXd(2, 3), b) ==

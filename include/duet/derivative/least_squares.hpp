@@ -7,6 +7,9 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <sstream>
 #include <type_traits>
 
@@ -48,6 +51,23 @@ template <class QR, class G>
   r.template triangularView<Eigen::Upper>().transpose().solveInPlace(x);
   r.template triangularView<Eigen::Upper>().solveInPlace(x);
   return qr.colsPermutation() * x;
+}
+
+/// A power of two that brings the largest entry of a matrix near 1: squares then stay in the range.
+template <class R, class A>
+[[nodiscard]] R scale_of(const A& a) {
+  using std::frexp;
+  using std::ldexp;
+  int exponent = 0;
+  static_cast<void>(frexp(R(a.cwiseAbs().maxCoeff()), &exponent));
+  return ldexp(R(1), std::min(-exponent, std::numeric_limits<R>::max_exponent - 1));
+}
+
+/// Every entry times a real number; infinite ones have no part 0 · ∞.
+template <class Derived, class R>
+[[nodiscard]] auto times(const Eigen::MatrixBase<Derived>& a, const R& factor) {
+  using S = typename Derived::Scalar;
+  return a.unaryExpr([&](const S& x) { return S(x * factor); }).eval();
 }
 
 /// (A − A₀)ᵀ r, A₀ the values of A
@@ -95,9 +115,11 @@ template <class A, class B>
                 "duet: least_squares: the scalars of A and b have no common type");
   using R = real_type_t<S>;
   detail::require_tall(a, b);
-  const auto matrix = detail::real_values<R>(a);
+  auto matrix = detail::real_values<R>(a);
   detail::require_finite("least_squares", matrix);
-  const Eigen::ColPivHouseholderQR<std::remove_const_t<decltype(matrix)>> qr(matrix);
+  const R scale = detail::scale_of<R>(matrix); // exact, so that no bit of a result depends on it
+  matrix *= scale;
+  const Eigen::ColPivHouseholderQR<decltype(matrix)> qr(matrix);
   if (qr.rank() < a.cols()) {
     std::ostringstream message;
     message << "duet: least_squares: A has rank " << qr.rank() << ", less than its " << a.cols()
@@ -106,14 +128,15 @@ template <class A, class B>
   }
   const auto values = qr.solve(detail::real_values<R>(b)).eval();
   if constexpr (scalar_traits<S>::order == 0) {
-    return values;
+    return (values * scale).eval();
   } else {
     auto x = detail::converted<S>(values);
     const bool is_constant = detail::is_constant(a);
     if (is_constant && detail::is_constant(b)) {
-      return x;
+      return detail::times(x, scale);
     }
-    const auto& coefficients = a.eval();
+    using coefficient = promote_t<detail::differentiable_t<typename A::Scalar>, R>;
+    const auto coefficients = detail::times(detail::converted<coefficient>(a), scale);
     const auto right = detail::converted<S>(b);
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
       const auto r = detail::residual(coefficients, right, x);
@@ -125,7 +148,7 @@ template <class A, class B>
             detail::transposed_slope_times<S>(coefficients, r));
       }
     }
-    return x;
+    return detail::times(x, scale);
   }
 }
 
