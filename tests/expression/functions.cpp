@@ -232,7 +232,7 @@ struct counted_rule {
   }
 };
 struct counted : duet::expression::detail::function<counted, counted_rule> {
-  static constexpr duet::expression::detail::function_name name = {"counted", ""};
+  [[maybe_unused]] static constexpr duet::expression::detail::function_name name = {"counted", ""};
 };
 
 } // namespace

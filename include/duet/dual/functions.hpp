@@ -8,6 +8,7 @@
 #include <duet/dual/rules.hpp>
 #include <duet/dual/rules_hyperbolic.hpp>
 #include <duet/dual/rules_of_many.hpp>
+#include <duet/dual/rules_of_powers.hpp>
 #include <duet/dual/rules_special.hpp>
 #include <duet/dual/second_dual_lift.hpp>
 #include <duet/dual/taylor_lift.hpp>

@@ -3,7 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/rules_of_many.hpp>
+#include <duet/dual/rules_of_powers.hpp>
 #include <duet/expression/formula.hpp>
 #include <duet/expression/function.hpp>
 #include <duet/expression/node.hpp>
