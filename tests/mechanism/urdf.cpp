@@ -123,7 +123,7 @@ TEST_CASE("cycles, broken and missing files") {
   std::ofstream(path) << "<sdf/>\n";
   CHECK(message() == file + "no element <robot>");
   std::filesystem::remove(path);
-  CHECK(message() == file + "cannot open file");
+  CHECK(message() == file + "cannot be read");
 }
 
 TEST_CASE("nesting, and what a parser makes of it") {
@@ -173,7 +173,7 @@ TEST_CASE("nesting, and what a parser makes of it") {
   CHECK(says(std::string((1U << 24U) + 1, ' ')) == file + "has more than 16 MB");
   std::filesystem::remove(path);
   std::filesystem::create_directory(path);
-  CHECK(message() == file + "cannot be read, it may be a folder");
+  CHECK(message() == file + "is a folder, not a file");
   std::filesystem::remove(path);
 }
 

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <duet/core/file.hpp>
+#include <duet/core/input_file.hpp>
 #include <duet/core/number_text.hpp>
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
 #include <fstream>
 #include <ios>
 #include <string>
@@ -24,13 +24,9 @@ namespace duet::detail {
 /// \throws file_error for what cannot be read or is no text
 template <class F>
 void for_each_line(const std::string& path, const F& f) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw file_error(path, "is a folder, not a file");
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    throw file_error(path, "cannot be read");
+  std::ifstream in;
+  if (const std::string fault = open_input(path, in); !fault.empty()) {
+    throw file_error(path, fault);
   }
   std::string buffer(std::size_t(1) << 14, '\0');
   std::string_view unread;

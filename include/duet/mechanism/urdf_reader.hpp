@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/input_file.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/printable.hpp>
 #include <duet/mechanism/joint.hpp>
@@ -137,12 +138,9 @@ private:
   /// The file, if it may be given to the parser.
   [[nodiscard]] std::string checked_text() const {
     constexpr std::size_t most = std::size_t(1) << 24U;
-    std::ifstream in(path_, std::ios::binary);
-    if (!in) {
-      fail("", "cannot open file");
-    }
-    if (in.peek(); in.bad()) {
-      fail("", "cannot be read, it may be a folder");
+    std::ifstream in;
+    if (const std::string fault = open_input(path_, in); !fault.empty()) {
+      fail("", fault);
     }
     std::string text;
     for (std::array<char, 4096> part{}; in.read(part.data(), part.size()), in.gcount() > 0;) {
@@ -150,6 +148,9 @@ private:
       if (text.size() > most) {
         fail("", "has more than 16 MB");
       }
+    }
+    if (in.bad()) {
+      fail("", "cannot be read");
     }
     if (const auto fault = xml_check(text).fault()) {
       fail("line " + std::to_string(fault->line), fault->reason);
