@@ -60,7 +60,11 @@ TEST_CASE("the environment says how often") {
   for (const char* const text : {"", "often", "-1", "nan"}) {
     CHECK(interval(text) == otherwise);
   }
-  setenv("DUET_PROGRESS_INTERVAL", kept.c_str(), 1);
+  if (before == nullptr) {
+    unsetenv("DUET_PROGRESS_INTERVAL");
+  } else {
+    setenv("DUET_PROGRESS_INTERVAL", kept.c_str(), 1);
+  }
 }
 
 TEST_CASE("as the report of a run") {
