@@ -7,12 +7,16 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/SparseCore>
+
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 // derivative, derivatives and directional_derivative of functions with results of every shape.
 
@@ -174,6 +178,22 @@ TEST_CASE("directional derivatives") {
   CHECK_THROWS_WITH_AS(static_cast<void>(directional_derivative(f, x, longer)),
                        "duet: directional_derivative: the point has 2 components, the direction 3",
                        duet::invalid_input);
+}
+
+TEST_CASE("what holds its numbers, and what refers to those of others") {
+  using duet::detail::refers_elsewhere;
+  using Eigen::Vector3d;
+  using sparse = Eigen::SparseMatrix<double>;
+  static_assert(!refers_elsewhere<sparse> && !refers_elsewhere<Eigen::SparseVector<double>>);
+  static_assert(!refers_elsewhere<Eigen::DiagonalMatrix<double, 3>>);
+  static_assert(!refers_elsewhere<std::vector<Vector3d>> && !refers_elsewhere<std::string>);
+  static_assert(refers_elsewhere<Eigen::Map<Vector3d>> && refers_elsewhere<Eigen::Ref<Vector3d>>);
+  static_assert(refers_elsewhere<Eigen::Map<sparse>>);
+  using sum = std::remove_const_t<decltype(Vector3d() + Vector3d())>;
+  static_assert(refers_elsewhere<sum> && refers_elsewhere<decltype(sparse() + sparse())>);
+  static_assert(refers_elsewhere<std::vector<sum>> && refers_elsewhere<std::optional<sum>>);
+  static_assert(refers_elsewhere<const std::tuple<sum>> && refers_elsewhere<std::array<sum, 2>>);
+  static_assert(refers_elsewhere<std::pair<int, const std::tuple<int, sum>>>);
 }
 
 TEST_CASE("scalars are visited from the first to the last") {

@@ -1,8 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -16,6 +14,12 @@ template <class Derived>
 struct EigenBase;
 template <class Derived>
 class PlainObjectBase;
+template <class Scalar, int Size, int MaxSize>
+class DiagonalMatrix;
+template <class Scalar, int Options, class Index>
+class SparseMatrix;
+template <class Scalar, int Options, class Index>
+class SparseVector;
 
 } // namespace Eigen
 
@@ -25,16 +29,35 @@ template <class Derived>
 void as_eigen(const Eigen::EigenBase<Derived>&);
 template <class Derived>
 void as_plain(const Eigen::PlainObjectBase<Derived>&);
+template <class Scalar, int Size, int MaxSize>
+void as_plain(const Eigen::DiagonalMatrix<Scalar, Size, MaxSize>&);
+template <class Scalar, int Options, class Index>
+void as_plain(const Eigen::SparseMatrix<Scalar, Options, Index>&);
+template <class Scalar, int Options, class Index>
+void as_plain(const Eigen::SparseVector<Scalar, Options, Index>&);
 
 /// Does an X refer to numbers that it does not hold? An expression of Eigen does, to what it was
-/// made of: as a rule the local variables of the function that returned it, which are gone.
+/// made of: as a rule the local variables of the function that returned it, which are gone. So do
+/// containers of such.
 template <class X>
-inline constexpr bool refers_elsewhere = std::is_reference_v<X> ||
-                                         (
-                                             requires(const X& x) { as_eigen(x); } &&
-                                             !requires(const X& x) { as_plain(x); });
-template <class T, std::size_t N>
-inline constexpr bool refers_elsewhere<std::array<T, N>> = refers_elsewhere<T>;
+inline constexpr bool refers_elsewhere = [] {
+  if constexpr (std::is_reference_v<X>) {
+    return true;
+  } else if constexpr (requires(const X& x) { as_eigen(x); }) {
+    return !requires(const X& x) { as_plain(x); };
+  } else if constexpr (requires { typename X::value_type; }) {
+    using held = typename X::value_type;
+    if constexpr (std::is_same_v<held, X>) { // so are the numbers of Boost.Multiprecision
+      return false;
+    } else {
+      return refers_elsewhere<held>;
+    }
+  } else {
+    return false;
+  }
+}();
+template <class X>
+inline constexpr bool refers_elsewhere<const X> = refers_elsewhere<X>;
 template <class... T>
 inline constexpr bool refers_elsewhere<std::tuple<T...>> = (refers_elsewhere<T> || ...);
 template <class A, class B>

@@ -11,8 +11,10 @@
 #include <duet/quaternion/rotation.hpp>
 
 #include <array>
+#include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -80,7 +82,11 @@ int main() {
   static_cast<void>(derivative([](auto s) { return std::tuple(s, t * s); }, 1.0));    // mistake
   static_cast<void>(derivative([](auto s) { return std::array{t * s}; }, 1.0));       // mistake
   static_cast<void>(derivative([](auto s) { return std::pair(t * s, s); }, 1.0));     // mistake
-  static_cast<void>(derivative([](const auto& s) { return std::tie(s, s); }, 1.0));   // mistake
+  static_cast<void>(derivative([](auto s) { return std::optional(t * s); }, 1.0));    // mistake
+  static_cast<void>(derivative([](auto s) { return std::vector{t * s}; }, 1.0));      // mistake
+  static_cast<void>(derivative(                                                       // mistake
+      [](auto s) { return std::pair<const std::tuple<decltype(t * s)>, int>(t * s, 1); }, 1.0));
+  static_cast<void>(derivative([](const auto& s) { return std::tie(s, s); }, 1.0)); // mistake
 #else
   const auto moved = [](const auto& y) { return (rotate(q, y) + t).eval(); };
   const auto square = [](const auto& y) { return y.dot(y); };
