@@ -13,8 +13,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 // What `compare` says of formulas that are right, wrong, wrong in one place only, or badly rounded.
@@ -49,8 +51,9 @@ TEST_CASE("a right formula agrees in every precision") {
       "wave", slope_of_wave, closed_form, sampler(real_numbers{-3, 3}));
   CHECK(c);
   CHECK(c.outcome == verdict::agrees);
-  CHECK(c.samples == 1000);
-  CHECK(c.counts[0] == 1000);
+  const std::size_t special = real_numbers{-3, 3}.special_points().size();
+  CHECK(c.samples == special + 1000);
+  CHECK(c.counts[0] == c.samples);
   CHECK(!c.simplest);
   CHECK(c.errors.size() == 4);
   CHECK(c.errors[0].digits == 6);
@@ -58,6 +61,19 @@ TEST_CASE("a right formula agrees in every precision") {
   for (const auto& e : c.errors) {
     CHECK(e.ulps < 4);
   }
+}
+
+TEST_CASE("few samples come after all special inputs, not in place of them") {
+  const auto special = real_numbers{-3, 3}.special_points();
+  const auto wrong_elsewhere = [&](double x) {
+    return std::any_of(special.begin(), special.end(), [&](const auto& p) { return p[0] == x; })
+               ? x
+               : 2 * x;
+  };
+  const comparison c = compare<double>("few samples", [](double x) { return x; }, wrong_elsewhere,
+                                       sampler(real_numbers{-3, 3}), {.samples = 3});
+  CHECK(c.samples == special.size() + 3);
+  CHECK(c.outcome == verdict::disagrees);
 }
 
 TEST_CASE("a slip is found and its input simplified") {
@@ -68,7 +84,7 @@ TEST_CASE("a slip is found and its input simplified") {
   const comparison c = compare("slip", slope_of_wave, slip, sampler(real_numbers{-3, 3}));
   CHECK(!c);
   CHECK(c.outcome == verdict::disagrees);
-  CHECK(c.counts[std::size_t(verdict::disagrees)] == 999); // it agrees at zero
+  CHECK(c.counts[std::size_t(verdict::disagrees)] == c.samples - 1); // it agrees at zero
   REQUIRE(c.simplest);
   CHECK(c.simplest->input == "x = 1");
   CHECK(c.simplest->automatic[0] == doctest::Approx(2 * std::cos(1.0)).epsilon(1e-15));

@@ -25,7 +25,7 @@ namespace duet {
 
 /// Settings of `compare`.
 struct comparison_options {
-  std::size_t samples = 1000;    ///< special points, points of the caller and random ones together
+  std::size_t samples = 1000;    ///< random points; the special ones and the caller's come on top
   std::uint64_t seed = 1;        ///< of the random points; the same seed gives the same result
   double tolerance = 100;        ///< in units of the last place
   progress_callback report = {}; ///< told after every input, may end the run: see `progress_line`

@@ -79,12 +79,13 @@ public:
     return text;
   }
 
-  /// The points of the caller, the special ones, and then random ones up to `count` in all.
+  /// The points of the caller, the special ones, and then `count` random ones.
   [[nodiscard]] std::vector<coordinates> points(std::size_t count, std::uint64_t seed) const {
     random_source random(seed);
     std::vector<coordinates> result = own_points_;
     append_special_points(result, random);
-    while (result.size() < count) {
+    const std::size_t all = result.size() + count;
+    while (result.size() < all) {
       result.push_back(joined([&](const auto& domain) { return domain.random_point(random); }));
     }
     return result;
