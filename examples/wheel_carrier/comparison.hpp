@@ -156,7 +156,8 @@ inline summary summarise(const std::vector<double>& values) {
 
 /// Largest relative difference of δ and ∂δ/∂u between automatic differentiation and the closed
 /// form. Where a rate vanishes, as at natural ends, it is taken relative to a thousandth of its
-/// maximum.
+/// maximum; where ∂δ/∂u vanishes everywhere, as between two rows, of what would change δ by itself
+/// from end to end.
 template <class ClosedForm, class Automatic>
 double automatic_against_closed_form(const ClosedForm& closed_form, const Automatic& automatic,
                                      const std::vector<double>& samples) {
@@ -167,13 +168,19 @@ double automatic_against_closed_form(const ClosedForm& closed_form, const Automa
     delta_floor = std::max(delta_floor, c.delta.norm() / 1000);
     delta_first_floor = std::max(delta_first_floor, c.delta_first.norm() / 1000);
   }
+  delta_first_floor =
+      std::max(delta_first_floor, delta_floor / std::abs(samples.back() - samples.front()));
+  const auto relative_to = [](double difference, double size) {
+    return difference == 0 ? 0 : difference / size;
+  };
   double worst = 0;
   for (const double u : samples) {
     const rates a = automatic(u);
     const rates c = closed_form(u);
-    worst = std::max({worst, (a.delta - c.delta).norm() / std::max(c.delta.norm(), delta_floor),
-                      (a.delta_first - c.delta_first).norm() /
-                          std::max(c.delta_first.norm(), delta_first_floor)});
+    worst = std::max(
+        {worst, relative_to((a.delta - c.delta).norm(), std::max(c.delta.norm(), delta_floor)),
+         relative_to((a.delta_first - c.delta_first).norm(),
+                     std::max(c.delta_first.norm(), delta_first_floor))});
   }
   return worst;
 }
