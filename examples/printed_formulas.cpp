@@ -27,8 +27,7 @@ bool as_expected = true;
 template <class F, class G, class Inputs>
 void judge(const std::string& label, verdict expected, const F& automatic, const G& closed_form,
            const Inputs& inputs) {
-  table.push_back(
-      compare<double, real_50>(label, automatic, closed_form, inputs, {.samples = 60}));
+  table.push_back(compare<double, real_50>(label, automatic, closed_form, inputs, {.samples = 60}));
   as_expected = as_expected && table.back().outcome == expected;
 }
 
