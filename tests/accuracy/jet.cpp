@@ -8,8 +8,11 @@ namespace duet_test::accuracy {
 
 const jet_shape* jet_shape::current = nullptr;
 
-jet_shape::jet_shape(const std::vector<std::array<int, 2>>& powers) {
+jet_shape::jet_shape(const std::vector<std::array<int, 2>>& powers, bool has_u) {
   for (const auto& [u, e] : {std::array{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
+    if (u == 1 && !has_u) {
+      continue;
+    }
     for (const auto& [t, s] : powers) {
       monomials.push_back({t, s, u, e});
     }
@@ -34,6 +37,9 @@ std::size_t jet_shape::find(const monomial& m) const {
 }
 
 jet_shape jet_shape::line() { return jet_shape({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}}); }
+jet_shape jet_shape::curve() {
+  return jet_shape({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}, false);
+}
 jet_shape jet_shape::plane() { return jet_shape({{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}); }
 
 jet::jet(const real& constant) : c(jet_shape::current->monomials.size(), real(0)) {
@@ -238,6 +244,14 @@ jet without_epsilon(const jet& a) { return a - epsilon() * epsilon_part(a); }
 jet epsilon_part(const jet& a) { return shifted(a, {0, 0, 0, 1}); }
 jet u_variable() { return variable({0, 0, 1, 0}); }
 jet coefficient_of_u(const jet& a) { return shifted(a, {0, 0, 1, 0}); }
+jet t_variable() { return variable({1, 0, 0, 0}); }
+jet derivative(const jet& a) {
+  jet r = shifted(a, {1, 0, 0, 0});
+  for (std::size_t n = 0; n < r.c.size(); ++n) {
+    r.c[n] *= jet_shape::current->monomials[n][0] + 1;
+  }
+  return r;
+}
 
 jet_quaternion operator*(const jet_quaternion& p, const jet_quaternion& q) {
   // By the table of i, j, k.

@@ -23,13 +23,15 @@ class jet_shape {
 public:
   using monomial = std::array<int, 4>;
 
-  /// Monomials in t and s.
-  explicit jet_shape(const std::vector<std::array<int, 2>>& powers);
+  /// Monomials in t and s, each with those of u (if it is wanted) and ε.
+  explicit jet_shape(const std::vector<std::array<int, 2>>& powers, bool has_u = true);
 
   /// t up to the fourth power.
   static jet_shape line();
   /// t and s up to the second degree in both.
   static jet_shape plane();
+  /// t up to the fifth power, without u.
+  static jet_shape curve();
 
   std::vector<monomial> monomials;
   std::vector<std::array<std::size_t, 3>> products; ///< of which two which is made
@@ -74,6 +76,9 @@ jet without_epsilon(const jet& a);
 jet epsilon_part(const jet& a);
 jet u_variable();
 jet coefficient_of_u(const jet& a);
+jet t_variable();
+/// ∂a/∂t
+jet derivative(const jet& a);
 
 using jets = std::vector<jet>;
 /// w, x, y, z

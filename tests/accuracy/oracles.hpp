@@ -3,6 +3,9 @@
 
 #include "accuracy/jet.hpp"
 
+#include <array>
+#include <cstddef>
+
 /// \file
 /// The definitions of the functions probed, as functions of lists of numbers.
 
@@ -37,8 +40,8 @@ jets jacobian(const jets& x);
 jets jacobian_inverse(const jets& x);
 jets spatial_velocity(const jets& x);
 jets body_velocity(const jets& x);
-jets euler_zyx(const jets& x);
-jets euler_zxz(const jets& x);
+/// In the sequence of these axes, 0 = x, 1 = y, 2 = z.
+jets euler(const jets& x, const std::array<std::size_t, 3>& axes);
 jets euler_rate_zyx(const jets& x);
 
 /// Of a 3 × 3 matrix in columns.

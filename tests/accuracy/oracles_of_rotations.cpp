@@ -85,13 +85,22 @@ jets spatial_velocity(const jets& x) {
 }
 jets body_velocity(const jets& x) { return vector_of(conj(rotation_at(x)) * rotation_at(x, 4), 2); }
 
-jets euler_zyx(const jets& x) {
-  const jets r = matrix_of(rotation_at(x)); // r[3 j + i] is the entry (i, j), times |q|²
-  return {atan2(r[1], r[0]), atan2(-r[2], sqrt(r[0] * r[0] + r[1] * r[1])), atan2(r[5], r[8])};
-}
-jets euler_zxz(const jets& x) {
-  const jets r = matrix_of(rotation_at(x));
-  return {atan2(r[6], -r[7]), atan2(sqrt(r[6] * r[6] + r[7] * r[7]), r[8]), atan2(r[2], r[5])};
+/// By the entries of R = R_i(a) R_j(b) R_k(c) that have two factors at most.
+jets euler(const jets& x, const std::array<std::size_t, 3>& axes) {
+  const jets m = matrix_of(rotation_at(x)); // in columns, times |q|²
+  const auto [i, j, k] = axes;
+  const std::size_t other = 3 - i - j;
+  const jet sign(j == (i + 1) % 3 ? 1 : -1);
+  const auto r = [&](std::size_t row, std::size_t column) -> const jet& {
+    return m[3 * column + row];
+  };
+  const auto length = [](const jet& a, const jet& b) { return sqrt(a * a + b * b); };
+  if (i == k) {
+    return {atan2(r(j, i), -sign * r(other, i)), atan2(length(r(j, i), r(other, i)), r(i, i)),
+            atan2(r(i, j), sign * r(i, other))};
+  }
+  return {atan2(-sign * r(j, k), r(k, k)), atan2(sign * r(i, k), length(r(i, i), r(i, j))),
+          atan2(-sign * r(i, j), r(i, i))};
 }
 jets euler_rate_zyx(const jets& x) {
   const jet ca = cos(x[0]), sa = sin(x[0]), cb = cos(x[1]), sb = sin(x[1]);

@@ -91,6 +91,10 @@ template <class T>
   return joined(joined(a, b), random.uniform(0, 1), n % 2 == 0 ? 1 : 0);
 }
 
+[[nodiscard]] inline input two_unit_poses(int n, random_source& random) {
+  return of_constant_dual_norm(of_constant_dual_norm(two_poses(n, random), 0), 8);
+}
+
 /// Half a rotation vector and half a translation along and across it: six numbers, angular first.
 [[nodiscard]] inline input screw_input(int n, random_source& random, double factor) {
   const named angle = hard_angles[std::size_t(n) % std::size(hard_angles)];
@@ -186,6 +190,13 @@ template <class T>
        oracle::dual_pow,
        pose_and_number},
       {"sclerp",
+       {4, 4},
+       [](const list& x) {
+         return list_of(sclerp(pose_at(x), pose_at(x, 8), x[16], duet::way::as_given));
+       },
+       oracle::sclerp,
+       two_unit_poses},
+      {"sclerp, norms that change",
        {4, 4},
        [](const list& x) {
          return list_of(sclerp(pose_at(x), pose_at(x, 8), x[16], duet::way::as_given));

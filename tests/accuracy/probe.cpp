@@ -73,58 +73,6 @@ jets turned(jets x, const std::vector<std::size_t>& parts, random_source& random
   return x;
 }
 
-/// Judges the coefficients that were computed: computed[i][n] is that of the n-th monomial in the
-/// i-th result.
-void judge(row& r, const input& at, const numbers& d2, oracle_function exact,
-           const std::vector<std::size_t>& parts, const std::vector<numbers>& computed) {
-  const jet_shape& shape = *jet_shape::current;
-  const jets x = variables(at.x, at.direction, d2);
-  const jets truth = exact(x);
-  constexpr int samples = 4;
-  random_source random(77);
-  std::vector<jets> neighbours, elsewhere;
-  for (int n = 0; n < samples; ++n) {
-    neighbours.push_back(exact(changed(x, at.parts, random)));
-    elsewhere.push_back(exact(turned(x, at.parts, random)));
-  }
-  ++r.inputs;
-  std::size_t first = 0;
-  for (const std::size_t count : parts) {
-    for (std::size_t m = 0; m < computed[first].size(); ++m) {
-      const auto& monomial = shape.monomials[m];
-      const int order = monomial[0] + monomial[1];
-      real error = 0, size = 0, change = 0, typical = 0;
-      bool is_finite = true;
-      for (std::size_t i = first; i < first + count; ++i) {
-        const double c = computed[i][m];
-        is_finite = is_finite && c - c == 0;
-        error += is_finite ? pow(real(c) - truth[i].c[m], 2) : real(0);
-        size += pow(truth[i].c[m], 2);
-        for (const jets& y : elsewhere) {
-          typical += pow(y[i].c[m], 2) / samples;
-        }
-        for (const jets& y : neighbours) {
-          change += pow((y[i].c[m] - truth[i].c[m]) * real("1e30"), 2) / samples;
-        }
-      }
-      if (sqrt(size) > std::numeric_limits<double>::max() / 4) {
-        continue; // and what overflows is infinite or not a number
-      }
-      const double ulps =
-          is_finite ? ulps_of_error<double>(real(sqrt(error)),
-                                            real(sqrt(size) + sqrt(change) + sqrt(typical)))
-                    : std::numeric_limits<double>::infinity();
-      r.orders = std::max(r.orders, order);
-      double& worst = r.worst[std::size_t(order)];
-      if (ulps > *std::max_element(r.worst.begin(), r.worst.end())) {
-        r.worst_where = at.where + ", order " + std::to_string(order);
-      }
-      worst = std::max(worst, ulps);
-    }
-    first += count;
-  }
-}
-
 numbers coefficients_of(const line& x) {
   return {x.coefficient(0), x.coefficient(1), x.coefficient(2), x.coefficient(3), x.coefficient(4)};
 }
@@ -159,16 +107,86 @@ row probe(const probed<T>& f, int count, const jet_shape& shape) {
       x.emplace_back(at.x[i]);
       set_variable(x.back(), at.direction[i], d2.back());
     }
-    std::vector<numbers> computed;
+    computed_results computed{{}, f.parts, {}};
     for (const T& y : f.function(x)) {
-      computed.push_back(coefficients_of(y));
+      computed.coefficients.push_back(coefficients_of(y));
     }
-    judge(r, at, std::is_same_v<T, plane> ? d2 : numbers{}, f.exact, f.parts, computed);
+    judge(r, at, std::is_same_v<T, plane> ? d2 : numbers{}, f.exact, computed);
   }
   return r;
 }
 
 } // namespace
+
+row worst_of(const std::string& name, const rows& each) {
+  row result{name};
+  double most = -1;
+  for (const row& r : each) {
+    result.inputs += r.inputs;
+    result.orders = std::max(result.orders, r.orders);
+    const double worst = *std::max_element(r.worst.begin(), r.worst.end());
+    if (worst > most) {
+      most = worst;
+      result.worst_where = r.name + "; " + r.worst_where;
+    }
+    for (std::size_t k = 0; k < r.worst.size(); ++k) {
+      result.worst[k] = std::max(result.worst[k], r.worst[k]);
+    }
+  }
+  return result;
+}
+
+void judge(row& r, const input& at, const numbers& d2, const oracle_function& exact,
+           const computed_results& computed) {
+  const auto& [coefficients, parts, orders] = computed;
+  const jet_shape& shape = *jet_shape::current;
+  const jets x = variables(at.x, at.direction, d2);
+  const jets truth = exact(x);
+  constexpr int samples = 4;
+  random_source random(77);
+  std::vector<jets> neighbours, elsewhere;
+  for (int n = 0; n < samples; ++n) {
+    neighbours.push_back(exact(changed(x, at.parts, random)));
+    elsewhere.push_back(exact(turned(x, at.parts, random)));
+  }
+  ++r.inputs;
+  std::size_t first = 0;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const std::size_t count = parts[part];
+    for (std::size_t m = 0; m < coefficients[first].size(); ++m) {
+      const auto& monomial = shape.monomials[m];
+      const int order = monomial[0] + monomial[1] + (orders.empty() ? 0 : orders[part]);
+      real error = 0, size = 0, change = 0, typical = 0;
+      bool is_finite = true;
+      for (std::size_t i = first; i < first + count; ++i) {
+        const double c = coefficients[i][m];
+        is_finite = is_finite && c - c == 0;
+        error += is_finite ? pow(real(c) - truth[i].c[m], 2) : real(0);
+        size += pow(truth[i].c[m], 2);
+        for (const jets& y : elsewhere) {
+          typical += pow(y[i].c[m], 2) / samples;
+        }
+        for (const jets& y : neighbours) {
+          change += pow((y[i].c[m] - truth[i].c[m]) * real("1e30"), 2) / samples;
+        }
+      }
+      if (sqrt(size) > std::numeric_limits<double>::max() / 4) {
+        continue; // and what overflows is infinite or not a number
+      }
+      const double ulps =
+          is_finite ? ulps_of_error<double>(real(sqrt(error)),
+                                            real(sqrt(size) + sqrt(change) + sqrt(typical)))
+                    : std::numeric_limits<double>::infinity();
+      r.orders = std::max(r.orders, order);
+      double& worst = r.worst[std::size_t(order)];
+      if (ulps > *std::max_element(r.worst.begin(), r.worst.end())) {
+        r.worst_where = at.where + ", order " + std::to_string(order);
+      }
+      worst = std::max(worst, ulps);
+    }
+    first += count;
+  }
+}
 
 row probe_lines(const probed<line>& f, int count) {
   static const jet_shape shape = jet_shape::line();

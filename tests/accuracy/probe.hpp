@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -49,12 +50,28 @@ using rows = std::vector<row>;
 /// How many inputs each row takes: a few for the test, many for the page.
 enum class extent { test, page };
 
+/// The row of several functions: the worst of all, and of which.
+[[nodiscard]] row worst_of(const std::string& name, const rows& each);
+
 /// One family of functions each.
 rows rotation_rows(extent e);
 rows pose_rows(extent e);
 rows mixed_rows(extent e);
+rows curve_rows(extent e);
+rows interpolation_rows(extent e);
 
-using oracle_function = jets (*)(const jets&);
+using oracle_function = std::function<jets(const jets&)>;
+
+/// What was computed at an input: coefficients[i][n] is the coefficient of the n-th monomial in the
+/// i-th result.
+struct computed_results {
+  std::vector<numbers> coefficients;
+  std::vector<std::size_t> parts; ///< how many results belong together
+  std::vector<int> orders;        ///< which derivative each part itself is, if not the value
+};
+/// Judges them by an oracle, d₂ as below, and takes the worst into the row.
+void judge(row& r, const input& at, const numbers& d2, const oracle_function& exact,
+           const computed_results& computed);
 
 using line = duet::taylor<double, 4>;
 using plane = duet::second_dual<double, 2>;

@@ -55,6 +55,9 @@ template <class T, int C>
   }
   return joined(joined(a, b), random.uniform(0, 1), n % 2 == 0 ? 1 : 0);
 }
+[[nodiscard]] inline input two_unit_rotations(int n, random_source& random) {
+  return of_constant_norm(of_constant_norm(two_rotations(n, random), 0), 4);
+}
 [[nodiscard]] inline input moving_rotation(int n, random_source& random) {
   const input a = hard_rotation(n, random);
   input rate{"", some_rates(random, a.x, n / 3), {}, a.parts};
@@ -122,6 +125,31 @@ template <duet::euler_sequence Sequence>
           {1, 1}};
 }
 
+template <class T, duet::euler_sequence Sequence>
+[[nodiscard]] probed<T> euler_in(const char* name) {
+  return {name,
+          {1, 1, 1},
+          [](const std::vector<T>& x) {
+            const auto a = duet::euler<Sequence>(rotation_at(x));
+            return std::vector<T>{a[0], a[1], a[2]};
+          },
+          [](const jets& x) {
+            return oracle::euler(x, {std::size_t(Sequence.first), std::size_t(Sequence.second),
+                                     std::size_t(Sequence.third)});
+          },
+          attitude<Sequence>};
+}
+/// All of them: first those with three axes, then those with two.
+template <class T>
+[[nodiscard]] std::array<std::vector<probed<T>>, 2> euler_functions() {
+  return {{{euler_in<T, duet::xyz>("xyz"), euler_in<T, duet::yzx>("yzx"),
+            euler_in<T, duet::zxy>("zxy"), euler_in<T, duet::xzy>("xzy"),
+            euler_in<T, duet::yxz>("yxz"), euler_in<T, duet::zyx>("zyx")},
+           {euler_in<T, duet::xyx>("xyx"), euler_in<T, duet::yzy>("yzy"),
+            euler_in<T, duet::zxz>("zxz"), euler_in<T, duet::xzx>("xzx"),
+            euler_in<T, duet::yxy>("yxy"), euler_in<T, duet::zyz>("zyz")}}};
+}
+
 template <class T>
 [[nodiscard]] std::vector<probed<T>> rotation_functions() {
   using list = std::vector<T>;
@@ -144,6 +172,13 @@ template <class T>
        oracle::pow,
        rotation_and_number},
       {"slerp",
+       {4},
+       [](const list& x) {
+         return numbers_of(slerp(rotation_at(x), rotation_at(x, 4), x[8], duet::way::as_given));
+       },
+       oracle::slerp,
+       two_unit_rotations},
+      {"slerp, norms that change",
        {4},
        [](const list& x) {
          return numbers_of(slerp(rotation_at(x), rotation_at(x, 4), x[8], duet::way::as_given));
@@ -199,22 +234,6 @@ template <class T>
        },
        oracle::body_velocity,
        moving_rotation},
-      {"euler, zyx",
-       {1, 1, 1},
-       [](const list& x) {
-         const auto a = duet::euler<duet::zyx>(rotation_at(x));
-         return list{a[0], a[1], a[2]};
-       },
-       oracle::euler_zyx,
-       attitude<duet::zyx>},
-      {"euler, zxz",
-       {1, 1, 1},
-       [](const list& x) {
-         const auto a = duet::euler<duet::zxz>(rotation_at(x));
-         return list{a[0], a[1], a[2]};
-       },
-       oracle::euler_zxz,
-       attitude<duet::zxz>},
       {"euler_rate_matrix, zyx",
        {9},
        [](const list& x) { return numbers_of(duet::euler_rate_matrix<duet::zyx>(x[0], x[1])); },
