@@ -7,8 +7,9 @@
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/rotation_vector_cubic_equations.hpp>
 #include <duet/spline/rotation_vector_ends.hpp>
-#include <duet/spline/rotation_vector_equations.hpp>
+#include <duet/spline/rotation_vector_quintic_equations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 #include <duet/spline/spline_newton.hpp>
 
@@ -26,6 +27,10 @@ template <class Spline>
 inline constexpr bool is_rotation_vector_spline = false;
 template <class T, int Order>
 inline constexpr bool is_rotation_vector_spline<rotation_vector_spline<T, Order>> = true;
+
+template <class T, int Order>
+using rotation_vector_equations = std::conditional_t<Order == 4, rotation_vector_cubic_equations<T>,
+                                                     rotation_vector_quintic_equations<T>>;
 
 template <class Spline, class T, class Ends>
 [[nodiscard]] Spline interpolate_rotation_vectors(const std::vector<real_type_t<T>>& parameters,

@@ -6,9 +6,11 @@
 #include <duet/quaternion/exponential_rates.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 /// \file
 /// One piece of a rotation-vector spline: exp(x(t)) with a polynomial x of half-angle vectors that
@@ -59,6 +61,9 @@ public:
   static constexpr std::size_t own = std::size_t(Order) / 2 - 1;
   template <class S>
   using knot_rates = std::array<vector3<S>, own>;
+
+  /// What x = 0 has in the place of d.
+  using identity_coefficients = jacobian_coefficients<std::size_t(Order) - 1, real>;
 
   rotation_vector_segment(const real& h, const vector3<T>& d)
       : h_(h), d_(d), jacobian_(inner_product(d, d)),
@@ -119,13 +124,25 @@ public:
     return x;
   }
 
+  /// x_1 … x_Count at the start, or about the end, that make these rates w_0 … w_{Count−1}.
+  template <std::size_t Count, class S>
+  [[nodiscard]] std::array<vector3<S>, Count>
+  taylor_at_start(const identity_coefficients& at_identity,
+                  const std::array<vector3<S>, Count>& w) const {
+    return taylor_of_rates(at_identity, vector3<real>(vector3<real>::Zero()), w,
+                           [](const vector3<S>& v) { return v; });
+  }
+  template <std::size_t Count, class S>
+  [[nodiscard]] std::array<vector3<S>, Count>
+  taylor_at_end(const std::array<vector3<S>, Count>& w) const {
+    return taylor_of_rates(jacobian_, d_, w,
+                           [this](const vector3<S>& v) { return times_inverse(v); });
+  }
+
   template <std::size_t Count, class S>
   struct end_rates {
     std::array<vector3<S>, Count> start, end;
   };
-
-  /// What x = 0 has in the place of d.
-  using identity_coefficients = jacobian_coefficients<std::size_t(Order) - 1, real>;
 
   /// w_0 … w_{Count−1} at both ends of the piece.
   template <std::size_t Count, class S>
@@ -142,7 +159,40 @@ public:
             half_body_rates(jacobian_, d_, after)};
   }
 
+  /// The same from what is known of x at either end by itself.
+  template <std::size_t Count, class S>
+  [[nodiscard]] std::array<vector3<S>, Count>
+  rates_at_start(const identity_coefficients& at_identity,
+                 const std::array<vector3<S>, Count>& x) const {
+    return half_body_rates(at_identity, vector3<real>(vector3<real>::Zero()), x);
+  }
+  template <std::size_t Count, class S>
+  [[nodiscard]] std::array<vector3<S>, Count>
+  rates_at_end(const std::array<vector3<S>, Count>& x) const {
+    return half_body_rates(jacobian_, d_, x);
+  }
+
 private:
+  /// Each x_{k+1} from w_k less what the ones before make of it.
+  template <std::size_t Count, class S, class Coefficients, class X, class Inverse>
+  [[nodiscard]] static std::array<vector3<S>, Count>
+  taylor_of_rates(const Coefficients& jacobian, const X& at, const std::array<vector3<S>, Count>& w,
+                  const Inverse& inverse) {
+    std::array<vector3<S>, Count> x;
+    const auto next = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+      std::array<vector3<S>, K + 1> so_far;
+      std::copy_n(x.begin(), K, so_far.begin());
+      so_far[K] = vector3<S>::Constant(S(real(0)));
+      const vector3<S> without = half_body_rates(jacobian, at, so_far)[K];
+      x[K] = inverse(vector3<S>(w[K] - without)) * (real(1) / real(K + 1));
+    };
+    [&]<std::size_t... K>(std::index_sequence<K...>) {
+      (next(std::integral_constant<std::size_t, K>{}), ...);
+    }
+    (std::make_index_sequence<Count>{});
+    return x;
+  }
+
   /// ẍ at the end, where w and its derivative are given.
   template <class S>
   [[nodiscard]] vector3<S> second_at_end(const std::array<vector3<S>, 2>& end) const {

@@ -1,0 +1,126 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/spline/rotation_vector_segment.hpp>
+
+#include <array>
+#include <cstddef>
+
+/// \file
+/// One piece of a quintic rotation-vector spline by all rates that it shares with its neighbours.
+
+namespace duet::detail {
+
+/// With x_1 … x_4 and y_1 … y_4, the Taylor coefficients about its start and its end that make the
+/// rates w_0 … w_3 there, a piece of length h that goes from zero to d has, of degree five,
+///   x_1 + h x_2 + h² x_3 + h³ (4 x_4 + y_4)/5 = d/h
+///   y_1 = x_1 + 2h x_2 + 3h² x_3 + h³ (3 x_4 + y_4)
+///   y_2 = x_2 + 3h x_3 + 2h² (2 x_4 + y_4)
+///   y_3 = x_3 + 2h (x_4 + y_4)
+/// and x_5 = (y_4 − x_4)/(5h).
+template <class T>
+class quintic_piece {
+  using R = real_type_t<T>;
+  using segment = rotation_vector_segment<T, 6>;
+
+public:
+  static constexpr std::size_t count = 4;
+  template <class S>
+  using coefficients = std::array<vector3<S>, count>;
+  using identity_coefficients = typename segment::identity_coefficients;
+  using factors = std::array<std::array<R, count>, count>;
+
+  quintic_piece(const R& h, const vector3<T>& d) : h_(h), d_(d), segment_(h, d) {}
+
+  template <class S>
+  struct ends {
+    coefficients<S> x, y;
+  };
+  template <class S>
+  [[nodiscard]] ends<S> taylor(const identity_coefficients& at_identity,
+                               const coefficients<S>& at_start,
+                               const coefficients<S>& at_end) const {
+    return {segment_.template taylor_at_start<count>(at_identity, at_start),
+            segment_.template taylor_at_end<count>(at_end)};
+  }
+
+  /// What stands before x_1 … x_4 in the equations, right sides taken to the left; those of second
+  /// and third rates times l and l², which brings them to the size of the others.
+  [[nodiscard]] factors factors_of_start(const R& l) const {
+    const R h = h_, hh = h * h, ll = l * l, o(0);
+    return {{{R(1), h, hh, R(hh * h * 4 / 5)},
+             {R(-1), R(-2 * h), R(-3 * hh), R(-3 * hh * h)},
+             {o, R(-l), R(-3 * h * l), R(-4 * hh * l)},
+             {o, o, R(-ll), R(-2 * h * ll)}}};
+  }
+  /// And before y_1 … y_4.
+  [[nodiscard]] factors factors_of_end(const R& l) const {
+    const R h = h_, hh = h * h, ll = l * l, o(0);
+    return {{{o, o, o, R(hh * h / 5)},
+             {R(1), o, o, R(-hh * h)},
+             {o, l, o, R(-2 * hh * l)},
+             {o, o, ll, R(-2 * h * ll)}}};
+  }
+  /// What x and y leave of them.
+  [[nodiscard]] coefficients<T> left(const ends<T>& e, const R& l) const {
+    const factors a = factors_of_start(l), b = factors_of_end(l);
+    coefficients<T> result;
+    for (std::size_t m = 0; m < count; ++m) {
+      result[m] = m > 0 ? vector3<T>(vector3<T>::Constant(T(R(0)))) : scaled(R(-1 / h_), d_);
+      for (std::size_t k = 0; k < count; ++k) {
+        result[m] = sum_of(result[m], sum_of(scaled(a[m][k], e.x[k]), scaled(b[m][k], e.y[k])));
+      }
+    }
+    return result;
+  }
+
+  /// The fifth rate w_4 at the start: what the rates at the start and those at the end contribute.
+  template <class S>
+  [[nodiscard]] std::array<vector3<S>, 2>
+  last_rate_at_start(const identity_coefficients& at_identity, const ends<S>& e) const {
+    const R per_h = 1 / h_;
+    const vector3<S> w =
+        segment_.template rates_at_start<count + 1>(at_identity, with_zero(e.x))[count];
+    return {sum_of(w, scaled(R(-per_h), e.x[3])), scaled(per_h, e.y[3])};
+  }
+  /// The same at the end.
+  template <class S>
+  [[nodiscard]] std::array<vector3<S>, 2> last_rate_at_end(const ends<S>& e) const {
+    const R per_h = 1 / h_;
+    const vector3<S> w = segment_.template rates_at_end<count + 1>(with_zero(e.y))[count];
+    const auto turned = [&](const vector3<S>& x, const R& factor) {
+      return segment_.template rates_at_end<1>(std::array<vector3<S>, 1>{scaled(factor, x)})[0];
+    };
+    return {turned(e.x[3], R(-per_h)), sum_of(w, turned(e.y[3], per_h))};
+  }
+
+  /// x_0 … x_5.
+  [[nodiscard]] std::array<vector3<T>, 6> polynomial(const ends<T>& e) const {
+    std::array<vector3<T>, 6> result;
+    result[0] = vector3<T>::Constant(T(R(0)));
+    for (int k = 0; k < 3; ++k) {
+      result[1][k] =
+          d_[k] / h_ - h_ * (e.x[1][k] + h_ * (e.x[2][k] + h_ * ((4 * e.x[3][k] + e.y[3][k]) / 5)));
+      result[2][k] = e.x[1][k];
+      result[3][k] = e.x[2][k];
+      result[4][k] = e.x[3][k];
+      result[5][k] = (e.y[3][k] - e.x[3][k]) / (5 * h_);
+    }
+    return result;
+  }
+
+private:
+  template <class S>
+  [[nodiscard]] static std::array<vector3<S>, count + 1> with_zero(const coefficients<S>& x) {
+    return {x[0], x[1], x[2], x[3], vector3<S>::Constant(S(R(0)))};
+  }
+
+  R h_;
+  vector3<T> d_;
+  segment segment_;
+};
+
+} // namespace duet::detail
