@@ -46,7 +46,8 @@
 #define DUET_ALWAYS_INLINE inline
 #endif
 
-/// The same for a lambda, between its parameters and its body.
+/// Inlines a lambda as DUET_ALWAYS_INLINE does a function; stands between its parameters and its
+/// body.
 #ifdef __OPTIMIZE__
 #define DUET_INLINE_LAMBDA __attribute__((always_inline))
 #else

@@ -45,7 +45,7 @@ template <VectorOfDoubles V>
   }
 }
 
-/// The same of r + tail, |r| ≤ π/4 and the tail what r rounded off.
+/// Sines and cosines of r + tail, |r| ≤ π/4 and the tail what r rounded off.
 template <VectorOfDoubles V>
 [[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V>
 vector_sine_and_cosine_of_reduced(const V& r, const V& tail) {
@@ -63,7 +63,8 @@ vector_sine_and_cosine_of_reduced(const V& r, const V& tail) {
           rounded + (((1.0 - rounded) - half) + (z2 * c - r * tail))};
 }
 
-/// The same of a vector all lanes of which are below `vector_sine_limit`; others give garbage.
+/// Sines and cosines of a vector all lanes of which are below `vector_sine_limit`; others give
+/// garbage.
 template <VectorOfDoubles V>
 [[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V>
 vector_sine_and_cosine_of_moderate(const V& x) {

@@ -163,7 +163,7 @@ template <class Tag, class T>
   }
 }
 
-/// The same for every scalar of a result.
+/// The k-th part, by Tag, of every scalar of a result.
 template <class Tag, class X>
 [[nodiscard]] constexpr auto parts(const X& x, int k) {
   return map_scalars([k](const auto& s) { return part<Tag>(s, k); }, x);

@@ -57,7 +57,7 @@ public:
   }
   DUET_ALWAYS_INLINE constexpr dual(const T& value, const partials_type& partials)
       : value_(value), partials_(partials) {}
-  /// The same level over another scalar; implicit where no precision or level is lost.
+  /// This number with another scalar inside; implicit where no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)

@@ -73,7 +73,8 @@ public:
     return result;
   }
 
-  /// The same for any f, one element at a time. (Inlined, g++ would warn of what no row holds.)
+  /// f of the rows for any f, one element at a time. (Inlined, g++ would warn of what no row
+  /// holds.)
   template <class F, class... Rows>
   [[nodiscard, gnu::noinline, gnu::cold]] static dynamic_partials
   map_elements(F&& f, const Rows&... rows) {

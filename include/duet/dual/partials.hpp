@@ -187,7 +187,7 @@ public:
     return result;
   }
 
-  /// The same for any f, one element at a time.
+  /// f of the rows for any f, one element at a time.
   template <class F, class... Rows>
   [[nodiscard]] static constexpr packed_partials map_elements(F&& f, const Rows&... rows) {
     packed_partials result;

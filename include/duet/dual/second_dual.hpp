@@ -24,8 +24,8 @@ DUET_ABI_BEGIN
 /// x₀ + gᵀε + ½ εᵀHε, where products of three ε vanish: a value, its gradient and its Hessian by N
 /// variables.
 ///
-/// The same as a dual of N partials over a dual of N partials, save that each second derivative is
-/// kept and computed once: `hessian` runs on it.
+/// It computes what a dual of N partials over a dual of N partials does, save that each second
+/// derivative is kept and computed once: `hessian` runs on it.
 template <class T, int N, class Tag = derivative_tag<>>
 class second_dual : detail::infinitesimal_operators<second_dual<T, N, Tag>, T> {
   static_assert(Scalar<T>, "duet: second_dual<T, N> needs a real number or a scalar of duet as T");
@@ -49,7 +49,7 @@ public:
   DUET_ALWAYS_INLINE second_dual(const T& value, const gradient_type& gradient,
                                  const hessian_type& hessian)
       : value_(value), gradient_(gradient), hessian_(hessian) {}
-  /// The same level over another scalar; implicit where no precision or level is lost.
+  /// This number with another scalar inside; implicit where no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)

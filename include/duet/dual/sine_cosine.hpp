@@ -27,7 +27,7 @@ template <class T>
   }
 }
 
-/// The same of an x whose innermost value has the sine and the cosine y already.
+/// Sine and cosine of an x whose innermost value has the sine and the cosine y already.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<T>
 sine_and_cosine_from(const sine_cosine<real_type_t<T>>& y, const T& x) {

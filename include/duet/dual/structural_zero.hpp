@@ -44,8 +44,8 @@ template <class T>
 template <class T>
 [[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial);
 
-/// The same for a partial of a slope, which is zero where the slope does not depend on the inner
-/// variable.
+/// slope · partial for a partial of a slope, which is zero where the slope does not depend on the
+/// inner variable.
 template <class T>
 [[nodiscard]] constexpr T product_of_partial(const T& slope, const T& partial) {
   return select(
@@ -92,9 +92,9 @@ template <class T>
       [&] { return guarded_parts(slope, partial); });
 }
 
-/// The same for a built-in number, a batch or a packet of them, without a branch: what stays in one
-/// block is merged and scheduled better. A single number takes a packet too, for g++ makes a branch
-/// of its conditional expression.
+/// slope · partial for a built-in number, a batch or a packet of them, without a branch: what stays
+/// in one block is merged and scheduled better. A single number takes a packet too, for g++ makes a
+/// branch of its conditional expression.
 template <class T, class P>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr P masked_product(const T& slope, const P& partial) {
   if constexpr (lane_traits<T>::is_batch) {

@@ -51,7 +51,7 @@ public:
       : coefficients_{static_cast<T>(constant)} {}
   DUET_ALWAYS_INLINE constexpr explicit taylor(const coefficients_type& coefficients)
       : coefficients_(coefficients) {}
-  /// The same level over another scalar; implicit where no precision or level is lost.
+  /// This number with another scalar inside; implicit where no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)

@@ -38,8 +38,8 @@ template <class T>
 
 namespace detail {
 
-/// The same in units of length 2^e: squares of the largest and the smallest numbers are out of
-/// range.
+/// The distance of poses in units of length 2^e: squares of the largest and the smallest numbers
+/// are out of range.
 template <class T>
 [[nodiscard, gnu::cold]] T distance_of_extreme(const dual_quaternion<T>& a,
                                                const dual_quaternion<T>& b, double length,

@@ -128,7 +128,7 @@ template <Formula F, class... Symbols, class Frame>
   return detail::make_jacobian<F, variables<Symbols...>, Frame>(f);
 }
 
-/// The same of vectors and matrices by scalars, vectors and matrices, where no frame matters.
+/// The Jacobian of a vector or matrix by scalars, vectors and matrices, where no frame matters.
 template <Formula F, class... Symbols>
 [[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>) {
   static_assert(F::node_type::kind_of != kind::quaternion && F::node_type::kind_of != kind::pose &&

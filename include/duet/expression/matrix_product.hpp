@@ -23,7 +23,7 @@ namespace duet::expression {
 
 namespace detail {
 
-/// The same matrix over S; what Eigen can multiply as it is, as it is.
+/// A factor over S; what Eigen can multiply as it is, as it is.
 template <class S, class M>
 [[nodiscard]] decltype(auto) factor_over(const M& m) {
   if constexpr (Field<S>) {

@@ -89,7 +89,7 @@ public:
     return detail::with_infinitesimals(constraints_, followed(target), u);
   }
 
-  /// The same loop, started from u: other positions are found faster the nearer it starts.
+  /// This loop, started from u: other positions are found faster the nearer it starts.
   /// \throws as evaluation
   [[nodiscard]] closed_loop moved_to(const P& u) const {
     closed_loop result = *this;

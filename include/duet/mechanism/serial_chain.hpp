@@ -136,7 +136,7 @@ public:
                                   const placement<T>& tool = {})
       : serial_chain(std::span<const joint<T>>(given), tool) {}
 
-  /// The same chain with its number of joints no more in the type, so that code for it is compiled
+  /// A chain with its number of joints no more in the type, so that code for it is compiled
   /// once for all of up to −N.
   template <int M>
     requires(M != N && N < 0 && (M > 0 ? M : -M) <= -N)
@@ -233,7 +233,7 @@ public:
     return Arm::chain.limits(i);
   }
   [[nodiscard]] static constexpr const auto& steps() { return Arm::chain.steps(); }
-  /// The same chain as a table in memory, whose type does not tell the arm.
+  /// This chain as a table in memory, whose type does not tell the arm.
   [[nodiscard]] static constexpr const chain_type& table() { return Arm::chain; }
 };
 

@@ -98,7 +98,7 @@ follow_path(const C& chain, const Start& start, const Path& path, double first, 
                         around);
 }
 
-/// The same along a spline of poses, over all of its domain.
+/// Plans joint motion that moves the tip along a spline of poses, over all of its domain.
 template <SerialChain C, VectorLike Start, PosePath Spline, class Objective = no_objective,
           class Scene = no_scene>
   requires requires(const Spline& s) { s.breaks().front(); }
@@ -114,7 +114,8 @@ template <SerialChain C, VectorLike Start, PosePath Spline, class Objective = no
                         around);
 }
 
-/// The same along screw motions from pose to pose (N19), pose i at the parameter i.
+/// Plans joint motion that moves the tip along screw motions from pose to pose (N19), pose i at the
+/// parameter i.
 template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] motion_plan<C::joints>
 follow_path(const C& chain, const Start& start, std::span<const dual_quaternion<double>> poses,

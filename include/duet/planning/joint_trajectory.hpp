@@ -36,7 +36,7 @@ struct joint_cubic {
   [[nodiscard]] V value(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
   [[nodiscard]] V first(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
   [[nodiscard]] V second(double s) const { return 2 * c2 + 6 * s * c3; }
-  /// The same curve from s on.
+  /// This cubic from s on, as one of its own with the parameter counted from there.
   [[nodiscard]] joint_cubic part(double s, double its_length) const {
     return {value(s), first(s), V(second(s) / 2), c3, its_length};
   }

@@ -208,7 +208,8 @@ template <class V, VectorLike Velocity, VectorLike Acceleration>
   return joint_trajectory<joints>(std::move(pieces), std::move(times));
 }
 
-/// The same along a plan.
+/// The quickest motion along a plan's joint positions that keeps to limits of the joints'
+/// velocities and accelerations.
 template <int N, VectorLike Velocity, VectorLike Acceleration>
 [[nodiscard]] auto time_parametrised(const motion_plan<N>& plan, const Velocity& velocity,
                                      const Acceleration& acceleration,

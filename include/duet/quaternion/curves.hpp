@@ -68,7 +68,8 @@ template <class T, std::size_t N, ScalarFor<T> S>
   }
   return detail::de_casteljau(q, tau);
 }
-/// The same of a number of points known at run time; copies them to the heap.
+/// The Bézier curve of a number of control points known at run time, at τ ∈ [0, 1]; copies them to
+/// the heap.
 /// \throws invalid_input where there are no points
 template <class T, ScalarFor<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> bezier(const std::vector<quaternion<T>>& points,

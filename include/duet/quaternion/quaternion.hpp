@@ -44,7 +44,7 @@ public:
   /// A scalar as a quaternion: 1 is the identity rotation.
   constexpr explicit quaternion(const T& w) : w_(w), x_(T(0)), y_(T(0)), z_(T(0)) {}
   quaternion(const T& w, const vector3<T>& v) : w_(w), x_(v[0]), y_(v[1]), z_(v[2]) {}
-  /// The same quaternion over another scalar; implicit where no precision or level is lost.
+  /// This quaternion over another scalar; implicit where no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)

@@ -94,8 +94,8 @@ public:
     const auto above = std::upper_bound(breaks_.begin(), breaks_.end(), u) - breaks_.begin();
     return std::min(static_cast<std::size_t>(above), spans_.size()) - 1;
   }
-  /// The same, looked for in the span of the hint and the next one first where knots are not about
-  /// uniform; the hint is updated.
+  /// The span that holds u, looked for in that of the hint and the next one first where knots are
+  /// not about uniform; the hint is updated.
   [[nodiscard]] DUET_ALWAYS_INLINE std::size_t span_of(const R& u, span_hint& hint) const {
     return hint.span = is_about_uniform_ ? span_of(u) : span_near(u, hint.span);
   }
@@ -110,7 +110,7 @@ public:
     using P = std::conditional_t<Arithmetic<S>, R, S>;
     return weights_of<Derivatives>(spans_[span], P(u));
   }
-  /// The same for a batch of parameters, every lane on its own span.
+  /// The weights and their derivatives at a batch of parameters, every lane on its own span.
   template <int Derivatives, std::size_t W, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE auto weights(const std::array<std::size_t, W>& spans,
                                                 const P& u) const {

@@ -96,8 +96,8 @@ public:
     return result;
   }
 
-  /// The same for a motion that turns less: Q_i⁻¹ Q_{i+1} to the power λ, end rates by the factor
-  /// λ.
+  /// The equations of a motion that turns less: Q_i⁻¹ Q_{i+1} to the power λ, end rates by the
+  /// factor λ.
   [[nodiscard]] cubic_equations scaled(const R& lambda) const {
     cubic_equations result = *this;
     for (quaternion<T>& turn : result.turns_) {
@@ -150,7 +150,7 @@ public:
     return log_vector(quaternion<D>(conj(turn) * quaternion<D>(turns_[row])), "interpolate");
   }
 
-  /// The same for turns so small that their order does not matter: Σ weights_j x_j = right.
+  /// An equation for turns so small that their order does not matter: Σ weights_j x_j = right.
   [[nodiscard]] small_turn_equation<T> small_turns(std::size_t row) const {
     if (has_end_rates_) {
       if (row == 0 || row + 1 == size()) {

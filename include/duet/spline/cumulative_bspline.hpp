@@ -61,7 +61,7 @@ public:
   cumulative_bspline(std::vector<real_type> knots, std::vector<quaternion<T>> controls)
       : cumulative_bspline(basis_type(std::move(knots)), std::move(controls)) {}
 
-  /// The same with signs as they are and with increments of any length: how to go the long way
+  /// From controls with signs as they are and increments of any length: how to go the long way
   /// round, several times too, and how to make a copy from another curve's `controls()` and
   /// `increments()`. ω_0 does not count.
   /// \throws invalid_input for counts that do not match; invalid_row as `unit_quaternions`, and

@@ -148,7 +148,7 @@ template <class Spline, class T, class Ends = natural>
   ends.check();
   return detail::interpolate_cubic(parameters, orientations, detail::cubic_ends<T>(ends), nullptr);
 }
-/// The same, and how it went.
+/// The cubic curve with S(u_i) = Q_i, and how it went.
 template <class Spline, class T, class Ends>
   requires std::same_as<Spline, cumulative_bspline<T, 4>>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,

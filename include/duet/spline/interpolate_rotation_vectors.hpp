@@ -102,8 +102,8 @@ template <class Spline, class T, class Ends = natural>
                                  const Ends& ends = {}) {
   return detail::interpolate_rotation_vectors<Spline>(parameters, orientations, ends, nullptr);
 }
-/// The same, and how it went; the residual is that of the equations, in rad per step and its
-/// powers.
+/// The curve of rotation vectors through S(u_i) = Q_i, and how it went; the residual is that of the
+/// equations, in rad per step and its powers.
 template <class Spline, class T, class Ends>
   requires detail::is_rotation_vector_spline<Spline>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,

@@ -62,7 +62,7 @@ template <class T, ScalarFor<T> S>
 
 namespace detail {
 
-/// The same as dual vectors, halved, in body axes.
+/// A motion whose rates are dual vectors, halved, in body axes.
 template <class T>
 struct half_motion {
   quaternion<T> value;

@@ -74,7 +74,7 @@ template <class T>
 
 } // namespace detail
 
-/// The same quaternions, normalised.
+/// Quaternions that are units but for rounding, normalised.
 ///
 /// \throws invalid_row for a quaternion that is not finite, its infinitesimal parts included, or
 /// whose norm is not 1
@@ -99,7 +99,7 @@ template <class T>
   return q;
 }
 
-/// The same rotations, normalised, each with the sign nearer to its predecessor's.
+/// Rotations by normalised quaternions, each with the sign nearer to its predecessor's.
 ///
 /// \throws invalid_row as `unit_quaternions`, and where two neighbours are half a turn apart, so
 /// that either way round is as short

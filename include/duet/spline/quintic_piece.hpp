@@ -86,7 +86,7 @@ public:
         segment_.template rates_at_start<count + 1>(at_identity, with_zero(e.x))[count];
     return {sum_of(w, scaled(R(-per_h), e.x[3])), scaled(per_h, e.y[3])};
   }
-  /// The same at the end.
+  /// The fifth rate at the end: what the rates at the start and those at the end contribute.
   template <class S>
   [[nodiscard]] std::array<vector3<S>, 2> last_rate_at_end(const ends<S>& e) const {
     const R per_h = 1 / h_;

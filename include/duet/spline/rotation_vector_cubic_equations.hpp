@@ -50,7 +50,8 @@ public:
   /// Number of unknowns, one a knot, and of equations.
   [[nodiscard]] std::size_t size() const { return last_ + (ends_.is_cyclic ? 0 : 1); }
 
-  /// The same for a motion that turns less: turns from row to row and rates at the ends times λ.
+  /// The equations of a motion that turns less: turns from row to row and rates at the ends times
+  /// λ.
   [[nodiscard]] rotation_vector_cubic_equations scaled(const R& lambda) const {
     rotation_vector_cubic_equations result = *this;
     for (vector3<T>& turn : result.table_.turns) {

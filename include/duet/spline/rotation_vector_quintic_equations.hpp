@@ -56,7 +56,8 @@ public:
     make_pieces();
   }
 
-  /// The same for a motion that turns less: turns from row to row and rates at the ends times λ.
+  /// The equations of a motion that turns less: turns from row to row and rates at the ends times
+  /// λ.
   [[nodiscard]] rotation_vector_quintic_equations scaled(const R& lambda) const {
     rotation_vector_quintic_equations result = *this;
     for (vector3<T>& turn : result.table_.turns) {

@@ -159,7 +159,7 @@ public:
             half_body_rates(jacobian_, d_, after)};
   }
 
-  /// The same from what is known of x at either end by itself.
+  /// w_0 … w_{Count−1} at the start, or the end, from x_1 … x_Count about it.
   template <std::size_t Count, class S>
   [[nodiscard]] std::array<vector3<S>, Count>
   rates_at_start(const identity_coefficients& at_identity,

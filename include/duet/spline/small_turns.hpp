@@ -85,9 +85,10 @@ template <class R, class Equations>
   return result;
 }
 
-/// The same where rates at knots are the unknowns, several vectors each, from velocities upwards:
-/// each is measured by itself and by what the turns next to the knot would make of it.
-/// \param lengths  of the pieces that turn so; as many as the knots where the curve is closed
+/// How large a step is in relation to what it changes, where rates at knots are the unknowns,
+/// several vectors each, from velocities upwards: each is measured by itself and by what the turns
+/// next to the knot would make of it. \param lengths  of the pieces that turn so; as many as the
+/// knots where the curve is closed
 template <class R, int N>
 [[nodiscard]] R relative_step_of_rates(const std::vector<Eigen::Matrix<R, N, 1>>& x,
                                        const std::vector<Eigen::Matrix<R, N, 1>>& step,
