@@ -160,9 +160,9 @@ TEST_CASE("far from the origin the body's own motion keeps its digits") {
     CHECK(still.velocity.head<3>().norm() == 0);
     CHECK(still.acceleration.head<3>().norm() == 0);
     CHECK(still.jerk.head<3>().norm() == 0);
-    const auto s = curve(1);
-    const auto body = s.motion(u, duet::frame::body);
-    const auto m = s.motion(u, duet::frame::hybrid);
+    const auto moving = curve(1);
+    const auto body = moving.motion(u, duet::frame::body);
+    const auto m = moving.motion(u, duet::frame::hybrid);
     CHECK(m.velocity.head<3>().norm() ==
           doctest::Approx(body.velocity.head<3>().norm()).epsilon(1e-14));
     CHECK(m.velocity.tail<3>().norm() ==
