@@ -10,6 +10,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/basis.hpp>
 
 #include <Eigen/Core>

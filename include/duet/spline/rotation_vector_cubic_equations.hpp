@@ -4,6 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/rotation_vector_ends.hpp>
 #include <duet/spline/rotation_vector_segment.hpp>
 #include <duet/spline/rotation_vector_table.hpp>

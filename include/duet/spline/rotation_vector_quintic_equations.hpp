@@ -4,6 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/block_band_lu.hpp>
 #include <duet/spline/quintic_piece.hpp>
 #include <duet/spline/rotation_vector_ends.hpp>

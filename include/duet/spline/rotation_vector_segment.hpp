@@ -5,6 +5,7 @@
 #include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/exponential_rates.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 
 #include <algorithm>
 #include <array>

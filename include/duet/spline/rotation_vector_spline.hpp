@@ -6,6 +6,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_rates.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/motion.hpp>

@@ -4,6 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/orientations.hpp>
 
 #include <algorithm>
