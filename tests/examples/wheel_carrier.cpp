@@ -43,12 +43,24 @@ const std::vector<reference> references{
      {1.927114776517, 0.197925164613, -0.127372543603},
      {11.0163100237, 0.5908726713, -0.9258931868}}};
 
-std::vector<state> sampled(const carrier& mechanism, int count) {
-  std::vector<state> states;
-  for (int i = 0; i < count; ++i) {
-    states.push_back(mechanism.at(lowest + (highest - lowest) * i / (count - 1)));
+struct experiment {
+  carrier mechanism{example_hardpoints()};
+  arc_length arcs{mechanism};
+  table t = equal_arc_table(mechanism, arcs, 105);
+  std::vector<state> states; // 401 of them, at even heights
+  std::vector<double> samples;
+
+  experiment() {
+    for (int i = 0; i <= 400; ++i) {
+      samples.push_back(lowest + (highest - lowest) * i / 400);
+      states.push_back(mechanism.at(samples.back()));
+    }
   }
-  return states;
+};
+/// Made once for all cases: not optimised it takes seconds.
+const experiment& the_experiment() {
+  static const experiment result;
+  return result;
 }
 
 } // namespace
@@ -67,10 +79,8 @@ TEST_CASE("the closed loop meets the reference values, derivatives included") {
 }
 
 TEST_CASE("P7: 105 rows, 0.003 rad apart, over heights that are not uniform") {
-  const carrier mechanism(example_hardpoints());
-  const arc_length arcs(mechanism);
+  const auto& [mechanism, arcs, t, states, samples] = the_experiment();
   CHECK(std::abs(arcs.total() - 0.311551898) < 1e-9);
-  const table t = equal_arc_table(mechanism, arcs, 105);
   for (std::size_t i = 1; i < t.q.size(); ++i) {
     const double angle = duet::rotation_vector(t.q[i] * conj(t.q[i - 1])).norm();
     // The angle between two rows is a chord of the arc: shorter where the axis turns.
@@ -81,14 +91,7 @@ TEST_CASE("P7: 105 rows, 0.003 rad apart, over heights that are not uniform") {
 }
 
 TEST_CASE("P5, P6: errors of the spline against the mechanism") {
-  const carrier mechanism(example_hardpoints());
-  const arc_length arcs(mechanism);
-  const table t = equal_arc_table(mechanism, arcs, 105);
-  const auto states = sampled(mechanism, 401);
-  std::vector<double> samples;
-  for (const state& s : states) {
-    samples.push_back(s.u);
-  }
+  const auto& [mechanism, arcs, t, states, samples] = the_experiment();
   const spline clamped = duet::interpolate<spline>(
       t.u, t.q, duet::clamped{states.front().omega(), states.back().omega()});
   const spline natural = duet::interpolate<spline>(t.u, t.q, duet::natural{});

@@ -159,7 +159,7 @@ TEST_CASE_TEMPLATE("noise is smoothed, and no nearby curve is nearer", Q, rotati
 TEST_CASE_TEMPLATE("outliers pull with a bounded force", Q, rotation, pose_type) {
   constexpr double noise = 0.001;
   const auto truth = some_curve<Q>();
-  const auto u = steps(8, 200);
+  const auto u = steps(8, 100);
   random_source random(11);
   auto rows = rows_of(truth, u);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -193,7 +193,7 @@ rotation thrown(const rotation& a, random_source& random, double) {
 TEST_CASE_TEMPLATE("outliers of any size leave the curve where it is", Q, rotation, pose_type) {
   constexpr double noise = 0.001, limit = 3 * noise;
   const auto truth = some_curve<Q>();
-  const auto u = steps(8, 120);
+  const auto u = steps(8, 80);
   const auto& knots = truth.basis().knots();
   const auto check = [&](double share, double size, bool all_alike, double outlier, double most) {
     CAPTURE(share);
@@ -291,7 +291,7 @@ TEST_CASE("messages give the last step") {
 
 TEST_CASE("the length weighs shifts against turns") {
   const auto truth = some_curve<pose_type>();
-  const auto u = steps(8, 100);
+  const auto u = steps(8, 40);
   random_source random(13);
   auto rows = rows_of(truth, u);
   for (auto& row : rows) { // no noise in the turns, shifts along
