@@ -6,7 +6,6 @@
 
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 
 #include <benchmark/benchmark.h>
 

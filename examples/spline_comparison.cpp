@@ -16,7 +16,6 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 
 #include <algorithm>
 #include <array>

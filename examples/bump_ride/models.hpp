@@ -11,7 +11,6 @@
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <algorithm>

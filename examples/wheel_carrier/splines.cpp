@@ -5,7 +5,6 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 
 #include <memory>
 #include <stdexcept>

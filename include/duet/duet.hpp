@@ -81,7 +81,6 @@
 #include <duet/spline/fit.hpp>
 #include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/look_up_table.hpp>
 #include <duet/spline/printed.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>

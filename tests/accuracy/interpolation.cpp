@@ -6,7 +6,6 @@
 #include "accuracy/probe.hpp"
 
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include "../../examples/wheel_carrier/table.hpp"
 
 #include <duet/spline/hermite.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/interpolate.hpp>
 
 #include <doctest/doctest.h>
 

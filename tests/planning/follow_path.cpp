@@ -6,7 +6,6 @@
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include "support/lanes.hpp"

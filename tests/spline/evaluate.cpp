@@ -9,7 +9,6 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/evaluate.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/location.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 

@@ -4,11 +4,11 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/cubic_equations.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/curve_equations.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 #include <duet/spline/small_turns.hpp>
 #include <duet/spline/spline_newton.hpp>
@@ -48,19 +48,6 @@ rows small_steps() {
   return result;
 }
 
-template <class Ends>
-auto equations(const cumulative*, const rows& data, const Ends& ends) {
-  return duet::detail::cubic_equations<double>(data.parameters, data.orientations,
-                                               duet::detail::cubic_ends<double>(ends));
-}
-template <int Order, class Ends>
-auto equations(const rotation_vector<Order>*, const rows& data, const Ends& ends) {
-  const auto& q = data.orientations;
-  return duet::detail::rotation_vector_equations<double, Order>(
-      data.parameters, q,
-      duet::detail::rotation_vector_ends<double, Order>(ends, q.front(), q.back()));
-}
-
 /// How far Newton's method starts from where it ends, in relation to the largest unknown, and how
 /// many iterations there are between.
 struct way {
@@ -69,7 +56,8 @@ struct way {
 };
 template <class Spline, class Ends>
 way way_of_newton(const rows& data, const Ends& ends) {
-  const auto f = equations(static_cast<const Spline*>(nullptr), data, ends);
+  const duet::detail::equations_of_t<Spline> f(data.parameters, data.orientations,
+                                               duet::detail::curve_ends<double>(ends));
   const duet::detail::spline_newton newton(f);
   const auto start = f.start();
   double difference = 0, size = 0;
@@ -115,7 +103,9 @@ TEST_CASE("no step is small where one is not a number") {
   const std::vector<double> lengths{1, 1};
   CHECK(std::isnan(duet::detail::relative_step_of_rates<double, 3>(x, step, turns, lengths)));
   const rows data = small_steps();
-  const auto f = equations(static_cast<const cumulative*>(nullptr), data, duet::natural{});
+  const duet::detail::equations_of_t<cumulative> f(
+      data.parameters, data.orientations,
+      duet::detail::curve_ends<double>(duet::detail::end_kind::natural));
   auto change = f.start();
   change[change.size() / 2][0] = nan;
   CHECK(std::isnan(f.relative_step(f.start(), change)));

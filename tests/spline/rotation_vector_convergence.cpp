@@ -6,7 +6,7 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/tangent.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/interpolate.hpp>
 
 #include <doctest/doctest.h>
 

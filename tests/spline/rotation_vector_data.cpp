@@ -2,7 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/interpolate.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/tangent.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/interpolate.hpp>
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
+#include <duet/spline/interpolate.hpp>
 
 #include <doctest/doctest.h>
 

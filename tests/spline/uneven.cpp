@@ -8,7 +8,6 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/interpolate_rotation_vectors.hpp>
 
 #include <doctest/doctest.h>
 

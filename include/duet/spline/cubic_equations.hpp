@@ -9,7 +9,10 @@
 #include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/block_tridiagonal.hpp>
-#include <duet/spline/cubic_ends.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/curve_equations.hpp>
+#include <duet/spline/knots.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/small_turns.hpp>
@@ -36,13 +39,13 @@ class cubic_equations {
   using R = real_type_t<T>;
 
 public:
+  using curve_type = cumulative_bspline<T, 4>;
   using real_type = R;
   using unknowns = std::vector<vector3<T>>;
   using matrix = block_tridiagonal<R, 3>;
 
-  cubic_equations(const std::vector<R>& u, std::vector<quaternion<T>> q, const cubic_ends<T>& ends)
-      : kind_(ends.kind), has_end_rates_(ends.has_rates()), basis_(ends.knots(u)),
-        data_(std::move(q)) {
+  cubic_equations(const std::vector<R>& u, std::vector<quaternion<T>> q, const curve_ends<T>& ends)
+      : kind_(ends.kind), basis_(knots(u, ends.kind)), data_(std::move(q)) {
     const std::size_t n = u.size() - 1;
     turns_.reserve(n);
     arcs_.reserve(n);
@@ -62,26 +65,25 @@ public:
       longest = std::max(longest, R(u[i + 1] - u[i]));
     }
     unevenness_ = longest / shortest;
-    end_rates_ = {rotate(conj(data_.front()), ends.rates[0]),
-                  rotate(conj(data_.back()), ends.rates[1])};
+    const auto& rates = kind_ == end_kind::velocity ? ends.velocity : ends.acceleration;
+    end_rates_ = {rotate(conj(data_.front()), rates[0]), rotate(conj(data_.back()), rates[1])};
+  }
+
+  /// Fewer leave equations without their unknowns.
+  [[nodiscard]] static std::size_t least_rows(end_kind kind) {
+    return kind == end_kind::not_a_knot ? 4 : kind == end_kind::periodic ? 3 : 2;
   }
 
   /// Number of equations, which is that of the unknowns.
-  [[nodiscard]] std::size_t size() const { return arcs_.size() + (has_end_rates_ ? 2 : 0); }
+  [[nodiscard]] std::size_t size() const { return arcs_.size() + (has_end_rates() ? 2 : 0); }
   [[nodiscard]] corners corner_columns() const {
     return is_cyclic() ? corners{size() - 1, 0} : corners{2, size() - 3};
   }
-  /// What the curve is made of; nothing else works afterwards.
-  [[nodiscard]] bspline_basis<4, R> basis() && { return std::move(basis_); }
-
-  /// Where Newton's method starts. For real T.
   [[nodiscard]] unknowns start() const { return small_turn_solution<R>(*this); }
 
-  /// How large a step from x is in relation to what it changes. For real T.
   [[nodiscard]] R relative_step(const unknowns& x, const unknowns& step) const {
     return detail::relative_step<R>(*this, x, step);
   }
-  /// The longest interval of the parameter as a multiple of the shortest.
   [[nodiscard]] const R& unevenness() const { return unevenness_; }
 
   /// The largest angle from one row to the next, and the row before it.
@@ -127,7 +129,7 @@ public:
   /// increment.
   template <class D>
   [[nodiscard]] vector3<D> residual(std::size_t row, const std::array<vector3<D>, 3>& omega) const {
-    if (has_end_rates_) {
+    if (has_end_rates()) {
       if (row == 0 || row + 1 == size()) {
         return end_residual(row == 0, omega);
       }
@@ -152,7 +154,7 @@ public:
 
   /// An equation for turns so small that their order does not matter: Σ weights_j x_j = right.
   [[nodiscard]] small_turn_equation<T> small_turns(std::size_t row) const {
-    if (has_end_rates_) {
+    if (has_end_rates()) {
       if (row == 0 || row + 1 == size()) {
         const curve_end end = end_of_curve(row == 0);
         std::array<R, 3> weights = end.weights[kind_ == end_kind::velocity ? 1 : 2];
@@ -204,6 +206,23 @@ public:
     return jacobian.factorise(corner_columns());
   }
 
+  [[nodiscard]] curve_type curve(const std::vector<R>&, const std::vector<quaternion<T>>&,
+                                 const unknowns& x) const {
+    std::vector<vector3<T>> omega = increments(x);
+    std::vector<quaternion<T>> made = controls(omega);
+    return curve_type(basis_, std::move(made), std::move(omega));
+  }
+
+private:
+  [[nodiscard]] bool is_cyclic() const { return kind_ == end_kind::periodic; }
+  [[nodiscard]] bool has_end_rates() const { return !is_cyclic() && kind_ != end_kind::not_a_knot; }
+
+  [[nodiscard]] static std::vector<R> knots(const std::vector<R>& u, end_kind kind) {
+    return kind == end_kind::periodic     ? periodic_knots(u, 4)
+           : kind == end_kind::not_a_knot ? not_a_knot_knots(u, 4)
+                                          : clamped_knots(u, 4);
+  }
+
   /// ω_0 = 0 and the increments of all controls.
   [[nodiscard]] std::vector<vector3<T>> increments(const std::vector<vector3<T>>& x) const {
     std::vector<vector3<T>> omega{vector3<T>::Zero()};
@@ -233,9 +252,6 @@ public:
     }
     return result;
   }
-
-private:
-  [[nodiscard]] bool is_cyclic() const { return kind_ == end_kind::periodic; }
 
   /// From row i to row i + 1: the span, the weights of its three increments at row i, and by how
   /// much these change.
@@ -267,13 +283,17 @@ private:
   }
 
   end_kind kind_;
-  bool has_end_rates_;
   bspline_basis<4, R> basis_;
   std::vector<quaternion<T>> data_;
   std::vector<quaternion<T>> turns_;
   std::vector<arc> arcs_;
   R unevenness_;
   std::array<vector3<T>, 2> end_rates_;
+};
+
+template <class Own, class T>
+struct equations_of<cumulative_bspline<Own, 4>, T> {
+  using type = cubic_equations<T>;
 };
 
 } // namespace duet::detail

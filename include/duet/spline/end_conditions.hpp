@@ -63,6 +63,21 @@ struct end_acceleration {
   void check() const { detail::check_end_rates("end_acceleration", start, end); }
 };
 
+/// Given angular velocities and accelerations, or twists and their derivatives: all that the
+/// ends of a quintic can be told. (Of only one of them, the fifth derivative's continuity at the
+/// second knot takes the other's place.)
+template <class V = Eigen::Matrix<double, 3, 1>>
+struct fully_clamped {
+  clamped<V> velocity;
+  end_acceleration<V> acceleration;
+
+  /// \throws invalid_input for a rate that is not finite
+  void check() const {
+    velocity.check();
+    acceleration.check();
+  }
+};
+
 /// The first two pieces are one, and so are the last two: what to assume when nothing is known.
 struct not_a_knot {
   void check() const {}
@@ -81,5 +96,7 @@ template <class V>
 end_acceleration(V, V) -> end_acceleration<typename V::PlainObject>;
 template <class A, class B>
 end_acceleration(A, B) -> end_acceleration<typename A::PlainObject>;
+template <class V, class W>
+fully_clamped(clamped<V>, end_acceleration<W>) -> fully_clamped<V>;
 
 } // namespace duet

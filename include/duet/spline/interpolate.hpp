@@ -3,11 +3,15 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/spline/cubic_ends.hpp>
 #include <duet/spline/cubic_equations.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/curve_equations.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/rotation_vector_cubic_equations.hpp>
+#include <duet/spline/rotation_vector_quintic_equations.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 #include <duet/spline/spline_newton.hpp>
 
 #include <algorithm>
@@ -21,14 +25,16 @@
 #include <vector>
 
 /// \file
-/// Curves through given rotations or poses: the control elements of P2 are solved for.
+/// Curves through given rotations or poses.
 
 namespace duet {
 
 /// How an interpolation went.
 struct fit_report {
-  int iterations = 0;      ///< of Newton's method
-  double residual = 0;     ///< by how much the curve misses a turn from one row to the next, rad
+  int iterations = 0; ///< of Newton's method
+  /// Of a cumulative curve by how much it misses a turn from one row to the next, rad; of rotation
+  /// vectors by how much its equations are missed, rad per step and its powers.
+  double residual = 0;
   double largest_step = 0; ///< the largest turn from one row to the next, rad
 };
 
@@ -86,87 +92,108 @@ template <class T>
   return q;
 }
 
-template <class T>
-[[nodiscard]] cumulative_bspline<T, 4>
-interpolate_cubic(const std::vector<real_type_t<T>>& parameters, std::vector<quaternion<T>> q,
-                  const cubic_ends<T>& ends, fit_report* report) {
-  check_rows(parameters, q.size(), ends.least_rows());
+/// The curve of type `Spline` through the rows.
+template <class Spline, class T>
+[[nodiscard]] Spline curve_through(const std::vector<real_type_t<T>>& parameters,
+                                   std::vector<quaternion<T>> q, const curve_ends<T>& ends,
+                                   fit_report* report) {
+  using R = real_type_t<T>;
+  using equations = equations_of_t<Spline, T>;
+  static_assert(CurveEquations<equations>);
+  check_rows(parameters, q.size(), equations::least_rows(ends.kind));
   q = aligned_orientations(std::move(q));
   if (ends.kind == end_kind::periodic) {
     q = closed(std::move(q));
   }
-  cubic_equations<T> equations(parameters, q, ends);
-  const auto curve = [&](auto&& newton, const auto& solution) {
+  const equations all(parameters, q, ends);
+  const auto curve = [&](auto& newton, const auto& solution) {
     if (report != nullptr) {
       *report = {newton.iterations(), 2 * double(newton.residual()),
-                 double(equations.largest_turn().first)};
+                 double(all.largest_turn().first)};
     }
-    std::vector<vector3<T>> increments = equations.increments(solution);
-    std::vector<quaternion<T>> controls = equations.controls(increments);
-    return cumulative_bspline<T, 4>(std::move(equations).basis(), std::move(controls),
-                                    std::move(increments));
+    return all.curve(parameters, std::move(q), solution);
   };
   if constexpr (Real<T>) {
-    spline_newton newton(equations);
+    spline_newton newton(all);
     return curve(newton, newton.solution());
   } else {
-    using R = real_type_t<T>;
     std::vector<quaternion<R>> rotations;
     rotations.reserve(q.size());
     for (const quaternion<T>& each : q) {
       rotations.push_back(innermost_of(each));
     }
-    const cubic_equations<R> real(parameters, std::move(rotations), ends.real_part());
+    const equations_of_t<Spline, R> real(parameters, rotations, ends.real_part());
     spline_newton newton(real);
-    return curve(newton, lifted_solution(equations, newton));
+    return curve(newton, lifted_solution(all, newton));
+  }
+}
+
+template <class Spline, class T, class Ends>
+[[nodiscard]] Spline interpolated(const std::vector<real_type_t<T>>& parameters,
+                                  const std::vector<quaternion<T>>& rows, const Ends& ends,
+                                  fit_report* report) {
+  constexpr bool is_curve = requires { typename equations_of_t<Spline>; };
+  static_assert(is_curve, "duet: interpolate makes cumulative_bspline<T>, a cubic, and "
+                          "rotation_vector_spline<T>, or <T, 6>, a quintic");
+  constexpr bool are_ends = std::constructible_from<curve_ends<T>, const Ends&>;
+  static_assert(are_ends, "duet: interpolate: the ends are natural{}, clamped{velocity, velocity}, "
+                          "end_acceleration{…}, fully_clamped{…}, not_a_knot{} or periodic{}");
+  constexpr bool is_over_rows = std::same_as<typename Spline::scalar_type, T>;
+  static_assert(is_over_rows,
+                "duet: interpolate: the curve is over another scalar than the rows: rotations make "
+                "a cumulative_bspline<double>, poses a "
+                "cumulative_bspline<dual<double, 1, screw_tag>>");
+  if constexpr (is_curve && are_ends && is_over_rows) {
+    constexpr bool are_too_many = Spline::order < 6 && requires { ends.velocity; };
+    static_assert(!are_too_many,
+                  "duet: interpolate: the cubic's ends take velocities or accelerations, not both");
+    ends.check();
+    return curve_through<Spline>(parameters, rows, curve_ends<T>(ends), report);
   }
 }
 
 } // namespace detail
 
-/// The cubic curve with S(u_i) = Q_i, C² at all u_i.
+/// The curve of type `Spline` with S(u_i) = Q_i: `cumulative_bspline<T>`, the cubic of P2, C²;
+/// `rotation_vector_spline<T>`, the cubic of rotation vectors, C²; `rotation_vector_spline<T, 6>`,
+/// the quintic, C⁴. T is any scalar.
 ///
 /// \param parameters    u_0 < u_1 < …, uniform or not
 /// \param orientations  unit quaternions, or poses; signs are aligned first
-/// \param ends          `natural{}`, `clamped{…}`, `end_acceleration{…}`, `not_a_knot{}` (four rows
-///                      or more) or `periodic{}` (three or more, the last one the first again)
+/// \param ends          as below
 ///
-/// Spline is `cumulative_bspline<T, 4>`, T any scalar. The real increments of the rotations are
-/// found by Newton's method with AD Jacobian, O(n) a step; where neighbouring rows are far apart,
-/// by continuation from smaller turns. Infinitesimal parts, those of poses and those of derivatives
-/// with respect to the data among them, follow from the equations by one linear solve each, to
-/// rounding. Against smooth motion the cubic is third-order accurate in value, second in velocity,
-/// first in acceleration.
+/// | ends | cubics | quintic |
+/// |---|---|---|
+/// | `natural` | no acceleration | no acceleration, no snap |
+/// | `clamped` | given velocity | given velocity; fifth derivative continuous at the next knot |
+/// | `end_acceleration` | given acceleration | given acceleration; fifth derivative likewise |
+/// | `fully_clamped` | | given velocity and acceleration |
+/// | `not_a_knot` | jerk continuous at the next knot | fifth derivative at the next two |
+/// | `periodic` | as smooth as inside | as smooth as inside |
+///
+/// Unknown are the increments of P2, or the rates at the knots. Their real parts are found by
+/// Newton's method with AD Jacobian, O(n) a step; where neighbouring rows are far apart, by
+/// continuation from smaller turns. Infinitesimal parts, those of poses and of derivatives with
+/// respect to the data among them, follow from the equations by one linear solve each, to rounding.
+/// Against smooth motion and with ends that fit it, the cumulative cubic is third-order accurate in
+/// value, second in velocity, first in acceleration; the cubic of rotation vectors an order more;
+/// the quintic sixth, fifth and fourth.
 /// \throws invalid_row for a row that no curve can go through; invalid_input where there are too
-/// few rows, the counts differ or an end rate is not finite; no_convergence where no curve was
-/// found: neighbours very far apart, or parameters too uneven for the ends
+/// few rows (not_a_knot takes as many as the order, periodic ends three, clamped and accelerated
+/// quintics four), the counts differ or an end rate is not finite; no_convergence where no curve
+/// was found: neighbours very far apart, or parameters too uneven for the ends
 template <class Spline, class T, class Ends = natural>
-  requires std::same_as<Spline, cumulative_bspline<T, 4>>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
                                  const std::vector<quaternion<T>>& orientations,
                                  const Ends& ends = {}) {
-  ends.check();
-  return detail::interpolate_cubic(parameters, orientations, detail::cubic_ends<T>(ends), nullptr);
+  return detail::interpolated<Spline>(parameters, orientations, ends, nullptr);
 }
-/// The cubic curve with S(u_i) = Q_i, and how it went.
+/// The curve with S(u_i) = Q_i, and how it went.
 template <class Spline, class T, class Ends>
-  requires std::same_as<Spline, cumulative_bspline<T, 4>>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
                                  const std::vector<quaternion<T>>& orientations, const Ends& ends,
                                  fit_report& report) {
-  ends.check();
-  return detail::interpolate_cubic(parameters, orientations, detail::cubic_ends<T>(ends), &report);
-}
-
-/// Rows over another scalar than the curve's.
-template <class Spline, class T, class Ends = natural>
-  requires(!std::same_as<typename Spline::scalar_type, T>)
-Spline interpolate(const std::vector<real_type_t<T>>&, const std::vector<quaternion<T>>&,
-                   const Ends& = {}) {
-  static_assert(std::same_as<typename Spline::scalar_type, T>,
-                "duet: interpolate: the curve is over another scalar than the rows: rotations make "
-                "a cumulative_bspline<double>, poses a "
-                "cumulative_bspline<dual<double, 1, screw_tag>>");
+  return detail::interpolated<Spline>(parameters, orientations, ends, &report);
 }
 
 } // namespace duet

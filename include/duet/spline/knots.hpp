@@ -62,6 +62,16 @@ template <Real R>
   return knots;
 }
 
+/// The knots of a spline of this order, even, through data at the given parameters that has no knot
+/// where the first order/2 − 1 parameters inside are, nor where the last ones are.
+template <Real R>
+[[nodiscard]] std::vector<R> not_a_knot_knots(std::vector<R> parameters, int order) {
+  const std::ptrdiff_t left_out = order / 2 - 1;
+  parameters.erase(parameters.end() - 1 - left_out, parameters.end() - 1);
+  parameters.erase(parameters.begin() + 1, parameters.begin() + 1 + left_out);
+  return clamped_knots(parameters, order);
+}
+
 /// The knots of a periodic spline of this order through data at the given parameters, the last of
 /// which is one period after the first: each once, and continued round on both sides.
 template <Real R>

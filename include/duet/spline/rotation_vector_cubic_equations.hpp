@@ -5,8 +5,11 @@
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/curve_equations.hpp>
 #include <duet/spline/rotation_vector_ends.hpp>
 #include <duet/spline/rotation_vector_segment.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 #include <duet/spline/rotation_vector_table.hpp>
 #include <duet/spline/shared_accelerations.hpp>
 #include <duet/spline/small_turns.hpp>
@@ -35,6 +38,7 @@ class rotation_vector_cubic_equations {
   using polynomial = std::array<vector3<T>, 4>;
 
 public:
+  using curve_type = rotation_vector_spline<T, 4>;
   using real_type = R;
   using unknown = vector3<T>;
   using unknowns = std::vector<unknown>;
@@ -43,13 +47,15 @@ public:
   /// \param u  increasing, as many as `ends` need or more
   /// \param q  as many unit elements, signs aligned
   rotation_vector_cubic_equations(const std::vector<R>& u, const std::vector<quaternion<T>>& q,
-                                  const ends_type& ends)
-      : ends_(ends), reach_(ends.reach()), last_(u.size() - 1), table_(u, q) {
+                                  const curve_ends<T>& ends)
+      : ends_(ends, q.front(), q.back()), reach_(ends_.reach()), last_(u.size() - 1), table_(u, q) {
     make_pieces();
   }
 
   /// Number of unknowns, one a knot, and of equations.
   [[nodiscard]] std::size_t size() const { return last_ + (ends_.is_cyclic ? 0 : 1); }
+
+  [[nodiscard]] static std::size_t least_rows(end_kind kind) { return ends_type::least_rows(kind); }
 
   /// The equations of a motion that turns less: turns from row to row and rates at the ends times
   /// λ.
@@ -141,17 +147,17 @@ public:
     return ends_.is_cyclic ? jacobian.factorise_cyclic() : jacobian.factorise(ends, reach_ + 1);
   }
 
-  /// The curve's polynomials as `rotation_vector_spline` takes them, in units of the parameter.
-  /// Those that meet at a knot are made of the same numbers there.
-  [[nodiscard]] std::vector<polynomial> polynomials(const unknowns& x) const {
-    std::vector<polynomial> result;
-    result.reserve(last_);
+  /// Pieces that meet at a knot are made of the same numbers there.
+  [[nodiscard]] curve_type curve(const std::vector<R>& u, std::vector<quaternion<T>> q,
+                                 const unknowns& x) const {
+    std::vector<polynomial> pieces;
+    pieces.reserve(last_);
     for (std::size_t i = 0; i < last_; ++i) {
-      result.push_back(pieces_[i].template polynomial<T>({x[i]}, {x[(i + 1) % x.size()]}));
+      pieces.push_back(pieces_[i].template polynomial<T>({x[i]}, {x[(i + 1) % x.size()]}));
     }
-    share_accelerations(pieces_, table_.steps, x.size(), result);
-    table_.in_own_units(result);
-    return result;
+    share_accelerations(pieces_, table_.steps, x.size(), pieces);
+    table_.in_own_units(pieces);
+    return curve_type::from_pieces(u, std::move(q), std::move(pieces));
   }
 
 private:
@@ -230,6 +236,11 @@ private:
   std::size_t reach_, last_;
   rotation_vector_table<T> table_;
   std::vector<piece> pieces_;
+};
+
+template <class Own, class T>
+struct equations_of<rotation_vector_spline<Own, 4>, T> {
+  using type = rotation_vector_cubic_equations<T>;
 };
 
 } // namespace duet::detail

@@ -6,8 +6,11 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/block_band_lu.hpp>
+#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/curve_equations.hpp>
 #include <duet/spline/quintic_piece.hpp>
 #include <duet/spline/rotation_vector_ends.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 #include <duet/spline/rotation_vector_table.hpp>
 #include <duet/spline/small_turns.hpp>
 
@@ -39,6 +42,7 @@ class rotation_vector_quintic_equations {
   using coefficients = typename piece::template coefficients<S>;
 
 public:
+  using curve_type = rotation_vector_spline<T, 6>;
   using real_type = R;
   using unknown = Eigen::Matrix<T, n, 1>;
   using unknowns = std::vector<unknown>;
@@ -47,8 +51,9 @@ public:
   /// \param u  increasing, as many as `ends` need or more
   /// \param q  as many unit elements, signs aligned
   rotation_vector_quintic_equations(const std::vector<R>& u, const std::vector<quaternion<T>>& q,
-                                    const ends_type& ends)
-      : ends_(ends), table_(u, q), lengths_(ends.is_cyclic ? u.size() - 1 : u.size(), R(0)) {
+                                    const curve_ends<T>& ends)
+      : ends_(ends, q.front(), q.back()), table_(u, q),
+        lengths_(ends_.is_cyclic ? u.size() - 1 : u.size(), R(0)) {
     for (std::size_t i = 0; i < table_.steps.size(); ++i) {
       for (const std::size_t knot : {i, next(i)}) {
         lengths_[knot] = std::max(lengths_[knot], table_.steps[i]);
@@ -56,6 +61,8 @@ public:
     }
     make_pieces();
   }
+
+  [[nodiscard]] static std::size_t least_rows(end_kind kind) { return ends_type::least_rows(kind); }
 
   /// The equations of a motion that turns less: turns from row to row and rates at the ends times
   /// λ.
@@ -184,16 +191,16 @@ public:
     return jacobian.factorise(units(), std::move(groups), ends_.is_cyclic);
   }
 
-  /// The curve's polynomials as `rotation_vector_spline` takes them.
-  [[nodiscard]] std::vector<std::array<vector3<T>, 6>> polynomials(const unknowns& x) const {
-    std::vector<std::array<vector3<T>, 6>> result;
-    result.reserve(pieces_.size());
+  [[nodiscard]] curve_type curve(const std::vector<R>& u, std::vector<quaternion<T>> q,
+                                 const unknowns& x) const {
+    std::vector<std::array<vector3<T>, 6>> pieces;
+    pieces.reserve(pieces_.size());
     const auto rates = rates_of<T>(x);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      result.push_back(pieces_[i].polynomial(taylor<T>(i, rates)));
+      pieces.push_back(pieces_[i].polynomial(taylor<T>(i, rates)));
     }
-    table_.in_own_units(result);
-    return result;
+    table_.in_own_units(pieces);
+    return curve_type::from_pieces(u, std::move(q), std::move(pieces));
   }
 
 private:
@@ -275,6 +282,11 @@ private:
   std::vector<R> lengths_; ///< of each knot's longer piece
   std::vector<piece> pieces_;
   typename piece::identity_coefficients at_identity_{R(0)};
+};
+
+template <class Own, class T>
+struct equations_of<rotation_vector_spline<Own, 6>, T> {
+  using type = rotation_vector_quintic_equations<T>;
 };
 
 } // namespace duet::detail
