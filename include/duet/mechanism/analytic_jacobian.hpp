@@ -15,10 +15,10 @@ namespace duet {
 
 /// ∂γ/∂θ, 7 rows, of γ = [t; α] (N20, N21): J2 times it is the spatial Jacobian. α is the
 /// quaternion of `chain.pose(theta)`, which has its own sign. Arguments as `jacobian`.
-template <SerialChain C, VectorLike X, class... At>
-[[nodiscard]] auto pose_coordinates_jacobian(const C& chain, const X& theta, const At&... at) {
+template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+[[nodiscard]] auto pose_coordinates_jacobian(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
-  const auto [a, m] = pose_and_jacobian(chain, theta, frame::spatial, at...);
+  const auto [a, m] = pose_and_jacobian(chain, theta, frame::spatial, at);
   detail::joint_columns<S, 7, C::joints> result(7, m.cols());
   for (Eigen::Index i = 0; i < m.cols(); ++i) {
     result.col(i) = pose_coordinates_rate(a, vector6<S>(m.col(i)));
@@ -29,10 +29,10 @@ template <SerialChain C, VectorLike X, class... At>
 /// ∂[t; a, b, c]/∂θ, 6 rows, for the Euler angles of a sequence: `euler_jacobian<zyx>(chain, θ)`.
 /// Without bounds towards gimbal lock, where the angles' rates do not exist. Arguments as
 /// `jacobian`.
-template <euler_sequence Sequence, SerialChain C, VectorLike X, class... At>
-[[nodiscard]] auto euler_jacobian(const C& chain, const X& theta, const At&... at) {
+template <euler_sequence Sequence, SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+[[nodiscard]] auto euler_jacobian(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
-  auto [a, m] = pose_and_jacobian(chain, theta, frame::hybrid, at...);
+  auto [a, m] = pose_and_jacobian(chain, theta, frame::hybrid, at);
   const auto angles = euler<Sequence>(rotation(a));
   const matrix3<S> axes = euler_rate_matrix<Sequence>(angles[0], angles[1]);
   const vector3<S> x = axes.col(0), y = axes.col(1), z = axes.col(2);

@@ -9,6 +9,7 @@
 #include <duet/mechanism/half_turns.hpp>
 #include <duet/mechanism/joint.hpp>
 
+#include <concepts>
 #include <cstddef>
 #include <string>
 #include <type_traits>
@@ -137,19 +138,27 @@ template <class S, class T>
 
 inline constexpr auto visit_nothing = [](const auto&...) {};
 
-/// What a function of a chain is about: the tip, link i, or a given frame.
-template <class C>
-[[nodiscard]] constexpr decltype(auto) frame_on(const C& chain) {
-  return chain.tip();
-}
-template <class C>
-[[nodiscard]] constexpr auto frame_on(const C& chain, int i) {
-  return chain.link(i);
-}
-template <class C>
-[[nodiscard]] constexpr const auto& frame_on(const C&,
-                                             const attached_frame<typename C::scalar_type>& at) {
-  return at;
+} // namespace detail
+
+/// What functions of a chain are about unless told otherwise.
+struct tip_of_chain {};
+
+/// What a function of a chain may be about: its tip, the link of a number, a frame on a link.
+template <class At, class C>
+concept PlaceOnChain = std::same_as<At, tip_of_chain> || std::integral<At> ||
+    std::same_as<At, attached_frame<typename C::scalar_type>>;
+
+namespace detail {
+
+template <class C, PlaceOnChain<C> At>
+[[nodiscard]] constexpr decltype(auto) frame_on(const C& chain, const At& at) {
+  if constexpr (std::same_as<At, tip_of_chain>) {
+    return chain.tip();
+  } else if constexpr (std::integral<At>) {
+    return chain.link(int(at));
+  } else {
+    return (at);
+  }
 }
 
 } // namespace detail

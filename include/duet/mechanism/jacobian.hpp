@@ -89,12 +89,12 @@ DUET_ALWAYS_INLINE void turn_to_body(J& m, const quaternion<S>& rotation) {
 /// The pose A of a frame on a chain, and its Jacobian there.
 ///
 /// \tparam Frame           see `jacobian`
-/// \param at               nothing for the tip, the number of a link, or an `attached_frame`
-template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
+/// \param at               the number of a link, or an `attached_frame`; nothing for the tip
+template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] DUET_ALWAYS_INLINE auto pose_and_jacobian(const C& chain, const X& theta, Frame,
-                                                        const At&... at) {
+                                                        const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
-  const auto& on = detail::frame_on(chain, at...);
+  const auto& on = detail::frame_on(chain, at);
   value_and_jacobian<dual_quaternion<S>, detail::chain_jacobian<C, X>> result;
   const auto link = detail::spatial_columns<true, S>(chain, theta, on.link, result.jacobian);
   const auto state = detail::attach(link, on.offset);
@@ -113,23 +113,25 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
 /// \tparam Frame           `frame::spatial`: fixed axes, v of the body point at the fixed origin,
 ///                         columns are the joints' screws; `frame::body`: axes and origin of the
 ///                         moving frame; `frame::hybrid`: fixed axes, v of the frame's origin
-/// \param at               nothing for the tip, the number of a link, or an `attached_frame`, as
-///                         `chain.tip().at_point({x, y, z})`
+/// \param at               the number of a link, or an `attached_frame`, as
+///                         `chain.tip().at_point({x, y, z})`; nothing for the tip
 /// Columns of joints beyond the link are zero. Units: those of θ in the denominator.
 /// \throws invalid_input for another number of coordinates than `size()`, and for a link that there
 /// is none of
-template <class C, VectorLike X, FrameConstant Frame, class... At>
+template <class C, VectorLike X, FrameConstant Frame,
+          PlaceOnChain<std::remove_cvref_t<C>> At = tip_of_chain>
   requires SerialChain<std::remove_cvref_t<C>>
-[[nodiscard]] DUET_ALWAYS_INLINE auto jacobian(C&& chain, const X& theta, Frame, const At&... at) {
+[[nodiscard]] DUET_ALWAYS_INLINE auto jacobian(C&& chain, const X& theta, Frame,
+                                               const At& at = {}) {
   using chain_type = std::remove_cvref_t<C>;
   using S = detail::chain_scalar<chain_type, X>;
   if constexpr (std::same_as<Frame, spatial_frame>) {
     detail::chain_jacobian<chain_type, X> result;
-    const auto& on = detail::frame_on(chain, at...);
+    const auto& on = detail::frame_on(chain, at);
     static_cast<void>(detail::spatial_columns<false, S>(chain, theta, on.link, result));
     return result;
   } else {
-    return pose_and_jacobian(chain, theta, Frame{}, at...).jacobian;
+    return pose_and_jacobian(chain, theta, Frame{}, at).jacobian;
   }
 }
 

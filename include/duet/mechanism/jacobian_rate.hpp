@@ -96,10 +96,10 @@ private:
 ///
 /// Only in `frame::hybrid` is its linear part ∂²p/∂θ_j∂θ_k of the frame's origin p, symmetric in j
 /// and k. Arguments as `jacobian`.
-template <SerialChain C, VectorLike X, FrameConstant Frame, class... At>
+template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto kinematic_hessian(const C& chain, const X& theta, Frame frame_of_result,
-                                     const At&... at) {
-  const auto m = jacobian(chain, theta, frame_of_result, at...);
+                                     const At& at = {}) {
+  const auto m = jacobian(chain, theta, frame_of_result, at);
   using S = detail::chain_scalar<C, X>;
   const Eigen::Index n = chain.size();
   chain_hessian<S, C::joints> h(n);
@@ -127,15 +127,16 @@ struct jacobian_and_rate {
 /// J and J̇ along θ̇, so that J θ̈ + J̇ θ̇ is the derivative of the twist J θ̇. In `frame::hybrid` its
 /// linear part is the classical acceleration of the frame's origin, p̈; in the others it is not (see
 /// docs/mechanisms.md). Arguments as `jacobian`.
-template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame, class... At>
+template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
+          PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto jacobian_with_rate(const C& chain, const X& theta, const V& theta_dot,
-                                      Frame frame_of_result, const At&... at) {
+                                      Frame frame_of_result, const At& at = {}) {
   detail::require_size(chain, theta_dot);
   using velocities = detail::vector_argument<V>;
   using S = promote_t<detail::chain_scalar<C, X>, typename velocities::scalar>;
   using matrix = detail::joint_columns<S, 6, C::joints>;
-  jacobian_and_rate<matrix> result{
-      jacobian(chain, theta, frame_of_result, at...).template cast<S>(), {}};
+  jacobian_and_rate<matrix> result{jacobian(chain, theta, frame_of_result, at).template cast<S>(),
+                                   {}};
   const matrix& m = result.jacobian;
   const Eigen::Index n = chain.size();
   result.rate.resize(6, n);
@@ -181,10 +182,11 @@ template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame, class.
 }
 
 /// J̇ of `jacobian_with_rate`.
-template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame, class... At>
+template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
+          PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto jacobian_rate(const C& chain, const X& theta, const V& theta_dot,
-                                 Frame frame_of_result, const At&... at) {
-  return jacobian_with_rate(chain, theta, theta_dot, frame_of_result, at...).rate;
+                                 Frame frame_of_result, const At& at = {}) {
+  return jacobian_with_rate(chain, theta, theta_dot, frame_of_result, at).rate;
 }
 
 } // namespace duet

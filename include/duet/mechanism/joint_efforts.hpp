@@ -16,11 +16,12 @@ namespace duet {
 /// axes
 ///                         and origin of the frame; `frame::hybrid`: fixed axes, m about its origin
 /// Other arguments as `jacobian`.
-template <SerialChain C, VectorLike X, class W, FrameConstant Frame, class... At>
+template <SerialChain C, VectorLike X, class W, FrameConstant Frame,
+          PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto joint_efforts(const C& chain, const X& theta, const vector6<W>& wrench,
-                                 Frame frame_of_wrench, const At&... at) {
+                                 Frame frame_of_wrench, const At& at = {}) {
   using S = promote_t<detail::chain_scalar<C, X>, W>;
-  const auto m = jacobian(chain, theta, frame_of_wrench, at...);
+  const auto m = jacobian(chain, theta, frame_of_wrench, at);
   detail::joint_vector<S, C::joints> result(m.cols());
   for (Eigen::Index i = 0; i < m.cols(); ++i) {
     S sum(0);

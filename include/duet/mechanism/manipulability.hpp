@@ -24,18 +24,18 @@ namespace duet {
 namespace detail {
 
 /// Jᵀ of a chain with at least six joints, or J of one with fewer: never wider than it is high.
-template <class C, class X, class... At>
-[[nodiscard]] auto tall_jacobian(const C& chain, const X& theta, const At&... at) {
+template <class C, class X, PlaceOnChain<C> At = tip_of_chain>
+[[nodiscard]] auto tall_jacobian(const C& chain, const X& theta, const At& at = {}) {
   using S = chain_scalar<C, X>;
   constexpr int n = C::joints;
   if constexpr (n >= 6) {
-    return Eigen::Matrix<S, n, 6>(jacobian(chain, theta, frame::hybrid, at...).transpose());
+    return Eigen::Matrix<S, n, 6>(jacobian(chain, theta, frame::hybrid, at).transpose());
   } else if constexpr (n > 0) {
-    return jacobian(chain, theta, frame::hybrid, at...);
+    return jacobian(chain, theta, frame::hybrid, at);
   } else {
     using matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
                                  std::max(-n, 6), std::max(-n, 6)>;
-    const auto m = jacobian(chain, theta, frame::hybrid, at...);
+    const auto m = jacobian(chain, theta, frame::hybrid, at);
     return chain.size() >= 6 ? matrix(m.transpose()) : matrix(m);
   }
 }
@@ -82,23 +82,23 @@ template <bool WithInverse, class M>
 ///
 /// With six joints or more it does not depend on the frame of J, but on the unit of length.
 /// Arguments as `jacobian`.
-template <SerialChain C, VectorLike X, class... At>
-[[nodiscard]] auto manipulability(const C& chain, const X& theta, const At&... at) {
-  return detail::decomposed<false>(detail::tall_jacobian(chain, theta, at...)).volume;
+template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+[[nodiscard]] auto manipulability(const C& chain, const X& theta, const At& at = {}) {
+  return detail::decomposed<false>(detail::tall_jacobian(chain, theta, at)).volume;
 }
 
 /// w and ∇w, ∂w/∂θ_j = w tr(J⁺ ∂J/∂θ_j). Arguments as `jacobian`.
 /// \throws invalid_input where J loses rank: w has a kink there
-template <SerialChain C, VectorLike X, class... At>
-[[nodiscard]] auto manipulability_gradient(const C& chain, const X& theta, const At&... at) {
+template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+[[nodiscard]] auto manipulability_gradient(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
   using vector = detail::joint_vector<S, C::joints>;
-  const auto [w, inverse] = detail::decomposed<true>(detail::tall_jacobian(chain, theta, at...));
+  const auto [w, inverse] = detail::decomposed<true>(detail::tall_jacobian(chain, theta, at));
   if (any(innermost(w) == 0)) {
     throw invalid_input("duet: manipulability_gradient: the Jacobian loses rank here");
   }
   value_and_gradient<S, vector> result{w, vector(chain.size())};
-  const auto h = kinematic_hessian(chain, theta, frame::hybrid, at...);
+  const auto h = kinematic_hessian(chain, theta, frame::hybrid, at);
   for (Eigen::Index j = 0; j < chain.size(); ++j) {
     S trace(0);
     for (Eigen::Index i = 0; i < inverse.rows(); ++i) {

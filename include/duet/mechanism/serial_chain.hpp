@@ -74,11 +74,11 @@ struct poses_of {
   /// or an `attached_frame`.
   /// \throws invalid_input for another number of coordinates than `size()`, and for a link that
   /// there is none of
-  template <VectorLike X, class... At>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto pose(const X& theta, const At&... at) const {
+  template <VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto pose(const X& theta, const At& at = {}) const {
     using S = chain_scalar<C, X>;
     const C& chain = static_cast<const C&>(*this);
-    const auto& frame = frame_on(chain, at...);
+    const auto& frame = frame_on(chain, at);
     const auto state = attach(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
     return pose_of_unit(state.rotation, state.position);
   }

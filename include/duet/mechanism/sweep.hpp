@@ -105,7 +105,7 @@ template <class Range>
 template <class R>
 concept Configurations = std::ranges::contiguous_range<R> && VectorLike<detail::range_element<R>>;
 
-/// out[i] = chain.pose(configurations[i], at…), several at a time in the lanes of batches; `out` is
+/// out[i] = chain.pose(configurations[i], at), several at a time in the lanes of batches; `out` is
 /// a span or a vector.
 ///
 /// Sines are within 1 ulp, and a result depends neither on the others nor on the number of cores.
@@ -113,47 +113,48 @@ concept Configurations = std::ranges::contiguous_range<R> && VectorLike<detail::
 /// \throws invalid_input where the sizes differ, and for another number of coordinates than the
 /// chain has
 /// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
-template <SerialChain C, Configurations X, std::ranges::contiguous_range Out, class... At>
+template <SerialChain C, Configurations X, std::ranges::contiguous_range Out,
+          PlaceOnChain<C> At = tip_of_chain>
 void poses(const C& chain, const X& configurations, Out&& out, execution how = one_core,
-           const At&... at) {
+           const At& at = {}) {
   detail::sweep("poses", chain, detail::read_only(configurations), std::size(out), how,
                 [&](std::size_t i, std::size_t count, const auto& theta) {
-                  const auto a = chain.pose(theta, at...);
+                  const auto a = chain.pose(theta, at);
                   for (std::size_t k = 0; k < count; ++k) {
                     out[i + k] = lane(a, int(k));
                   }
                 });
 }
 
-/// out[i] = jacobian(chain, configurations[i], frame, at…), as `poses`.
+/// out[i] = jacobian(chain, configurations[i], frame, at), as `poses`.
 ///
 /// Elements of `out` are 6 × n matrices of fixed or dynamic size; the latter must have it already.
 /// \throws invalid_input as `poses`, and for a matrix of another size
 template <SerialChain C, Configurations X, FrameConstant Frame, std::ranges::contiguous_range Out,
-          class... At>
+          PlaceOnChain<C> At = tip_of_chain>
 void jacobians(const C& chain, const X& configurations, Frame frame_of_result, Out&& out,
-               execution how = one_core, const At&... at) {
+               execution how = one_core, const At& at = {}) {
   detail::require_matrices(
       "jacobians", out, chain.size(), [](auto& m) -> auto& { return m; });
   detail::sweep("jacobians", chain, detail::read_only(configurations), std::size(out), how,
                 [&](std::size_t i, std::size_t count, const auto& theta) {
-                  const auto m = jacobian(chain, theta, frame_of_result, at...);
+                  const auto m = jacobian(chain, theta, frame_of_result, at);
                   for (std::size_t k = 0; k < count; ++k) {
                     detail::write_lane(m, int(k), out[i + k]);
                   }
                 });
 }
 
-/// out[i] = pose_and_jacobian(chain, configurations[i], frame, at…), as `jacobians`.
+/// out[i] = pose_and_jacobian(chain, configurations[i], frame, at), as `jacobians`.
 template <SerialChain C, Configurations X, FrameConstant Frame, std::ranges::contiguous_range Out,
-          class... At>
+          PlaceOnChain<C> At = tip_of_chain>
 void poses_and_jacobians(const C& chain, const X& configurations, Frame frame_of_result, Out&& out,
-                         execution how = one_core, const At&... at) {
+                         execution how = one_core, const At& at = {}) {
   detail::require_matrices(
       "poses_and_jacobians", out, chain.size(), [](auto& both) -> auto& { return both.jacobian; });
   detail::sweep("poses_and_jacobians", chain, detail::read_only(configurations), std::size(out),
                 how, [&](std::size_t i, std::size_t count, const auto& theta) {
-                  const auto both = pose_and_jacobian(chain, theta, frame_of_result, at...);
+                  const auto both = pose_and_jacobian(chain, theta, frame_of_result, at);
                   for (std::size_t k = 0; k < count; ++k) {
                     out[i + k].value = lane(both.value, int(k));
                     detail::write_lane(both.jacobian, int(k), out[i + k].jacobian);
