@@ -1,0 +1,35 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// A robot arm: where its tip is, how it moves with the joints, the joints for another pose, and
+// joint coordinates along the screw motion that leads there.
+
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/planning/plan_screw_motion.hpp>
+
+#include <iostream>
+
+int main() {
+  std::cout << std::fixed;
+  std::cout.precision(4);
+  const auto arm = duet::robots::panda(); // or duet::read_urdf(file, base, tip)
+  Eigen::Matrix<double, 7, 1> theta;
+  theta << 0, -0.7, 0, -2.3, 0, 1.6, 0.8;
+  const auto start = arm.pose(theta);
+  std::cout << "the tip is at " << translation(start).transpose() << "\n";
+  std::cout << "twists [v; omega] with each joint, in the base's axes, v that of the tip\n"
+            << jacobian(arm, theta, duet::frame::hybrid) << "\n";
+
+  // 0.2 m further and turned.
+  const auto goal =
+      duet::pose(duet::from_axis_angle(duet::vector3<double>(0, 1, 0), 0.3) * rotation(start),
+                 duet::vector3<double>(translation(start) + duet::vector3<double>(0.1, 0.2, 0)));
+  const auto found = duet::inverse_kinematics(arm, goal, theta);
+  std::cout << "joints there  " << found.joints.transpose() << "\n";
+
+  const auto plan = duet::plan_screw_motion(arm, theta, goal);
+  std::cout << "along a screw " << to_text(plan.reason) << " in " << plan.joints.size()
+            << " waypoints, the last at " << plan.joints.back().transpose() << "\n";
+}
