@@ -122,4 +122,35 @@ TEST_CASE("poses: through the data, twists at the ends, smooth inside") {
   CHECK((end.acceleration - acceleration.end).norm() < 1e-10);
 }
 
+TEST_CASE("velocities given of poses come back, far from the origin too") {
+  duet_test::random_source random(1);
+  const duet::vector6<double> none = duet::vector6<double>::Zero();
+  double sum = 0;
+  constexpr int tables = 40;
+  for (int n = 0; n < tables; ++n) {
+    const auto about = random.direction<3>();
+    const auto along = random.direction<3>();
+    std::vector<pose_t<double>> rows;
+    for (int i = 0; i < 4; ++i) {
+      const duet::vector3<double> half(0.003 * i * about[0], 0.003 * i * about[1],
+                                       0.001 * i * i * about[2]);
+      rows.push_back(
+          duet::pose(duet::exp(half), duet::vector3<double>(1e4 * along[0] + 30 * i, 1e4 * along[1],
+                                                            1e4 * along[2] - 7 * i * i)));
+    }
+    const auto direction = random.direction<6>();
+    duet::vector6<double> velocity;
+    for (int i = 0; i < 6; ++i) {
+      velocity[i] = direction[std::size_t(i)] * (i < 3 ? 60 : 0.006);
+    }
+    const auto s = interpolate<duet::rotation_vector_spline<screw<double>, 6>>(
+        {0, 1, 2, 3}, rows,
+        duet::fully_clamped{duet::clamped{velocity, none}, duet::end_acceleration{none, none}});
+    const auto start = s.motion(0.0, duet::frame::spatial);
+    const duet::vector6<double> error = start.velocity - velocity;
+    sum += error.head<3>().squaredNorm() / velocity.head<3>().squaredNorm();
+  }
+  CHECK(std::sqrt(sum / tables) < 16 * std::ldexp(1.0, -53)); // 27 with one solve only
+}
+
 } // namespace test_spline_rotation_vector_poses

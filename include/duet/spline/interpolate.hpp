@@ -41,7 +41,7 @@ struct fit_report {
 namespace detail {
 
 /// The solution over T by that of the real parts: one step with their Jacobian for every order of
-/// infinitesimals.
+/// infinitesimals, and one more that takes back what rounding did to the last.
 template <class Equations, class Newton>
 [[nodiscard]] typename Equations::unknowns lifted_solution(const Equations& equations,
                                                            Newton& newton) {
@@ -54,7 +54,7 @@ template <class Equations, class Newton>
   }
   const auto& jacobian = newton.jacobian();
   unknowns step;
-  for (int order = 1; order <= scalar_traits<T>::order; ++order) {
+  for (int order = 1; order <= scalar_traits<T>::order + 1; ++order) {
     equations.residuals(x, step);
     jacobian.solve(step);
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -174,10 +174,10 @@ template <class Spline, class T, class Ends>
 /// Unknown are the increments of P2, or the rates at the knots. Their real parts are found by
 /// Newton's method with AD Jacobian, O(n) a step; where neighbouring rows are far apart, by
 /// continuation from smaller turns. Infinitesimal parts, those of poses and of derivatives with
-/// respect to the data among them, follow from the equations by one linear solve each, to rounding.
-/// Against smooth motion and with ends that fit it, the cumulative cubic is third-order accurate in
-/// value, second in velocity, first in acceleration; the cubic of rotation vectors an order more;
-/// the quintic sixth, fifth and fourth.
+/// respect to the data among them, follow from the equations by linear solves, one each and one
+/// more, to rounding. Against smooth motion and with ends that fit it, the cumulative cubic is
+/// third-order accurate in value, second in velocity, first in acceleration; the cubic of rotation
+/// vectors an order more; the quintic sixth, fifth and fourth.
 /// \throws invalid_row for a row that no curve can go through; invalid_input where there are too
 /// few rows (not_a_knot takes as many as the order, periodic ends three, clamped and accelerated
 /// quintics four), the counts differ or an end rate is not finite; no_convergence where no curve
