@@ -39,8 +39,9 @@ public:
     units_ = std::move(units);
     is_cyclic_ = is_cyclic;
     steps_.clear();
-    std::stable_sort(groups.begin(), groups.end(),
-                     [](const equations& a, const equations& b) { return a.first < b.first; });
+    std::sort(groups.begin(), groups.end(), [](const equations& a, const equations& b) {
+      return a.first != b.first ? a.first < b.first : a.offset < b.offset;
+    });
     const std::size_t banded = units_.size() - (is_cyclic ? 1 : 0);
     const Eigen::Index border = is_cyclic ? N : 0;
     panel carried(0, border);
