@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -130,9 +131,13 @@ row interpolation_row(const std::string& name, ends e, std::size_t rows, int giv
       at.parts.push_back(1);
       at.direction.push_back(1);
     }
-    judge(result, at, {},
-          oracle::interpolation(order_of<Curve>, e, oracle::over::poses, t.u, start_of(s)),
-          measured_motion(s, parameters));
+    try {
+      judge(result, at, {},
+            oracle::interpolation(order_of<Curve>, e, oracle::over::poses, t.u, start_of(s)),
+            measured_motion(s, parameters));
+    } catch (const std::runtime_error& unsolved) {
+      throw std::runtime_error(name + ", " + t.where + ": " + unsolved.what());
+    }
   }
   return result;
 }
@@ -175,7 +180,7 @@ rows all_ends(const std::string& curve, int count) {
 rows interpolation_rows(extent e) {
   static const jet_shape shape = jet_shape::curve();
   jet_shape::current = &shape;
-  const int count = e == extent::test ? 1 : 3;
+  const int count = e == extent::test ? 1 : 12;
   rows result;
   for (const rows& each :
        {all_ends<duet::cumulative_bspline<pose_scalar>>("through poses, cumulative cubic", count),

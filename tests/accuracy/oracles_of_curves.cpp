@@ -3,6 +3,8 @@
 #include "accuracy/oracles_of_curves.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace duet_test::accuracy::oracle {
@@ -217,7 +219,7 @@ jet_quaternion interpolation::at(const jets& x, const std::vector<jet_quaternion
   if (order_ > 0) {
     const std::size_t pieces = std::size_t(order_) - 1;
     const auto first = unknowns.begin() + std::ptrdiff_t(span * pieces);
-    const jet from(real(u_[span])), length(real(real(u_[span + 1]) - u_[span]));
+    const jet from{real(u_[span])}, length{real(real(u_[span + 1]) - u_[span])};
     return piece(unit(element_at(x, span * size, what_)), {first, first + std::ptrdiff_t(pieces)},
                  (u - from) / length);
   }
@@ -381,9 +383,10 @@ void interpolation::solve(const jets& x) {
     guess_ = guess;
   }
   const std::size_t epsilon = jet_shape::current->find({0, 0, 0, 1});
+  real largest = 0;
   for (int iteration = 0; iteration < 12; ++iteration) {
     const jets misses = residuals(x, solution_);
-    real largest = 0;
+    largest = 0;
     for (const std::size_t monomial : {std::size_t(0), epsilon}) {
       real size = 0, change = 0;
       for (std::size_t i = 0; i < misses.size(); ++i) {
@@ -402,7 +405,8 @@ void interpolation::solve(const jets& x) {
       return;
     }
   }
-  std::fill(solution_.begin(), solution_.end(), jet_quaternion{0, 0, 0, 0}); // nothing passes
+  throw std::runtime_error("the oracle's equations are not solved: the last step was " +
+                           largest.str(3));
 }
 
 jets interpolation::operator()(const jets& x) {
