@@ -310,6 +310,38 @@ TEST_CASE("the length weighs shifts against turns") {
   CHECK(worst_turn(100) < worst_turn(0.1));
 }
 
+TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
+  using wide = long double;
+  const auto truth = some_curve<rotation>();
+  const auto knots = truth.basis().knots();
+  const auto u = steps(8, 60);
+  const auto check = [&](double noise, double outlier) {
+    CAPTURE(noise);
+    CAPTURE(outlier);
+    random_source random(3);
+    std::vector<rotation> rows;
+    std::vector<duet::quaternion<wide>> wide_rows;
+    for (const double x : u) {
+      rows.push_back(moved(truth(x), random, noise));
+      const rotation& q = rows.back();
+      wide_rows.push_back(normalized(duet::quaternion<wide>(q.w(), q.x(), q.y(), q.z())));
+    }
+    const auto s = duet::fit<curve<rotation>>(u, rows, knots, {.outlier = outlier}).curve;
+    const auto exact = duet::fit<duet::cumulative_bspline<wide>>(
+                           std::vector<wide>(u.begin(), u.end()), wide_rows,
+                           std::vector<wide>(knots.begin(), knots.end()), {.outlier = outlier})
+                           .curve;
+    for (const double x : steps(8, 50)) {
+      const auto q = s(x);
+      const auto miss = duet::quaternion<wide>(q.w(), q.x(), q.y(), q.z()) - exact(wide(x));
+      CHECK(double(norm(miss)) < 32 * std::numeric_limits<double>::epsilon());
+    }
+  };
+  check(0.3, std::numeric_limits<double>::infinity());
+  check(0.3, 0.05);
+  check(1e-6, std::numeric_limits<double>::infinity());
+}
+
 TEST_CASE("bad input is named") {
   const auto truth = some_curve<rotation>();
   const auto knots = truth.basis().knots();

@@ -66,7 +66,6 @@ public:
 
   /// Does row i count? Outliers that are too far off do not.
   [[nodiscard]] bool counts(std::size_t i) const { return limits_[i] > 0; }
-  /// The limit of Huber's loss.
   [[nodiscard]] R outlier() const { return R(options_.outlier); }
 
   [[nodiscard]] cumulative_bspline<T, Order> curve(const basis_type& basis) const {
@@ -92,27 +91,26 @@ private:
     return options_.outlier < std::numeric_limits<double>::infinity();
   }
 
-  /// Levenberg's and Marquardt's iteration, to its end or as long as it gains much: the number of
-  /// steps. \throws no_convergence
+  /// Levenberg's and Marquardt's iteration: the number of steps. \throws no_convergence
   int descend(int most, bool must_converge) {
     const R gain = must_converge ? std::numeric_limits<R>::epsilon() : R(0.1);
     using std::sqrt;
     const R rounding = 8 * std::numeric_limits<R>::epsilon() * sqrt(R(rows().size()));
-    R damping(0), step(0);
+    R damping(0), step(0), before(std::numeric_limits<R>::max()), rate(1);
     for (int iteration = 1; iteration <= most; ++iteration) {
       bool is_bold = must_converge && is_robust();
       const R cost = assemble(is_bold);
       R next(0);
       for (;;) {
         std::vector<element> moved = moved_controls(damping, step);
-        const bool is_step = !moved.empty();
-        next = is_step ? cost_of(moved) : std::numeric_limits<R>::infinity();
-        if (next <= cost * (1 + rounding)) {
+        next = moved.empty() ? std::numeric_limits<R>::infinity() : cost_of(moved);
+        const bool is_tiny = !moved.empty() && step <= tolerance;
+        if (next <= cost * (1 + rounding) || (is_tiny && damping == 0)) {
           controls_ = std::move(moved);
           damping = damping > R(1e-9) ? R(damping / 10) : R(0);
           break;
         }
-        if (is_step && step <= tolerance) { // as low as rounding lets it be
+        if (is_tiny) { // as low as rounding lets it be
           return iteration;
         }
         if (is_bold) {
@@ -128,7 +126,14 @@ private:
           fail("finds no step that brings the curve nearer", iteration, step);
         }
       }
-      if (step <= tolerance || cost - next <= gain * next) {
+      // At last the cost tells no more, as an error of e in the controls adds e² to it. Steps do:
+      // they shrink, at a rate that the last two tell, until only rounding is left of them.
+      const bool is_low = step <= tolerance || cost - next <= gain * next;
+      const bool is_shrinking = 2 * step <= before;
+      const R last_rate = std::exchange(rate, damping > 0 ? R(1) : R(step / before));
+      before = step;
+      if (is_low && (!must_converge || !is_shrinking || iteration == most ||
+                     step * std::max(rate, last_rate) <= std::numeric_limits<R>::epsilon())) {
         return iteration;
       }
     }
@@ -138,8 +143,8 @@ private:
     return most;
   }
 
-  /// To the rows, by medians: what is an outlier depends on how far the rows around it are from the
-  /// curve so far, and the nearer that comes, the less is left to be one.
+  /// To the rows, by medians: what is an outlier depends on how far the rows around it are from
+  /// the curve so far.
   void approach() {
     constexpr int rounds = 12;
     R scale = std::numeric_limits<R>::infinity(); // sum of the limits
@@ -204,9 +209,8 @@ private:
   }
 
   /// JᵀWJ and −JᵀW r at the controls, W the weights of Huber's loss; the cost there.
-  /// \param is_bold  most of the curvature that the loss lacks along residuals beyond the limit is
-  ///                 taken out: steps are right near the end and may be too long before, while the
-  ///                 weights alone make them too short
+  /// \param is_bold  without most of the curvature that the loss lacks along residuals beyond the
+  ///                 limit: right near the end, maybe too long before; with it, too short
   [[nodiscard]] R assemble(bool is_bold) {
     R cost(0);
     gradient_.setZero(Eigen::Index(controls_.size()) * dimension);
