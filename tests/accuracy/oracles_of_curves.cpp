@@ -435,4 +435,127 @@ jets interpolation::operator()(const jets& x) {
   return result;
 }
 
+least_squares_fit::least_squares_fit(over what, std::vector<double> knots, std::vector<double> u,
+                                     double length, std::vector<double> start)
+    : what_(what), knots_(std::move(knots)), u_(std::move(u)), length_(length),
+      start_(std::move(start)), unknowns_(start_.size() / size() * numbers(), real(0)) {}
+
+std::size_t least_squares_fit::span_of(double u) const {
+  std::size_t span = 0;
+  while (span + 8 < knots_.size() && knots_[span + 4] <= u) {
+    ++span;
+  }
+  return span;
+}
+
+jet_quaternion least_squares_fit::at(const reals& unknowns, std::size_t span, const jet& u) const {
+  std::vector<jet_quaternion> controls, increments;
+  for (std::size_t i = span; i < span + 4; ++i) {
+    jets c, x;
+    for (std::size_t k = 0; k < size(); ++k) {
+      c.emplace_back(real(start_[i * size() + k]));
+    }
+    for (std::size_t k = 0; k < numbers(); ++k) {
+      x.emplace_back(unknowns[i * numbers() + k]);
+    }
+    controls.push_back(unit(element_at(c, 0, what_)) * exp(increment_at(x, 0, what_)));
+    if (i > span) {
+      increments.push_back(log(conj(controls[i - 1 - span]) * controls[i - span]));
+    }
+  }
+  const auto first = knots_.begin() + std::ptrdiff_t(span);
+  return cumulative({first, first + 8}, controls[0], increments, u);
+}
+
+real least_squares_fit::cost(const reals& rows, const reals& unknowns, std::size_t i) const {
+  const jets x(rows.begin() + std::ptrdiff_t(i * size()),
+               rows.begin() + std::ptrdiff_t((i + 1) * size()));
+  const jet_quaternion s = at(unknowns, span_of(u_[i]), jet(real(u_[i])));
+  const jet_quaternion between = conj(s) * unit(element_at(x, 0, what_));
+  const jet_quaternion r = log(between * jet(between[0].c[0] < 0 ? -1 : 1)) * jet(2);
+  real sum = 0;
+  for (std::size_t k = 1; k < 4; ++k) {
+    const real linear = epsilon_part(r[k]).c[0] / length_;
+    sum += (r[k].c[0] * r[k].c[0] + linear * linear) / 2;
+  }
+  return sum;
+}
+
+void least_squares_fit::solve(const reals& rows) {
+  const jet_shape* const shape = jet_shape::current;
+  static const jet_shape numbers_alone({{0, 0}}, false);
+  jet_shape::current = &numbers_alone;
+  const std::size_t n = unknowns_.size(), local = 4 * numbers();
+  // The unknowns that row i depends on begin here.
+  const auto first = [&](std::size_t i) { return span_of(u_[i]) * numbers(); };
+  // Shifts are measured by the length.
+  const auto scale = [&](std::size_t k) { return real(k % numbers() < 3 ? real(1) : length_); };
+  if (inverse_.empty()) {
+    const real step("1e-22");
+    std::vector<reals> hessian(n, reals(n, real(0)));
+    for (std::size_t i = 0; i < u_.size(); ++i) {
+      for (std::size_t a = first(i); a < first(i) + local; ++a) {
+        for (std::size_t b = first(i); b <= a; ++b) {
+          real second = 0;
+          for (const int sign : {1, -1}) {
+            for (const int other : {1, -1}) {
+              reals x = unknowns_;
+              x[a] += sign * step * scale(a);
+              x[b] += other * step * scale(b);
+              second += sign * other * cost(rows, x, i);
+            }
+          }
+          second /= 4 * step * step;
+          hessian[a][b] += second;
+          hessian[b][a] += a == b ? real(0) : second;
+        }
+      }
+    }
+    inverse_ = inverse(std::move(hessian));
+  }
+  real largest = 1;
+  for (int iteration = 0; iteration < 12 && largest > real("1e-50"); ++iteration) {
+    const real step("1e-30");
+    reals gradient(n, real(0));
+    for (std::size_t i = 0; i < u_.size(); ++i) {
+      for (std::size_t a = first(i); a < first(i) + local; ++a) {
+        for (const int sign : {1, -1}) {
+          reals x = unknowns_;
+          x[a] += sign * step * scale(a);
+          gradient[a] += sign * cost(rows, x, i) / (2 * step);
+        }
+      }
+    }
+    largest = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      real sum = 0;
+      for (std::size_t j = 0; j < n; ++j) {
+        sum += inverse_[k][j] * gradient[j];
+      }
+      unknowns_[k] -= sum * scale(k);
+      largest = std::max(largest, real(abs(sum)));
+    }
+  }
+  jet_shape::current = shape;
+  if (largest > real("1e-50")) {
+    throw std::runtime_error("the oracle's least squares are not found: the last step was " +
+                             largest.str(3));
+  }
+}
+
+jets least_squares_fit::operator()(const jets& x) {
+  reals rows;
+  const std::size_t given = u_.size() * size();
+  for (std::size_t i = 0; i < given; ++i) {
+    rows.push_back(x[i].c[0]);
+  }
+  solve(rows);
+  jets result;
+  for (std::size_t i = given; i < x.size(); ++i) {
+    const jets here = motion(at(unknowns_, span_of(double(x[i].c[0])), x[i]), what_);
+    result.insert(result.end(), here.begin(), here.end());
+  }
+  return result;
+}
+
 } // namespace duet_test::accuracy::oracle

@@ -62,4 +62,35 @@ private:
   std::vector<std::vector<real>> inverse_; ///< of the Jacobian of the real parts
 };
 
+/// The cumulative cubic for which ½ Σ |2 log(S(u_i)* Q_i)|² is least, of poses with the linear part
+/// over a length: the gradient, by differences, is solved for zero anew whenever the rows change.
+class least_squares_fit {
+public:
+  /// \param knots  of the curve
+  /// \param start  its control elements, near the minimum
+  least_squares_fit(over what, std::vector<double> knots, std::vector<double> u, double length,
+                    std::vector<double> start);
+
+  /// x: the rows, and parameters, at each of which the motion is a part of the result.
+  [[nodiscard]] jets operator()(const jets& x);
+
+private:
+  using reals = std::vector<real>;
+
+  [[nodiscard]] std::size_t numbers() const { return what_ == over::poses ? 6 : 3; }
+  [[nodiscard]] std::size_t size() const { return what_ == over::poses ? 8 : 4; }
+  [[nodiscard]] std::size_t span_of(double u) const;
+  [[nodiscard]] jet_quaternion at(const reals& unknowns, std::size_t span, const jet& u) const;
+  /// ½ |2 log(S(u_i)* Q_i)|²
+  [[nodiscard]] real cost(const reals& rows, const reals& unknowns, std::size_t i) const;
+  void solve(const reals& rows);
+
+  over what_;
+  std::vector<double> knots_, u_;
+  real length_;
+  std::vector<double> start_;
+  reals unknowns_; ///< by which the control elements are turned and shifted from those at the start
+  std::vector<reals> inverse_; ///< of the Hessian
+};
+
 } // namespace duet_test::accuracy::oracle

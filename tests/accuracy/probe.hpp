@@ -59,6 +59,7 @@ rows pose_rows(extent e);
 rows mixed_rows(extent e);
 rows curve_rows(extent e);
 rows interpolation_rows(extent e);
+rows fit_rows(extent e);
 
 using oracle_function = std::function<jets(const jets&)>;
 

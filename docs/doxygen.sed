@@ -4,3 +4,5 @@
 s/\$\$([^$]+)\$\$/\\f[\1\\f]/g
 s/\$([^$]+)\$/\\f\x01\1\\f\x01/g
 s/\x01/$/g
+# A link to a heading of the same page has no address that Doxygen knows: its text is left.
+s/\[([^]]+)\]\(#[^)]*\)/\1/g
