@@ -2,6 +2,8 @@
 
 #include "dual/function_cases.hpp"
 
+#include <duet/dual/second_dual.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cfenv>

@@ -6,6 +6,7 @@
 #include "support/ulp.hpp"
 
 #include <duet/dual/math.hpp>
+#include <duet/dual/second_dual.hpp>
 
 #include <doctest/doctest.h>
 

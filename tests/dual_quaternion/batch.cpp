@@ -69,6 +69,15 @@ TEST_CASE("motions over batches are those of the lanes") {
       2 * limit, std::vector<dual<double>>{{0.0, 1.0}, {0.3, 1.0}, {1.0, 2.0}});
 }
 
+TEST_CASE("distances that are out of range as squares are those of the lanes") {
+  const auto at = [](double x) {
+    return pose(from_rotation_vector(vector3<double>(0, 0, 0.1)), vector3<double>(x, 0, 0));
+  };
+  const std::vector<dual_quaternion<double>> a{at(0), at(1e-170), at(1e170), at(1), at(-2e180)};
+  const std::vector<dual_quaternion<double>> b{at(0), at(3e-170), at(1), at(1.5), at(0)};
+  check_lanes<4>([](const auto& p, const auto& q) { return distance(p, q, 1.0); }, limit, a, b);
+}
+
 TEST_CASE("what is made of motions") {
   const auto a = displacements();
   auto b = a;
@@ -120,8 +129,8 @@ TEST_CASE("what is made of motions") {
       },
       limit, std::vector<double>{0, 1e-9, 0.3, 3.1, -2}, std::vector<double>{0, 0.5, -1});
   using B = batch<double, 4>;
-  const auto unit = is_unit(joined_lanes(lane_width<4>{}, a[0], [&](int i) {
-    return i == 2 ? dual_quaternion<double>(a[2] * screw_dual<double>(1.1)) : a[std::size_t(i)];
+  const auto unit = is_unit(joined_lanes<4>([&](std::size_t i) {
+    return i == 2 ? dual_quaternion<double>(a[2] * screw_dual<double>(1.1)) : a[i];
   }));
   for (int i = 0; i < B::lanes; ++i) {
     CHECK(unit[i] == (i != 2));

@@ -4,6 +4,7 @@
 // generic code does, gets duet's.
 
 #include <duet/dual/math.hpp>
+#include <duet/dual/second_dual.hpp>
 
 #ifdef DUET_WITH_INTEROP
 #include <duet/interop/boost_math.hpp>

@@ -5,6 +5,7 @@
 
 #include <duet/core/batch.hpp>
 #include <duet/core/batch_math.hpp>
+#include <duet/dual/second_dual.hpp>
 #include <duet/interop/boost_math.hpp>
 #include <duet/interop/special_functions.hpp>
 

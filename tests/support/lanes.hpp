@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/batch_lanes.hpp>
-#include <duet/derivative/structure.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/dual/parts.hpp>
 
 #include <doctest/doctest.h>
@@ -70,8 +70,8 @@ void check_lanes(const F& f, double limit, const std::vector<X>& x,
   using duet::lane;
   for (std::size_t shift = 0; shift < x.size(); shift += W / 2) {
     const auto joined = [&](const auto& from) {
-      return joined_lanes(duet::lane_width<W>{}, from[0],
-                          [&](int i) { return from[(shift + 3 * std::size_t(i)) % from.size()]; });
+      return duet::joined_lanes<W>(
+          [&](std::size_t i) { return from[(shift + 3 * i) % from.size()]; });
     };
     const auto result = f(joined(x), joined(rest)...);
     for (int i = 0; i < W; ++i) {

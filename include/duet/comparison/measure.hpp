@@ -4,8 +4,8 @@
 #include <duet/comparison/domain.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/derivative/result.hpp>
-#include <duet/derivative/structure.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include <duet/comparison/measure.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/derivative/result.hpp>
-#include <duet/derivative/structure.hpp>
 
 #include <Eigen/Core>
 

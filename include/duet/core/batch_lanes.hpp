@@ -4,72 +4,81 @@
 #include <duet/core/batch.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/structure.hpp>
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 /// \file
 /// Batches taken apart into lanes and put together again: for what has too many branches to take
-/// all lanes in one step, and for tables. Every object that holds scalars has its own `lane`,
-/// `joined_lanes` and `blended`.
+/// all lanes in one step, and for tables. All of it reaches into whatever holds scalars by
+/// `structure`, and into infinitesimal numbers by their parts.
 
 namespace duet {
 
 /// x as its lane i has it; what is no batch is the same in all.
 template <class X>
-  requires(Arithmetic<X> || std::is_enum_v<X>)
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr X lane(const X& x, int) { return x; }
-template <class T, int W>
-[[nodiscard]] DUET_ALWAYS_INLINE T lane(const batch<T, W>& x, int i) {
-  return x[i];
+  requires(Structured<X> || std::is_enum_v<X>)
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto lane(const X& x, [[maybe_unused]] int i) {
+  const auto of_part = [i](const auto& part) DUET_INLINE_LAMBDA { return lane(part, i); };
+  if constexpr (lane_traits<X>::is_batch) {
+    return x[i];
+  } else if constexpr (Infinitesimal<X> && Batched<X>) {
+    return x.zip(of_part);
+  } else if constexpr (Scalar<X> || Arithmetic<X> || std::is_enum_v<X>) {
+    return x;
+  } else {
+    return map_scalars(of_part, x);
+  }
 }
 
-/// A number of lanes as an argument.
-template <int W>
-struct lane_width {};
+namespace detail {
 
-/// One batch of W numbers, the i-th of which is get(i), with `pattern` as an example of one.
-template <int W, Arithmetic T, class Get>
-[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> joined_lanes(lane_width<W>, const T&, const Get& get) {
-  return batch<T, W>::from_lanes(get);
+/// The object over batches that has x… in its lanes.
+template <class X, class... Rest>
+[[nodiscard]] DUET_ALWAYS_INLINE auto joined(const X& x, const Rest&... rest) {
+  const auto of_parts = [](const auto&... part) DUET_INLINE_LAMBDA { return joined(part...); };
+  if constexpr (Arithmetic<X>) {
+    const X lanes[] = {x, rest...};
+    return batch<X, 1 + int(sizeof...(Rest))>::from_lanes(
+        [&](int i) DUET_INLINE_LAMBDA { return lanes[i]; });
+  } else if constexpr (Infinitesimal<X>) {
+    return x.zip(of_parts, rest...);
+  } else {
+    return map_scalars(of_parts, x, rest...);
+  }
 }
 
-template <class X, std::size_t N>
-[[nodiscard]] DUET_ALWAYS_INLINE auto lane(const std::array<X, N>& x, int i) {
-  std::array<std::decay_t<decltype(lane(x[0], i))>, N> result;
-  for (std::size_t k = 0; k < N; ++k) {
-    result[k] = lane(x[k], i);
+} // namespace detail
+
+/// The object over batches whose lane i of W is get(i).
+template <std::size_t W, class Get>
+[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(const Get& get) {
+  return [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
+    return detail::joined(get(I)...);
   }
-  return result;
+  (std::make_index_sequence<W>{});
 }
-template <int W, class X, std::size_t N, class Get>
-[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const std::array<X, N>& pattern,
-                                                   const Get& get) {
-  const auto element = [&](std::size_t k) DUET_INLINE_LAMBDA {
-    return joined_lanes(lane_width<W>{}, pattern[k],
-                        [&](int i) DUET_INLINE_LAMBDA { return get(i)[k]; });
-  };
-  std::array<decltype(element(0)), N> result;
-  for (std::size_t k = 0; k < N; ++k) {
-    result[k] = element(k);
+
+/// a in the lanes that the mask has set, b in the others.
+template <class T, int W, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE X blended(const lane_mask<T, W>& m, const X& a, const X& b) {
+  const auto of_parts = [&](const auto& p, const auto& q)
+                            DUET_INLINE_LAMBDA { return blended(m, p, q); };
+  if constexpr (Infinitesimal<X>) {
+    return a.zip(of_parts, b);
+  } else {
+    return map_scalars(of_parts, a, b);
   }
-  return result;
-}
-template <class T, int W, class X, std::size_t N>
-[[nodiscard]] DUET_ALWAYS_INLINE std::array<X, N>
-blended(const lane_mask<T, W>& m, const std::array<X, N>& a, const std::array<X, N>& b) {
-  std::array<X, N> result;
-  for (std::size_t i = 0; i < N; ++i) {
-    result[i] = blended(m, a[i], b[i]);
-  }
-  return result;
 }
 
 /// How many lanes the scalars in an object have.
 template <class X>
-inline constexpr int lane_count = lane_traits<real_type_t<X>>::lanes;
+inline constexpr int lane_count = lane_traits<real_type_t<typename structure<X>::scalar>>::lanes;
 
 namespace detail {
 
@@ -88,24 +97,26 @@ template <class B>
 template <std::size_t W, class Row>
 [[nodiscard]] DUET_ALWAYS_INLINE auto gathered(const std::array<std::size_t, W>& indices,
                                                const Row& row) {
-  return joined_lanes(
-      lane_width<int(W)>{}, row[0], [&](int k) DUET_INLINE_LAMBDA -> const auto& {
-        return row[indices[std::size_t(k)]];
-      });
+  return joined_lanes<W>([&](std::size_t k)
+                             DUET_INLINE_LAMBDA -> const auto& { return row[indices[k]]; });
 }
 
 /// f of the lanes of the arguments one after the other, the results put together again; each is
-/// that of plain numbers.
+/// that of plain numbers. Of arguments without lanes it is f itself.
 template <class F, class... X>
 [[nodiscard]] auto by_lane(const F& f, const X&... x) {
   constexpr int width = std::max({lane_count<X>...});
-  using result = std::decay_t<decltype(f(lane(x, 0)...))>;
-  std::array<result, std::size_t(width)> results;
-  for (int i = 0; i < width; ++i) {
-    results[std::size_t(i)] = f(lane(x, i)...);
+  if constexpr (width == 1) {
+    return f(x...);
+  } else {
+    using result = std::decay_t<decltype(f(lane(x, 0)...))>;
+    std::array<result, std::size_t(width)> results;
+    for (int i = 0; i < width; ++i) {
+      results[std::size_t(i)] = f(lane(x, i)...);
+    }
+    return joined_lanes<std::size_t(width)>(
+        [&](std::size_t i) DUET_INLINE_LAMBDA -> const result& { return results[i]; });
   }
-  return joined_lanes(lane_width<width>{}, results[0],
-                      [&](int i) -> const result& { return results[std::size_t(i)]; });
 }
 
 } // namespace detail

@@ -15,8 +15,9 @@ namespace duet {
 template <class T>
 concept Arithmetic = std::is_arithmetic_v<T>;
 
-/// Facts on a scalar type. The primary template describes plain numbers; `dual` and `taylor`
-/// specialise it.
+/// Facts on a scalar type. The primary template describes plain numbers; infinitesimal ones
+/// specialise it, and say there too what their ε means, `tag`, and what they are over another
+/// scalar, `over<U>`.
 template <class T>
 struct scalar_traits {
   using value_type = T; ///< the scalar one level below; a plain number is its own

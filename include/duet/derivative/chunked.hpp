@@ -2,9 +2,10 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
-#include <duet/derivative/structure.hpp>
+#include <duet/dual/parts.hpp>
 
 #include <Eigen/Core>
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/chunked.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
+#include <duet/dual/second_dual.hpp>
 
 #include <Eigen/Core>
 

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/equilibrated_lu.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
-#include <duet/derivative/structure.hpp>
 
 #include <algorithm>
 #include <array>

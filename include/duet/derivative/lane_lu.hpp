@@ -3,7 +3,7 @@
 
 #include <duet/core/batch_math.hpp>
 #include <duet/core/config.hpp>
-#include <duet/dual/eigen_lanes.hpp>
+#include <duet/dual/eigen_structure.hpp>
 
 #include <Eigen/Core>
 

@@ -3,7 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
-#include <duet/derivative/structure.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/dual/structural_zero.hpp>
@@ -19,15 +19,22 @@
 
 namespace duet::detail {
 
-/// How many infinitesimal parts a scalar has, over all levels.
+/// How many infinitesimal parts a scalar has at most, over all levels.
 template <class S>
 inline constexpr int infinitesimal_count = 0;
-template <class T, int N, class Tag>
-inline constexpr int infinitesimal_count<dual<T, N, Tag>> = (N + 1) * (infinitesimal_count<T> + 1) -
-                                                            1;
-template <class T, int K, class Tag>
-inline constexpr int
-    infinitesimal_count<taylor<T, K, Tag>> = (K + 1) * (infinitesimal_count<T> + 1) - 1;
+template <Infinitesimal S>
+inline constexpr int infinitesimal_count<S> =
+    (1 + infinitesimal_count<typename scalar_traits<S>::value_type>)*(S::part_count < 0
+                                                                          ? -S::part_count
+                                                                          : S::part_count) -
+    1;
+
+/// Does the number of some level's parts depend on the number?
+template <class S>
+inline constexpr bool varies_in_parts = false;
+template <Infinitesimal S>
+inline constexpr bool varies_in_parts<S> =
+    S::part_count < 0 || varies_in_parts<typename scalar_traits<S>::value_type>;
 
 /// The scalar that a matrix of A and one of B have in common; integers are differentiated as reals.
 template <class A, class B>
@@ -79,11 +86,32 @@ using part_columns =
     Eigen::Matrix<R, Rows, (Rows > 0 && Rows * Count <= 1024) ? Count : Eigen::Dynamic,
                   Rows == 1 && Count != 1 ? Eigen::RowMajor : Eigen::ColMajor>;
 
+/// Gives every entry of either matrix the parts that any has, where that varies.
+template <class X, class Residual>
+void even_out_parts(X& x, Residual& r) {
+  using S = typename X::Scalar;
+  if constexpr (varies_in_parts<S>) {
+    const auto zero = [](const S& entry) {
+      return map_reals(entry, [](const auto&) { return real_type_t<S>(0); });
+    };
+    S zeros(0);
+    for (const S& entry : x.reshaped()) {
+      zeros = zeros + zero(entry);
+    }
+    for (const S& entry : r.reshaped()) {
+      zeros = zeros + zero(entry);
+    }
+    x.array() += zeros;
+    r.array() += zeros;
+  }
+}
+
 /// Adds map(r) to the infinitesimal parts of x, where the real-linear map takes and returns a real
 /// column. The values of x stay as they are, and so do parts that r does not have.
 template <class X, class Map, class Residual>
-void correct_infinitesimals(X& x, const Map& map, const Residual& r) {
+void correct_infinitesimals(X& x, const Map& map, Residual r) {
   using R = real_type_t<typename X::Scalar>;
+  even_out_parts(x, r);
   constexpr int count = infinitesimal_count<typename X::Scalar>;
   constexpr int rows = Residual::RowsAtCompileTime;
   part_columns<R, rows, count> parts(r.rows(), count);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/own_numbers.hpp>
-#include <duet/derivative/structure.hpp>
+#include <duet/core/structure.hpp>
 
 #include <type_traits>
 #include <utility>

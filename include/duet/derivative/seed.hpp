@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/result.hpp>
-#include <duet/derivative/structure.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/partials.hpp>
 

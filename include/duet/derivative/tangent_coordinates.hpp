@@ -2,14 +2,16 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/structure.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
-#include <duet/derivative/structure.hpp>
 #include <duet/dual/partials.hpp>
+#include <duet/dual/parts.hpp>
 
 #include <Eigen/Core>
 

@@ -4,11 +4,13 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/algebra.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/partials.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/structural_zero.hpp>
 #include <duet/dual/tag.hpp>
 
+#include <algorithm>
 #include <concepts>
 #include <type_traits>
 
@@ -100,6 +102,85 @@ public:
   [[nodiscard]] constexpr const partials_type& partials() const { return partials_; }
   constexpr void set_partial(int i, const T& x) { partials_.set(i, x); }
 
+  // What a `Level` says of itself.
+
+  static constexpr int part_count = N > 0 ? N + 1 : N - 1;
+  /// The value, then the partials.
+  [[nodiscard]] constexpr T part(int k) const { return k == 0 ? value_ : partials_.get(k - 1); }
+  /// The same partials beside another value.
+  [[nodiscard]] constexpr dual with_value(const T& value) const { return {value, partials_}; }
+  /// f of the values, then of every partial: the same level over what f returns.
+  template <class F, class... Duals>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto zip(F&& f, const Duals&... other) const {
+    using U = std::remove_cvref_t<decltype(f(value_, other.value()...))>;
+    dual<U, N, Tag> result(f(value_, other.value()...));
+    const int count = std::max({size(), other.size()...});
+    for (int i = 0; i < count; ++i) {
+      result.set_partial(i, f(partial(i), other.partial(i)...));
+    }
+    return result;
+  }
+  /// slope · x, where parts that are zero stay so beside slopes that are not finite.
+  [[nodiscard]] static constexpr dual surviving_product(const dual& slope, const dual& x) {
+    return {detail::guarded_product(slope.value_, x.value_),
+            partials_type::map_elements(
+                [&](const T& s, const T& p) {
+                  return T(detail::guarded_product(slope.value_, p) +
+                           detail::product_of_partial(s, x.value_));
+                },
+                slope.partials_, x.partials_)};
+  }
+  /// The function of a rule, see rules.hpp: f(a + εb) = f(a) + ε f′(a) b.
+  template <class Rule>
+  [[nodiscard]] DUET_ALWAYS_INLINE static dual lift(const Rule& rule, const dual& x) {
+    const T y = rule.value(x.value_);
+    return x.composed(y, rule.slope(x.value_, y));
+  }
+  template <class Rule, class... Rest>
+  [[nodiscard]] DUET_ALWAYS_INLINE static dual lift(const Rule& rule, const dual& x, const dual& y,
+                                                    const Rest&... rest) {
+    const T value = rule.value(x.value_, y.value_, rest.value()...);
+    const auto slopes = rule.slopes(value, x.value_, y.value_, rest.value()...);
+    auto result = detail::chain(slopes[0], x.partials_, slopes[1], y.partials_);
+    if constexpr (sizeof...(rest) > 0) {
+      static_assert(sizeof...(rest) == 1);
+      result =
+          partials_type::map([](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p + q; },
+                             result, detail::chain(slopes[2], rest.partials()...));
+    }
+    return {value, result};
+  }
+  /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1): each is
+  /// the slope of the other, but for the sign.
+  template <int Sign>
+  [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<dual>
+  lift_pair(const detail::sine_cosine<T>& y, const dual& x) {
+    const T minus(Sign * y.sine);
+    if constexpr (std::floating_point<T>) {
+      // Both are finite or neither. Asked of their sum, clang computes them at once.
+      const bool is_finite = detail::is_all_finite(T(y.sine + y.cosine));
+      return {{y.sine, combined(detail::chain_of_one<T>{y.cosine}, is_finite, x.partials_)},
+              {y.cosine, combined(detail::chain_of_one<T>{minus}, is_finite, x.partials_)}};
+    } else {
+      return {x.composed(y.sine, y.cosine), x.composed(y.cosine, minus)};
+    }
+  }
+  /// A function of this number, of value y and with that slope there. (Further derivatives are for
+  /// levels of higher order.)
+  template <class... Further>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual composed(const T& y, const T& slope,
+                                                           const Further&...) const {
+    return {y, detail::chain(slope, partials_)};
+  }
+  /// Writes value[partial, …].
+  template <class Out>
+  void write(Out& out) const {
+    out << value_ << "[";
+    for (int i = 0; i < size(); ++i) {
+      out << (i == 0 ? "" : ", ") << partial(i);
+    }
+    out << "]";
+  }
   /// Does the predicate hold for the value and for every partial?
   template <class Predicate>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto all_of(Predicate&& predicate) const {
@@ -201,15 +282,11 @@ template <class T, int N, class Tag>
 struct scalar_traits<dual<T, N, Tag>> {
   using value_type = T;
   using real_type = typename scalar_traits<T>::real_type;
-  static constexpr bool is_infinitesimal = true;
-  static constexpr int order = scalar_traits<T>::order + 1;
-};
-
-template <class T, int N, class Tag>
-struct level_traits<dual<T, N, Tag>> {
   using tag = Tag;
   template <class U>
-  using rebind = dual<U, N, Tag>;
+  using over = dual<U, N, Tag>;
+  static constexpr bool is_infinitesimal = true;
+  static constexpr int order = scalar_traits<T>::order + 1;
 };
 
 } // namespace duet

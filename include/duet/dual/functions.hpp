@@ -10,8 +10,6 @@
 #include <duet/dual/rules_of_many.hpp>
 #include <duet/dual/rules_of_powers.hpp>
 #include <duet/dual/rules_special.hpp>
-#include <duet/dual/second_dual_lift.hpp>
-#include <duet/dual/taylor_lift.hpp>
 
 /// \file
 /// The smooth functions of `<cmath>`, and `midpoint`, over dual and Taylor numbers. Values are

@@ -1,14 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual/dual.hpp>
-#include <duet/dual/second_dual.hpp>
-#include <duet/dual/taylor.hpp>
+#include <duet/core/scalar_traits.hpp>
 
 #include <limits>
 
 /// \file
-/// `std::numeric_limits` of dual and Taylor numbers: those of the innermost real, as constants.
+/// `std::numeric_limits` of infinitesimal numbers: those of the innermost real, as constants.
 
 namespace duet::detail {
 
@@ -28,14 +26,5 @@ struct infinitesimal_limits : std::numeric_limits<real_type_t<D>> {
 
 } // namespace duet::detail
 
-template <class T, int N, class Tag>
-class std::numeric_limits<duet::dual<T, N, Tag>>
-    : public duet::detail::infinitesimal_limits<duet::dual<T, N, Tag>> {};
-
-template <class T, int K, class Tag>
-class std::numeric_limits<duet::taylor<T, K, Tag>>
-    : public duet::detail::infinitesimal_limits<duet::taylor<T, K, Tag>> {};
-
-template <class T, int N, class Tag>
-class std::numeric_limits<duet::second_dual<T, N, Tag>>
-    : public duet::detail::infinitesimal_limits<duet::second_dual<T, N, Tag>> {};
+template <duet::Infinitesimal D>
+class std::numeric_limits<D> : public duet::detail::infinitesimal_limits<D> {};

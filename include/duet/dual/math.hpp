@@ -6,7 +6,6 @@
 
 #include <duet/dual/dual.hpp>
 #include <duet/dual/functions.hpp>
-#include <duet/dual/lanes.hpp>
 #include <duet/dual/limits.hpp>
 #include <duet/dual/piecewise.hpp>
 #include <duet/dual/scaling.hpp>

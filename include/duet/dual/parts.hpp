@@ -2,9 +2,14 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/structure.hpp>
+#include <duet/dual/promotion.hpp>
+
+#include <type_traits>
 
 /// \file
-/// Work on the parts of an infinitesimal number, down to the real numbers it is made of.
+/// Parts of infinitesimal numbers: those of one level, wherever it stands in the nesting, and the
+/// real numbers at the bottom of all of them.
 
 namespace duet::detail {
 
@@ -12,38 +17,42 @@ namespace duet::detail {
 /// same order.
 template <class T, class F>
 [[nodiscard]] T map_reals(const T& x, F&& f) {
-  if constexpr (!Infinitesimal<T>) {
-    return f(x);
-  } else if constexpr (requires { x.partials(); }) {
-    const auto part = [&](const auto& p) { return map_reals(p, f); };
-    const auto value = part(x.value());
-    return T(value, T::partials_type::map_elements(part, x.partials()));
-  } else if constexpr (requires { x.hessian(); }) {
-    return x.map_parts([&](const auto& p) { return map_reals(p, f); });
+  if constexpr (Infinitesimal<T>) {
+    return x.zip([&](const auto& part) { return map_reals(part, f); });
   } else {
-    T result = x;
-    constexpr int highest = scalar_traits<T>::order - scalar_traits<typename T::value_type>::order;
-    for (int k = 0; k <= highest; ++k) {
-      result.set_coefficient(k, map_reals(x.coefficient(k), f));
-    }
-    return result;
+    return f(x);
   }
 }
 
 /// x with another real number as its innermost value; all infinitesimal parts stay.
 template <class T>
 [[nodiscard]] T with_innermost(const T& x, const real_type_t<T>& value) {
-  if constexpr (!Infinitesimal<T>) {
-    return value;
-  } else if constexpr (requires { x.partials(); }) {
-    return T(with_innermost(x.value(), value), x.partials());
-  } else if constexpr (requires { x.hessian(); }) {
-    return T(with_innermost(x.value(), value), x.gradient(), x.hessian());
+  if constexpr (Infinitesimal<T>) {
+    return x.with_value(with_innermost(x.value(), value));
   } else {
-    T result = x;
-    result.set_coefficient(0, with_innermost(x.value(), value));
-    return result;
+    return value;
   }
+}
+
+/// Part of a scalar with respect to the level tagged `Tag`, wherever it stands in the nesting: 0
+/// the value, k the k-th partial of a dual or the k-th derivative of a Taylor number; for second
+/// derivatives by N variables 1 … N the gradient, then the Hessian row by row. A scalar without
+/// that level does not depend on it.
+template <class Tag, class T>
+[[nodiscard]] constexpr auto part(const T& x, int k) {
+  if constexpr (!contains_tag<T, Tag>()) {
+    return k == 0 ? x : T(0);
+  } else if constexpr (std::is_same_v<level_tag<T>, Tag>) {
+    return x.part(k);
+  } else {
+    return x.zip([k](const auto& below) { return part<Tag>(below, k); });
+  }
+}
+
+/// The k-th part, by Tag, of every scalar of a result.
+template <class Tag, class X>
+[[nodiscard]] constexpr auto parts(const X& x, int k) {
+  return map_scalars([k](const auto& s) { return part<Tag>(s, k); }, x);
 }
 
 } // namespace duet::detail

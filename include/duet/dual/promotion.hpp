@@ -12,16 +12,13 @@
 
 namespace duet {
 
-/// One level of a nested scalar: its tag, and the same level over another scalar. Specialised by
-/// `dual` and `taylor`.
+/// What the outermost ε of T means.
 template <class T>
-struct level_traits;
+using level_tag = typename scalar_traits<T>::tag;
 
-template <class T>
-using level_tag = typename level_traits<T>::tag;
-
+/// The outermost level of T over another scalar.
 template <class T, class U>
-using over = typename level_traits<T>::template rebind<U>;
+using over = typename scalar_traits<T>::template over<U>;
 
 namespace detail {
 

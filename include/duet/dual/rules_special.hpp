@@ -77,11 +77,7 @@ template <class T>
 
 template <class T>
 [[nodiscard]] T digamma(const T& argument) {
-  if constexpr (Batched<T>) {
-    return by_lane([](const auto& x) { return digamma(x); }, argument);
-  } else {
-    return digamma_of_one(argument);
-  }
+  return by_lane([](const auto& x) { return digamma_of_one(x); }, argument);
 }
 
 } // namespace detail

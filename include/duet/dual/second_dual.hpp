@@ -4,6 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/algebra.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/lower_triangle.hpp>
 #include <duet/dual/partials.hpp>
 #include <duet/dual/promotion.hpp>
@@ -76,22 +77,64 @@ public:
   [[nodiscard]] const gradient_type& gradient() const { return gradient_; }
   [[nodiscard]] const hessian_type& hessian() const { return hessian_; }
 
-  /// f applied to the value and every derivative: the same level over what f returns.
-  template <class F>
-  [[nodiscard]] auto map_parts(F&& f) const {
-    const auto value = f(value_);
+  // What a `Level` says of itself.
+
+  static constexpr int part_count = 1 + N + N * (N + 1) / 2;
+  /// The value, the gradient, then the Hessian row by row, symmetric as it is.
+  [[nodiscard]] T part(int k) const {
+    return k == 0   ? value_
+           : k <= N ? partial(k - 1)
+                    : second_partial((k - N - 1) / N, (k - N - 1) % N);
+  }
+  /// The same derivatives of another value.
+  [[nodiscard]] second_dual with_value(const T& value) const {
+    return {value, gradient_, hessian_};
+  }
+  /// f of the value and of every derivative: the same level over what f returns.
+  template <class F, class... Others>
+  [[nodiscard]] DUET_ALWAYS_INLINE auto zip(F&& f, const Others&... other) const {
+    const auto value = f(value_, other.value()...);
     using U = std::remove_const_t<decltype(value)>;
     detail::partials<U, N> gradient;
     detail::lower_triangle<U, N> hessian;
     for (int i = 0; i < N; ++i) {
-      gradient.set(i, f(partial(i)));
+      gradient.set(i, f(partial(i), other.partial(i)...));
       for (int j = 0; j <= i; ++j) {
-        hessian.set(i, j, f(second_partial(i, j)));
+        hessian.set(i, j, f(second_partial(i, j), other.second_partial(i, j)...));
       }
     }
     return second_dual<U, N, Tag>(value, gradient, hessian);
   }
-
+  /// slope · x. (Slopes that are not finite do not get here: see `composed`.)
+  [[nodiscard]] static second_dual surviving_product(const second_dual& slope,
+                                                     const second_dual& x) {
+    return product(slope, x);
+  }
+  /// The function of a rule, see rules.hpp and second_dual_lift.hpp.
+  template <class Rule, class... Rest>
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual lift(const Rule& rule, const second_dual& x,
+                                                           const Rest&... rest);
+  /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1).
+  template <int Sign>
+  [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<second_dual>
+  lift_pair(const detail::sine_cosine<T>& y, const second_dual& x) {
+    const T minus(Sign * y.sine);
+    return {x.composed(y.sine, y.cosine, minus), x.composed(y.cosine, minus, T(Sign * y.cosine))};
+  }
+  /// Writes value[gradient; rows of the lower half of the Hessian].
+  template <class Out>
+  void write(Out& out) const {
+    out << value_ << "[";
+    for (int i = 0; i < N; ++i) {
+      out << (i == 0 ? "" : ", ") << partial(i);
+    }
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        out << (j == 0 ? "; " : ", ") << second_partial(i, j);
+      }
+    }
+    out << "]";
+  }
   /// Does the predicate hold for the value and for every derivative?
   template <class Predicate>
   [[nodiscard]] auto all_of(Predicate&& predicate) const {
@@ -228,15 +271,14 @@ template <class T, int N, class Tag>
 struct scalar_traits<second_dual<T, N, Tag>> {
   using value_type = T;
   using real_type = typename scalar_traits<T>::real_type;
+  using tag = Tag;
+  template <class U>
+  using over = second_dual<U, N, Tag>;
   static constexpr bool is_infinitesimal = true;
   static constexpr int order = scalar_traits<T>::order + 2;
 };
 
-template <class T, int N, class Tag>
-struct level_traits<second_dual<T, N, Tag>> {
-  using tag = Tag;
-  template <class U>
-  using rebind = second_dual<U, N, Tag>;
-};
-
 } // namespace duet
+
+// Functions of such numbers.
+#include <duet/dual/second_dual_lift.hpp>

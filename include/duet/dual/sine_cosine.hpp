@@ -6,6 +6,8 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/pure_functions.hpp>
 
+#include <cmath>
+
 /// \file
 /// sin x and cos x of one argument, of which a derivative always needs both.
 
@@ -27,12 +29,19 @@ template <class T>
   }
 }
 
+template <class T>
+[[nodiscard]] sine_cosine<T> hyperbolic_sine_and_cosine_of(const T& x) {
+  using std::cosh;
+  using std::sinh;
+  return {sinh(x), cosh(x)};
+}
+
 /// Sine and cosine of an x whose innermost value has the sine and the cosine y already.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<T>
 sine_and_cosine_from(const sine_cosine<real_type_t<T>>& y, const T& x) {
   if constexpr (Infinitesimal<T>) {
-    return lift(sine_and_cosine_from(y, x.value()), x);
+    return T::template lift_pair<-1>(sine_and_cosine_from(y, x.value()), x);
   } else {
     return y;
   }

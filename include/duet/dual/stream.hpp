@@ -1,9 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual/dual.hpp>
-#include <duet/dual/second_dual.hpp>
-#include <duet/dual/taylor.hpp>
+#include <duet/core/scalar_traits.hpp>
 
 #include <istream>
 #include <ostream>
@@ -30,47 +28,9 @@ std::basic_ostream<Char>& write_padded(std::basic_ostream<Char>& out, Write&& wr
 
 } // namespace detail
 
-template <class Char, class T, int N, class Tag>
-std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const dual<T, N, Tag>& x) {
-  return detail::write_padded(out, [&](auto& text) {
-    text << x.value() << "[";
-    for (int i = 0; i < x.size(); ++i) {
-      text << (i == 0 ? "" : ", ") << x.partial(i);
-    }
-    text << "]";
-  });
-}
-
-template <class Char, class T, int N, class Tag>
-std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out,
-                                     const second_dual<T, N, Tag>& x) {
-  return detail::write_padded(out, [&](auto& text) {
-    text << x.value() << "[";
-    for (int i = 0; i < N; ++i) {
-      text << (i == 0 ? "" : ", ") << x.partial(i);
-    }
-    text << "; ";
-    for (int i = 0; i < N; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        text << (i == 0 ? "" : (j == 0 ? "; " : ", ")) << x.second_partial(i, j);
-      }
-    }
-    text << "]";
-  });
-}
-
-template <class Char, class T, int K, class Tag>
-std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const taylor<T, K, Tag>& x) {
-  return detail::write_padded(out, [&](auto& text) {
-    text << "(" << x.value();
-    for (int k = 1; k <= K; ++k) {
-      text << " + " << x.coefficient(k) << " e";
-      if (k > 1) {
-        text << "^" << k;
-      }
-    }
-    text << ")";
-  });
+template <class Char, Infinitesimal D>
+std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const D& x) {
+  return detail::write_padded(out, [&](auto& text) { x.write(text); });
 }
 
 template <class Char, Infinitesimal D>

@@ -53,43 +53,19 @@ template <class T>
       [&] { return guarded_product(slope, partial); });
 }
 
-/// slope · partial part by part, for a partial that is not zero.
-template <class T>
-[[nodiscard]] constexpr T guarded_parts(const T& slope, const T& partial) {
-  if constexpr (!Infinitesimal<T>) {
-    return slope * partial;
-  } else if constexpr (requires { slope.hessian(); }) {
-    return slope * partial;
-  } else if constexpr (requires { slope.partials(); }) {
-    using part = typename T::value_type;
-    return T(guarded_product(slope.value(), partial.value()),
-             T::partials_type::map_elements(
-                 [&](const part& s, const part& p) {
-                   return part(guarded_product(slope.value(), p) +
-                               product_of_partial(s, partial.value()));
-                 },
-                 slope.partials(), partial.partials()));
-  } else {
-    T result;
-    constexpr int highest = scalar_traits<T>::order - scalar_traits<typename T::value_type>::order;
-    for (int k = 0; k <= highest; ++k) {
-      auto sum = guarded_product(slope.value(), partial.coefficient(k));
-      for (int j = 1; j <= k; ++j) {
-        sum = sum + product_of_partial(slope.coefficient(j), partial.coefficient(k - j));
-      }
-      result.set_coefficient(k, sum);
-    }
-    return result;
-  }
-}
-
 /// slope · partial, zero where the partial is a structural zero; for nested scalars part by part,
 /// or what does not depend on the inner variable would be poisoned by it.
 template <class T>
 [[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial) {
   return select(
       is_structural_zero(partial), [] { return T(0); },
-      [&] { return guarded_parts(slope, partial); });
+      [&] {
+        if constexpr (Infinitesimal<T>) {
+          return T::surviving_product(slope, partial);
+        } else {
+          return T(slope * partial);
+        }
+      });
 }
 
 /// slope · partial for a built-in number, a batch or a packet of them, without a branch: what stays

@@ -5,8 +5,6 @@
 #include <duet/core/stumpff.hpp>
 #include <duet/dual/lift.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/second_dual_lift.hpp>
-#include <duet/dual/taylor_lift.hpp>
 
 #include <array>
 #include <cmath>

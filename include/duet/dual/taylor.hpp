@@ -4,6 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/algebra.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/partials.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/series_product.hpp>
@@ -83,6 +84,59 @@ public:
     return result;
   }
 
+  // What a `Level` says of itself.
+
+  static constexpr int part_count = K + 1;
+  /// The k-th derivative.
+  [[nodiscard]] constexpr T part(int k) const { return derivative(k); }
+  /// The same derivatives of another value.
+  [[nodiscard]] constexpr taylor with_value(const T& value) const {
+    taylor result = *this;
+    result.coefficients_[0] = value;
+    return result;
+  }
+  /// f of every coefficient: the same level over what f returns.
+  template <class F, class... Series>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto zip(F&& f, const Series&... other) const {
+    using U = std::remove_cvref_t<decltype(f(value(), other.value()...))>;
+    taylor<U, K, Tag> result;
+    for (int k = 0; k <= K; ++k) {
+      result.set_coefficient(k, f(coefficient(k), other.coefficient(k)...));
+    }
+    return result;
+  }
+  /// slope · x, where parts that are zero stay so beside slopes that are not finite.
+  [[nodiscard]] static constexpr taylor surviving_product(const taylor& slope, const taylor& x) {
+    taylor result;
+    for (int k = 0; k <= K; ++k) {
+      T sum = detail::guarded_product(slope.value(), x.coefficient(k));
+      for (int j = 1; j <= k; ++j) {
+        sum = sum + detail::product_of_partial(slope.coefficient(j), x.coefficient(k - j));
+      }
+      result.coefficients_[std::size_t(k)] = sum;
+    }
+    return result;
+  }
+  /// The function of a rule, see rules.hpp and taylor_lift.hpp.
+  template <class Rule, class... Series>
+  [[nodiscard]] DUET_ALWAYS_INLINE static taylor lift(const Rule& rule, const taylor& x,
+                                                      const Series&... rest);
+  /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1).
+  template <int Sign>
+  [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<taylor>
+  lift_pair(const detail::sine_cosine<T>& y, const taylor& x);
+  /// Writes (x0 + x1 e + x2 e^2 + …).
+  template <class Out>
+  void write(Out& out) const {
+    out << "(" << value();
+    for (int k = 1; k <= K; ++k) {
+      out << " + " << coefficient(k) << " e";
+      if (k > 1) {
+        out << "^" << k;
+      }
+    }
+    out << ")";
+  }
   /// Does the predicate hold for every coefficient?
   template <class Predicate>
   [[nodiscard]] constexpr auto all_of(Predicate&& predicate) const {
@@ -197,15 +251,14 @@ template <class T, int K, class Tag>
 struct scalar_traits<taylor<T, K, Tag>> {
   using value_type = T;
   using real_type = typename scalar_traits<T>::real_type;
+  using tag = Tag;
+  template <class U>
+  using over = taylor<U, K, Tag>;
   static constexpr bool is_infinitesimal = true;
   static constexpr int order = scalar_traits<T>::order + K;
 };
 
-template <class T, int K, class Tag>
-struct level_traits<taylor<T, K, Tag>> {
-  using tag = Tag;
-  template <class U>
-  using rebind = taylor<U, K, Tag>;
-};
-
 } // namespace duet
+
+// Functions of series.
+#include <duet/dual/taylor_lift.hpp>

@@ -1,8 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual/rules.hpp>
-#include <duet/dual/rules_hyperbolic.hpp>
+#include <duet/dual/lift.hpp>
 #include <duet/dual/series_product.hpp>
 #include <duet/dual/sine_cosine.hpp>
 #include <duet/dual/structural_zero.hpp>
@@ -19,7 +18,8 @@
 /// k y_k = Σ_{j=1…k} j x_j s_{k−j}, where s is the series of the slope f′(x). The slope is needed
 /// to order K−1 only, so the rule is applied to shorter and shorter series.
 
-namespace duet::detail {
+namespace duet {
+namespace detail {
 
 /// x with the powers above L dropped; a plain value for L = 0.
 template <int L, class T, int K, class Tag>
@@ -109,41 +109,9 @@ template <class Rule, class T, int K, class Tag>
 /// than what it computes.
 inline constexpr int in_place_order = 3;
 
-template <class Rule, class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const Rule& rule,
-                                                        const taylor<T, K, Tag>& x) {
-  if constexpr (std::floating_point<T> && K <= in_place_order) {
-    return lift_in_place(rule, x);
-  } else {
-    return lift_by_call(rule, x);
-  }
-}
-
-template <class Rule, class T, int K, class Tag, class... Rest>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const Rule& rule, const taylor<T, K, Tag>& x,
-                                            const taylor<T, K, Tag>& y, const Rest&... rest) {
-  const auto z = [&] {
-    if constexpr (K == 1) {
-      return rule.value(x.value(), y.value(), rest.value()...);
-    } else {
-      return lift(rule, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
-    }
-  }();
-  const auto slopes =
-      rule.slopes(z, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
-  T last = chain_coefficient(x, slopes[0]) + chain_coefficient(y, slopes[1]);
-  if constexpr (sizeof...(rest) > 0) {
-    static_assert(sizeof...(rest) == 1);
-    last = last + (chain_coefficient(rest, slopes[2]) + ...);
-  }
-  return extended<taylor<T, K, Tag>>(z, divided_by_order(last, K), K);
-}
-
-/// sin and cos share one recurrence, sinh and cosh another: each is the slope of its partner, and
-/// applying their rules one by one would evaluate the pair at every order.
+/// The further coefficients of s and c, s′ = c x′ and c′ = Sign s x′.
 template <int Sign, class T, int K, class Tag>
-inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
-                            taylor<T, K, Tag>& c) {
+inline void extend_pair(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s, taylor<T, K, Tag>& c) {
   with_surviving_products(T(s.value() + c.value()), [&](const auto& product) DUET_INLINE_LAMBDA {
     unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
       const int k = i + 1;
@@ -163,40 +131,49 @@ inline void sine_and_cosine(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s,
   });
 }
 
-/// From sine and cosine of the value to those of x.
+/// Of several arguments.
+template <class Rule, class T, int K, class Tag, class... Rest>
+[[nodiscard]] inline taylor<T, K, Tag> lift_by_call(const Rule& rule, const taylor<T, K, Tag>& x,
+                                                    const taylor<T, K, Tag>& y,
+                                                    const Rest&... rest) {
+  const auto z = [&] {
+    if constexpr (K == 1) {
+      return rule.value(x.value(), y.value(), rest.value()...);
+    } else {
+      return lift(rule, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
+    }
+  }();
+  const auto slopes =
+      rule.slopes(z, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
+  T last = chain_coefficient(x, slopes[0]) + chain_coefficient(y, slopes[1]);
+  if constexpr (sizeof...(rest) > 0) {
+    static_assert(sizeof...(rest) == 1);
+    last = last + (chain_coefficient(rest, slopes[2]) + ...);
+  }
+  return extended<taylor<T, K, Tag>>(z, divided_by_order(last, K), K);
+}
+
+} // namespace detail
+
 template <class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<taylor<T, K, Tag>> lift(const sine_cosine<T>& y,
-                                                                     const taylor<T, K, Tag>& x) {
-  sine_cosine<taylor<T, K, Tag>> result{taylor<T, K, Tag>(y.sine), taylor<T, K, Tag>(y.cosine)};
-  sine_and_cosine<-1>(x, result.sine, result.cosine);
+template <class Rule, class... Series>
+taylor<T, K, Tag> taylor<T, K, Tag>::lift(const Rule& rule, const taylor& x,
+                                          const Series&... rest) {
+  if constexpr (std::floating_point<T> && K <= detail::in_place_order && sizeof...(rest) == 0) {
+    return detail::lift_in_place(rule, x);
+  } else {
+    return detail::lift_by_call(rule, x, rest...);
+  }
+}
+
+/// One recurrence for both: applying their rules one by one would evaluate the pair at every order.
+template <class T, int K, class Tag>
+template <int Sign>
+detail::sine_cosine<taylor<T, K, Tag>> taylor<T, K, Tag>::lift_pair(const detail::sine_cosine<T>& y,
+                                                                    const taylor& x) {
+  detail::sine_cosine<taylor> result{taylor(y.sine), taylor(y.cosine)};
+  detail::extend_pair<Sign>(x, result.sine, result.cosine);
   return result;
 }
 
-template <class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::sin&,
-                                                        const taylor<T, K, Tag>& x) {
-  return lift(sine_and_cosine_of(x.value()), x).sine;
-}
-template <class T, int K, class Tag>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift(const rule::cos&,
-                                                        const taylor<T, K, Tag>& x) {
-  return lift(sine_and_cosine_of(x.value()), x).cosine;
-}
-
-template <class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::sinh&, const taylor<T, K, Tag>& x) {
-  taylor<T, K, Tag> s(rule::sinh{}.value(x.value()));
-  taylor<T, K, Tag> c(rule::cosh{}.value(x.value()));
-  sine_and_cosine<1>(x, s, c);
-  return s;
-}
-
-template <class T, int K, class Tag>
-[[nodiscard]] inline taylor<T, K, Tag> lift(const rule::cosh&, const taylor<T, K, Tag>& x) {
-  taylor<T, K, Tag> s(rule::sinh{}.value(x.value()));
-  taylor<T, K, Tag> c(rule::cosh{}.value(x.value()));
-  sine_and_cosine<1>(x, s, c);
-  return c;
-}
-
-} // namespace duet::detail
+} // namespace duet

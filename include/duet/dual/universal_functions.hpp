@@ -8,11 +8,9 @@
 #include <duet/dual/dual.hpp>
 #include <duet/dual/partials.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/dual/second_dual.hpp>
 #include <duet/dual/structural_zero.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/dual/taylor.hpp>
-#include <duet/dual/taylor_lift.hpp>
 
 #include <array>
 #include <cstddef>
@@ -120,22 +118,10 @@ template <std::size_t Count, class T, int K, class Tag, class V, class A>
   });
   return u;
 }
-template <std::size_t Count, class T, int N, class Tag, class V, class A>
+template <std::size_t Count, class B, class V, class A>
 [[nodiscard]] DUET_ALWAYS_INLINE auto lifted_by_b(const universal_values<V, Count>& below,
-                                                  const dual<T, N, Tag>& b, const A& alpha) {
-  using D = dual<V, N, Tag>;
-  const auto db = D(b).partials();
-  universal_values<D, Count> u{D(below[0], chain(V(-(below[1] * alpha)), db)),
-                               D(below[1], chain(below[0], db))};
-  if constexpr (Count == 3) {
-    u[2] = D(below[2], chain(V(below[1] * b.value() * real_type_t<V>(-0.5)), db));
-  }
-  return u;
-}
-template <std::size_t Count, class T, int N, class Tag, class V, class A>
-[[nodiscard]] DUET_ALWAYS_INLINE auto lifted_by_b(const universal_values<V, Count>& below,
-                                                  const second_dual<T, N, Tag>& b, const A& alpha) {
-  using D = second_dual<V, N, Tag>;
+                                                  const B& b, const A& alpha) {
+  using D = over<B, V>;
   const D x(b);
   const V first = -(below[1] * alpha);
   universal_values<D, Count> u{x.composed(below[0], first, V(-(below[0] * alpha))),
@@ -148,16 +134,15 @@ template <std::size_t Count, class T, int N, class Tag, class V, class A>
   return u;
 }
 
-/// From the functions of the value of α to those of α, by all three of them; b is the same for
-/// both.
-template <class T, int N, class Tag, class V, class B>
+/// From the functions of the value of α to those of α, of first order, by all three of them; b is
+/// the same for both.
+template <class V, class B, class A>
 [[nodiscard]] DUET_ALWAYS_INLINE auto lifted_by_alpha(const universal_values<V, 3>& below,
-                                                      const B& b, const dual<T, N, Tag>& alpha) {
-  using D = dual<V, N, Tag>;
-  const auto d_alpha = D(alpha).partials();
+                                                      const B& b, const A& alpha) {
+  using D = over<A, V>;
+  const D x(alpha);
   const V slope = below[1] * b * real_type_t<V>(-0.5);
-  return universal_values<D, 2>{D(below[0], chain(slope, d_alpha)),
-                                D(below[1], chain(below[2], d_alpha))};
+  return universal_values<D, 2>{x.composed(below[0], slope), x.composed(below[1], below[2])};
 }
 
 /// Does T have the outermost level of D?
@@ -170,9 +155,10 @@ template <class T, class D>
   }
 }
 
-template <class T>
-inline constexpr bool is_dual_level = requires(const T& x) {
-  x.partials();
+/// Can a function of an A be told by its slope alone?
+template <class A>
+concept FirstOrder = requires(const A& x) {
+  x.composed(x.value(), x.value());
 };
 
 /// U_0(b; α) and U_1(b; α), α ≥ 0; with Count 3 also H. Neither argument is widened to what the
@@ -184,7 +170,7 @@ template <std::size_t Count, class B, class A>
   constexpr bool moves_alpha = has_level_of<A, D>();
   if constexpr (moves_b && !moves_alpha) {
     return lifted_by_b<Count>(universal_functions<Count>(b.value(), alpha), b, alpha);
-  } else if constexpr (moves_alpha && !moves_b && is_dual_level<A> && Count == 2) {
+  } else if constexpr (moves_alpha && !moves_b && FirstOrder<A> && Count == 2) {
     return lifted_by_alpha(universal_functions<3>(b, alpha.value()), b, alpha);
   } else {
     return universal_functions_by_square<Count>(D(b), D(alpha));

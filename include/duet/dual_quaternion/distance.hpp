@@ -42,8 +42,7 @@ namespace detail {
 /// are out of range.
 template <class T>
 [[nodiscard, gnu::cold]] T distance_of_extreme(const dual_quaternion<T>& a,
-                                               const dual_quaternion<T>& b, double length,
-                                               const T& square) {
+                                               const dual_quaternion<T>& b, double length) {
   using std::abs;
   using std::ldexp;
   using std::max;
@@ -58,7 +57,7 @@ template <class T>
     largest = max(largest, R(abs(R(R(length) * innermost(turn[i])))));
   }
   if (!(largest > 0 && largest <= std::numeric_limits<R>::max())) {
-    return sqrt(square); // zero, infinite or not a number
+    return sqrt(squared_distance(a, b, length)); // zero, infinite or not a number
   }
   // 2^−e is a number too.
   const int e = max(binary_exponent(largest), 4 - std::numeric_limits<R>::max_exponent);
@@ -78,13 +77,13 @@ template <class T>
 [[nodiscard]] T distance(const dual_quaternion<T>& a, const dual_quaternion<T>& b, double length) {
   using std::sqrt;
   const T square = squared_distance(a, b, length);
-  if constexpr (Batched<T>) {
-    return sqrt(square);
-  } else {
-    return detail::is_moderate(innermost(square))
-               ? T(sqrt(square))
-               : detail::distance_of_extreme(a, b, length, square);
-  }
+  return select(
+      detail::is_moderate(innermost(square)), [&] { return T(sqrt(square)); },
+      [&] {
+        return detail::by_lane(
+            [=](const auto& p, const auto& q) { return detail::distance_of_extreme(p, q, length); },
+            a, b);
+      });
 }
 
 } // namespace duet

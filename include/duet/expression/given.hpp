@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/held.hpp>
@@ -76,32 +77,17 @@ struct common_scalar<Real, T, Rest...> {
 /// A constant as arguments of some precision meet it.
 template <class Real, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const T& x) {
+  const auto of_part = [](const auto& part)
+                           DUET_INLINE_LAMBDA { return constant_over<Real>(part); };
   if constexpr (std::floating_point<T>) {
     return static_cast<Real>(x);
-  } else {
+  } else if constexpr (Infinitesimal<T> && duet::detail::contains_tag<T, screw_tag>()) {
+    return x.zip(of_part);
+  } else if constexpr (Scalar<T> || !Structured<T>) {
     return x;
+  } else {
+    return map_scalars(of_part, x);
   }
-}
-template <class Real, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const screw_dual<T>& x) {
-  const auto value = constant_over<Real>(x.value());
-  return screw_dual<std::remove_const_t<decltype(value)>>(value, constant_over<Real>(x.epsilon()));
-}
-template <class Real, class T, int Rows, int Columns, int Options>
-[[nodiscard]] DUET_ALWAYS_INLINE auto
-constant_over(const Eigen::Matrix<T, Rows, Columns, Options>& m) {
-  using S = decltype(constant_over<Real>(m.data()[0]));
-  Eigen::Matrix<S, Rows, Columns, Options> result;
-  for (int i = 0; i < Rows * Columns; ++i) {
-    result.data()[i] = constant_over<Real>(m.data()[i]);
-  }
-  return result;
-}
-template <class Real, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const quaternion<T>& q) {
-  using S = decltype(constant_over<Real>(q.w()));
-  return quaternion<S>(constant_over<Real>(q.w()), constant_over<Real>(q.x()),
-                       constant_over<Real>(q.y()), constant_over<Real>(q.z()));
 }
 
 /// In what a formula holds: it wants the sines of the C library.

@@ -1,8 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/derivative/structure.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/dual/dual.hpp>
+#include <duet/dual/parts.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/formula.hpp>
 #include <duet/expression/node.hpp>
@@ -26,31 +27,18 @@ namespace duet::expression {
 namespace detail {
 
 /// x + ε ẋ, with the ε of a derivative inside that of rigid motion.
-template <class Tag, class A, class B>
-[[nodiscard]] auto with_rate(const A& x, const B& rate) {
-  return dual<promote_t<A, B>, 1, Tag>(x, rate);
-}
-template <class Tag, class A, class B>
-[[nodiscard]] auto with_rate(const screw_dual<A>& x, const screw_dual<B>& rate) {
-  const auto value = with_rate<Tag>(x.value(), rate.value());
-  return screw_dual<std::remove_const_t<decltype(value)>>(
-      value, with_rate<Tag>(x.epsilon(), rate.epsilon()));
-}
-template <class Tag, class A, class B, int Rows, int Columns, int Options>
-[[nodiscard]] auto with_rate(const Eigen::Matrix<A, Rows, Columns, Options>& x,
-                             const Eigen::Matrix<B, Rows, Columns, Options>& rate) {
-  using D = decltype(with_rate<Tag>(x.data()[0], rate.data()[0]));
-  Eigen::Matrix<D, Rows, Columns, Options> result;
-  for (int i = 0; i < Rows * Columns; ++i) {
-    result.data()[i] = with_rate<Tag>(x.data()[i], rate.data()[i]);
-  }
-  return result;
-}
-template <class Tag, class A, class B>
-[[nodiscard]] auto with_rate(const quaternion<A>& q, const quaternion<B>& rate) {
-  using D = decltype(with_rate<Tag>(q.w(), rate.w()));
-  return quaternion<D>(with_rate<Tag>(q.w(), rate.w()), with_rate<Tag>(q.x(), rate.x()),
-                       with_rate<Tag>(q.y(), rate.y()), with_rate<Tag>(q.z(), rate.z()));
+template <class Tag, class X>
+[[nodiscard]] auto with_rate(const X& x, const auto& rate) {
+  return map_scalars(
+      []<class A, class B>(const A& value, const B& slope) {
+        if constexpr (duet::detail::contains_tag<A, screw_tag>()) {
+          return value.zip([](const auto& p, const auto& q) { return with_rate<Tag>(p, q); },
+                           slope);
+        } else {
+          return dual<promote_t<A, B>, 1, Tag>(value, slope);
+        }
+      },
+      x, rate);
 }
 
 } // namespace detail

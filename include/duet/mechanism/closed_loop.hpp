@@ -4,9 +4,10 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/structure.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/derivative/structure.hpp>
 #include <duet/dual/dual.hpp>
 
 #include <Eigen/Core>

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/result.hpp>
-#include <duet/derivative/structure.hpp>
 #include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 

@@ -65,11 +65,7 @@ template <euler_sequence Sequence, class T>
 /// q times a power of 2 that brings it near 1: products of its components stay in range.
 template <class T>
 [[nodiscard]] quaternion<T> of_moderate_norm(const quaternion<T>& q) {
-  if constexpr (Batched<T>) {
-    return q; // one power would not suit all lanes
-  } else {
-    return scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
-  }
+  return by_lane([](const auto& p) { return scaled(p).near_one; }, q);
 }
 
 /// Numbers in proportion to cos β cos(α+γ), cos β sin(α+γ), sin β cos(α−γ), sin β sin(α−γ), which
@@ -172,10 +168,8 @@ template <euler_sequence Sequence, class T>
     return {detail::with_innermost(T(sum + difference), values[0]),
             detail::with_innermost(middle, values[1]),
             detail::with_innermost(T(sign * (sum - difference)), values[2])};
-  } else if constexpr (Batched<T>) {
-    return detail::by_lane([](const auto& p) { return euler<Sequence>(p); }, q);
   } else {
-    return detail::euler_angles<Sequence>(q);
+    return detail::by_lane([](const auto& p) { return detail::euler_angles<Sequence>(p); }, q);
   }
 }
 

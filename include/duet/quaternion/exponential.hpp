@@ -75,30 +75,22 @@ template <class T>
       [&] { return v; }));
 }
 
-template <class T>
-[[nodiscard]] vector3<T> log_vector(const quaternion<T>& q, const char* function);
-
 /// û φ where |q| is out of range or a full turn is near.
 template <class T>
 [[nodiscard, gnu::cold]] vector3<T> log_vector_of_extreme(const quaternion<T>& q,
                                                           const char* function) {
-  if constexpr (Batched<T>) {
-    return by_lane([function](const auto& p) { return log_vector(p, function); }, q);
-  } else {
-    using real = real_type_t<T>;
-    require_not_zero(q, function);
-    const quaternion<T> near_one =
-        scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
-    const quaternion<T> v(T(0), near_one.x(), near_one.y(), near_one.z());
-    const T s = norm2(v);
-    return select(
-        innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>(),
-        [&] { return vector3<T>(v.vec() * arc_ratio(s, near_one.w())); },
-        [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
-          const T short_way = arc_ratio(s, T(-near_one.w()));
-          return vector3<T>((axis_of(near_one) * constant::pi<real>() - v * short_way).vec());
-        });
-  }
+  using real = real_type_t<T>;
+  require_not_zero(q, function);
+  const quaternion<T> near_one = scaled(q).near_one;
+  const quaternion<T> v(T(0), near_one.x(), near_one.y(), near_one.z());
+  const T s = norm2(v);
+  return select(
+      innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>(),
+      [&] { return vector3<T>(v.vec() * arc_ratio(s, near_one.w())); },
+      [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
+        const T short_way = arc_ratio(s, T(-near_one.w()));
+        return vector3<T>((axis_of(near_one) * constant::pi<real>() - v * short_way).vec());
+      });
 }
 
 /// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|².
@@ -114,7 +106,9 @@ template <class T>
         const T ratio = arc_ratio(s, q.w());
         return vector3<T>(q.x() * ratio, q.y() * ratio, q.z() * ratio);
       },
-      [&] { return log_vector_of_extreme(q, function); });
+      [&] {
+        return by_lane([=](const auto& p) { return log_vector_of_extreme(p, function); }, q);
+      });
 }
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> log_vector(const quaternion<T>& q,
@@ -124,18 +118,11 @@ template <class T>
 }
 
 template <class T>
-[[nodiscard]] T log_norm(const quaternion<T>& q, const T& square);
-
-template <class T>
 [[nodiscard, gnu::cold]] T log_norm_of_extreme(const quaternion<T>& q) {
-  if constexpr (Batched<T>) {
-    return by_lane([](const auto& p) { return log_norm(p, norm2(p)); }, q);
-  } else {
-    using std::log;
-    using real = real_type_t<T>;
-    const int e = binary_exponent(largest_component(innermost_of(q)));
-    return T(log(norm2(scaled_down(q, e))) / 2 + real(e) * constant::ln2<real>());
-  }
+  using std::log;
+  using real = real_type_t<T>;
+  const auto [near_one, e] = scaled(q);
+  return T(log(norm2(near_one)) / 2 + real(e) * constant::ln2<real>());
 }
 
 /// log|q|; `square` = |q|².
@@ -144,7 +131,7 @@ template <class T>
   using std::log;
   return select(
       is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return T(log(square) / 2); },
-      [&] { return log_norm_of_extreme(q); });
+      [&] { return by_lane([](const auto& p) { return log_norm_of_extreme(p); }, q); });
 }
 
 } // namespace detail
@@ -208,27 +195,23 @@ template <class T, class S>
 template <class T, class S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow_near_full_turn(const quaternion<T>& q,
                                                              const S& exponent) {
+  using std::cos;
+  using std::fmod;
+  using std::round;
+  using std::sin;
   using R = promote_t<T, S>;
-  if constexpr (Batched<R>) {
-    return by_lane([](const auto& p, const auto& rho) { return pow(p, rho); }, q, exponent);
-  } else {
-    using std::cos;
-    using std::fmod;
-    using std::round;
-    using std::sin;
-    using real = real_type_t<R>;
-    const real whole = round(real(innermost(exponent)));
-    const auto rest = exponent - whole;
-    const auto power = pow_by_whole(-q, exponent);
-    const auto half_turns = select(
-        fmod(whole, real(2)) == 0, [&] { return power; }, [&] { return -power; });
-    return select(
-        is_structural_zero(rest), [&] { return half_turns; },
-        [&] {
-          const R angle = constant::pi<real>() * rest;
-          return (quaternion<R>(cos(angle)) + axis_of(q) * R(sin(angle))) * half_turns;
-        });
-  }
+  using real = real_type_t<R>;
+  const real whole = round(real(innermost(exponent)));
+  const auto rest = exponent - whole;
+  const auto power = pow_by_whole(-q, exponent);
+  const auto half_turns = select(
+      fmod(whole, real(2)) == 0, [&] { return power; }, [&] { return -power; });
+  return select(
+      is_structural_zero(rest), [&] { return half_turns; },
+      [&] {
+        const R angle = constant::pi<real>() * rest;
+        return (quaternion<R>(cos(angle)) + axis_of(q) * R(sin(angle))) * half_turns;
+      });
 }
 
 } // namespace detail
@@ -243,7 +226,10 @@ template <class T, ScalarFor<T> S>
                  innermost(q.z()) * innermost(q.z());
   return select(
       innermost(q.w()) < 0 && 64 * s < innermost(q.w()) * innermost(q.w()),
-      [&] { return detail::pow_near_full_turn(q, rho); },
+      [&] {
+        return detail::by_lane(
+            [](const auto& p, const auto& r) { return detail::pow_near_full_turn(p, r); }, q, rho);
+      },
       [&]() DUET_INLINE_LAMBDA { return detail::pow_by_whole(q, rho); });
 }
 

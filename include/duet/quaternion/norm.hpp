@@ -59,12 +59,14 @@ template <class T>
          is_all_finite(q.z());
 }
 
-/// e such that 2^−e brings a number near 1.
+/// e such that 2^−e brings a number near 1; 0 for zero and what is not finite.
 template <Real R>
 [[nodiscard]] int binary_exponent(const R& x) {
   using std::frexp;
   int exponent = 0;
-  static_cast<void>(frexp(x, &exponent));
+  if (x <= std::numeric_limits<R>::max()) {
+    static_cast<void>(frexp(x, &exponent));
+  }
   return exponent;
 }
 
@@ -82,47 +84,37 @@ void require_not_zero(const quaternion<T>& q, const char* function) {
   }
 }
 
+/// A quaternion out of range and the power of two that brings it near 1: near_one · 2^exponent.
 template <class T>
-[[nodiscard, gnu::cold]] T norm_of_extreme(const quaternion<T>& q, const T& square) {
-  if constexpr (Batched<T>) {
-    static_cast<void>(square);
-    return by_lane([](const auto& p) { return norm(p); }, q);
-  } else {
-    using std::ldexp;
-    using std::sqrt;
-    const auto largest = largest_component(innermost_of(q));
-    return select(
-        largest > 0 && largest <= std::numeric_limits<real_type_t<T>>::max(),
-        [&] {
-          const int e = binary_exponent(largest);
-          return T(ldexp(T(sqrt(norm2(scaled_down(q, e)))), e));
-        },
-        [&] { return T(sqrt(square)); }); // zero, infinite or not a number
-  }
+struct scaled_quaternion {
+  quaternion<T> near_one;
+  int exponent;
+};
+template <class T>
+[[nodiscard]] scaled_quaternion<T> scaled(const quaternion<T>& q) {
+  const int e = binary_exponent(largest_component(innermost_of(q)));
+  return {scaled_down(q, e), e};
 }
 
+template <class T>
+[[nodiscard, gnu::cold]] T norm_of_extreme(const quaternion<T>& q) {
+  using std::ldexp;
+  using std::sqrt;
+  const auto [near_one, e] = scaled(q);
+  return ldexp(T(sqrt(norm2(near_one))), e);
+}
 template <class T>
 [[nodiscard, gnu::cold]] quaternion<T> normalized_of_extreme(const quaternion<T>& q) {
-  if constexpr (Batched<T>) {
-    return by_lane([](const auto& p) { return normalized(p); }, q);
-  } else {
-    using std::sqrt;
-    require_not_zero(q, "normalized");
-    const auto near_one = scaled_down(q, binary_exponent(largest_component(innermost_of(q))));
-    return near_one / T(sqrt(norm2(near_one)));
-  }
+  using std::sqrt;
+  require_not_zero(q, "normalized");
+  const quaternion<T> near_one = scaled(q).near_one;
+  return near_one / T(sqrt(norm2(near_one)));
 }
-
 template <class T>
 [[nodiscard, gnu::cold]] quaternion<T> inverse_of_extreme(const quaternion<T>& q) {
-  if constexpr (Batched<T>) {
-    return by_lane([](const auto& p) { return inverse(p); }, q);
-  } else {
-    require_not_zero(q, "inverse");
-    const int e = binary_exponent(largest_component(innermost_of(q)));
-    const auto near_one = scaled_down(q, e);
-    return scaled_down(conj(near_one) / norm2(near_one), e);
-  }
+  require_not_zero(q, "inverse");
+  const auto [near_one, e] = scaled(q);
+  return scaled_down(conj(near_one) / norm2(near_one), e);
 }
 
 } // namespace detail
@@ -134,7 +126,7 @@ template <class T>
   const T square = norm2(q);
   return select(
       detail::is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return T(sqrt(square)); },
-      [&] { return detail::norm_of_extreme(q, square); });
+      [&] { return detail::by_lane([](const auto& p) { return detail::norm_of_extreme(p); }, q); });
 }
 
 /// q/|q|.
@@ -146,7 +138,9 @@ template <class T>
   return select(
       detail::is_moderate(innermost(square)),
       [&]() DUET_INLINE_LAMBDA { return q / T(sqrt(square)); },
-      [&] { return detail::normalized_of_extreme(q); });
+      [&] {
+        return detail::by_lane([](const auto& p) { return detail::normalized_of_extreme(p); }, q);
+      });
 }
 
 /// N3: q⁻¹ = q*/|q|²; for a unit quaternion use `conj`.
@@ -156,7 +150,9 @@ template <class T>
   const T square = norm2(q);
   return select(
       detail::is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return conj(q) / square; },
-      [&] { return detail::inverse_of_extreme(q); });
+      [&] {
+        return detail::by_lane([](const auto& p) { return detail::inverse_of_extreme(p); }, q);
+      });
 }
 
 } // namespace duet

@@ -1,10 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch_lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/derivative/structure.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/promotion.hpp>
@@ -92,10 +91,13 @@ private:
 
 template <class T>
 struct structure<quaternion<T>> {
-  template <class F>
-  [[nodiscard]] static constexpr auto map(F&& f, const quaternion<T>& q) {
-    using result = std::decay_t<std::invoke_result_t<F, const T&>>;
-    return quaternion<result>{f(q.w()), f(q.x()), f(q.y()), f(q.z())}; // in this order
+  using scalar = T;
+  template <class F, class... Rest>
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr auto map(F&& f, const quaternion<T>& q,
+                                                             const Rest&... rest) {
+    using result = std::decay_t<decltype(f(q.w(), rest.w()...))>;
+    return quaternion<result>{f(q.w(), rest.w()...), f(q.x(), rest.x()...), f(q.y(), rest.y()...),
+                              f(q.z(), rest.z()...)}; // in this order
   }
 };
 
@@ -178,33 +180,6 @@ template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<T> conj(const quaternion<T>& q) {
   return {q.w(), -q.x(), -q.y(), -q.z()};
 }
-
-template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE auto lane(const quaternion<T>& q, int i) {
-  using S = std::decay_t<decltype(lane(q.w(), i))>;
-  return quaternion<S>(lane(q.w(), i), lane(q.x(), i), lane(q.y(), i), lane(q.z(), i));
-}
-template <int W, class T, class Get>
-[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(lane_width<W>, const quaternion<T>& pattern,
-                                                   const Get& get) {
-  const auto joined = [](const T& example, const auto& part_of) DUET_INLINE_LAMBDA {
-    return joined_lanes(lane_width<W>{}, example, part_of);
-  };
-  const auto first = [&](int i) DUET_INLINE_LAMBDA { return get(i).w(); };
-  using S = decltype(joined(pattern.w(), first));
-  return quaternion<S>(joined(pattern.w(), first),
-                       joined(pattern.x(), [&](int i) DUET_INLINE_LAMBDA { return get(i).x(); }),
-                       joined(pattern.y(), [&](int i) DUET_INLINE_LAMBDA { return get(i).y(); }),
-                       joined(pattern.z(), [&](int i) DUET_INLINE_LAMBDA { return get(i).z(); }));
-}
-template <class R, int W, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE quaternion<T>
-blended(const lane_mask<R, W>& m, const quaternion<T>& a, const quaternion<T>& b) {
-  return {blended(m, a.w(), b.w()), blended(m, a.x(), b.x()), blended(m, a.y(), b.y()),
-          blended(m, a.z(), b.z())};
-}
-template <class T>
-inline constexpr int lane_count<quaternion<T>> = lane_count<T>;
 
 /// The scalar product of p and q as vectors of R⁴.
 template <class A, class B>

@@ -69,44 +69,49 @@ template <class T>
   return {2 * half[0], 2 * half[1], 2 * half[2]};
 }
 
+namespace detail {
+
+template <class T>
+[[nodiscard]] quaternion<T> shortest_rotation(const vector3<T>& a, const vector3<T>& b) {
+  using real = real_type_t<T>;
+  const vector3<T> u = normalized(quaternion<T>(T(0), a)).vec();
+  const vector3<T> v = normalized(quaternion<T>(T(0), b)).vec();
+  // 1 + u·v = |u + v|²/2 and u × v = u × (v ± u). The sum of opposite unit vectors and the
+  // difference of equal ones are exact, so nothing cancels.
+  const vector3<T> sum = u + v;
+  const T w = sum.squaredNorm() / 2;
+  const bool same_side = !(innermost(w) < 1);
+  const vector3<T> nearer = select(
+      same_side, [&] { return vector3<T>(v - u); }, [&] { return sum; });
+  const quaternion<T> q(w, vector3<T>(u.cross(nearer)));
+  const auto largest = [](const vector3<T>& x) {
+    return largest_component(innermost_of(quaternion<T>(T(0), x)));
+  };
+  // The sum is perpendicular to u, up to how far u and v are from unit length. Where that is all
+  // there is, they are opposite.
+  const bool is_determined = same_side || 4 * largest(q.vec()) > largest(sum);
+  const auto chosen =
+      vector3<real>(innermost(u[0]), innermost(u[1]), innermost(u[2])).unitOrthogonal().eval();
+  const auto component = [&](real value) {
+    return undetermined(value, T(u[0] + v[0]), T(u[1] + v[1]), T(u[2] + v[2]));
+  };
+  return normalized(select(
+      is_determined, [&] { return q; },
+      [&] {
+        return quaternion<T>(component(real(0)), component(chosen[0]), component(chosen[1]),
+                             component(chosen[2]));
+      }));
+}
+
+} // namespace detail
+
 /// The shortest rotation that takes the direction of a to that of b. For opposite directions the
 /// axis is undetermined: one perpendicular to a is chosen, without derivatives.
 /// \throws invalid_input where a or b is zero
 template <class T>
 [[nodiscard]] quaternion<T> from_two_vectors(const vector3<T>& a, const vector3<T>& b) {
-  if constexpr (Batched<T>) {
-    return detail::by_lane([](const auto& p, const auto& r) { return from_two_vectors(p, r); }, a,
-                           b);
-  } else {
-    using real = real_type_t<T>;
-    const vector3<T> u = normalized(quaternion<T>(T(0), a)).vec();
-    const vector3<T> v = normalized(quaternion<T>(T(0), b)).vec();
-    // 1 + u·v = |u + v|²/2 and u × v = u × (v ± u). The sum of opposite unit vectors and the
-    // difference of equal ones are exact, so nothing cancels.
-    const vector3<T> sum = u + v;
-    const T w = sum.squaredNorm() / 2;
-    const bool same_side = !(innermost(w) < 1);
-    const vector3<T> nearer = select(
-        same_side, [&] { return vector3<T>(v - u); }, [&] { return sum; });
-    const quaternion<T> q(w, vector3<T>(u.cross(nearer)));
-    const auto largest = [](const vector3<T>& x) {
-      return detail::largest_component(detail::innermost_of(quaternion<T>(T(0), x)));
-    };
-    // The sum is perpendicular to u, up to how far u and v are from unit length. Where that is all
-    // there is, they are opposite.
-    const bool is_determined = same_side || 4 * largest(q.vec()) > largest(sum);
-    const auto chosen =
-        vector3<real>(innermost(u[0]), innermost(u[1]), innermost(u[2])).unitOrthogonal().eval();
-    const auto component = [&](real value) {
-      return detail::undetermined(value, T(u[0] + v[0]), T(u[1] + v[1]), T(u[2] + v[2]));
-    };
-    return normalized(select(
-        is_determined, [&] { return q; },
-        [&] {
-          return quaternion<T>(component(real(0)), component(chosen[0]), component(chosen[1]),
-                               component(chosen[2]));
-        }));
-  }
+  return detail::by_lane(
+      [](const auto& u, const auto& v) { return detail::shortest_rotation(u, v); }, a, b);
 }
 
 namespace detail {
@@ -157,46 +162,51 @@ template <class T>
   return detail::rotation_of_many(q).matrix();
 }
 
+namespace detail {
+
+template <class T>
+[[nodiscard]] quaternion<T> quaternion_of(const matrix3<T>& r) {
+  using std::sqrt;
+  using real = real_type_t<T>;
+  const matrix3<real> values = r.unaryExpr([](const T& x) { return real(innermost(x)); });
+  const real defect =
+      (values * values.transpose() - matrix3<real>::Identity()).cwiseAbs().maxCoeff();
+  const real tolerance = std::numeric_limits<real>::digits > 24 ? real(1e-6) : real(1e-3);
+  if (!(defect <= tolerance) || values.determinant() < 0) {
+    std::ostringstream message;
+    message << "duet: from_rotation_matrix: not a rotation: |R R^T - 1| = " << defect
+            << ", det R = " << values.determinant();
+    throw invalid_input(message.str());
+  }
+  // 4q₀², 4q₁² … from the diagonal; dividing by the largest never loses digits.
+  const T s[4] = {1 + r(0, 0) + r(1, 1) + r(2, 2), 1 + r(0, 0) - r(1, 1) - r(2, 2),
+                  1 - r(0, 0) + r(1, 1) - r(2, 2), 1 - r(0, 0) - r(1, 1) + r(2, 2)};
+  const auto larger = [](bool second, const auto& a, const auto& b) {
+    return select(
+        second, [&] { return b; }, [&] { return a; });
+  };
+  const bool x_over_w = s[1] > s[0];
+  const bool z_over_y = s[3] > s[2];
+  const T first = larger(x_over_w, s[0], s[1]);
+  const T last = larger(z_over_y, s[2], s[3]);
+  const bool is_last = last > first;
+  const T half = sqrt(larger(is_last, first, last)) / 2;
+  const T f = 1 / (4 * half);
+  const T a = (r(2, 1) - r(1, 2)) * f, b = (r(0, 2) - r(2, 0)) * f, c = (r(1, 0) - r(0, 1)) * f;
+  const T d = (r(1, 0) + r(0, 1)) * f, e = (r(2, 1) + r(1, 2)) * f, g = (r(0, 2) + r(2, 0)) * f;
+  using Q = quaternion<T>;
+  return larger(is_last, larger(x_over_w, Q(half, a, b, c), Q(a, half, d, g)),
+                larger(z_over_y, Q(b, d, half, e), Q(c, g, e, half)));
+}
+
+} // namespace detail
+
 /// The unit quaternion of a rotation matrix, its largest component positive.
 /// \throws invalid_input where R Rᵀ differs from 1 by more than 1e-6 (1e-3 in single precision), or
 /// det R < 0
 template <class T>
 [[nodiscard]] quaternion<T> from_rotation_matrix(const matrix3<T>& r) {
-  if constexpr (Batched<T>) {
-    return detail::by_lane([](const auto& m) { return from_rotation_matrix(m); }, r);
-  } else {
-    using std::sqrt;
-    using real = real_type_t<T>;
-    const matrix3<real> values = r.unaryExpr([](const T& x) { return real(innermost(x)); });
-    const real defect =
-        (values * values.transpose() - matrix3<real>::Identity()).cwiseAbs().maxCoeff();
-    const real tolerance = std::numeric_limits<real>::digits > 24 ? real(1e-6) : real(1e-3);
-    if (!(defect <= tolerance) || values.determinant() < 0) {
-      std::ostringstream message;
-      message << "duet: from_rotation_matrix: not a rotation: |R R^T - 1| = " << defect
-              << ", det R = " << values.determinant();
-      throw invalid_input(message.str());
-    }
-    // 4q₀², 4q₁² … from the diagonal; dividing by the largest never loses digits.
-    const T s[4] = {1 + r(0, 0) + r(1, 1) + r(2, 2), 1 + r(0, 0) - r(1, 1) - r(2, 2),
-                    1 - r(0, 0) + r(1, 1) - r(2, 2), 1 - r(0, 0) - r(1, 1) + r(2, 2)};
-    const auto larger = [](bool second, const auto& a, const auto& b) {
-      return select(
-          second, [&] { return b; }, [&] { return a; });
-    };
-    const bool x_over_w = s[1] > s[0];
-    const bool z_over_y = s[3] > s[2];
-    const T first = larger(x_over_w, s[0], s[1]);
-    const T last = larger(z_over_y, s[2], s[3]);
-    const bool is_last = last > first;
-    const T half = sqrt(larger(is_last, first, last)) / 2;
-    const T f = 1 / (4 * half);
-    const T a = (r(2, 1) - r(1, 2)) * f, b = (r(0, 2) - r(2, 0)) * f, c = (r(1, 0) - r(0, 1)) * f;
-    const T d = (r(1, 0) + r(0, 1)) * f, e = (r(2, 1) + r(1, 2)) * f, g = (r(0, 2) + r(2, 0)) * f;
-    using Q = quaternion<T>;
-    return larger(is_last, larger(x_over_w, Q(half, a, b, c), Q(a, half, d, g)),
-                  larger(z_over_y, Q(b, d, half, e), Q(c, g, e, half)));
-  }
+  return detail::by_lane([](const auto& m) { return detail::quaternion_of(m); }, r);
 }
 
 } // namespace duet

@@ -4,7 +4,6 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/lift.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/taylor_lift.hpp>
 
 #include <array>
 #include <limits>

@@ -115,9 +115,8 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE auto weights(const std::array<std::size_t, W>& spans,
                                                 const P& u) const {
     const auto join = [&](const auto& get) DUET_INLINE_LAMBDA {
-      return joined_lanes(lane_width<int(W)>{}, get(spans_[0]), [&](int k) DUET_INLINE_LAMBDA {
-        return get(spans_[spans[std::size_t(k)]]);
-      });
+      return joined_lanes<W>([&](std::size_t k)
+                                 DUET_INLINE_LAMBDA { return get(spans_[spans[k]]); });
     };
     span_data<real_type_t<P>> data{
         0, join([](const auto& s) DUET_INLINE_LAMBDA { return s.middle; }), {}};

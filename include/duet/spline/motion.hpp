@@ -37,11 +37,16 @@ struct motion {
 };
 
 template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE auto lane(const motion<T>& m, int i) {
-  const auto value = lane(m.value, i);
-  return motion<typename std::decay_t<decltype(value)>::scalar_type>{
-      value, lane(m.velocity, i), lane(m.acceleration, i), lane(m.jerk, i)};
-}
+struct structure<motion<T>> {
+  using scalar = T;
+  template <class F, class... Rest>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto map(F&& f, const motion<T>& m, const Rest&... rest) {
+    const auto value = map_scalars(f, m.value, rest.value...);
+    return motion<typename std::decay_t<decltype(value)>::scalar_type>{
+        value, map_scalars(f, m.velocity, rest.velocity...),
+        map_scalars(f, m.acceleration, rest.acceleration...), map_scalars(f, m.jerk, rest.jerk...)};
+  }
+};
 
 /// The motion in time of a curve whose parameter u is driven by u(t): ω = δ u̇, ω̇ = δ′u̇² + δ ü,
 /// ω̈ = δ″u̇³ + 3 δ′u̇ü + δ u⃛, with the rates δ, δ′, δ″ of m by u in any one frame.

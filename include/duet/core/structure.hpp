@@ -1,0 +1,105 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// The one walk over what holds scalars: containers of any kind say how to reach them, and lanes,
+/// derivatives and constants of whole objects follow.
+
+namespace duet {
+
+/// Scalars inside an object: `structure<X>::map(f, x, y…)` is the same object with f of the scalars
+/// that stand at the same place of x and y…, from the first to the last (which is why results are
+/// made in braces); `structure<X>::scalar` is their type where they have one. Scalars, arrays,
+/// complex numbers and tuples are here; matrices of Eigen, rotations and poses add their own.
+template <class X>
+struct structure;
+
+template <class X>
+  requires(Scalar<X> || Arithmetic<X>)
+struct structure<X> {
+  using scalar = X;
+  template <class F, class... Rest>
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr auto map(F&& f, const X& x,
+                                                             const Rest&... rest) {
+    return f(x, rest...);
+  }
+};
+
+template <class T, std::size_t N>
+struct structure<std::array<T, N>> {
+  using scalar = typename structure<T>::scalar;
+  template <class F, class... Rest>
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr auto map(F&& f, const std::array<T, N>& x,
+                                                             const Rest&... rest) {
+    using result = std::decay_t<decltype(structure<T>::map(f, x[0], rest[0]...))>;
+    return [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
+      const auto at = [&](std::size_t i)
+                          DUET_INLINE_LAMBDA { return structure<T>::map(f, x[i], rest[i]...); };
+      return std::array<result, N>{at(I)...};
+    }
+    (std::make_index_sequence<N>{});
+  }
+};
+
+/// Complex numbers over duals. (Complex numbers over the reals are scalars themselves.)
+template <Infinitesimal T>
+struct structure<std::complex<T>> {
+  using scalar = T;
+  template <class F, class... Rest>
+  [[nodiscard]] static constexpr auto map(F&& f, const std::complex<T>& x, const Rest&... rest) {
+    using result = std::decay_t<decltype(f(x.real(), rest.real()...))>;
+    return std::complex<result>{f(x.real(), rest.real()...), f(x.imag(), rest.imag()...)};
+  }
+};
+
+template <class... T>
+struct structure<std::tuple<T...>> {
+  template <class F, class... Rest>
+  [[nodiscard]] static constexpr auto map(F&& f, const std::tuple<T...>& x, const Rest&... rest) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      const auto at = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+        return structure<std::tuple_element_t<K, std::tuple<T...>>>::map(f, std::get<K>(x),
+                                                                         std::get<K>(rest)...);
+      };
+      return std::tuple<decltype(at(std::integral_constant<std::size_t, I>{}))...>{
+          at(std::integral_constant<std::size_t, I>{})...};
+    }
+    (std::index_sequence_for<T...>{});
+  }
+};
+
+template <class A, class B>
+struct structure<std::pair<A, B>> {
+  template <class F, class... Rest>
+  [[nodiscard]] static constexpr auto map(F&& f, const std::pair<A, B>& x, const Rest&... rest) {
+    return std::pair<decltype(structure<A>::map(f, x.first, rest.first...)),
+                     decltype(structure<B>::map(f, x.second, rest.second...))>{
+        structure<A>::map(f, x.first, rest.first...),
+        structure<B>::map(f, x.second, rest.second...)};
+  }
+};
+
+/// Does X say where its scalars are?
+template <class X>
+concept Structured = requires {
+  sizeof(structure<X>);
+};
+
+/// f of every scalar of x, and of those that stand at the same place in what else is given.
+template <class F, class X, class... Rest>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto map_scalars(F&& f, const X& x,
+                                                            const Rest&... rest) {
+  return structure<X>::map(f, x, rest...);
+}
+
+} // namespace duet
