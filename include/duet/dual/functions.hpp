@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/algebra.hpp>
 #include <duet/dual/lift.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/rules.hpp>
