@@ -1,13 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/known_constant.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/mechanism/chain_step.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
 #include <duet/mechanism/half_turns.hpp>
 #include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/joint_step.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <concepts>
 #include <cstddef>
@@ -49,27 +53,20 @@ void require_size(const C& chain, const X& theta) {
   }
 }
 
+/// Where a link stands in the base.
 template <class S>
-using numeric_state = link_state<partly_known_quaternion<S, S, S, S>, partly_known_vector<S, S, S>>;
-
-template <class S, class State>
-[[nodiscard]] DUET_ALWAYS_INLINE numeric_state<S> as_numbers(const State& s) {
-  return {{number<S>(s.rotation.w), number<S>(s.rotation.x), number<S>(s.rotation.y),
-           number<S>(s.rotation.z)},
-          {number<S>(s.position.x), number<S>(s.position.y), number<S>(s.position.z)}};
-}
+using link_displacement = displacement<quaternion<S>, three_vector<S>>;
 
 /// From the I-th joint on, the table being known.
-template <bool WithRotation, class C, std::size_t I, class S, class State, class X, class Turns,
+template <bool WithRotation, class C, std::size_t I, class S, class Link, class X, class Turns,
           class Visit>
-[[nodiscard]] DUET_ALWAYS_INLINE numeric_state<S> walk_known(const State& state, const X& theta,
-                                                             const Turns& turns, std::size_t links,
-                                                             Visit&& visit) {
+[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
+walk_known(const Link& link, const X& theta, const Turns& turns, std::size_t links, Visit&& visit) {
   if constexpr (I == std::size_t(C::joints)) {
-    return as_numbers<S>(state);
+    return link;
   } else {
     if (I == links) {
-      return as_numbers<S>(state);
+      return link;
     }
     using step = known_step<typename C::arm, I>;
     const S x(vector_argument<X>::get(theta, Eigen::Index(I)));
@@ -77,10 +74,10 @@ template <bool WithRotation, class C, std::size_t I, class S, class State, class
     const auto turn = [&]() DUET_INLINE_LAMBDA { return turns[int(I)]; };
     if constexpr (!WithRotation) {
       if (I + 1 == links) {
-        return as_numbers<S>(after_joint<false>(state, step{}, x, turn, seen));
+        return after_joint<false>(link, step{}, x, turn, seen);
       }
     }
-    return walk_known<WithRotation, C, I + 1, S>(after_joint<true>(state, step{}, x, turn, seen),
+    return walk_known<WithRotation, C, I + 1, S>(after_joint<true>(link, step{}, x, turn, seen),
                                                  theta, turns, links, visit);
   }
 }
@@ -88,18 +85,18 @@ template <bool WithRotation, class C, std::size_t I, class S, class State, class
 /// Calls visit(i, step, axis, point on it) for the first `links` joints; returns where the frame of
 /// the last of them stands, its rotation only if asked for.
 template <bool WithRotation, class S, class C, class X, class Visit>
-[[nodiscard]] DUET_ALWAYS_INLINE numeric_state<S> walk(const C& chain, const X& theta, int links,
-                                                       Visit&& visit) {
+[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> walk(const C& chain, const X& theta,
+                                                           int links, Visit&& visit) {
   require_size(chain, theta);
   if constexpr (requires { typename C::arm; }) {
     const known_unit<1> one;
     const known_zero zero;
     return walk_known<WithRotation, C, 0, S>(
-        link_state{partly_known_quaternion{one, zero, zero, zero},
-                   partly_known_vector{zero, zero, zero}},
+        displacement{partly_known_quaternion{one, zero, zero, zero},
+                     three_vector{zero, zero, zero}},
         theta, half_turns<S, C::joints, X>(theta, C::joints, links), std::size_t(links), visit);
   } else {
-    numeric_state<S> state{{S(1), S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
+    link_displacement<S> link{quaternion<S>(S(1)), {S(0), S(0), S(0)}};
     const auto count = std::size_t(links);
     const half_turns<S, C::joints, X> turns(theta, chain.size(), links);
     for (std::size_t i = 0; i < count; ++i) {
@@ -108,32 +105,21 @@ template <bool WithRotation, class S, class C, class X, class Visit>
       const auto seen = [&](const auto&... a) DUET_INLINE_LAMBDA { visit(i, a...); };
       const auto turn = [&]() DUET_INLINE_LAMBDA { return turns[int(i)]; };
       if (!WithRotation && i + 1 == count) {
-        return as_numbers<S>(after_joint<false>(state, step, x, turn, seen));
+        return after_joint<false>(link, step, x, turn, seen);
       }
-      state = after_joint<true>(state, step, x, turn, seen);
+      link = after_joint<true>(link, step, x, turn, seen);
     }
-    return state;
+    return link;
   }
 }
 
-/// The rotation and the position of a frame attached to a link.
-template <class S>
-struct attached_state {
-  quaternion<S> rotation;
-  vector3<S> position;
-};
-
+/// Where a frame attached to a link stands.
 template <class S, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE attached_state<S> attach(const numeric_state<S>& link,
-                                                          const placement<T>& offset) {
-  const auto [q, p] = link;
-  const auto& r = offset.rotation;
-  const auto& t = offset.translation;
-  const auto shift = turned(q, partly_known_vector{t[0], t[1], t[2]});
-  const bool is_turned = !(r == quaternion<T>(T(1)));
-  const quaternion<S> rotation(q.w, q.x, q.y, q.z);
-  return {is_turned ? rotation * r : rotation,
-          vector3<S>(p.x + shift.x, p.y + shift.y, p.z + shift.z)};
+[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> attached(const link_displacement<S>& link,
+                                                               const placement<T>& offset) {
+  const bool is_turned = !(offset.rotation == quaternion<T>(T(1)));
+  return {is_turned ? link.rotation * offset.rotation : link.rotation,
+          link.point(components(offset.translation))};
 }
 
 inline constexpr auto visit_nothing = [](const auto&...) {};

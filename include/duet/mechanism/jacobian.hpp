@@ -1,10 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/mechanism/serial_chain.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
 
@@ -27,60 +31,69 @@ using joint_columns =
 template <class C, class X>
 using chain_jacobian = joint_columns<chain_scalar<C, X>, 6, C::joints>;
 
-/// The screws of the joints up to a link, as columns [v; ω]: in space, v at the fixed origin, or at
-/// `point` (N20: v + ω × p).
+/// A column [v; ω].
+template <class S>
+struct twist_column {
+  three_vector<S> v, omega;
+};
+
+template <class J>
+[[nodiscard]] DUET_ALWAYS_INLINE auto column_of(const J& m, Eigen::Index i) {
+  using vector = three_vector<typename J::Scalar>;
+  return twist_column<typename J::Scalar>{vector(m(0, i), m(1, i), m(2, i)),
+                                          vector(m(3, i), m(4, i), m(5, i))};
+}
+
+template <class J, class S, class... At>
+DUET_ALWAYS_INLINE void set_column(J& m, const twist_column<S>& twist, At... at) {
+  m(0, at...) = twist.v.x;
+  m(1, at...) = twist.v.y;
+  m(2, at...) = twist.v.z;
+  m(3, at...) = twist.omega.x;
+  m(4, at...) = twist.omega.y;
+  m(5, at...) = twist.omega.z;
+}
+
+/// The screws of the joints up to a link, as columns [v; ω]: in space, v at the fixed origin.
 template <bool WithRotation, class S, class C, class X, class J>
-[[nodiscard]] DUET_ALWAYS_INLINE numeric_state<S> spatial_columns(const C& chain, const X& theta,
-                                                                  int link, J& m) {
+[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
+spatial_columns(const C& chain, const X& theta, int link, J& m) {
   m.resize(6, chain.size());
-  const auto state = walk<WithRotation, S>(
+  const auto at_link = walk<WithRotation, S>(
       chain, theta, link,
-      [&](std::size_t column, const auto& step, const auto& z, const auto& p) DUET_INLINE_LAMBDA {
-        const auto i = Eigen::Index(column);
-        const S zero(0);
+      [&](std::size_t i, const auto& step, const auto& axis, const auto& point) DUET_INLINE_LAMBDA {
+        const three_vector<S> zero{S(0), S(0), S(0)};
+        twist_column<S> screw{zero, zero};
         if (step.turns()) {
-          m(0, i) = p.y * z.z - p.z * z.y;
-          m(1, i) = p.z * z.x - p.x * z.z;
-          m(2, i) = p.x * z.y - p.y * z.x;
-          m(3, i) = z.x;
-          m(4, i) = z.y;
-          m(5, i) = z.z;
-        } else {
-          m(0, i) = m(1, i) = m(2, i) = m(3, i) = m(4, i) = m(5, i) = zero;
+          screw = {cross(point, axis), axis};
         }
         if (step.slides()) {
-          m(0, i) += z.x * step.pitch();
-          m(1, i) += z.y * step.pitch();
-          m(2, i) += z.z * step.pitch();
+          screw.v = screw.v + step.pitch() * axis;
         }
+        set_column(m, screw, Eigen::Index(i));
       });
   for (Eigen::Index i = link; i < chain.size(); ++i) { // these joints move other links only
     m.col(i).setZero();
   }
-  return state;
+  return at_link;
 }
 
-/// Spatial columns [v; ω] with v taken at a point in space instead: v + ω × p.
+/// Spatial columns [v; ω] with v taken at a point in space instead: v + ω × p (N20).
 template <class S, class J>
-DUET_ALWAYS_INLINE void move_to_point(J& m, const vector3<S>& p) {
+DUET_ALWAYS_INLINE void move_to_point(J& m, const three_vector<S>& p) {
   for (Eigen::Index i = 0; i < m.cols(); ++i) {
-    m(0, i) += m(4, i) * p[2] - m(5, i) * p[1];
-    m(1, i) += m(5, i) * p[0] - m(3, i) * p[2];
-    m(2, i) += m(3, i) * p[1] - m(4, i) * p[0];
+    const auto twist = column_of(m, i);
+    set_column(m, twist_column<S>{twist.v + cross(twist.omega, p), twist.omega}, i);
   }
 }
 
 /// Columns in fixed axes turned into those of a body: Rᵀv, Rᵀω.
 template <class S, class J>
 DUET_ALWAYS_INLINE void turn_to_body(J& m, const quaternion<S>& rotation) {
-  const matrix3<S> r = rotation_matrix(rotation);
+  const rotation_of_many turn(conj(rotation));
   for (Eigen::Index i = 0; i < m.cols(); ++i) {
-    for (const Eigen::Index first : {Eigen::Index(0), Eigen::Index(3)}) {
-      const S x = m(first, i), y = m(first + 1, i), z = m(first + 2, i);
-      for (Eigen::Index k = 0; k < 3; ++k) {
-        m(first + k, i) = r(0, k) * x + r(1, k) * y + r(2, k) * z;
-      }
-    }
+    const auto twist = column_of(m, i);
+    set_column(m, twist_column<S>{turn(twist.v), turn(twist.omega)}, i);
   }
 }
 
@@ -97,14 +110,14 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At =
   const auto& on = detail::frame_on(chain, at);
   value_and_jacobian<dual_quaternion<S>, detail::chain_jacobian<C, X>> result;
   const auto link = detail::spatial_columns<true, S>(chain, theta, on.link, result.jacobian);
-  const auto state = detail::attach(link, on.offset);
+  const auto at_frame = detail::attached(link, on.offset);
   if constexpr (!std::same_as<Frame, spatial_frame>) {
-    detail::move_to_point(result.jacobian, state.position);
+    detail::move_to_point(result.jacobian, at_frame.translation);
   }
   if constexpr (std::same_as<Frame, body_frame>) {
-    detail::turn_to_body(result.jacobian, state.rotation);
+    detail::turn_to_body(result.jacobian, at_frame.rotation);
   }
-  result.value = detail::pose_of_unit(state.rotation, state.position);
+  result.value = detail::pose_of_unit(at_frame.rotation, at_frame.translation);
   return result;
 }
 

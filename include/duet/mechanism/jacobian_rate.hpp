@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/mechanism/jacobian.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
 
@@ -15,30 +16,10 @@ namespace duet {
 
 namespace detail {
 
-template <class S>
-struct velocity_pair {
-  vector3<S> v, w;
-};
-
-template <class J>
-[[nodiscard]] auto velocity_column(const J& m, Eigen::Index i) {
-  using S = typename J::Scalar;
-  return velocity_pair<S>{vector3<S>(m(0, i), m(1, i), m(2, i)),
-                          vector3<S>(m(3, i), m(4, i), m(5, i))};
-}
-
-template <class J, class S>
-DUET_ALWAYS_INLINE void set_column(J&& m, Eigen::Index i, const velocity_pair<S>& x) {
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    m(k, i) = x.v[k];
-    m(k + 3, i) = x.w[k];
-  }
-}
-
 /// ad(a) b = [ω_a × v_b + v_a × ω_b; ω_a × ω_b], the Lie bracket.
 template <class S>
-[[nodiscard]] velocity_pair<S> bracket(const velocity_pair<S>& a, const velocity_pair<S>& b) {
-  return {a.w.cross(b.v) + a.v.cross(b.w), a.w.cross(b.w)};
+[[nodiscard]] twist_column<S> bracket(const twist_column<S>& a, const twist_column<S>& b) {
+  return {cross(a.omega, b.v) + cross(a.v, b.omega), cross(a.omega, b.omega)};
 }
 
 /// ∂J_k/∂θ_j by the columns of J itself.
@@ -48,16 +29,16 @@ template <class S>
 /// joints before, ω_j × ω_k, and the tip moves with all, u the velocity of its origin: ω_j × u_k
 /// for j ≤ k, ω_k × u_j for j > k.
 template <class Frame, class S>
-[[nodiscard]] velocity_pair<S> column_by_joint(const velocity_pair<S>& k, const velocity_pair<S>& j,
-                                               bool j_is_before_k) {
-  const vector3<S> zero = vector3<S>::Zero();
+[[nodiscard]] twist_column<S> column_by_joint(const twist_column<S>& k, const twist_column<S>& j,
+                                              bool j_is_before_k) {
+  const three_vector<S> zero{S(0), S(0), S(0)};
   if constexpr (std::same_as<Frame, spatial_frame>) {
-    return j_is_before_k ? bracket(j, k) : velocity_pair<S>{zero, zero};
+    return j_is_before_k ? bracket(j, k) : twist_column<S>{zero, zero};
   } else if constexpr (std::same_as<Frame, body_frame>) {
-    return j_is_before_k ? velocity_pair<S>{zero, zero} : bracket(k, j);
+    return j_is_before_k ? twist_column<S>{zero, zero} : bracket(k, j);
   } else {
-    return j_is_before_k ? velocity_pair<S>{j.w.cross(k.v), j.w.cross(k.w)}
-                         : velocity_pair<S>{k.w.cross(j.v), zero};
+    return j_is_before_k ? twist_column<S>{cross(j.omega, k.v), cross(j.omega, k.omega)}
+                         : twist_column<S>{cross(k.omega, j.v), zero};
   }
 }
 
@@ -104,14 +85,10 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At =
   const Eigen::Index n = chain.size();
   chain_hessian<S, C::joints> h(n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    const auto column_j = detail::velocity_column(m, j);
+    const auto column_j = detail::column_of(m, j);
     for (Eigen::Index k = 0; k < n; ++k) {
-      const auto column =
-          detail::column_by_joint<Frame>(detail::velocity_column(m, k), column_j, j <= k);
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        h(i, k, j) = column.v[i];
-        h(i + 3, k, j) = column.w[i];
-      }
+      const auto column = detail::column_by_joint<Frame>(detail::column_of(m, k), column_j, j <= k);
+      detail::set_column(h, column, k, j);
     }
   }
   return h;
@@ -141,39 +118,39 @@ template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
   const Eigen::Index n = chain.size();
   result.rate.resize(6, n);
   // Twists of the joints on the side that counts, summed up on the way.
-  const vector3<S> zero = vector3<S>::Zero();
-  const auto add = [&](detail::velocity_pair<S>& sum, Eigen::Index i) {
-    const auto column = detail::velocity_column(m, i);
+  const detail::three_vector<S> zero{S(0), S(0), S(0)};
+  const auto add = [&](detail::twist_column<S>& sum, Eigen::Index i) {
+    const auto column = detail::column_of(m, i);
     const S rate(velocities::get(theta_dot, i));
-    sum.v += column.v * rate;
-    sum.w += column.w * rate;
+    sum = {sum.v + rate * column.v, sum.omega + rate * column.omega};
   };
   if constexpr (!std::same_as<Frame, body_frame>) {
-    detail::velocity_pair<S> before{zero, zero};
+    detail::twist_column<S> before{zero, zero};
     for (Eigen::Index k = 0; k < n; ++k) {
-      const auto column = detail::velocity_column(m, k);
+      const auto column = detail::column_of(m, k);
       if constexpr (std::same_as<Frame, spatial_frame>) {
-        detail::set_column(result.rate, k, detail::bracket(before, column));
+        detail::set_column(result.rate, detail::bracket(before, column), k);
         add(before, k);
       } else {
         add(before, k);
-        detail::set_column(
-            result.rate, k,
-            detail::velocity_pair<S>{before.w.cross(column.v), before.w.cross(column.w)});
+        detail::set_column(result.rate,
+                           detail::twist_column<S>{cross(before.omega, column.v),
+                                                   cross(before.omega, column.omega)},
+                           k);
       }
     }
   }
   if constexpr (!std::same_as<Frame, spatial_frame>) {
-    detail::velocity_pair<S> after{zero, zero};
+    detail::twist_column<S> after{zero, zero};
     for (Eigen::Index k = n - 1; k >= 0; --k) {
-      const auto column = detail::velocity_column(m, k);
+      const auto column = detail::column_of(m, k);
       if constexpr (std::same_as<Frame, body_frame>) {
-        detail::set_column(result.rate, k, detail::bracket(column, after));
+        detail::set_column(result.rate, detail::bracket(column, after), k);
       } else {
-        const vector3<S> more = column.w.cross(after.v);
-        for (Eigen::Index i = 0; i < 3; ++i) {
-          result.rate(i, k) += more[i];
-        }
+        const auto rate = detail::column_of(result.rate, k);
+        detail::set_column(
+            result.rate, detail::twist_column<S>{rate.v + cross(column.omega, after.v), rate.omega},
+            k);
       }
       add(after, k);
     }

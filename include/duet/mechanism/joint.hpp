@@ -2,9 +2,11 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/table_arithmetic.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <array>
 #include <limits>
@@ -57,13 +59,17 @@ struct placement {
   }
 
   [[nodiscard]] dual_quaternion<T> pose() const {
-    return detail::pose_of_unit(rotation,
-                                vector3<T>(translation[0], translation[1], translation[2]));
+    return detail::pose_of_unit(rotation, detail::components(translation));
   }
   /// First b, then a, in fixed axes.
   [[nodiscard]] friend constexpr placement operator*(const placement& a, const placement& b) {
-    return {a.rotation * b.rotation,
-            detail::sum(a.translation, detail::rotated(a.rotation, b.translation))};
+    const auto both = a.displacement() * b.displacement();
+    return {both.rotation, both.translation};
+  }
+
+  /// Both, to compute with.
+  [[nodiscard]] constexpr auto displacement() const {
+    return detail::displacement{rotation, detail::components(translation)};
   }
 };
 

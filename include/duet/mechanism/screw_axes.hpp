@@ -4,6 +4,7 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <array>
 #include <cstddef>
@@ -39,29 +40,29 @@ template <class T, std::size_t N>
 from_screws(const std::array<joint_screw<T>, N>& screws, const placement<T>& tip = {}) {
   std::array<joint<T>, N> joints{};
   std::array<placement<T>, N> link_frames{};
-  std::array<T, 3> before{};
+  detail::three_vector<T> before{};
   for (std::size_t i = 0; i < N; ++i) {
-    const auto& l = screws[i].direction;
-    const auto& m = screws[i].moment;
+    const auto l = detail::components(screws[i].direction);
+    const auto m = detail::components(screws[i].moment);
     // The joint's frame: the base's axes, at the point l × m of the axis that is nearest to the
     // base's origin.
-    std::array<T, 3> here{};
-    if (detail::dot(l, l) == 0) {
+    detail::three_vector<T> here{};
+    if (dot(l, l) == 0) {
       joints[i].kind = joint_kind::prismatic;
       joints[i].axis = m;
     } else {
       joints[i].axis = l;
-      here = detail::cross(l, m);
-      joints[i].pitch = detail::dot(l, m);
+      here = cross(l, m);
+      joints[i].pitch = dot(l, m);
       // Rounding of a moment is no pitch.
       const T noise = 64 * std::numeric_limits<T>::epsilon();
-      if (joints[i].pitch * joints[i].pitch > noise * noise * (1 + detail::dot(m, m))) {
+      if (joints[i].pitch * joints[i].pitch > noise * noise * (1 + dot(m, m))) {
         joints[i].kind = joint_kind::helical;
       }
     }
-    joints[i].origin.translation = detail::sum(here, detail::scaled(before, T(-1)));
+    joints[i].origin.translation = here - before;
     joints[i].limits = screws[i].limits;
-    link_frames[i].translation = detail::scaled(here, T(-1));
+    link_frames[i].translation = T(-1) * here;
     before = here;
   }
   return serial_chain<int(N), T>(joints, link_frames[N - 1] * tip, link_frames);

@@ -4,9 +4,9 @@
 #include <duet/core/errors.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/mechanism/chain_step.hpp>
 #include <duet/mechanism/chain_walk.hpp>
 #include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/joint_step.hpp>
 
 #include <Eigen/Core>
 
@@ -34,7 +34,7 @@ using joint_vector =
 }
 
 template <class T>
-[[noreturn]] void bad_axis(std::size_t i, const triple<T>& n) {
+[[noreturn]] void bad_axis(std::size_t i, const std::array<T, 3>& n) {
   std::ostringstream reason;
   reason << "the axis (" << n[0] << ", " << n[1] << ", " << n[2] << ") is no unit vector";
   bad_joint(i, reason.str());
@@ -56,7 +56,7 @@ constexpr void require_joint(const joint<T>& given, std::size_t i) {
     bad_rotation(i, given.origin.rotation);
   }
   const auto& n = given.axis;
-  if (given.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
+  if (given.kind != joint_kind::fixed && !is_nearly_one(squared_norm(n))) {
     bad_axis(i, n);
   }
   if (!(given.pitch - given.pitch == 0)) {
@@ -79,8 +79,9 @@ struct poses_of {
     using S = chain_scalar<C, X>;
     const C& chain = static_cast<const C&>(*this);
     const auto& frame = frame_on(chain, at);
-    const auto state = attach(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
-    return pose_of_unit(state.rotation, state.position);
+    const auto at_frame =
+        attached(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
+    return pose_of_unit(at_frame.rotation, at_frame.translation);
   }
 };
 
@@ -174,12 +175,12 @@ private:
     const auto i = std::size_t(size_);
     const T to_unit = detail::inverse_root_near_one(norm2(origin.rotation));
     const quaternion<T> a = origin.rotation * to_unit;
-    const auto n = detail::scaled(
-        given.axis, detail::inverse_root_near_one(detail::dot(given.axis, given.axis)));
-    detail::chain_step<T>& s = steps_[i];
+    const auto n = detail::inverse_root_near_one(detail::squared_norm(given.axis)) *
+                   detail::components(given.axis);
+    detail::joint_step<T>& s = steps_[i];
     s.a = a;
-    s.an = a * quaternion<T>(T(0), n[0], n[1], n[2]);
-    s.offset = origin.translation;
+    s.an = a * quaternion<T>(T(0), n.x, n.y, n.z);
+    s.offset = detail::components(origin.translation);
     s.axis = detail::cleaned_direction(detail::rotated(a, n));
     s.turns = given.turns();
     s.slides = given.slides();
@@ -191,7 +192,7 @@ private:
     ++size_;
   }
 
-  std::array<detail::chain_step<T>, capacity> steps_{};
+  std::array<detail::joint_step<T>, capacity> steps_{};
   std::array<placement<T>, capacity> frames_{};
   std::array<joint_kind, capacity> kinds_{};
   std::array<joint_limits<T>, capacity> limits_{};

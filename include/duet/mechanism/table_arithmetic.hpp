@@ -3,8 +3,8 @@
 
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/core/select.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <array>
 #include <concepts>
@@ -12,42 +12,19 @@
 #include <numbers>
 
 /// \file
-/// Arithmetic of the constants in a mechanism's table, which the compiler can do: Eigen's vectors
-/// and the functions of the standard library are not `constexpr`.
+/// Arithmetic of the constants in a mechanism's table, which the compiler can do: the functions of
+/// the standard library are not `constexpr`.
 
 namespace duet::detail {
 
 template <class T>
-using triple = std::array<T, 3>;
-
-template <class T>
-[[nodiscard]] constexpr T dot(const triple<T>& a, const triple<T>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <class T>
-[[nodiscard]] constexpr triple<T> cross(const triple<T>& a, const triple<T>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-template <class T>
-[[nodiscard]] constexpr triple<T> sum(const triple<T>& a, const triple<T>& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-template <class T>
-[[nodiscard]] constexpr triple<T> scaled(const triple<T>& a, const T& factor) {
-  return {a[0] * factor, a[1] * factor, a[2] * factor};
-}
-
-template <class T>
-[[nodiscard]] constexpr bool is_finite(const triple<T>& a) {
+[[nodiscard]] constexpr bool is_finite(const std::array<T, 3>& a) {
   return a[0] - a[0] == 0 && a[1] - a[1] == 0 && a[2] - a[2] == 0;
 }
 
-/// q v q*
 template <class T>
-[[nodiscard]] constexpr triple<T> rotated(const quaternion<T>& q, const triple<T>& v) {
-  const triple<T> u{q.x(), q.y(), q.z()};
-  const triple<T> twice = scaled(cross(u, v), T(2));
-  return sum(v, sum(scaled(twice, q.w()), cross(u, twice)));
+[[nodiscard]] constexpr T squared_norm(const std::array<T, 3>& a) {
+  return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
 }
 
 /// How far from 1 the squared norm of an axis or of a constant rotation may be, as they are written
@@ -70,12 +47,12 @@ template <class T>
 /// A unit vector of which what is 0 or ±1 but for rounding is so: the products of its components
 /// are then left out where the table is known to the compiler.
 template <class T>
-[[nodiscard]] constexpr triple<T> cleaned_direction(triple<T> n) {
+[[nodiscard]] constexpr three_vector<T> cleaned_direction(three_vector<T> n) {
   const T tolerance = 8 * std::numeric_limits<T>::epsilon();
-  for (T& x : n) {
+  for (T* x : {&n.x, &n.y, &n.z}) {
     for (const int value : {-1, 0, 1}) {
-      if (x - value <= tolerance && value - x <= tolerance) {
-        x = T(value);
+      if (*x - value <= tolerance && value - *x <= tolerance) {
+        *x = T(value);
       }
     }
   }

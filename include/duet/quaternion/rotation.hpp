@@ -7,6 +7,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Geometry>
 
@@ -24,14 +25,7 @@ template <class T, class U>
   requires Promotable<T, U>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<T, U>> rotate(const quaternion<T>& q,
                                                                  const vector3<U>& v) {
-  // v + 2 q₀ (q⃗ × v) + 2 q⃗ × (q⃗ × v)
-  using R = promote_t<T, U>;
-  const R tx = 2 * (q.y() * v[2] - q.z() * v[1]);
-  const R ty = 2 * (q.z() * v[0] - q.x() * v[2]);
-  const R tz = 2 * (q.x() * v[1] - q.y() * v[0]);
-  return {v[0] + q.w() * tx + (q.y() * tz - q.z() * ty),
-          v[1] + q.w() * ty + (q.z() * tx - q.x() * tz),
-          v[2] + q.w() * tz + (q.x() * ty - q.y() * tx)};
+  return detail::rotated(q, detail::three_vector<const U&>{v[0], v[1], v[2]});
 }
 
 /// Rotation by the angle a about the direction n of any length.
@@ -116,9 +110,7 @@ template <class T>
 
 namespace detail {
 
-/// v ↦ q v q* for several v, by the matrix of q. Its coefficients are numbers of their own, as
-/// Eigen would load two at once just after they were stored one by one, for which the processor
-/// waits.
+/// v ↦ q v q* for several v, by the matrix of q.
 template <class T>
 class rotation_of_many {
 public:
@@ -137,9 +129,9 @@ public:
     zy_ = yz + wx;
     zz_ = 1 - (xx + yy);
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> operator()(const vector3<T>& v) const {
-    return {xx_ * v[0] + xy_ * v[1] + xz_ * v[2], yx_ * v[0] + yy_ * v[1] + yz_ * v[2],
-            zx_ * v[0] + zy_ * v[1] + zz_ * v[2]};
+  [[nodiscard]] DUET_ALWAYS_INLINE three_vector<T> operator()(const three_vector<T>& v) const {
+    return {xx_ * v.x + xy_ * v.y + xz_ * v.z, yx_ * v.x + yy_ * v.y + yz_ * v.z,
+            zx_ * v.x + zy_ * v.y + zz_ * v.z};
   }
 
   [[nodiscard]] DUET_ALWAYS_INLINE matrix3<T> matrix() const {

@@ -3,7 +3,6 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/quaternion/quaternion.hpp>
 
 #include <type_traits>
 
@@ -27,9 +26,12 @@ inline constexpr bool is_known_zero = std::is_same_v<X, known_zero>;
 template <class X>
 concept Known = is_known_zero<X> || sign_if_unit<X>
 != 0;
+/// What a component may be multiplied by.
+template <class X>
+concept Factor = Known<X> || Scalar<X> || Arithmetic<X>;
 
 template <class A, class B>
-  requires(Known<A> || Known<B>)
+  requires((Known<A> || Known<B>)&&Factor<A>&& Factor<B>)
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, const B& b) {
   if constexpr (is_known_zero<A> || is_known_zero<B>) {
     return known_zero{};
@@ -56,7 +58,7 @@ template <Known A>
 }
 
 template <class A, class B>
-  requires(Known<A> || Known<B>)
+  requires((Known<A> || Known<B>)&&Factor<A>&& Factor<B>)
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, const B& b) {
   if constexpr (is_known_zero<A>) {
     return b;
@@ -70,7 +72,7 @@ template <class A, class B>
   }
 }
 template <class A, class B>
-  requires(Known<A> || Known<B>)
+  requires((Known<A> || Known<B>)&&Factor<A>&& Factor<B>)
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, const B& b) {
   if constexpr (is_known_zero<B>) {
     return a;
@@ -110,29 +112,5 @@ template <class S, class X>
     return S(x);
   }
 }
-
-/// A quaternion whose components are numbers or known constants.
-template <class W, class X, class Y, class Z>
-struct partly_known_quaternion {
-  W w;
-  X x;
-  Y y;
-  Z z;
-
-  template <class S>
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<S> as() const {
-    return {number<S>(w), number<S>(x), number<S>(y), number<S>(z)};
-  }
-};
-template <class X, class Y, class Z>
-struct partly_known_vector {
-  X x;
-  Y y;
-  Z z;
-};
-template <class W, class X, class Y, class Z>
-partly_known_quaternion(W, X, Y, Z) -> partly_known_quaternion<W, X, Y, Z>;
-template <class X, class Y, class Z>
-partly_known_vector(X, Y, Z) -> partly_known_vector<X, Y, Z>;
 
 } // namespace duet::detail

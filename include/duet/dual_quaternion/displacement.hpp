@@ -1,0 +1,81 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/known_constant.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+/// \file
+/// Rigid displacements as rotation and origin, of numbers and known constants: what chains are
+/// followed with.
+
+namespace duet::detail {
+
+/// A quaternion whose components are numbers or known constants.
+template <class W, class X, class Y, class Z>
+class partly_known_quaternion {
+public:
+  constexpr partly_known_quaternion(const W& w, const X& x, const Y& y, const Z& z)
+      : w_(w), x_(x), y_(y), z_(z) {}
+
+  [[nodiscard]] constexpr const W& w() const { return w_; }
+  [[nodiscard]] constexpr const X& x() const { return x_; }
+  [[nodiscard]] constexpr const Y& y() const { return y_; }
+  [[nodiscard]] constexpr const Z& z() const { return z_; }
+
+  template <class S>
+  DUET_ALWAYS_INLINE constexpr operator quaternion<S>() const {
+    return {number<S>(w_), number<S>(x_), number<S>(y_), number<S>(z_)};
+  }
+
+private:
+  W w_;
+  X x_;
+  Y y_;
+  Z z_;
+};
+
+template <class Q>
+inline constexpr bool is_partly_known = false;
+template <class W, class X, class Y, class Z>
+inline constexpr bool is_partly_known<partly_known_quaternion<W, X, Y, Z>> = true;
+
+/// N1
+template <class P, class Q>
+  requires(is_partly_known<P> || is_partly_known<Q>)
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const P& p, const Q& q) {
+  return partly_known_quaternion{p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
+                                 p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),
+                                 p.w() * q.y() - p.x() * q.z() + p.y() * q.w() + p.z() * q.x(),
+                                 p.w() * q.z() + p.x() * q.y() - p.y() * q.x() + p.z() * q.w()};
+}
+
+/// x ↦ R x + t. Where a frame stands in another: its axes and its origin.
+template <class Q, class V>
+struct displacement {
+  Q rotation;
+  V translation;
+
+  /// R x + t
+  template <class X, class Y, class Z>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto point(const three_vector<X, Y, Z>& x) const {
+    return translation + rotated(rotation, x);
+  }
+
+  template <class S>
+  DUET_ALWAYS_INLINE constexpr operator displacement<quaternion<S>, three_vector<S>>() const {
+    return {rotation, translation};
+  }
+};
+template <class Q, class V>
+displacement(Q, V) -> displacement<Q, V>;
+
+/// First b, then a, in fixed axes.
+template <class Q, class V, class P, class U>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const displacement<Q, V>& a,
+                                                          const displacement<P, U>& b) {
+  return displacement{a.rotation * b.rotation, a.point(b.translation)};
+}
+
+} // namespace duet::detail

@@ -1,0 +1,108 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/known_constant.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/dual/sine_cosine.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <cstddef>
+
+/// \file
+/// One joint after the other along a chain: what every function of a chain is made of.
+
+namespace duet::detail {
+
+/// A joint made ready for evaluation. With the joint's frame displaced by (a, l) from the one
+/// before, and n its axis, the next rotation is q (cos(θ/2) a + sin(θ/2) a n).
+template <class T>
+struct joint_step {
+  quaternion<T> a{T(1)};
+  quaternion<T> an{};
+  three_vector<T> offset{}; ///< l
+  three_vector<T> axis{};   ///< a n a*, the axis in the frame of the joint before
+  T pitch{};                ///< travel along the axis per unit of θ: 1 where it only slides
+  bool turns = true;
+  bool slides = false;
+};
+
+/// A step of a table in memory.
+template <class T>
+struct step_in_memory {
+  const joint_step<T>& s;
+
+  [[nodiscard]] bool turns() const { return s.turns; }
+  [[nodiscard]] bool slides() const { return s.slides; }
+  template <class S, class HalfTurn>
+  [[nodiscard]] DUET_ALWAYS_INLINE quaternion<S> rotation(const HalfTurn& half_turn) const {
+    if (!s.turns) {
+      return quaternion<S>(s.a);
+    }
+    const sine_cosine<S> half = half_turn();
+    const S &s_ = half.sine, &c = half.cosine;
+    return {c * s.a.w() + s_ * s.an.w(), c * s.a.x() + s_ * s.an.x(), c * s.a.y() + s_ * s.an.y(),
+            c * s.a.z() + s_ * s.an.z()};
+  }
+  [[nodiscard]] const three_vector<T>& offset() const { return s.offset; }
+  [[nodiscard]] const three_vector<T>& axis() const { return s.axis; }
+  [[nodiscard]] T pitch() const { return s.pitch; }
+};
+
+/// The I-th step of a table that the compiler knows.
+template <class Arm, std::size_t I>
+struct known_step {
+  static constexpr const auto& s() { return Arm::chain.steps()[I]; }
+
+  [[nodiscard]] static constexpr bool turns() { return s().turns; }
+  [[nodiscard]] static constexpr bool slides() { return s().slides; }
+  template <class S, class HalfTurn>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const HalfTurn& half_turn) {
+    const auto aw = known([] { return s().a.w(); });
+    const auto ax = known([] { return s().a.x(); });
+    const auto ay = known([] { return s().a.y(); });
+    const auto az = known([] { return s().a.z(); });
+    if constexpr (!turns()) {
+      return partly_known_quaternion{aw, ax, ay, az};
+    } else {
+      const sine_cosine<S> half = half_turn();
+      const S &s_ = half.sine, &c = half.cosine;
+      return partly_known_quaternion{c * aw + s_ * known([] { return s().an.w(); }),
+                                     c * ax + s_ * known([] { return s().an.x(); }),
+                                     c * ay + s_ * known([] { return s().an.y(); }),
+                                     c * az + s_ * known([] { return s().an.z(); })};
+    }
+  }
+  [[nodiscard]] static constexpr auto offset() {
+    return three_vector{known([] { return s().offset.x; }), known([] { return s().offset.y; }),
+                        known([] { return s().offset.z; })};
+  }
+  [[nodiscard]] static constexpr auto axis() {
+    return three_vector{known([] { return s().axis.x; }), known([] { return s().axis.y; }),
+                        known([] { return s().axis.z; })};
+  }
+  [[nodiscard]] static constexpr auto pitch() { return s().pitch; }
+};
+
+/// The link after one more joint. `visit(step, axis, position)` is called with the joint's axis in
+/// space and a point on it. `WithRotation`: is the rotation after the joint asked for?
+template <bool WithRotation, class Link, class Step, class S, class HalfTurn, class Visit>
+[[nodiscard]] DUET_ALWAYS_INLINE auto after_joint(const Link& link, const Step& step,
+                                                  const S& theta, const HalfTurn& half_turn,
+                                                  Visit&& visit) {
+  three_vector<S> p = link.point(step.offset());
+  const three_vector<S> axis = rotated(link.rotation, step.axis());
+  if (step.slides()) {
+    p = p + theta * step.pitch() * axis;
+  }
+  visit(step, axis, p);
+  if constexpr (WithRotation) {
+    return displacement{link.rotation * step.template rotation<S>(half_turn), p};
+  } else {
+    return displacement{link.rotation, p};
+  }
+}
+
+} // namespace duet::detail

@@ -1,0 +1,85 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/known_constant.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <array>
+#include <type_traits>
+
+/// \file
+/// Three components in registers, which inside duet vectors are computed with; users pass and get
+/// those of Eigen. Eigen's expressions are not `constexpr`, and would load two coefficients at once
+/// just after they were stored one by one, for which the processor waits.
+
+namespace duet::detail {
+
+/// (x, y, z): three of a scalar, or of numbers and known constants.
+template <class X, class Y = X, class Z = X>
+struct three_vector {
+  X x;
+  Y y;
+  Z z;
+
+  /// All of one scalar.
+  template <class S>
+  DUET_ALWAYS_INLINE constexpr operator three_vector<S>() const {
+    return {number<S>(x), number<S>(y), number<S>(z)};
+  }
+  DUET_ALWAYS_INLINE operator vector3<std::remove_cvref_t<X>>() const { return {x, y, z}; }
+  constexpr operator std::array<X, 3>() const { return {x, y, z}; }
+};
+template <class X, class Y, class Z>
+three_vector(X, Y, Z) -> three_vector<X, Y, Z>;
+
+/// The components of a user's vector.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE three_vector<T> components(const vector3<T>& v) {
+  return {v[0], v[1], v[2]};
+}
+template <class T>
+[[nodiscard]] constexpr three_vector<T> components(const std::array<T, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+template <class X, class Y, class Z, class U, class V, class W>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const three_vector<X, Y, Z>& a,
+                                                          const three_vector<U, V, W>& b) {
+  return three_vector{a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class X, class Y, class Z, class U, class V, class W>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const three_vector<X, Y, Z>& a,
+                                                          const three_vector<U, V, W>& b) {
+  return three_vector{a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <Factor S, class X, class Y, class Z>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const S& s,
+                                                          const three_vector<X, Y, Z>& a) {
+  return three_vector{s * a.x, s * a.y, s * a.z};
+}
+
+template <class X, class Y, class Z, class U, class V, class W>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto dot(const three_vector<X, Y, Z>& a,
+                                                    const three_vector<U, V, W>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class X, class Y, class Z, class U, class V, class W>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto cross(const three_vector<X, Y, Z>& a,
+                                                      const three_vector<U, V, W>& b) {
+  return three_vector{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// q v q* of a unit quaternion: v + 2 q₀ (q⃗ × v) + 2 q⃗ × (q⃗ × v).
+template <class Q, class X, class Y, class Z>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto rotated(const Q& q,
+                                                        const three_vector<X, Y, Z>& v) {
+  const auto tx = 2 * (q.y() * v.z - q.z() * v.y);
+  const auto ty = 2 * (q.z() * v.x - q.x() * v.z);
+  const auto tz = 2 * (q.x() * v.y - q.y() * v.x);
+  return three_vector{v.x + q.w() * tx + (q.y() * tz - q.z() * ty),
+                      v.y + q.w() * ty + (q.z() * tx - q.x() * tz),
+                      v.z + q.w() * tz + (q.x() * ty - q.y() * tx)};
+}
+
+} // namespace duet::detail
