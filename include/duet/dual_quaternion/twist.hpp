@@ -8,7 +8,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/tangent.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
 
@@ -49,8 +49,8 @@ namespace detail {
 /// A twist of `frame::spatial` in `frame::hybrid`: v + ω × t, where t is the origin of the body.
 template <class A, class T>
 [[nodiscard]] vector6<T> hybrid_twist(const dual_quaternion<A>& a, vector6<T> spatial) {
-  spatial.template head<3>() +=
-      cross_product(vector3<T>(spatial.template tail<3>()), translation(a));
+  const three_vector<T> omega{spatial[3], spatial[4], spatial[5]};
+  spatial.template head<3>() += cross(omega, components(translation(a))).eigen();
   return spatial;
 }
 

@@ -40,8 +40,8 @@ struct twist_column {
 template <class J>
 [[nodiscard]] DUET_ALWAYS_INLINE auto column_of(const J& m, Eigen::Index i) {
   using vector = three_vector<typename J::Scalar>;
-  return twist_column<typename J::Scalar>{vector(m(0, i), m(1, i), m(2, i)),
-                                          vector(m(3, i), m(4, i), m(5, i))};
+  return twist_column<typename J::Scalar>{vector{m(0, i), m(1, i), m(2, i)},
+                                          vector{m(3, i), m(4, i), m(5, i)}};
 }
 
 template <class J, class S, class... At>

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/dual/stumpff_sequence.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <array>
 #include <cstddef>
@@ -93,18 +93,20 @@ half_body_rates(const jacobian_coefficients<Given, T>& jacobian, const vector3<T
   static_assert(Count <= Given);
   using R = real_type_t<S>;
   // With dx = ẋ: p = x·ẋ; s = x·x, ṡ = 2p; y = x × ẋ.
-  std::array<vector3<S>, Count> dx, y;
+  const three_vector<T> at = components(x);
+  std::array<three_vector<S>, Count> of, dx, y;
   std::array<S, Count> p, s;
   each_index<S, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
-    dx[m] = m == 0 ? rates[0] : scaled(S(R(m + 1)), rates[m]);
-    p[m] = inner_product(x, dx[m]);
-    y[m] = cross_product(x, dx[m]);
+    of[m] = components(rates[m]);
+    dx[m] = m == 0 ? of[0] : S(R(m + 1)) * of[m];
+    p[m] = dot(at, dx[m]);
+    y[m] = cross(at, dx[m]);
     each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
       if (j < m) {
         const std::size_t k = m - 1 - j; // x_{j+1} and ẋ_k = (k+1) x_{k+1}
-        p[m] = p[m] + inner_product(rates[j], dx[k]);
+        p[m] = p[m] + dot(of[j], dx[k]);
         if (j != k) {
-          y[m] = sum_of(y[m], cross_product(rates[j], dx[k]));
+          y[m] = y[m] + cross(of[j], dx[k]);
         }
       }
     });
@@ -116,22 +118,19 @@ half_body_rates(const jacobian_coefficients<Given, T>& jacobian, const vector3<T
   const auto b = composed(jacobian.b, s);
   const auto c = composed(jacobian.c, s);
   std::array<S, Count> k; // c p
-  std::array<vector3<S>, Count> w;
+  std::array<vector3<S>, Count> result;
   each_index<S, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
     k[m] = c[0] * p[m];
-    w[m] = scaled(a[0], dx[m]);
-    w[m] = sum_of(w[m], scaled(S(-b[0]), y[m]));
+    three_vector<S> w = a[0] * dx[m] + S(-b[0]) * y[m];
     each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
       if (j > 0 && j <= m) {
         k[m] = k[m] + c[j] * p[m - j];
-        w[m] = sum_of(w[m], scaled(a[j], dx[m - j]));
-        w[m] = sum_of(w[m], scaled(S(-b[j]), y[m - j]));
-        w[m] = sum_of(w[m], scaled(k[m - j], rates[j - 1]));
+        w = w + a[j] * dx[m - j] + S(-b[j]) * y[m - j] + k[m - j] * of[j - 1];
       }
     });
-    w[m] = sum_of(w[m], scaled(k[m], x));
+    result[m] = w + k[m] * at;
   });
-  return w;
+  return result;
 }
 
 } // namespace duet::detail

@@ -28,6 +28,7 @@ struct three_vector {
     return {number<S>(x), number<S>(y), number<S>(z)};
   }
   DUET_ALWAYS_INLINE operator vector3<std::remove_cvref_t<X>>() const { return {x, y, z}; }
+  [[nodiscard]] DUET_ALWAYS_INLINE vector3<std::remove_cvref_t<X>> eigen() const { return *this; }
   constexpr operator std::array<X, 3>() const { return {x, y, z}; }
 };
 template <class X, class Y, class Z>

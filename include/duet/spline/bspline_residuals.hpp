@@ -10,7 +10,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
 
 #include <Eigen/Core>
@@ -157,7 +157,7 @@ private:
   }
 
   [[nodiscard]] vector3<T> part(std::size_t i, std::size_t j, const last_span& last) const {
-    return scaled(weights_[i][j], last.shared.increments[j]);
+    return weights_[i][j] * components(last.shared.increments[j]);
   }
 
   /// log(S* Q), the shorter way.
@@ -166,7 +166,7 @@ private:
     return log(innermost(error.w()) < 0 ? element(-error) : error).vec();
   }
 
-  [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return scaled(R(2), half); }
+  [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return R(2) * components(half); }
   [[nodiscard]] static matrix3<T> product(const matrix3<T>& a, const matrix3<T>& b) {
     return a.lazyProduct(b);
   }

@@ -6,7 +6,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/block_tridiagonal.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
@@ -103,10 +103,10 @@ public:
   [[nodiscard]] cubic_equations scaled(const R& lambda) const {
     cubic_equations result = *this;
     for (quaternion<T>& turn : result.turns_) {
-      turn = duet::exp(detail::scaled(lambda, log_vector(turn, "interpolate")));
+      turn = duet::exp((lambda * components(log_vector(turn, "interpolate"))).eigen());
     }
     for (vector3<T>& rate : result.end_rates_) {
-      rate = detail::scaled(lambda, rate);
+      rate = lambda * components(rate);
     }
     return result;
   }
@@ -140,9 +140,9 @@ public:
     // as small as the turn, and keeps all its digits.
     std::array<vector3<D>, 3> turned;
     for (std::size_t j = 0; j < 3; ++j) {
-      turned[j] = detail::scaled(a.change[j], omega[j]);
+      turned[j] = a.change[j] * components(omega[j]);
       if (j > 0 && a.from[j] != 0) {
-        const quaternion<D> back = duet::exp(detail::scaled(R(-a.from[j]), omega[j]));
+        const quaternion<D> back = duet::exp((R(-a.from[j]) * components(omega[j])).eigen());
         for (std::size_t k = 0; k < j; ++k) {
           turned[k] = rotate(back, turned[k]);
         }
@@ -161,7 +161,7 @@ public:
         for (R& weight : weights) {
           weight *= end.scale;
         }
-        return {weights, detail::scaled(end.scale, end_rates_[row == 0 ? 0 : 1])};
+        return {weights, end.scale * components(end_rates_[row == 0 ? 0 : 1])};
       }
       --row;
     }
@@ -242,7 +242,7 @@ private:
       const arc& a = arcs_[i];
       if (a.span == result.size()) {
         const auto back = [&](std::size_t j) {
-          return duet::exp(detail::scaled(R(-a.from[j]), increments[a.span + 1 + j]));
+          return duet::exp((R(-a.from[j]) * components(increments[a.span + 1 + j])).eigen());
         };
         result.push_back(normalized(data_[i] * back(1) * back(0)));
       }
@@ -277,9 +277,8 @@ private:
                                         const std::array<vector3<D>, 3>& omega) const {
     const curve_end end = end_of_curve(at_start);
     const auto m = product_of_exponentials<2>(quaternion<D>(D(1)), omega.data(), end.weights);
-    const vector3<D> rate = end_rates_[at_start ? 0 : 1].template cast<D>();
-    return detail::scaled(
-        end.scale, vector3<D>((kind_ == end_kind::velocity ? m.velocity : m.acceleration) - rate));
+    return end.scale * ((kind_ == end_kind::velocity ? m.velocity : m.acceleration) -
+                        components(end_rates_[at_start ? 0 : 1]));
   }
 
   end_kind kind_;

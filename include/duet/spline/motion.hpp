@@ -10,7 +10,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
 
@@ -71,17 +71,18 @@ namespace detail {
 template <class T>
 struct half_motion {
   quaternion<T> value;
-  vector3<T> velocity;
-  vector3<T> acceleration;
-  vector3<T> jerk;
+  three_vector<T> velocity;
+  three_vector<T> acceleration;
+  three_vector<T> jerk;
 };
 
 /// One step of the recursion below, with the i-th factor e.
 template <int Rates, class T, class U, class Weights>
 DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const quaternion<T>& e,
                                        const vector3<U>* omega, const Weights& b) {
-  const auto times_omega = [&](const auto& factor)
-                               DUET_INLINE_LAMBDA { return vector3<T>(scaled(factor, omega[i])); };
+  const auto times_omega = [&](const auto& factor) DUET_INLINE_LAMBDA {
+    return three_vector<T>(factor * components(omega[i]));
+  };
   if (i > 0) {
     m.value = m.value * e;
   }
@@ -97,19 +98,20 @@ DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const q
       return;
     }
     const quaternion<T> back = conj(e);
-    vector3<T> w_hat, a_hat, j_hat;
+    [[maybe_unused]] const real_type_t<T> two(2);
+    three_vector<T> w_hat, a_hat, j_hat;
     if (i == 1) { // all rates are multiples of one vector, which e* … e turns once
-      const vector3<T> turned = rotate(back, omega[0]);
-      w_hat = scaled(b[1][0], turned);
+      const three_vector<T> turned = rotated(back, components(omega[0]));
+      w_hat = b[1][0] * turned;
       if constexpr (Rates >= 2) {
-        a_hat = scaled(b[2][0], turned);
+        a_hat = b[2][0] * turned;
       }
       if constexpr (Rates >= 3) {
-        j_hat = scaled(b[3][0], turned);
+        j_hat = b[3][0] * turned;
       }
     } else {
       if constexpr (Rates == 1) {
-        w_hat = rotate(back, m.velocity);
+        w_hat = rotated(back, m.velocity);
       } else {
         const rotation_of_many turn(back);
         w_hat = turn(m.velocity);
@@ -119,14 +121,13 @@ DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const q
         }
       }
     }
-    m.velocity = sum_of(w_hat, times_omega(b[1][i]));
+    m.velocity = w_hat + times_omega(b[1][i]);
     if constexpr (Rates >= 2) {
-      const vector3<T> turn = cross_product(w_hat, times_omega(b[1][i]));
-      m.acceleration = sum_of<2>(sum_of(a_hat, times_omega(b[2][i])), turn);
+      const auto turn = cross(w_hat, times_omega(b[1][i]));
+      m.acceleration = a_hat + times_omega(b[2][i]) + two * turn;
       if constexpr (Rates >= 3) {
-        const vector3<T> sum = sum_of<2>(vector3<T>(scaled(b[2][i], w_hat)),
-                                         vector3<T>(scaled(b[1][i], sum_of(a_hat, turn))));
-        m.jerk = sum_of<2>(sum_of(j_hat, times_omega(b[3][i])), cross_product(sum, omega[i]));
+        const auto sum = b[2][i] * w_hat + two * (b[1][i] * (a_hat + turn));
+        m.jerk = j_hat + times_omega(b[3][i]) + two * cross(sum, components(omega[i]));
       }
     }
   }
@@ -176,20 +177,18 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
 template <class T>
 void follow_origin(motion<T>& m) {
   using rate = typename motion<T>::rate_type;
-  using vector = vector3<typename rate::Scalar>;
+  using vector = three_vector<typename rate::Scalar>;
   const rotation_of_many turn(rotation(m.value));
-  const auto linear = [](const rate& r) { return vector(r.template head<3>()); };
-  const auto angular = [](const rate& r) { return vector(r.template tail<3>()); };
+  const auto linear = [](const rate& r) { return vector{r[0], r[1], r[2]}; };
+  const auto angular = [](const rate& r) { return vector{r[3], r[4], r[5]}; };
   const vector v = linear(m.velocity), omega = angular(m.velocity);
   const vector v_dot = linear(m.acceleration), alpha = angular(m.acceleration);
-  const vector across = omega.cross(v);
+  const vector across = cross(omega, v);
   const auto set = [&](rate& r, const vector& along, const vector& about) {
-    r.template head<3>() = turn(along);
-    r.template tail<3>() = turn(about);
+    r << turn(along).eigen(), turn(about).eigen();
   };
-  set(m.jerk,
-      linear(m.jerk) + alpha.cross(v) + vector(2 * omega.cross(v_dot)) + omega.cross(across),
-      angular(m.jerk) + omega.cross(alpha));
+  set(m.jerk, linear(m.jerk) + cross(alpha, v) + 2 * cross(omega, v_dot) + cross(omega, across),
+      angular(m.jerk) + cross(omega, alpha));
   set(m.acceleration, v_dot + across, alpha);
   set(m.velocity, v, omega);
 }
@@ -207,20 +206,21 @@ template <class T, class Frame>
       return is_spatial(Frame{});
     }
   }();
-  if constexpr (is_turned) {
-    m.jerk = sum_of<2>(m.jerk, cross_product(m.velocity, m.acceleration));
-    m.velocity = rotate(m.value, m.velocity);
-    m.acceleration = rotate(m.value, m.acceleration);
-    m.jerk = rotate(m.value, m.jerk);
-  }
   const real_type_t<T> two(2);
-  m.velocity = scaled(two, m.velocity);
-  m.acceleration = scaled(two, m.acceleration);
-  m.jerk = scaled(two, m.jerk);
+  if constexpr (is_turned) {
+    m.jerk = m.jerk + two * cross(m.velocity, m.acceleration);
+    m.velocity = rotated(m.value, m.velocity);
+    m.acceleration = rotated(m.value, m.acceleration);
+    m.jerk = rotated(m.value, m.jerk);
+  }
+  m.velocity = two * m.velocity;
+  m.acceleration = two * m.acceleration;
+  m.jerk = two * m.jerk;
   if constexpr (!is_pose) {
     return {m.value, m.velocity, m.acceleration, m.jerk};
   } else {
-    motion<T> result{m.value, twist_of(m.velocity), twist_of(m.acceleration), twist_of(m.jerk)};
+    motion<T> result{m.value, twist_of(m.velocity.eigen()), twist_of(m.acceleration.eigen()),
+                     twist_of(m.jerk.eigen())};
     if constexpr (is_hybrid) {
       follow_origin(result);
     }

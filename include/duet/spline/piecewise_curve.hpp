@@ -5,7 +5,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/location.hpp>
 #include <duet/spline/motion.hpp>
 
@@ -68,10 +68,10 @@ public:
     using D = typename Q::scalar_type;
     const auto& w = m.velocity;
     const auto& a = m.acceleration;
-    const D square = w.squaredNorm();
-    const vector3<D> third = m.jerk - w * square + detail::cross_product(w, a);
+    const D square = dot(w, w);
+    const auto third = m.jerk - square * w + cross(w, a);
     return std::array<Q, 4>{m.value, m.value * Q(D(0), w), m.value * Q(-square, a),
-                            m.value * Q(-3 * w.dot(a), third)};
+                            m.value * Q(-3 * dot(w, a), third)};
   }
 
 private:
@@ -111,9 +111,7 @@ private:
     }
     auto m = curve().template on_span<Rates>(span, u);
     if (Rates > 0 && is_at_rest) [[unlikely]] {
-      m.velocity.setZero();
-      m.acceleration.setZero();
-      m.jerk.setZero();
+      m.velocity = m.acceleration = m.jerk = {};
     }
     return m;
   }

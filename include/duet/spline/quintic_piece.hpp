@@ -3,7 +3,7 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/rotation_vector_segment.hpp>
 
 #include <array>
@@ -69,10 +69,11 @@ public:
     const factors a = factors_of_start(l), b = factors_of_end(l);
     coefficients<T> result;
     for (std::size_t m = 0; m < count; ++m) {
-      result[m] = m > 0 ? vector3<T>(vector3<T>::Constant(T(R(0)))) : scaled(R(-1 / h_), d_);
+      three_vector<T> sum = R(m > 0 ? 0 : -1 / h_) * components(d_);
       for (std::size_t k = 0; k < count; ++k) {
-        result[m] = sum_of(result[m], sum_of(scaled(a[m][k], e.x[k]), scaled(b[m][k], e.y[k])));
+        sum = sum + (a[m][k] * components(e.x[k]) + b[m][k] * components(e.y[k]));
       }
+      result[m] = sum;
     }
     return result;
   }
@@ -84,7 +85,7 @@ public:
     const R per_h = 1 / h_;
     const vector3<S> w =
         segment_.template rates_at_start<count + 1>(at_identity, with_zero(e.x))[count];
-    return {sum_of(w, scaled(R(-per_h), e.x[3])), scaled(per_h, e.y[3])};
+    return {components(w) + R(-per_h) * components(e.x[3]), per_h * components(e.y[3])};
   }
   /// The fifth rate at the end: what the rates at the start and those at the end contribute.
   template <class S>
@@ -92,9 +93,10 @@ public:
     const R per_h = 1 / h_;
     const vector3<S> w = segment_.template rates_at_end<count + 1>(with_zero(e.y))[count];
     const auto turned = [&](const vector3<S>& x, const R& factor) {
-      return segment_.template rates_at_end<1>(std::array<vector3<S>, 1>{scaled(factor, x)})[0];
+      return segment_.template rates_at_end<1>(
+          std::array<vector3<S>, 1>{factor * components(x)})[0];
     };
-    return {turned(e.x[3], R(-per_h)), sum_of(w, turned(e.y[3], per_h))};
+    return {turned(e.x[3], R(-per_h)), components(w) + components(turned(e.y[3], per_h))};
   }
 
   /// x_0 … x_5.

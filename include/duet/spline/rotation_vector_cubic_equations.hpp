@@ -4,7 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/curve_ends.hpp>
 #include <duet/spline/curve_equations.hpp>
 #include <duet/spline/rotation_vector_ends.hpp>
@@ -62,11 +62,11 @@ public:
   [[nodiscard]] rotation_vector_cubic_equations scaled(const R& lambda) const {
     rotation_vector_cubic_equations result = *this;
     for (vector3<T>& turn : result.table_.turns) {
-      turn = detail::scaled(lambda, turn);
+      turn = lambda * components(turn);
     }
     for (auto& end : result.ends_.given) {
       for (vector3<T>& rate : end) {
-        rate = detail::scaled(lambda, rate);
+        rate = lambda * components(rate);
       }
     }
     result.make_pieces();

@@ -4,7 +4,6 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
 #include <duet/spline/curve_ends.hpp>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/block_band_lu.hpp>
 #include <duet/spline/curve_ends.hpp>
 #include <duet/spline/curve_equations.hpp>
@@ -69,11 +69,11 @@ public:
   [[nodiscard]] rotation_vector_quintic_equations scaled(const R& lambda) const {
     rotation_vector_quintic_equations result = *this;
     for (vector3<T>& turn : result.table_.turns) {
-      turn = detail::scaled(lambda, turn);
+      turn = lambda * components(turn);
     }
     for (auto& end : result.ends_.given) {
       for (vector3<T>& rate : end) {
-        rate = detail::scaled(lambda, rate);
+        rate = lambda * components(rate);
       }
     }
     result.make_pieces();
@@ -120,7 +120,7 @@ public:
         const auto after = pieces_[knot].last_rate_at_start(at_identity_, taylor<T>(knot, rates));
         left = before[0] + before[1] - after[0] - after[1];
       }
-      r.back().template segment<3>(end_row(end, k)) = detail::scaled(scale, left);
+      r.back().template segment<3>(end_row(end, k)) = (scale * components(left)).eigen();
     });
   }
 

@@ -5,7 +5,7 @@
 #include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/exponential_rates.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <algorithm>
 #include <array>
@@ -30,17 +30,14 @@ template <std::size_t Count, class T, std::size_t Size, class S>
   std::array<vector3<D>, Count> result;
   each_index<D, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
     // Σ_k binomial(k, m) c_k t^{k−m}, binomials as products of the quotients of neighbours
-    if constexpr (std::is_same_v<D, T>) {
-      result[m] = c[Size - 1];
-    } else {
-      result[m] = c[Size - 1].template cast<D>();
-    }
+    three_vector<D> sum = components(c[Size - 1]);
     each_index<D, Size - 1>([&](std::size_t done) DUET_INLINE_LAMBDA {
       const std::size_t k = Size - 1 - done;
       if (k > m) {
-        result[m] = sum_of(scaled(D(t * (R(k) / R(k - m))), result[m]), c[k - 1]);
+        sum = D(t * (R(k) / R(k - m))) * sum + components(c[k - 1]);
       }
     });
+    result[m] = sum;
   });
   return result;
 }
@@ -67,8 +64,8 @@ public:
   using identity_coefficients = jacobian_coefficients<std::size_t(Order) - 1, real>;
 
   rotation_vector_segment(const real& h, const vector3<T>& d)
-      : h_(h), d_(d), jacobian_(inner_product(d, d)),
-        inverse_(right_jacobian_inverse(vector3<T>(scaled(real(2), d)))) {}
+      : h_(h), d_(d), jacobian_(dot(components(d), components(d))),
+        inverse_(right_jacobian_inverse((real(2) * components(d)).eigen())) {}
 
   /// x_0 … x_{k−1} about the start, where x_0 = 0, over the scalar S of the rates, T or above.
   template <class S>
@@ -79,7 +76,7 @@ public:
     x[1] = start[0];
     const real per_h = 1 / h_;
     const vector3<S> v = times_inverse(end[0]); // ẋ at the end
-    const vector3<T> mean = scaled(per_h, d_);
+    const vector3<T> mean = per_h * components(d_);
     // What is missing to go straight on at the start's rates, in powers of h.
     if constexpr (Order == 4) {
       for (int i = 0; i < 3; ++i) {

@@ -6,7 +6,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_rates.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/motion.hpp>
@@ -146,16 +146,17 @@ private:
     const auto x = detail::taylor_shift<std::size_t(Rates) + 1>(piece, t);
     detail::half_motion<D> m{start * duet::exp(x[0]), {}, {}, {}};
     if constexpr (Rates > 0) {
-      const detail::jacobian_coefficients<Rates, D> jacobian(detail::inner_product(x[0], x[0]));
+      const auto at = detail::components(x[0]);
+      const detail::jacobian_coefficients<Rates, D> jacobian(dot(at, at));
       std::array<vector3<D>, Rates> rates;
       std::copy(x.begin() + 1, x.end(), rates.begin());
       const auto w = detail::half_body_rates(jacobian, x[0], rates);
-      m.velocity = w[0];
+      m.velocity = detail::components(w[0]);
       if constexpr (Rates > 1) {
-        m.acceleration = w[1];
+        m.acceleration = detail::components(w[1]);
       }
       if constexpr (Rates > 2) {
-        m.jerk = detail::scaled(real_type_t<D>(2), w[2]);
+        m.jerk = real_type_t<D>(2) * detail::components(w[2]);
       }
     }
     return m;

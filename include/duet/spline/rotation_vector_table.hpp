@@ -4,7 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/vector_coefficients.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/orientations.hpp>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ struct rotation_vector_table {
     using std::sqrt;
     std::pair<R, std::size_t> largest{R(-1), 0};
     for (std::size_t i = 0; i < turns.size(); ++i) {
-      const R angle = 2 * sqrt(R(innermost(inner_product(turns[i], turns[i]))));
+      const R angle = 2 * sqrt(R(innermost(dot(components(turns[i]), components(turns[i])))));
       if (angle > largest.first) {
         largest = {angle, i};
       }
@@ -91,7 +91,7 @@ struct rotation_vector_table {
     for (Polynomial& each : polynomials) {
       R per_unit(1);
       for (vector3<T>& coefficient : each) {
-        coefficient = detail::scaled(per_unit, coefficient);
+        coefficient = per_unit * components(coefficient);
         per_unit /= unit;
       }
     }
