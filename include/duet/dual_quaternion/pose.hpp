@@ -25,8 +25,8 @@ namespace detail {
 
 /// N17 for a rotation that is known to be a unit.
 template <class A, class B>
-[[nodiscard]] dual_quaternion<promote_t<A, B>> pose_of_unit(const quaternion<A>& rotation,
-                                                            const three_vector<B>& t) {
+[[nodiscard]] DUET_ALWAYS_INLINE dual_quaternion<promote_t<A, B>>
+pose_of_unit(const quaternion<A>& rotation, const three_vector<B>& t) {
   using T = promote_t<A, B>;
   const quaternion<T> alpha(rotation);
   const quaternion<T> half(T(0), T(t.x) / 2, T(t.y) / 2, T(t.z) / 2);
