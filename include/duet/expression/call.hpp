@@ -2,10 +2,10 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/expression/frame.hpp>
 #include <duet/expression/given.hpp>
 #include <duet/expression/held.hpp>
 #include <duet/expression/node.hpp>
+#include <duet/expression/node_values.hpp>
 
 #include <type_traits>
 

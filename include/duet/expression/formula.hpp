@@ -4,10 +4,10 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/call.hpp>
-#include <duet/expression/frame.hpp>
 #include <duet/expression/given.hpp>
 #include <duet/expression/held.hpp>
 #include <duet/expression/node.hpp>
+#include <duet/expression/node_values.hpp>
 
 #include <Eigen/Core>
 

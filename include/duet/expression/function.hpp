@@ -8,8 +8,8 @@
 #include <duet/dual/rules.hpp>
 #include <duet/dual/rules_special.hpp>
 #include <duet/expression/formula.hpp>
-#include <duet/expression/frame.hpp>
 #include <duet/expression/node.hpp>
+#include <duet/expression/node_values.hpp>
 #include <duet/expression/number.hpp>
 #include <duet/expression/printed.hpp>
 

@@ -4,10 +4,10 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/jacobian.hpp>
+#include <duet/expression/arm/pose_chain.hpp>
 #include <duet/expression/call.hpp>
 #include <duet/expression/formula.hpp>
 #include <duet/expression/node.hpp>
-#include <duet/expression/pose_chain.hpp>
 #include <duet/expression/variables.hpp>
 #include <duet/expression/velocity.hpp>
 

@@ -6,14 +6,15 @@
 #include <duet/expression/arithmetic.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/formula.hpp>
-#include <duet/expression/frame.hpp>
 #include <duet/expression/function.hpp>
 #include <duet/expression/node.hpp>
+#include <duet/expression/node_values.hpp>
 #include <duet/expression/number.hpp>
 #include <duet/expression/printed.hpp>
 #include <duet/expression/product.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <cmath>
 #include <string>
@@ -72,8 +73,7 @@ struct dot {
   template <class A, class B>
   DUET_ALWAYS_INLINE static auto value(const A& a, const B& b) {
     if constexpr (detail::ThreeComponents<A>) {
-      using T = promote_t<typename A::Scalar, typename B::Scalar>;
-      return T(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+      return duet::detail::dot(duet::detail::components(a), duet::detail::components(b));
     } else {
       return duet::dot(a, b);
     }
@@ -114,9 +114,7 @@ struct cross {
   }
   template <class A, class B>
   DUET_ALWAYS_INLINE static auto value(const A& a, const B& b) {
-    using T = promote_t<typename A::Scalar, typename B::Scalar>;
-    return vector3<T>(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                      a[0] * b[1] - a[1] * b[0]);
+    return duet::detail::cross(duet::detail::components(a), duet::detail::components(b)).eigen();
   }
   template <class A, class B, class DA, class DB>
   static constexpr auto differential(A a, B b, DA da, DB db) {

@@ -63,13 +63,10 @@ struct placement {
   }
   /// First b, then a, in fixed axes.
   [[nodiscard]] friend constexpr placement operator*(const placement& a, const placement& b) {
-    const auto both = a.displacement() * b.displacement();
+    using detail::components, detail::displacement;
+    const auto both = displacement{a.rotation, components(a.translation)} *
+                      displacement{b.rotation, components(b.translation)};
     return {both.rotation, both.translation};
-  }
-
-  /// Both, to compute with.
-  [[nodiscard]] constexpr auto displacement() const {
-    return detail::displacement{rotation, detail::components(translation)};
   }
 };
 

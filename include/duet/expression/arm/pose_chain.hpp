@@ -4,8 +4,8 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/expression/arm/moving_frame.hpp>
 #include <duet/expression/call.hpp>
-#include <duet/expression/moving_frame.hpp>
 #include <duet/expression/node.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/screw.hpp>
@@ -23,6 +23,8 @@
 #include <utility>
 
 /// \file
+/// Apart from the walk along chains for the speed that lanes.hpp tells.
+///
 /// Products of rigid motions in doubles, and their spatial Jacobians, factor by factor: what a
 /// joint adds to the Jacobian is its axis where it stands.
 
@@ -131,13 +133,13 @@ struct moved_factor {
 
 /// What a factor does, by the places of values and the numbers of columns.
 template <class Link, bool IsFirst, class Values, class Writes>
-struct chain_step;
+struct factor_step;
 template <int Column, bool IsSet, int Twist>
 struct column_write {};
 
 template <class Link, bool IsFirst, int... Values, int... Column, bool... IsSet, int... Twist>
-struct chain_step<Link, IsFirst, std::integer_sequence<int, Values...>,
-                  mp11::mp_list<column_write<Column, IsSet, Twist>...>> {
+struct factor_step<Link, IsFirst, std::integer_sequence<int, Values...>,
+                   mp11::mp_list<column_write<Column, IsSet, Twist>...>> {
   template <class Slots>
   DUET_ALWAYS_INLINE static void run(moving_frame& f, [[maybe_unused]] double* jacobian,
                                      const Slots& s) {
@@ -204,11 +206,11 @@ private:
     template <class Motion>
     static constexpr int column = motions::template place<Motion>;
     using type =
-        chain_step<typename link_of<Factor>::link, At <= first_turn,
-                   std::integer_sequence<int, nodes::template place<Values>...>,
-                   mp11::mp_list<column_write<
-                       column<M>, first_moved[std::size_t(column<M>)] == At,
-                       nodes::template place<typename link_of<Factor>::template twist<M>>>...>>;
+        factor_step<typename link_of<Factor>::link, At <= first_turn,
+                    std::integer_sequence<int, nodes::template place<Values>...>,
+                    mp11::mp_list<column_write<
+                        column<M>, first_moved[std::size_t(column<M>)] == At,
+                        nodes::template place<typename link_of<Factor>::template twist<M>>>...>>;
   };
 
   template <class... Steps, class Slots>

@@ -18,8 +18,9 @@
 #include <utility>
 
 /// \file
-/// Evaluation: all different nodes of some formulas in one list, operands first, each evaluated
-/// once. It goes by stages, so that all sines that can be taken at once are.
+/// A store for the values of nodes, and evaluation into it: all different nodes of some formulas in
+/// one list, operands first, each evaluated once. It goes by stages, so that all sines that can be
+/// taken at once are.
 ///
 /// What is evaluated knows nodes by their numbers in the list: functions whose names spell out
 /// long lists of long types are what compilers would spend their time on.

@@ -6,6 +6,10 @@
 #include <cstring>
 
 /// \file
+/// Apart from the displacements that chains are followed by, as measured: a formula of an arm of
+/// seven joints and its Jacobian take 1054 instructions in lanes, 1161 by displacements (g++ -O2;
+/// clang -O2: 974 and 1066; twenty joints: 2839 and 3063, 2710 and 2991).
+///
 /// Three and four doubles for kernels: in one vector where the target has vectors of four, in two
 /// of two where it has not.
 
@@ -70,53 +74,61 @@ struct four_doubles {
   DUET_ALWAYS_INLINE double operator[](int i) const { return v[i]; }
 };
 
-struct triple : four_doubles {
-  DUET_ALWAYS_INLINE triple(double x, double y, double z) : four_doubles{lanes_of(x, y, z, 0)} {}
-  DUET_ALWAYS_INLINE explicit triple(const four_lanes& a) : four_doubles{a} {}
+struct vector_in_lanes : four_doubles {
+  DUET_ALWAYS_INLINE vector_in_lanes(double x, double y, double z)
+      : four_doubles{lanes_of(x, y, z, 0)} {}
+  DUET_ALWAYS_INLINE explicit vector_in_lanes(const four_lanes& a) : four_doubles{a} {}
 
-  friend DUET_ALWAYS_INLINE triple operator*(const triple& a, double x) { return triple(a.v * x); }
-  friend DUET_ALWAYS_INLINE triple operator+(const triple& a, const triple& b) {
-    return triple(a.v + b.v);
+  friend DUET_ALWAYS_INLINE vector_in_lanes operator*(double x, const vector_in_lanes& a) {
+    return vector_in_lanes(a.v * x);
   }
-  friend DUET_ALWAYS_INLINE triple operator-(const triple& a, const triple& b) {
-    return triple(a.v - b.v);
+  friend DUET_ALWAYS_INLINE vector_in_lanes operator+(const vector_in_lanes& a,
+                                                      const vector_in_lanes& b) {
+    return vector_in_lanes(a.v + b.v);
+  }
+  friend DUET_ALWAYS_INLINE vector_in_lanes operator-(const vector_in_lanes& a,
+                                                      const vector_in_lanes& b) {
+    return vector_in_lanes(a.v - b.v);
   }
 };
 
-[[nodiscard]] DUET_ALWAYS_INLINE triple cross_of(const triple& a, const triple& b) {
+[[nodiscard]] DUET_ALWAYS_INLINE vector_in_lanes cross(const vector_in_lanes& a,
+                                                       const vector_in_lanes& b) {
   const four_lanes c = a.v * shuffled<1, 2, 0, 3>(b.v, b.v) - shuffled<1, 2, 0, 3>(a.v, a.v) * b.v;
-  return triple(shuffled<1, 2, 0, 3>(c, c));
+  return vector_in_lanes(shuffled<1, 2, 0, 3>(c, c));
 }
 
 /// A quaternion, scalar first.
-struct quadruple : four_doubles {
-  DUET_ALWAYS_INLINE quadruple(double w, double x, double y, double z)
+struct quaternion_in_lanes : four_doubles {
+  DUET_ALWAYS_INLINE quaternion_in_lanes(double w, double x, double y, double z)
       : four_doubles{lanes_of(w, x, y, z)} {}
-  DUET_ALWAYS_INLINE explicit quadruple(const four_lanes& a) : four_doubles{a} {}
+  DUET_ALWAYS_INLINE explicit quaternion_in_lanes(const four_lanes& a) : four_doubles{a} {}
 
   /// Times s times the I-th unit vector.
   template <int I>
-  [[nodiscard]] DUET_ALWAYS_INLINE quadruple times_unit(double s) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE quaternion_in_lanes times_unit(double s) const {
     if constexpr (I == 0) {
-      return quadruple(shuffled<1, 0, 3, 2>(v, v) * lanes_of(-s, s, s, -s));
+      return quaternion_in_lanes(shuffled<1, 0, 3, 2>(v, v) * lanes_of(-s, s, s, -s));
     } else if constexpr (I == 1) {
-      return quadruple(shuffled<2, 3, 0, 1>(v, v) * lanes_of(-s, -s, s, s));
+      return quaternion_in_lanes(shuffled<2, 3, 0, 1>(v, v) * lanes_of(-s, -s, s, s));
     } else {
-      return quadruple(shuffled<3, 2, 1, 0>(v, v) * lanes_of(-s, s, -s, s));
+      return quaternion_in_lanes(shuffled<3, 2, 1, 0>(v, v) * lanes_of(-s, s, -s, s));
     }
   }
 
-  friend DUET_ALWAYS_INLINE quadruple operator*(const quadruple& a, double x) {
-    return quadruple(a.v * x);
+  friend DUET_ALWAYS_INLINE quaternion_in_lanes operator*(double x, const quaternion_in_lanes& a) {
+    return quaternion_in_lanes(a.v * x);
   }
-  friend DUET_ALWAYS_INLINE quadruple operator+(const quadruple& a, const quadruple& b) {
-    return quadruple(a.v + b.v);
+  friend DUET_ALWAYS_INLINE quaternion_in_lanes operator+(const quaternion_in_lanes& a,
+                                                          const quaternion_in_lanes& b) {
+    return quaternion_in_lanes(a.v + b.v);
   }
 };
 
 /// A column [v; ω] of a Jacobian, set or added to.
 template <bool IsSet>
-DUET_ALWAYS_INLINE void write_twist(double* column, const triple& v, const triple& omega) {
+DUET_ALWAYS_INLINE void write_twist(double* column, const vector_in_lanes& v,
+                                    const vector_in_lanes& omega) {
   four_lanes upper = shuffled<0, 1, 2, 4>(v.v, omega.v);
   const four_lanes rest = shuffled<1, 2, 1, 2>(omega.v, omega.v);
   if constexpr (IsSet) {
