@@ -102,8 +102,8 @@ KDL::Chain kdl_chain(const C& chain) {
   KDL::Chain result;
   for (int i = 0; i < chain.size(); ++i) {
     const auto& step = chain.steps()[std::size_t(i)];
-    const KDL::Vector origin(step.offset[0], step.offset[1], step.offset[2]);
-    const KDL::Vector axis(step.axis[0], step.axis[1], step.axis[2]);
+    const KDL::Vector origin(step.offset.x, step.offset.y, step.offset.z);
+    const KDL::Vector axis(step.axis.x, step.axis.y, step.axis.z);
     result.addSegment(KDL::Segment(KDL::Joint(origin, axis, KDL::Joint::RotAxis),
                                    KDL::Frame(turn(step.a), origin)));
   }

@@ -14,10 +14,11 @@ namespace duet::detail {
 
 /// A quaternion whose components are numbers or known constants.
 template <class W, class X, class Y, class Z>
-class partly_known_quaternion {
-public:
-  constexpr partly_known_quaternion(const W& w, const X& x, const Y& y, const Z& z)
-      : w_(w), x_(x), y_(y), z_(z) {}
+struct partly_known_quaternion {
+  W w_;
+  X x_;
+  Y y_;
+  Z z_;
 
   [[nodiscard]] constexpr const W& w() const { return w_; }
   [[nodiscard]] constexpr const X& x() const { return x_; }
@@ -28,22 +29,41 @@ public:
   DUET_ALWAYS_INLINE constexpr operator quaternion<S>() const {
     return {number<S>(w_), number<S>(x_), number<S>(y_), number<S>(z_)};
   }
-
-private:
-  W w_;
-  X x_;
-  Y y_;
-  Z z_;
 };
+template <class W, class X, class Y, class Z>
+partly_known_quaternion(W, X, Y, Z) -> partly_known_quaternion<W, X, Y, Z>;
+
+/// What a stateless callable returns, with types for 0 and ±1.
+template <class Get>
+[[nodiscard]] constexpr auto known_quaternion(Get) {
+  return partly_known_quaternion{
+      known([] { return Get{}().w(); }), known([] { return Get{}().x(); }),
+      known([] { return Get{}().y(); }), known([] { return Get{}().z(); })};
+}
+template <class Get>
+[[nodiscard]] constexpr auto known_vector(Get) {
+  return three_vector{known([] { return Get{}().x; }), known([] { return Get{}().y; }),
+                      known([] { return Get{}().z; })};
+}
 
 template <class Q>
 inline constexpr bool is_partly_known = false;
 template <class W, class X, class Y, class Z>
 inline constexpr bool is_partly_known<partly_known_quaternion<W, X, Y, Z>> = true;
 
-/// N1
+template <class S, class Q>
+  requires(Factor<S>&& is_partly_known<Q>)
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const S& s, const Q& q) {
+  return partly_known_quaternion{s * q.w(), s * q.x(), s * q.y(), s * q.z()};
+}
 template <class P, class Q>
   requires(is_partly_known<P> || is_partly_known<Q>)
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const P& p, const Q& q) {
+  return partly_known_quaternion{p.w() + q.w(), p.x() + q.x(), p.y() + q.y(), p.z() + q.z()};
+}
+/// N1
+template <class P, class Q>
+  requires((is_partly_known<P> || is_partly_known<Q>)&&!Factor<P>)
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const P& p, const Q& q) {
   return partly_known_quaternion{p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
                                  p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),

@@ -7,7 +7,6 @@
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
 
@@ -25,11 +24,12 @@ namespace detail {
 
 /// N17 for a rotation that is known to be a unit.
 template <class A, class B>
-[[nodiscard]] DUET_ALWAYS_INLINE dual_quaternion<promote_t<A, B>>
-pose_of_unit(const quaternion<A>& rotation, const three_vector<B>& t) {
+[[nodiscard]] dual_quaternion<promote_t<A, B>> pose_of_unit(const quaternion<A>& rotation,
+                                                            const vector3<B>& translation) {
   using T = promote_t<A, B>;
   const quaternion<T> alpha(rotation);
-  const quaternion<T> half(T(0), T(t.x) / 2, T(t.y) / 2, T(t.z) / 2);
+  const quaternion<T> half(T(0), T(translation[0]) / 2, T(translation[1]) / 2,
+                           T(translation[2]) / 2);
   return make_dual_quaternion(alpha, half * alpha);
 }
 
@@ -56,7 +56,7 @@ pose(const quaternion<A>& rotation, const vector3<B>& translation) {
   if (any(abs(norm2(alpha) - 1) > tolerance)) [[unlikely]] {
     detail::refuse_rotation(alpha);
   }
-  return detail::pose_of_unit(rotation, detail::components(translation));
+  return detail::pose_of_unit(rotation, translation);
 }
 
 /// α, the rotation of a pose.
@@ -136,8 +136,8 @@ template <class T>
     throw invalid_input(message.str());
   }
   const matrix3<T> r = m.template topLeftCorner<3, 3>();
-  return detail::pose_of_unit(from_rotation_matrix(r),
-                              detail::three_vector<T>(m(0, 3), m(1, 3), m(2, 3)));
+  const vector3<T> t = m.template topRightCorner<3, 1>();
+  return detail::pose_of_unit(from_rotation_matrix(r), t);
 }
 
 } // namespace duet

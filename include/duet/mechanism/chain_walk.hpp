@@ -89,7 +89,7 @@ template <bool WithRotation, class S, class C, class X, class Visit>
                                                            int links, Visit&& visit) {
   require_size(chain, theta);
   if constexpr (requires { typename C::arm; }) {
-    const known_unit<1> one;
+    const known_one one;
     const known_zero zero;
     return walk_known<WithRotation, C, 0, S>(
         displacement{partly_known_quaternion{one, zero, zero, zero},

@@ -117,7 +117,7 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At =
   if constexpr (std::same_as<Frame, body_frame>) {
     detail::turn_to_body(result.jacobian, at_frame.rotation);
   }
-  result.value = detail::pose_of_unit(at_frame.rotation, at_frame.translation);
+  result.value = detail::pose_of_unit(at_frame.rotation, at_frame.translation.eigen());
   return result;
 }
 

@@ -59,7 +59,7 @@ struct placement {
   }
 
   [[nodiscard]] dual_quaternion<T> pose() const {
-    return detail::pose_of_unit(rotation, detail::components(translation));
+    return detail::pose_of_unit(rotation, detail::components(translation).eigen());
   }
   /// First b, then a, in fixed axes.
   [[nodiscard]] friend constexpr placement operator*(const placement& a, const placement& b) {

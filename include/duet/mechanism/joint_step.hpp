@@ -42,9 +42,9 @@ struct step_in_memory {
       return quaternion<S>(s.a);
     }
     const sine_cosine<S> half = half_turn();
-    const S &s_ = half.sine, &c = half.cosine;
-    return {c * s.a.w() + s_ * s.an.w(), c * s.a.x() + s_ * s.an.x(), c * s.a.y() + s_ * s.an.y(),
-            c * s.a.z() + s_ * s.an.z()};
+    const S &c = half.cosine, &sine = half.sine; // no quaternions of duals on the way
+    return {c * s.a.w() + sine * s.an.w(), c * s.a.x() + sine * s.an.x(),
+            c * s.a.y() + sine * s.an.y(), c * s.a.z() + sine * s.an.z()};
   }
   [[nodiscard]] const three_vector<T>& offset() const { return s.offset; }
   [[nodiscard]] const three_vector<T>& axis() const { return s.axis; }
@@ -60,28 +60,19 @@ struct known_step {
   [[nodiscard]] static constexpr bool slides() { return s().slides; }
   template <class S, class HalfTurn>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const HalfTurn& half_turn) {
-    const auto aw = known([] { return s().a.w(); });
-    const auto ax = known([] { return s().a.x(); });
-    const auto ay = known([] { return s().a.y(); });
-    const auto az = known([] { return s().a.z(); });
+    constexpr auto a = known_quaternion([] { return s().a; });
     if constexpr (!turns()) {
-      return partly_known_quaternion{aw, ax, ay, az};
+      return a;
     } else {
       const sine_cosine<S> half = half_turn();
-      const S &s_ = half.sine, &c = half.cosine;
-      return partly_known_quaternion{c * aw + s_ * known([] { return s().an.w(); }),
-                                     c * ax + s_ * known([] { return s().an.x(); }),
-                                     c * ay + s_ * known([] { return s().an.y(); }),
-                                     c * az + s_ * known([] { return s().an.z(); })};
+      return half.cosine * a + half.sine * known_quaternion([] { return s().an; });
     }
   }
   [[nodiscard]] static constexpr auto offset() {
-    return three_vector{known([] { return s().offset.x; }), known([] { return s().offset.y; }),
-                        known([] { return s().offset.z; })};
+    return known_vector([] { return s().offset; });
   }
   [[nodiscard]] static constexpr auto axis() {
-    return three_vector{known([] { return s().axis.x; }), known([] { return s().axis.y; }),
-                        known([] { return s().axis.z; })};
+    return known_vector([] { return s().axis; });
   }
   [[nodiscard]] static constexpr auto pitch() { return s().pitch; }
 };

@@ -81,7 +81,7 @@ struct poses_of {
     const auto& frame = frame_on(chain, at);
     const auto at_frame =
         attached(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
-    return pose_of_unit(at_frame.rotation, at_frame.translation);
+    return pose_of_unit(at_frame.rotation, at_frame.translation.eigen());
   }
 };
 

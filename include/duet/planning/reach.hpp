@@ -21,20 +21,20 @@ class chain_reach {
 public:
   template <class C>
   explicit chain_reach(const C& chain) : tool_(conj(chain.tip().offset.pose())) {
-    const auto norm = [](const auto& x) { return std::hypot(x[0], x[1], x[2]); };
     for (std::size_t i = 0; i < std::size_t(chain.size()); ++i) {
       const auto& step = chain.steps()[i];
       if (i == 0) {
-        first_ = {step.offset[0], step.offset[1], step.offset[2]};
+        first_ = step.offset;
       } else {
-        links_ += norm(step.offset);
+        links_ += std::hypot(step.offset.x, step.offset.y, step.offset.z);
       }
       if (step.slides) {
         const auto& limits = chain.limits(int(i));
         travel_ += std::abs(step.pitch) * std::max(std::abs(limits.lower), std::abs(limits.upper));
       }
     }
-    tool_length_ = norm(chain.tip().offset.translation);
+    const auto& tool = chain.tip().offset.translation;
+    tool_length_ = std::hypot(tool[0], tool[1], tool[2]);
     has_joints_ = chain.size() > 0;
   }
 
