@@ -114,7 +114,7 @@ public:
       if (const auto axis = element.get_child_optional("axis")) {
         result.axis = numbers(*axis, here + " <axis>", "xyz", result.axis);
       }
-      const double length = std::sqrt(dot(result.axis, result.axis));
+      const double length = std::sqrt(squared_norm(result.axis));
       if (!is_nearly_one(length * length)) {
         fail(here + " <axis>", "length " + to_text(length) + ", not 1");
       }
