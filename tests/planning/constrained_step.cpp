@@ -2,6 +2,7 @@
 
 #include "support/random.hpp"
 
+#include <duet/planning/cholesky.hpp>
 #include <duet/planning/constrained_step.hpp>
 
 #include <doctest/doctest.h>
@@ -34,6 +35,29 @@ M random_matrix(duet_test::random_source& random, M m) {
 }
 
 } // namespace
+
+TEST_CASE("Cholesky's factors solve; unknowns without a pivot are left out, of nothing but those") {
+  duet_test::random_source random(4);
+  for (int n = 1; n <= 10; ++n) {
+    using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 10, 10>;
+    const matrix root = random_matrix(random, matrix(n, n));
+    const matrix a = root * root.transpose() + .01 * matrix::Identity(n, n);
+    const vector x = random_matrix(random, vector(n));
+    matrix lower = a.triangularView<Eigen::Lower>(); // the other half does not count
+    const detail::cholesky whole(lower);
+    CHECK(whole.is_positive());
+    CHECK((whole.solve(vector(a * x)) - x).norm() < 1e-10 * x.norm());
+    // Without the last unknown, exactly: its row and its column are zero, or below.
+    lower.row(n - 1).setZero();
+    lower(n - 1, n - 1) = n % 2 == 0 ? 0 : -1;
+    const detail::cholesky cut(lower);
+    CHECK(!cut.is_positive());
+    const vector found = cut.solve(vector(a * x));
+    CHECK(found[n - 1] == 0);
+    const vector left = lower.selfadjointView<Eigen::Lower>() * found - a * x;
+    CHECK(left.head(n - 1).norm() < 1e-10 * x.norm());
+  }
+}
 
 TEST_CASE("the least x of linear inequalities: where projections onto them end") {
   duet_test::random_source random(1);

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <duet/dual_quaternion/twist.hpp>
+#include <duet/planning/cholesky.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 /// \file
 /// The least step of the joints for a small twist of the tip that keeps the joints within limits.
@@ -19,70 +20,106 @@ namespace duet::detail {
 /// Below this singular value steps are damped.
 inline constexpr double damping_threshold = 1e-3;
 
-/// Solves J Jᵀ y = e with as much damping as a small singular value asks for. A template so that
-/// compilers make its factorisation for those alone who use it.
+/// m + x xᵀ, in place.
+template <class M>
+void add_square(M& m, const vector6<double>& x) {
+  for (Eigen::Index j = 0; j < 6; ++j) {
+    for (Eigen::Index i = j; i < 6; ++i) {
+      m(i, j) += x[i] * x[j];
+    }
+  }
+}
+
+/// J Jᵀ of a matrix J of 6 rows.
+template <class J>
+[[nodiscard]] auto gram_matrix(const J& jacobian) {
+  matrix6<double> result = matrix6<double>::Zero();
+  for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
+    add_square(result, jacobian.col(i));
+  }
+  return result;
+}
+
+/// J Jᵀ with as much damping as a small singular value of J asks for.
 template <class Gram>
 class damped_gram {
 public:
   explicit damped_gram(const Gram& gram) : factors_(gram) {
     // The smallest eigenvalue from above: Rayleigh's quotient after two inverse iterations.
-    if (factors_.info() == Eigen::Success) {
-      const vector6<double> once = factors_.solve(vector6<double>::Ones());
+    if (factors_.is_positive()) {
+      const vector6<double> once = factors_.solve(vector6<double>(vector6<double>::Ones()));
       const vector6<double> twice = factors_.solve(once);
-      smallest_ = once.dot(twice) / twice.squaredNorm();
+      smallest_ = std::sqrt(std::max(0.0, once.dot(twice) / twice.squaredNorm()));
     }
-    smallest_ = smallest_ > 0 ? std::sqrt(smallest_) : 0;
     if (smallest_ < damping_threshold) {
       const double missing = 1 - smallest_ / damping_threshold;
       const double damping = missing * damping_threshold;
-      factors_.compute(gram + damping * damping * Gram::Identity());
+      factors_ = damped(gram, damping * damping);
     }
   }
+  /// J Jᵀ + λ.
+  damped_gram(const Gram& gram, double lambda) : factors_(damped(gram, lambda)) {}
 
   [[nodiscard]] vector6<double> solve(const vector6<double>& e) const { return factors_.solve(e); }
-  /// The smallest singular value of J, from above.
+  /// The smallest singular value of J, from above; 0 where it was not asked for.
   [[nodiscard]] double smallest() const { return smallest_; }
 
 private:
-  Eigen::LLT<Gram> factors_;
+  [[nodiscard]] static cholesky<Gram> damped(Gram gram, double lambda) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      gram(i, i) += lambda;
+    }
+    return cholesky<Gram>(gram);
+  }
+
+  cholesky<Gram> factors_;
   double smallest_ = 0;
 };
 
 template <class V>
 struct bounded_step_result {
   V step;
-  double smallest_singular_value; ///< of all joints, 0 where it was not asked for
+  double smallest_singular_value; ///< of all joints, 0 where λ was given
   bool is_bounded;                ///< did a limit hold a joint back?
 };
 
 /// The least Δ with J Δ = e and lower ≤ Δ ≤ upper. Joints that would go beyond a bound are put onto
 /// it, the worst one first, and the others make up for them as far as they can.
-/// \param factors  of J Jᵀ: what solves J Jᵀ y = e
-template <class J, class V, class Factors>
+/// \param lambda  the damping, Δ = Jᵀ(J Jᵀ + λ)⁻¹ e; without, as much as near singularities
+template <class J, class V>
 [[nodiscard]] bounded_step_result<V> bounded_step(const J& jacobian, const vector6<double>& e,
                                                   const V& lower, const V& upper,
-                                                  const Factors& factors) {
+                                                  const std::optional<double>& lambda = {}) {
   const Eigen::Index n = jacobian.cols();
-  J free = jacobian;
-  V fixed = V::Zero(n);
   std::array<bool, std::size_t(J::MaxColsAtCompileTime)> is_fixed{};
   bounded_step_result<V> result{V::Zero(n), 0, false};
   for (Eigen::Index round = 0; round <= n; ++round) {
-    const auto gram = factors(matrix6<double>(free * free.transpose()));
-    if constexpr (requires { gram.smallest(); }) {
-      if (round == 0) {
-        result.smallest_singular_value = gram.smallest();
+    matrix6<double> gram = matrix6<double>::Zero();
+    vector6<double> rest = e;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const vector6<double> column = jacobian.col(i);
+      if (is_fixed[std::size_t(i)]) {
+        rest -= result.step[i] * column;
+      } else {
+        add_square(gram, column);
       }
     }
-    const vector6<double> rest = e - jacobian * fixed;
-    result.step = fixed + free.transpose() * gram.solve(rest);
+    const auto factors = lambda ? damped_gram(gram, *lambda) : damped_gram(gram);
+    if (round == 0) {
+      result.smallest_singular_value = factors.smallest();
+    }
+    const vector6<double> force = factors.solve(rest);
     Eigen::Index worst = -1;
     double excess = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double beyond = std::max(result.step[i] - upper[i], lower[i] - result.step[i]);
-      if (!is_fixed[std::size_t(i)] && beyond > excess) {
-        excess = beyond;
-        worst = i;
+      if (!is_fixed[std::size_t(i)]) {
+        double& step = result.step[i];
+        step = jacobian.col(i).dot(force);
+        const double beyond = std::max(step - upper[i], lower[i] - step);
+        if (beyond > excess) {
+          excess = beyond;
+          worst = i;
+        }
       }
     }
     if (worst < 0) {
@@ -90,16 +127,9 @@ template <class J, class V, class Factors>
     }
     is_fixed[std::size_t(worst)] = true;
     result.is_bounded = true;
-    fixed[worst] = std::clamp(result.step[worst], lower[worst], upper[worst]);
-    free.col(worst).setZero();
+    result.step[worst] = std::clamp(result.step[worst], lower[worst], upper[worst]);
   }
   return result;
-}
-template <class J, class V>
-[[nodiscard]] bounded_step_result<V> bounded_step(const J& jacobian, const vector6<double>& e,
-                                                  const V& lower, const V& upper) {
-  return bounded_step(jacobian, e, lower, upper,
-                      [](const auto& gram) { return damped_gram(gram); });
 }
 
 } // namespace duet::detail

@@ -60,20 +60,22 @@ template <class J, class V>
 constrained_step(const J& jacobian, const vector6<double>& e, const V& preferred, const V& lower,
                  const V& upper, const std::vector<inequality<V>>& inequalities) {
   const Eigen::Index n = jacobian.cols();
-  const damped_gram gram(matrix6<double>(jacobian * jacobian.transpose()));
+  const damped_gram gram(gram_matrix(jacobian));
+  const vector6<double> force = gram.solve(e);
   const self_motion<V> without_tip(jacobian);
-  const V wanted = jacobian.transpose() * gram.solve(e) + without_tip(preferred);
+  V wanted = without_tip(preferred);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    wanted[i] += jacobian.col(i).dot(force);
+  }
   std::vector<inequality<V>> left;
   left.reserve(inequalities.size() + 2 * std::size_t(n));
-  const auto add = [&](const V& normal, double bound) {
-    left.push_back({without_tip(normal), bound - normal.dot(wanted)});
-  };
   for (const inequality<V>& given : inequalities) {
-    add(given.normal, given.bound);
+    left.push_back({without_tip(given.normal), given.bound - given.normal.dot(wanted)});
   }
   for (Eigen::Index i = 0; i < n; ++i) {
-    add(V::Unit(n, i), lower[i]);
-    add(-V::Unit(n, i), -upper[i]);
+    const V normal = without_tip(V::Unit(n, i));
+    left.push_back({normal, lower[i] - wanted[i]});
+    left.push_back({-normal, wanted[i] - upper[i]});
   }
   const std::optional<V> correction = least_distance(left, n);
   return {correction ? std::optional<V>(wanted + *correction) : std::nullopt, gram.smallest()};

@@ -3,7 +3,12 @@
 
 #include <duet/core/number_text.hpp>
 #include <duet/dual_quaternion/screw.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/objectives.hpp>
+#include <duet/planning/obstacle_steps.hpp>
 #include <duet/planning/path_follower.hpp>
+#include <duet/planning/plan_options.hpp>
+#include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/norm.hpp>
 
 #include <algorithm>
@@ -27,6 +32,16 @@ concept PosePath = std::invocable<const P&, double>;
 
 namespace detail {
 
+/// \throws invalid_input for a path that does not begin at the tip
+inline void require_beginning(const pose_deviation& gap, double tolerance) {
+  if (!(gap.length <= tolerance && gap.angle <= tolerance)) {
+    std::ostringstream message;
+    message << "duet: follow_path: the path begins " << gap.length << " units of length and "
+            << gap.angle << " rad away from the tip at the start";
+    throw invalid_input(message.str());
+  }
+}
+
 /// A plan along a path that is known to hold unit poses; none where its end is known to be out of
 /// reach.
 template <class C, class Start, class Objective, class Scene>
@@ -34,18 +49,22 @@ template <class C, class Start, class Objective, class Scene>
                                             const path_function& target, std::vector<double> stops,
                                             const plan_options& options, const Objective& objective,
                                             const Scene& around, bool is_out_of_reach = false) {
+  using follower_type = path_follower<joint_room(C::joints)>;
+  using vector = typename follower_type::vector;
   require_options(options);
-  const auto theta = joint_vector_of(chain, start);
-  const pose_deviation gap = deviation_between(chain.pose(theta), target(stops.front()));
-  if (!(gap.length <= options.tolerance && gap.angle <= options.tolerance)) {
-    std::ostringstream message;
-    message << "duet: follow_path: the path begins " << gap.length << " units of length and "
-            << gap.angle << " rad away from the tip at the start";
-    throw invalid_input(message.str());
+  const auto theta = joint_vector_of<joint_room(C::joints)>(start, chain.size());
+  const auto model = model_of(chain, around);
+  require_beginning(deviation_between(model.pose(theta), target(stops.front())), options.tolerance);
+  model.require_clearance(theta, options.tolerance);
+  typename follower_type::slope_function slope;
+  if constexpr (!std::same_as<Objective, no_objective>) {
+    slope = [&objective](const vector& x) -> vector {
+      return objective_gradient(objective, joint_vector<double, C::joints>(x));
+    };
   }
-  require_clearance(chain, theta, around, options.tolerance);
-  path_follower follower(chain, target, std::move(stops), options, objective, around);
-  return is_out_of_reach ? follower.stay(theta, stop_reason::out_of_reach) : follower.plan(theta);
+  follower_type follower(model, target, std::move(stops), options, slope);
+  return follower.template summary<C::joints>(
+      is_out_of_reach ? follower.stay(theta, stop_reason::out_of_reach) : follower.plan(theta));
 }
 
 template <PosePath Path>

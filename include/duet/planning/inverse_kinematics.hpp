@@ -8,6 +8,7 @@
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/inverse_kinematics_search.hpp>
 #include <duet/planning/motion_plan.hpp>
+#include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/norm.hpp>
 
 #include <cstddef>
@@ -18,6 +19,27 @@
 /// Joint coordinates for poses of the tip.
 
 namespace duet {
+
+namespace detail {
+
+template <class C>
+using search_on = inverse_kinematics_search<joint_room(C::joints)>;
+
+/// \throws invalid_input for another number of coordinates than of joints
+template <class C, class Start>
+[[nodiscard]] auto search_start(const C& chain, const Start& start) {
+  require_size(chain, start);
+  return joint_vector_of<joint_room(C::joints)>(start, chain.size());
+}
+
+/// What a search has found, in the chain's own type.
+template <class C, int N>
+[[nodiscard]] inverse_kinematics_result<C::joints>
+found_for(const inverse_kinematics_result<N>& x) {
+  return {x.joints, x.deviation, x.iterations, x.restarts, x.reason};
+}
+
+} // namespace detail
 
 /// Joint coordinates within the limits of a chain that take its tip to the pose `goal`, either sign
 /// of it.
@@ -37,9 +59,10 @@ template <SerialChain C, VectorLike Start>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options = {}) {
-  const detail::inverse_kinematics_search<C> search(chain, start, options);
+  const detail::chain_model<C> model(chain);
+  const detail::search_on<C> search(model, detail::search_start(chain, start), options);
   detail::require_pose(goal, "inverse_kinematics", "the goal");
-  return search(normalized(goal));
+  return detail::found_for<C>(search(normalized(goal)));
 }
 
 /// out[i] = inverse_kinematics(chain, goals[i], start, options), with the same results on any
@@ -54,12 +77,14 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
     throw invalid_input("duet: inverse_kinematics: " + std::to_string(goals.size()) +
                         " goals, but room for " + std::to_string(out.size()) + " results");
   }
-  const detail::inverse_kinematics_search<C> search(chain, start, options);
+  const detail::chain_model<C> model(chain);
+  const detail::search_on<C> search(model, detail::search_start(chain, start), options);
   for (std::size_t i = 0; i < goals.size(); ++i) {
     detail::require_pose(goals[i], "inverse_kinematics", "goal " + std::to_string(i));
   }
   parallel_for(
-      goals.size(), [&](std::size_t i) { out[i] = search(normalized(goals[i])); }, how);
+      goals.size(),
+      [&](std::size_t i) { out[i] = detail::found_for<C>(search(normalized(goals[i]))); }, how);
 }
 
 } // namespace duet

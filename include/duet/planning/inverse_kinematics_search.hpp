@@ -6,14 +6,12 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
-#include <duet/mechanism/jacobian.hpp>
 #include <duet/planning/bounded_step.hpp>
 #include <duet/planning/motion_plan.hpp>
-#include <duet/planning/path_step.hpp>
 #include <duet/planning/plan_options.hpp>
+#include <duet/planning/planning_model.hpp>
 #include <duet/planning/reach.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -64,31 +62,36 @@ inline void require_options(const inverse_kinematics_options& options) {
   require_option(options.restarts >= 0, caller, "restarts", options.restarts, "a number from 0 up");
 }
 
-/// A chain with what all searches on it have in common.
-template <class C>
+inline void require_finite_start(Eigen::Index joint, double x) {
+  if (!(x - x == 0)) {
+    std::ostringstream message;
+    message << "duet: inverse_kinematics: the start has " << x << " for joint " << joint;
+    throw invalid_input(message.str());
+  }
+}
+
+/// What all searches for configurations of a chain have in common.
+template <int N>
 class inverse_kinematics_search {
-  using vector = joint_vector<double, C::joints>;
-  using result_type = inverse_kinematics_result<C::joints>;
+  using vector = joint_vector<double, N>;
+  using result_type = inverse_kinematics_result<N>;
 
 public:
-  template <class Start>
-  inverse_kinematics_search(const C& chain, const Start& start,
+  template <class C>
+  inverse_kinematics_search(const chain_model<C>& model, const vector& start,
                             const inverse_kinematics_options& options)
-      : chain_(chain), options_(options), reach_(chain), lower_(lower_limits(chain)),
-        upper_(upper_limits(chain)), turn_(chain.size()), beyond_(chain.size()) {
+      : model_(model), options_(options), reach_(model.chain()), turn_(start), beyond_(start),
+        spread_(start), start_(start) {
     require_options(options);
-    require_size(chain, start);
-    start_ = joint_vector_of(chain, start);
-    for (int i = 0; i < chain.size(); ++i) {
-      if (!(start_[i] - start_[i] == 0)) {
-        std::ostringstream message;
-        message << "duet: inverse_kinematics: the start has " << start_[i] << " for joint " << i;
-        throw invalid_input(message.str());
-      }
-      const auto& step = chain.steps()[std::size_t(i)];
+    for (Eigen::Index i = 0; i < start.size(); ++i) {
+      require_finite_start(i, start[i]);
+      const auto& step = model.chain().steps()[std::size_t(i)];
       constexpr double turn = 2 * std::numbers::pi;
-      turn_[i] = step.turns && !step.slides && upper_[i] - lower_[i] >= turn ? turn : 0;
-      beyond_[i] = turn_[i] > 0 ? std::numeric_limits<double>::infinity() : 0;
+      const bool has_turn =
+          step.turns && !step.slides && model.upper()[i] - model.lower()[i] >= turn;
+      turn_[i] = has_turn ? turn : 0;
+      beyond_[i] = has_turn ? std::numeric_limits<double>::infinity() : 0;
+      spread_[i] = step.turns ? std::numbers::pi : reach_.scale();
     }
     start_ = within_limits(start_);
   }
@@ -96,7 +99,7 @@ public:
   /// \param goal  a unit dual quaternion
   [[nodiscard]] result_type operator()(const dual_quaternion<double>& goal) const {
     if (reach_.is_beyond(goal, options_.tolerance)) {
-      result_type result{start_, deviation_between(chain_.pose(start_), goal)};
+      result_type result{start_, deviation_between(model_.pose(start_), goal)};
       result.reason = stop_reason::out_of_reach;
       return result;
     }
@@ -129,29 +132,32 @@ private:
   };
   /// What is left to do at some θ: J Δ = e. Lengths count as parts of the chain's.
   struct equations {
-    chain_jacobian<C, vector> jacobian;
+    chain_state<N> at;
     vector6<double> e;
     pose_deviation left;
   };
 
   [[nodiscard]] equations equations_at(const vector& theta,
                                        const dual_quaternion<double>& goal) const {
-    const auto [a, m] = pose_and_jacobian(chain_, theta, frame::hybrid);
-    equations result{m, error_twist(a, goal), {}};
+    equations result;
+    model_.set(result.at, theta);
+    const dual_quaternion<double>& a = result.at.pose;
+    result.e = error_twist(a, goal);
     result.left = {(translation(goal) - translation(a)).norm(), result.e.template tail<3>().norm()};
-    result.jacobian.template topRows<3>() /= reach_.scale();
-    result.e.template head<3>() /= reach_.scale();
+    const double per_length = 1 / reach_.scale();
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      result.at.jacobian.col(i).template head<3>() *= per_length;
+    }
+    result.e.template head<3>() *= per_length;
     return result;
   }
 
   /// Levenberg and Marquardt's step.
-  [[nodiscard]] auto step(const vector& theta, const equations& at) const {
-    const double damping = std::min(.02 * at.e.squaredNorm(), .08) + 1e-9;
-    return bounded_step(at.jacobian, at.e, vector(lower_ - theta - beyond_),
-                        vector(upper_ - theta + beyond_), [&](matrix6<double> gram) {
-                          gram.diagonal().array() += damping;
-                          return Eigen::LLT<matrix6<double>>(gram);
-                        });
+  [[nodiscard]] bounded_step_result<vector> step(const equations& x) const {
+    const vector& theta = x.at.theta;
+    return bounded_step(x.at.jacobian, x.e, vector(model_.lower() - theta - beyond_),
+                        vector(model_.upper() - theta + beyond_),
+                        std::min(.02 * x.e.squaredNorm(), .08) + 1e-9);
   }
 
   [[nodiscard]] attempt approach(vector theta, const dual_quaternion<double>& goal) const {
@@ -159,12 +165,12 @@ private:
     double before = best.error;
     int since = 0; // the error last fell by a tenth
     for (int iteration = 0;; ++iteration) {
-      const equations at = equations_at(theta, goal);
-      const double error = at.e.squaredNorm();
+      const equations now = equations_at(theta, goal);
+      const double error = now.e.squaredNorm();
       const bool is_reached =
-          at.left.length <= options_.tolerance && at.left.angle <= options_.tolerance;
+          now.left.length <= options_.tolerance && now.left.angle <= options_.tolerance;
       if (iteration == 0 || error < best.error || is_reached) {
-        best = {{theta, at.left}, error};
+        best = {{theta, now.left}, error};
       }
       if (error < .9 * before) {
         before = error;
@@ -178,32 +184,32 @@ private:
         return best;
       }
       ++since;
-      theta = within_limits(vector(theta + step(theta, at).step));
+      theta = within_limits(vector(theta + step(now).step));
     }
   }
 
   /// Why there is no way on from a configuration.
   [[nodiscard]] stop_reason obstacle(const vector& theta,
                                      const dual_quaternion<double>& goal) const {
-    const equations at = equations_at(theta, goal);
-    if (step(theta, at).is_bounded) {
+    const equations here = equations_at(theta, goal);
+    if (step(here).is_bounded) {
       return stop_reason::joint_limit;
     }
-    const damped_gram gram(matrix6<double>(at.jacobian * at.jacobian.transpose()));
-    return chain_.size() >= 6 && gram.smallest() < 10 * damping_threshold
-               ? stop_reason::singular
-               : stop_reason::no_progress;
+    const damped_gram gram(gram_matrix(here.at.jacobian));
+    return theta.size() >= 6 && gram.smallest() < 10 * damping_threshold ? stop_reason::singular
+                                                                         : stop_reason::no_progress;
   }
 
   /// Turning joints whose range holds a whole turn are turned back into it, others stop at limits.
   [[nodiscard]] vector within_limits(vector theta) const {
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      if (turn_[i] > 0 && theta[i] > upper_[i]) {
-        theta[i] -= turn_[i] * std::ceil((theta[i] - upper_[i]) / turn_[i]);
-      } else if (turn_[i] > 0 && theta[i] < lower_[i]) {
-        theta[i] += turn_[i] * std::ceil((lower_[i] - theta[i]) / turn_[i]);
+      const double lower = model_.lower()[i], upper = model_.upper()[i];
+      if (turn_[i] > 0 && theta[i] > upper) {
+        theta[i] -= turn_[i] * std::ceil((theta[i] - upper) / turn_[i]);
+      } else if (turn_[i] > 0 && theta[i] < lower) {
+        theta[i] += turn_[i] * std::ceil((lower - theta[i]) / turn_[i]);
       }
-      theta[i] = std::clamp(theta[i], lower_[i], upper_[i]);
+      theta[i] = std::clamp(theta[i], lower, upper);
     }
     return theta;
   }
@@ -211,25 +217,23 @@ private:
   /// Uniform within the limits; without them, about the start.
   [[nodiscard]] vector configuration(random_source& random) const {
     vector theta = start_;
-    for (int i = 0; i < chain_.size(); ++i) {
-      double lower = lower_[i], upper = upper_[i];
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      double lower = model_.lower()[i], upper = model_.upper()[i];
       if (!(upper - lower < std::numeric_limits<double>::infinity())) {
-        const auto& step = chain_.steps()[std::size_t(i)];
-        const double most = step.turns ? std::numbers::pi : reach_.scale();
-        lower = std::max(lower, start_[i] - most);
-        upper = std::min(upper, start_[i] + most);
+        lower = std::max(lower, start_[i] - spread_[i]);
+        upper = std::min(upper, start_[i] + spread_[i]);
       }
       theta[i] = random.uniform(lower, upper);
     }
     return theta;
   }
 
-  const C& chain_;
+  const planning_model<N>& model_;
   inverse_kinematics_options options_;
   chain_reach reach_;
-  vector lower_, upper_;
   vector turn_;   ///< a whole turn where it leads to the same pose within limits, else 0
   vector beyond_; ///< how far steps may go beyond limits: any way if they are turned back
+  vector spread_; ///< how far from the start random coordinates are that have no limits
   vector start_;
 };
 

@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <duet/planning/cholesky.hpp>
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -35,7 +36,7 @@ template <class V>
       gram(i, j) = columns[std::size_t(i)].dot(columns[std::size_t(j)]);
     }
   }
-  const Eigen::LLT<decltype(gram)> factors(gram);
+  const cholesky factors(gram);
   V z = V::Zero(count), left(count), residual = f;
   for (int twice = 0; twice < 2; ++twice) {
     for (Eigen::Index i = 0; i < count; ++i) {

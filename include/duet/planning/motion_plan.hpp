@@ -4,7 +4,9 @@
 #include <duet/core/errors.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/mechanism/serial_chain.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <algorithm>
@@ -61,6 +63,22 @@ struct pose_deviation {
           rotation_vector(quaternion<double>(conj(rotation(a)) * rotation(b))).norm()};
 }
 
+namespace detail {
+
+/// The twist, in `frame::hybrid`, of the shorter screw motion from one pose to another in unit
+/// time.
+template <class T>
+[[nodiscard]] vector6<T> error_twist(const dual_quaternion<T>& from, const dual_quaternion<T>& to) {
+  dual_quaternion<T> difference = to * conj(from);
+  if (innermost(difference.w()) < 0) {
+    difference = -difference;
+  }
+  const auto spatial = twist_of(dual_vector<T>(log(difference).vec()));
+  return hybrid_twist(from, vector6<T>(2 * spatial));
+}
+
+} // namespace detail
+
 /// A path of joint coordinates from the start on, waypoint by waypoint, joints moving straight on
 /// between them. Where the goal is not reached, the path ends as far as the planner came.
 ///
@@ -85,42 +103,45 @@ struct motion_plan {
 
 namespace detail {
 
-template <class C>
-void add_waypoint(motion_plan<C::joints>& plan, const C& chain,
-                  const joint_vector<double, C::joints>& theta, const dual_quaternion<double>& pose,
-                  double tau, const pose_deviation& deviation) {
+/// \param lower, upper  the limits of the joints
+template <int N, class V>
+void add_waypoint(motion_plan<N>& plan, const V& theta, const dual_quaternion<double>& pose,
+                  double tau, const pose_deviation& deviation, const V& lower, const V& upper) {
   plan.joints.push_back(theta);
   plan.poses.push_back(pose);
   plan.tau.push_back(tau);
   plan.deviations.push_back(deviation);
-  for (int i = 0; i < chain.size(); ++i) {
-    const auto& limits = chain.limits(i);
-    plan.smallest_limit_margin =
-        std::min({plan.smallest_limit_margin, theta[i] - limits.lower, limits.upper - theta[i]});
-  }
+  const double margin = std::min((theta - lower).minCoeff(), (upper - theta).minCoeff());
+  plan.smallest_limit_margin = std::min(plan.smallest_limit_margin, margin);
 }
 
-/// Coordinates of a chain's joints, as a vector of just their number.
-template <class C, class X>
-[[nodiscard]] joint_vector<double, C::joints> joint_vector_of(const C& chain, const X& x) {
-  joint_vector<double, C::joints> theta(chain.size());
-  for (int i = 0; i < chain.size(); ++i) {
+[[noreturn]] inline void refuse_start(int joint, double x, double lower, double upper) {
+  std::ostringstream message;
+  message << "duet: plan: the start has " << x << " for joint " << joint << ", whose limits are "
+          << lower << " and " << upper;
+  throw invalid_input(message.str());
+}
+
+/// Coordinates of a chain's joints, as a vector of their own.
+/// \tparam N  as of `serial_chain`
+template <int N, class X>
+[[nodiscard]] joint_vector<double, N> joint_vector_of(const X& x, int size) {
+  joint_vector<double, N> theta(size);
+  for (int i = 0; i < size; ++i) {
     theta[i] = vector_argument<X>::get(x, i);
   }
   return theta;
 }
 
-/// \throws invalid_input for a start that is not finite or outside the limits
+/// \throws invalid_input for a start of another size, not finite or outside the limits
 template <class C, class Start>
 void require_start(const C& chain, const Start& start) {
   require_size(chain, start);
   for (int i = 0; i < chain.size(); ++i) {
     const double x = vector_argument<Start>::get(start, i);
-    if (!(x >= chain.limits(i).lower && x <= chain.limits(i).upper && x - x == 0)) {
-      std::ostringstream message;
-      message << "duet: plan: the start has " << x << " for joint " << i << ", whose limits are "
-              << chain.limits(i).lower << " and " << chain.limits(i).upper;
-      throw invalid_input(message.str());
+    const auto& limits = chain.limits(i);
+    if (!(x >= limits.lower && x <= limits.upper && x - x == 0)) {
+      refuse_start(i, x, limits.lower, limits.upper);
     }
   }
 }

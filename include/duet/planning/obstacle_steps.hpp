@@ -2,13 +2,18 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/mechanism/jacobian.hpp>
 #include <duet/planning/clearance.hpp>
+#include <duet/planning/closest_points.hpp>
 #include <duet/planning/constrained_step.hpp>
+#include <duet/planning/planning_model.hpp>
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
-#include <limits>
-#include <optional>
 #include <sstream>
+#include <variant>
 #include <vector>
 
 /// \file
@@ -21,72 +26,91 @@ struct no_scene {};
 
 namespace detail {
 
-/// How much a chain lacks to the margin of a scene; 0 where it keeps it.
-template <class C, class V>
-[[nodiscard]] double margin_shortfall(const C& chain, const V& theta, const scene& around) {
-  return std::max(0.0, around.margin - clearance(chain, theta, around).distance);
-}
-template <class C, class V>
-[[nodiscard]] double margin_shortfall(const C&, const V&, const no_scene&) {
-  return 0;
-}
-
 /// What keeps a step from θ at the margin of a scene: ∇d·Δ ≥ margin − d for each distance d within
-/// the horizon.
+/// the horizon, with ∇d = Jᵀ [n; p × n] of the closest point p and the normal n there.
 template <class C, class V>
 [[nodiscard]] std::vector<inequality<V>> margin_inequalities(const C& chain, const V& theta,
                                                              const scene& around) {
   std::vector<inequality<V>> result;
   for (const link_body& body : around.bodies) {
+    const auto here = transformed(chain.pose(theta, body.link), body.shape);
     for (const obstacle& each : around.obstacles) {
-      const double apart = closest_points(chain, theta, body, each).distance - around.margin;
-      if (apart < around.horizon) {
-        const auto [distance, slope] = distance_and_gradient(chain, theta, body, each);
-        result.push_back({slope, around.margin - distance});
+      const proximity<double> nearest =
+          std::visit([&](const auto& o) { return closest_points(here, o); }, each);
+      if (nearest.distance - around.margin < around.horizon) {
+        const auto j = jacobian(chain, theta, frame::spatial, body.link);
+        const vector3<double> moment = nearest.on_body.cross(nearest.normal);
+        V slope(theta.size());
+        for (Eigen::Index i = 0; i < theta.size(); ++i) {
+          const vector6<double> column = j.col(i);
+          slope[i] = nearest.normal.dot(column.head<3>()) + moment.dot(column.tail<3>());
+        }
+        result.push_back({slope, around.margin - nearest.distance});
       }
     }
   }
   return result;
 }
 
-/// A step in the presence of obstacles.
-template <class V>
-struct step_beside_obstacles {
-  constrained_step_result<V> result = {std::nullopt, std::numeric_limits<double>::infinity()};
-  bool is_free = true; ///< is there nothing near, or nothing that obstacles could help with?
+/// A chain among the obstacles of a scene.
+template <class C>
+class chain_among_obstacles final : public chain_model<C> {
+public:
+  using typename chain_model<C>::vector;
+  static constexpr int room = joint_room(C::joints);
+
+  chain_among_obstacles(const C& chain, const scene& around)
+      : chain_model<C>(chain), around_(around) {}
+
+  [[nodiscard]] double clearance(const vector& theta) const override {
+    return nearest(theta).distance;
+  }
+  [[nodiscard]] double shortfall(const vector& theta) const override {
+    return std::max(0.0, around_.margin - clearance(theta));
+  }
+  [[nodiscard]] step_beside_obstacles<room> step_beside(const chain_state<room>& from,
+                                                        const vector6<double>& e,
+                                                        const vector& wish) const override {
+    const auto inequalities = margin_inequalities(this->chain(), from.theta, around_);
+    if (inequalities.empty()) {
+      return {};
+    }
+    const vector down = this->lower() - from.theta, up = this->upper() - from.theta;
+    const auto result = constrained_step(from.jacobian, e, wish, down, up, inequalities);
+    // What cannot be done without obstacles either is not for them to answer for.
+    const bool is_free =
+        !result.step && !constrained_step(from.jacobian, e, wish, down, up, {}).step;
+    return {result.step, result.smallest_singular_value, is_free};
+  }
+  void require_clearance(const vector& theta, double tolerance) const override {
+    const auto least = nearest(theta);
+    if (!(least.distance >= around_.margin - tolerance)) {
+      std::ostringstream message;
+      message << "duet: plan: at the start body " << least.body << " is " << least.distance
+              << " from obstacle " << least.obstacle << ", closer than the margin of "
+              << around_.margin;
+      throw invalid_input(message.str());
+    }
+  }
+
+private:
+  [[nodiscard]] chain_clearance<double> nearest(const vector& theta) const {
+    return duet::clearance(this->chain(), theta, around_);
+  }
+
+  const scene& around_;
 };
 
-/// As `constrained_step`, among the obstacles of a scene.
-template <class C, class J, class V>
-[[nodiscard]] step_beside_obstacles<V>
-step_beside(const C& chain, const V& theta, const J& jacobian, const vector6<double>& e,
-            const V& wish, const V& lower, const V& upper, const scene& around) {
-  const auto inequalities = margin_inequalities(chain, theta, around);
-  if (inequalities.empty()) {
-    return {};
-  }
-  const V down = lower - theta, up = upper - theta;
-  const auto result = constrained_step(jacobian, e, wish, down, up, inequalities);
-  // What cannot be done without obstacles either is not for them to answer for.
-  const bool is_free = !result.step && !constrained_step(jacobian, e, wish, down, up, {}).step;
-  return {result, is_free};
+template <class C>
+[[nodiscard]] chain_model<C> model_of(const C& chain, const no_scene&) {
+  return chain_model<C>(chain);
 }
-
-/// \throws invalid_input for a scene that is none, and where the chain is too close to an obstacle
-template <class C, class V>
-void require_clearance(const C& chain, const V& theta, const scene& around, double tolerance) {
+/// \throws invalid_input for a scene that is none
+template <class C>
+[[nodiscard]] chain_among_obstacles<C> model_of(const C& chain, const scene& around) {
   require_scene(chain, around);
-  const auto nearest = clearance(chain, theta, around);
-  if (!(nearest.distance >= around.margin - tolerance)) {
-    std::ostringstream message;
-    message << "duet: plan: at the start body " << nearest.body << " is " << nearest.distance
-            << " from obstacle " << nearest.obstacle << ", closer than the margin of "
-            << around.margin;
-    throw invalid_input(message.str());
-  }
+  return chain_among_obstacles<C>(chain, around);
 }
-template <class C, class V>
-void require_clearance(const C&, const V&, const no_scene&, double) {}
 
 } // namespace detail
 } // namespace duet

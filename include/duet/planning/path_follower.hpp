@@ -2,15 +2,15 @@
 #pragma once
 
 #include <duet/planning/motion_plan.hpp>
-#include <duet/planning/objectives.hpp>
 #include <duet/planning/path_step.hpp>
 #include <duet/planning/plan_options.hpp>
+#include <duet/planning/planning_model.hpp>
 #include <duet/planning/self_motion_search.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -20,46 +20,16 @@
 namespace duet::detail {
 
 /// Plans along a path, first without stopping; where that comes to an end, with motions in place.
-template <class C, class Objective, class Scene>
+///
+/// \tparam N  as of `serial_chain`
+template <int N>
 class path_follower {
 public:
-  using vector = typename chain_state<C>::vector;
-
-  /// \param target  the tip's pose
-  /// \param stops   parameters that become waypoints, increasing; the first and the last are the
-  ///                ends of the path
-  path_follower(const C& chain, const path_function& target, std::vector<double> stops,
-                const plan_options& options, const Objective& objective, const Scene& around)
-      : around_(around), solver_(chain, options.tolerance, around), target_(target),
-        stops_(std::move(stops)), options_(options), objective_(objective),
-        length_(stops_.back() - stops_.front()), iterations_left_(options.iterations) {}
-
-  [[nodiscard]] motion_plan<C::joints> plan(const vector& start) {
-    route best({chain_state<C>(solver_.chain(), start), stops_.front(), {}, 0});
-    go_on(best);
-    // From where it got stuck, or else from the beginning.
-    for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
-      if (is_at_end(best) || options_.search_step == 0) {
-        break;
-      }
-      route other = with_search(best, first);
-      if (other.back().u > best.back().u) {
-        best = std::move(other);
-      }
-    }
-    return summary(best);
-  }
-
-  /// Nothing but the start.
-  [[nodiscard]] motion_plan<C::joints> stay(const vector& start, stop_reason why) const {
-    route x({chain_state<C>(solver_.chain(), start), stops_.front(), {}, 0});
-    x.reason = why;
-    return summary(x);
-  }
-
-private:
+  using vector = joint_vector<double, N>;
+  /// The gradient of what the joints are to lower.
+  using slope_function = std::function<vector(const vector&)>;
   struct waypoint {
-    chain_state<C> state;
+    chain_state<N> state;
     double u;
     pose_deviation left;
     double smallest_singular_value;
@@ -73,17 +43,74 @@ private:
     [[nodiscard]] const waypoint& back() const { return waypoints.back(); }
   };
 
+  /// \param target  the tip's pose
+  /// \param stops   parameters that become waypoints, increasing; the first and the last are the
+  ///                ends of the path
+  /// \param slope   or nothing
+  path_follower(const planning_model<N>& model, const path_function& target,
+                std::vector<double> stops, const plan_options& options, const slope_function& slope)
+      : solver_(model, options.tolerance), target_(target), stops_(std::move(stops)),
+        options_(options), slope_(slope), length_(stops_.back() - stops_.front()),
+        iterations_left_(options.iterations) {}
+
+  [[nodiscard]] route plan(const vector& start) {
+    route best = stay(start, stop_reason::no_progress);
+    go_on(best);
+    // From where it got stuck, or else from the beginning.
+    for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
+      if (is_at_end(best) || options_.search_step == 0) {
+        break;
+      }
+      route other = with_search(best, first);
+      if (other.back().u > best.back().u) {
+        best = std::move(other);
+      }
+    }
+    return best;
+  }
+
+  /// Nothing but the start.
+  [[nodiscard]] route stay(const vector& start, stop_reason why) const {
+    waypoint first{{}, stops_.front(), {}, 0};
+    solver_.model().set(first.state, start);
+    route x(first);
+    x.reason = why;
+    return x;
+  }
+
+  template <int M>
+  [[nodiscard]] motion_plan<M> summary(const route& x) const {
+    const planning_model<N>& model = solver_.model();
+    motion_plan<M> result;
+    const std::size_t count = x.waypoints.size();
+    result.joints.reserve(count);
+    result.poses.reserve(count);
+    result.tau.reserve(count);
+    result.deviations.reserve(count);
+    for (const waypoint& w : x.waypoints) {
+      add_waypoint(result, w.state.theta, w.state.pose, w.u, w.left, model.lower(), model.upper());
+      result.smallest_clearance =
+          std::min(result.smallest_clearance, model.clearance(w.state.theta));
+      if (&w != &x.waypoints.front()) {
+        result.smallest_singular_value =
+            std::min(result.smallest_singular_value, w.smallest_singular_value);
+      }
+    }
+    result.iterations = options_.iterations - iterations_left_;
+    result.reason = is_at_end(x)            ? stop_reason::reached
+                    : iterations_left_ <= 0 ? stop_reason::iteration_limit
+                                            : x.reason;
+    return result;
+  }
+
+private:
   [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops_.back(); }
 
   /// As far as possible without stopping.
   void go_on(route& x) {
     for (const double stop : stops_) {
       if (stop > x.back().u) {
-        const double part = (stop - x.back().u) / length_;
-        const auto wish = [&](const vector& theta, double from, double to) {
-          return downhill(theta, (to - from) * part);
-        };
-        if (!travel(x, stop, part, wish)) {
+        if (!travel(x, stop, (stop - x.back().u) / length_, nullptr)) {
           return;
         }
       }
@@ -92,9 +119,10 @@ private:
 
   /// What lowers the objectives.
   [[nodiscard]] vector downhill(const vector& theta, double step) const {
-    vector wish = towards_middle(theta, solver_.lower(), solver_.upper(), options_.centring * step);
-    if constexpr (!std::same_as<Objective, no_objective>) {
-      wish -= step * objective_gradient(objective_, theta);
+    const planning_model<N>& model = solver_.model();
+    vector wish = towards_middle(theta, model.lower(), model.upper(), options_.centring * step);
+    if (slope_) {
+      wish -= step * slope_(theta);
     }
     return wish;
   }
@@ -109,12 +137,8 @@ private:
     const auto way = search.run(result.back().state, search_parameters(result.back().u));
     iterations_left_ = search.iterations_left();
     for (std::size_t i = 1; i < way.size(); ++i) {
-      const vector& aim = way[i].state.theta;
-      const auto wish = [&](const vector& theta, double from, double to) {
-        return vector((to - from) / (1 - from) * (aim - theta));
-      };
       result.step = options_.search_step;
-      if (!travel(result, way[i].u, options_.search_step, wish)) {
+      if (!travel(result, way[i].u, options_.search_step, &way[i].state.theta)) {
         return result;
       }
     }
@@ -141,27 +165,27 @@ private:
   /// On to the parameter `end`, in steps that keep the tip near the path between waypoints too.
   ///
   /// \param part  how much of the path that counts for
-  /// \param wish  the change of the joints that would be best between two fractions of the way, if
-  ///              the tip were not to be minded
+  /// \param aim   where the joints should be at the end; nothing: they lower the objectives
   /// \return false where there is no going on
-  template <class Wish>
-  [[nodiscard]] bool travel(route& x, double end, double part, const Wish& wish) {
+  [[nodiscard]] bool travel(route& x, double end, double part, const vector* aim) {
     const double begin = x.back().u;
     double way = 0; // 1 at the end
     while (way < 1) {
-      const waypoint here = x.back();
+      const waypoint& here = x.back();
       const double next = way + x.step / part > 1 - 1e-9 ? 1 : way + x.step / part;
       const double u = next == 1 ? end : begin + (end - begin) * next;
-      const auto there =
-          solver_.approach(here.state, target_(u), wish(here.state.theta, way, next));
+      const vector& theta = here.state.theta;
+      const vector wish = aim != nullptr ? vector((next - way) / (1 - way) * (*aim - theta))
+                                         : downhill(theta, (next - way) * part);
+      const auto there = solver_.approach(here.state, target_(u), wish);
       iterations_left_ -= there.iterations;
       double change = .25;
       if (there.is_within(options_.tolerance)) {
-        const vector middle = (here.state.theta + there.state.theta) / 2;
+        const vector middle = (theta + there.state.theta) / 2;
         const pose_deviation half_way =
-            deviation_between(solver_.chain().pose(middle), target_((here.u + u) / 2));
+            deviation_between(solver_.model().pose(middle), target_((here.u + u) / 2));
         const double excess =
-            std::max({half_way.length, half_way.angle, solver_.shortfall(middle)}) /
+            std::max({half_way.length, half_way.angle, solver_.model().shortfall(middle)}) /
             options_.deviation;
         // Between waypoints the deviation grows with the square of the step.
         change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
@@ -184,32 +208,11 @@ private:
     return true;
   }
 
-  [[nodiscard]] motion_plan<C::joints> summary(const route& x) const {
-    motion_plan<C::joints> result;
-    for (const waypoint& w : x.waypoints) {
-      add_waypoint(result, solver_.chain(), w.state.theta, w.state.pose, w.u, w.left);
-      if constexpr (!std::same_as<Scene, no_scene>) {
-        result.smallest_clearance = std::min(
-            result.smallest_clearance, clearance(solver_.chain(), w.state.theta, around_).distance);
-      }
-      if (&w != &x.waypoints.front()) {
-        result.smallest_singular_value =
-            std::min(result.smallest_singular_value, w.smallest_singular_value);
-      }
-    }
-    result.iterations = options_.iterations - iterations_left_;
-    result.reason = is_at_end(x)            ? stop_reason::reached
-                    : iterations_left_ <= 0 ? stop_reason::iteration_limit
-                                            : x.reason;
-    return result;
-  }
-
-  const Scene& around_;
-  pose_solver<C, Scene> solver_;
+  pose_solver<N> solver_;
   const path_function& target_;
   std::vector<double> stops_;
   plan_options options_;
-  const Objective& objective_;
+  const slope_function& slope_;
   double length_;
   int iterations_left_;
 };

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <duet/dual_quaternion/twist.hpp>
-#include <duet/mechanism/jacobian.hpp>
 #include <duet/planning/bounded_step.hpp>
 #include <duet/planning/motion_plan.hpp>
-#include <duet/planning/obstacle_steps.hpp>
-#include <duet/quaternion/exponential.hpp>
+#include <duet/planning/planning_model.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
-#include <concepts>
 #include <functional>
 #include <limits>
 
@@ -17,18 +16,6 @@
 /// Steps of a chain that bring its tip to a pose nearby, within the limits of the joints.
 
 namespace duet::detail {
-
-/// The twist, in `frame::hybrid`, of the shorter screw motion from one pose to another in unit
-/// time.
-[[nodiscard]] inline vector6<double> error_twist(const dual_quaternion<double>& from,
-                                                 const dual_quaternion<double>& to) {
-  dual_quaternion<double> difference = to * conj(from);
-  if (innermost(difference.w()) < 0) {
-    difference = -difference;
-  }
-  const auto spatial = twist_of(dual_vector<double>(log(difference).vec()));
-  return hybrid_twist(from, vector6<double>(2 * spatial));
-}
 
 /// What takes joints away from their limits: up to a `step` that grows towards them.
 template <class V>
@@ -47,26 +34,11 @@ template <class V>
 /// Poses by a parameter. Its type is forgotten, so that planners are compiled once for all.
 using path_function = std::function<dual_quaternion<double>(double)>;
 
-/// A configuration of a chain, with its tip's pose and Jacobian in `frame::hybrid`.
-template <class C>
-struct chain_state {
-  using vector = joint_vector<double, C::joints>;
-  vector theta;
-  dual_quaternion<double> pose;
-  chain_jacobian<C, vector> jacobian;
-
-  chain_state(const C& chain, const vector& at) : theta(at), jacobian(6, chain.size()) {
-    const auto [a, m] = pose_and_jacobian(chain, theta, frame::hybrid);
-    pose = a;
-    jacobian = m;
-  }
-};
-
 /// What became of an attempt to bring the tip to a pose.
-template <class C>
+template <int N>
 struct attempt {
-  chain_state<C> state;
-  pose_deviation left; ///< to the pose
+  chain_state<N> state;
+  pose_deviation left = {}; ///< to the pose
   /// Of the Jacobians on the way, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
   bool is_bounded = false; ///< did a limit hold a joint back?
@@ -80,34 +52,27 @@ struct attempt {
 };
 
 /// Brings the tip of a chain to poses nearby.
-///
-/// \tparam Scene  `scene` or `no_scene`
-template <class C, class Scene = no_scene>
+template <int N>
 class pose_solver {
 public:
-  using vector = typename chain_state<C>::vector;
+  using vector = joint_vector<double, N>;
 
-  pose_solver(const C& chain, double tolerance, const Scene& around)
-      : chain_(chain), around_(around), lower_(lower_limits(chain)), upper_(upper_limits(chain)),
-        tolerance_(tolerance) {}
+  pose_solver(const planning_model<N>& model, double tolerance)
+      : model_(model), tolerance_(tolerance) {}
 
-  [[nodiscard]] const C& chain() const { return chain_; }
-  [[nodiscard]] const vector& lower() const { return lower_; }
-  [[nodiscard]] const vector& upper() const { return upper_; }
+  [[nodiscard]] const planning_model<N>& model() const { return model_; }
   [[nodiscard]] double tolerance() const { return tolerance_; }
-  /// How much is missing to the margin to obstacles.
-  [[nodiscard]] double shortfall(const vector& theta) const {
-    return margin_shortfall(chain_, theta, around_);
-  }
 
   /// From a state nearby, the step nearest to `wish` that takes the tip to the target to first
   /// order, and then Newton's method by least steps. None leaves the limits.
-  [[nodiscard]] attempt<C> approach(const chain_state<C>& from,
+  [[nodiscard]] attempt<N> approach(const chain_state<N>& from,
                                     const dual_quaternion<double>& target,
                                     const vector& wish) const {
-    attempt<C> result{from, {}};
-    if (move(result, error_twist(from.pose, target), wish)) {
+    attempt<N> result;
+    if (move(result, from, error_twist(from.pose, target), wish)) {
       correct(result, target);
+    } else {
+      result.state = from;
     }
     return result;
   }
@@ -115,59 +80,57 @@ public:
 private:
   /// Rounding may have led beyond the limits.
   [[nodiscard]] vector within(const vector& theta) const {
-    return theta.cwiseMax(lower_).cwiseMin(upper_);
+    return theta.cwiseMax(model_.lower()).cwiseMin(model_.upper());
   }
 
-  void correct(attempt<C>& x, const dual_quaternion<double>& target) const {
+  void correct(attempt<N>& x, const dual_quaternion<double>& target) const {
     double before = std::numeric_limits<double>::infinity();
     for (;;) {
       const vector6<double> error = error_twist(x.state.pose, target);
       x.left = {error.head<3>().norm(), error.tail<3>().norm()};
-      x.shortfall = shortfall(x.state.theta);
+      x.shortfall = model_.shortfall(x.state.theta);
       const double size = std::max({x.left.length, x.left.angle, x.shortfall});
       // What does not at least halve the error will not get there.
       if (size <= tolerance_ || x.iterations == most || size > before / 2 ||
-          !move(x, error, vector(vector::Zero(lower_.size())))) {
+          !move(x, x.state, error, vector(vector::Zero(x.state.theta.size())))) {
         return;
       }
       before = size;
     }
   }
 
-  /// The step nearest to `wish` that moves the tip by `e` to first order; false where obstacles
-  /// leave none.
-  [[nodiscard]] bool move(attempt<C>& x, const vector6<double>& e, const vector& wish) const {
+  /// The step nearest to `wish` that moves the tip by `e` to first order, from a state that may be
+  /// that of x; false where obstacles leave none.
+  [[nodiscard]] bool move(attempt<N>& x, const chain_state<N>& from, const vector6<double>& e,
+                          const vector& wish) const {
     ++x.iterations;
-    const chain_state<C>& from = x.state;
-    if constexpr (!std::same_as<Scene, no_scene>) {
-      const auto beside =
-          step_beside(chain_, from.theta, from.jacobian, e, wish, lower_, upper_, around_);
-      x.smallest_singular_value =
-          std::min(x.smallest_singular_value, beside.result.smallest_singular_value);
-      if (beside.result.step) {
-        x.state = chain_state<C>(chain_, within(from.theta + *beside.result.step));
-        return true;
-      }
-      if (!beside.is_free) {
-        x.is_blocked = true;
-        x.left.length = std::numeric_limits<double>::infinity();
-        return false;
-      }
+    const auto beside = model_.step_beside(from, e, wish);
+    x.smallest_singular_value = std::min(x.smallest_singular_value, beside.smallest_singular_value);
+    if (beside.step) {
+      model_.set(x.state, within(from.theta + *beside.step));
+      return true;
+    }
+    if (!beside.is_free) {
+      x.is_blocked = true;
+      x.left.length = std::numeric_limits<double>::infinity();
+      return false;
     }
     const vector aim = within(from.theta + wish);
-    const vector6<double> rest = e - from.jacobian * (aim - from.theta);
-    const auto step = bounded_step(from.jacobian, rest, vector(lower_ - aim), vector(upper_ - aim));
+    vector6<double> rest = e;
+    for (Eigen::Index i = 0; i < aim.size(); ++i) {
+      rest -= (aim[i] - from.theta[i]) * from.jacobian.col(i);
+    }
+    const auto step = bounded_step(from.jacobian, rest, vector(model_.lower() - aim),
+                                   vector(model_.upper() - aim));
     x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
     x.is_bounded = x.is_bounded || step.is_bounded;
-    x.state = chain_state<C>(chain_, within(aim + step.step));
+    model_.set(x.state, within(aim + step.step));
     return true;
   }
 
   static constexpr int most = 12;
 
-  const C& chain_;
-  const Scene& around_;
-  vector lower_, upper_;
+  const planning_model<N>& model_;
   double tolerance_;
 };
 

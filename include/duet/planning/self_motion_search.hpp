@@ -1,9 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/planning/bounded_step.hpp>
+#include <duet/planning/cholesky.hpp>
 #include <duet/planning/path_step.hpp>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cstddef>
@@ -16,17 +18,22 @@ namespace duet::detail {
 
 /// The direction next to `wish`, of unit length, in which the joints move without the tip; zero
 /// where there is none.
-template <class C>
-[[nodiscard]] typename chain_state<C>::vector
-self_motion_direction(const chain_state<C>& state, typename chain_state<C>::vector wish) {
-  using vector = typename chain_state<C>::vector;
-  const Eigen::LDLT<matrix6<double>> gram(
-      matrix6<double>(state.jacobian * state.jacobian.transpose()));
+/// \param gram  the factors of J Jᵀ
+template <class J, class V>
+[[nodiscard]] V self_motion_direction(const J& jacobian, const cholesky<matrix6<double>>& gram,
+                                      V wish) {
   for (int round = 0; round < 2; ++round) { // the second time for rounding
-    wish -= vector(state.jacobian.transpose() * gram.solve(state.jacobian * wish));
+    vector6<double> moved = vector6<double>::Zero();
+    for (Eigen::Index i = 0; i < wish.size(); ++i) {
+      moved += wish[i] * jacobian.col(i);
+    }
+    const vector6<double> force = gram.solve(moved);
+    for (Eigen::Index i = 0; i < wish.size(); ++i) {
+      wish[i] -= jacobian.col(i).dot(force);
+    }
     const double length = wish.norm();
     if (!(length > 1e-3)) {
-      return vector::Zero(wish.size());
+      return V::Zero(wish.size());
     }
     wish /= length;
   }
@@ -35,9 +42,9 @@ self_motion_direction(const chain_state<C>& state, typename chain_state<C>::vect
 
 /// A configuration that can be reached, and from which: one at the same parameter, in place, or one
 /// before.
-template <class C>
+template <int N>
 struct reachable {
-  chain_state<C> state;
+  chain_state<N> state;
   double u;
   std::ptrdiff_t from; ///< its number, −1 for none
 };
@@ -50,18 +57,18 @@ struct reachable {
 /// from all its points one step is taken to the next parameter, where those pieces are followed
 /// that are new. With several joints to spare one curve of the manifold is, with none a piece is a
 /// point.
-template <class C, class Scene>
+template <int N>
 class self_motion_search {
 public:
-  using vector = typename chain_state<C>::vector;
+  using vector = joint_vector<double, N>;
 
-  self_motion_search(const pose_solver<C, Scene>& solver, const path_function& target,
-                     double spacing, int iterations)
+  self_motion_search(const pose_solver<N>& solver, const path_function& target, double spacing,
+                     int iterations)
       : solver_(solver), target_(target), spacing_(spacing), left_(iterations) {}
 
   /// The way from a state at u.front() to u.back(), or as far as it goes, each configuration a step
   /// from the one before.
-  [[nodiscard]] std::vector<reachable<C>> run(const chain_state<C>& start,
+  [[nodiscard]] std::vector<reachable<N>> run(const chain_state<N>& start,
                                               const std::vector<double>& u) {
     found_.push_back({start, u.front(), -1});
     follow(0, target_(u.front()));
@@ -81,7 +88,7 @@ public:
       }
       first = end;
     }
-    std::vector<reachable<C>> way;
+    std::vector<reachable<N>> way;
     for (auto i = std::ptrdiff_t(first); i >= 0; i = found_[std::size_t(i)].from) {
       way.push_back(found_[std::size_t(i)]);
     }
@@ -91,7 +98,7 @@ public:
   [[nodiscard]] int iterations_left() const { return left_; }
 
 private:
-  [[nodiscard]] attempt<C> tried(const chain_state<C>& from, const dual_quaternion<double>& target,
+  [[nodiscard]] attempt<N> tried(const chain_state<N>& from, const dual_quaternion<double>& target,
                                  const vector& wish) {
     auto result = solver_.approach(from, target, wish);
     left_ -= result.iterations;
@@ -99,7 +106,7 @@ private:
   }
 
   /// On to another parameter, in up to 2^`halvings` steps.
-  [[nodiscard]] attempt<C> go(const chain_state<C>& from, double u, double to, int halvings) {
+  [[nodiscard]] attempt<N> go(const chain_state<N>& from, double u, double to, int halvings) {
     const vector none = vector::Zero(from.theta.size());
     auto direct = tried(from, target_(to), none);
     const bool is_jump = (direct.state.theta - from.theta).norm() > .5;
@@ -123,11 +130,13 @@ private:
   /// Adds the piece that found_[start] is on, in both directions by turns, so that what is near
   /// comes first.
   void follow(std::size_t start, const dual_quaternion<double>& target) {
-    const auto& at = found_[start].state;
-    vector best = vector::Zero(at.theta.size());
+    const auto& jacobian = found_[start].state.jacobian;
+    const cholesky gram(gram_matrix(jacobian));
+    const Eigen::Index n = jacobian.cols();
+    vector best = vector::Zero(n);
     double largest = 0;
-    for (Eigen::Index i = 0; i < at.theta.size(); ++i) {
-      const vector d = self_motion_direction(at, vector(vector::Unit(at.theta.size(), i)));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const vector d = self_motion_direction(jacobian, gram, vector(vector::Unit(n, i)));
       if (std::abs(d[i]) > largest) { // d[i] is how much of the unit vector is in d
         largest = std::abs(d[i]);
         best = d;
@@ -156,13 +165,13 @@ private:
 
   /// One step on; false at the end of the piece.
   bool slide(front& end, const dual_quaternion<double>& target) {
-    const chain_state<C> here = found_[end.at].state;
+    const chain_state<N>& here = found_[end.at].state;
     // As far as the limits allow.
     double reach = end.step;
     for (Eigen::Index i = 0; i < here.theta.size(); ++i) {
       const double d = end.direction[i];
       if (std::abs(d) > 1e-9) {
-        const double bound = d > 0 ? solver_.upper()[i] : solver_.lower()[i];
+        const double bound = d > 0 ? solver_.model().upper()[i] : solver_.model().lower()[i];
         reach = std::min(reach, (bound - here.theta[i]) / d);
       }
     }
@@ -171,7 +180,9 @@ private:
       const vector moved = next.state.theta - here.theta;
       if (next.is_within(solver_.tolerance()) && moved.norm() < 2 * reach &&
           moved.dot(end.direction) > .7 * reach) {
-        const vector direction = self_motion_direction(next.state, end.direction);
+        const auto& jacobian = next.state.jacobian;
+        const vector direction =
+            self_motion_direction(jacobian, cholesky(gram_matrix(jacobian)), end.direction);
         if (direction.dot(end.direction) > .7) {
           found_.push_back({next.state, found_[end.at].u, std::ptrdiff_t(end.at)});
           end = {found_.size() - 1, direction, std::min(spacing_, 2 * reach)};
@@ -182,11 +193,11 @@ private:
     return false;
   }
 
-  const pose_solver<C, Scene>& solver_;
+  const pose_solver<N>& solver_;
   const path_function& target_;
   double spacing_;
   int left_;
-  std::vector<reachable<C>> found_;
+  std::vector<reachable<N>> found_;
 };
 
 } // namespace duet::detail
