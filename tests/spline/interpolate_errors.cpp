@@ -112,7 +112,8 @@ TEST_CASE("periodic ends that do not meet") {
 TEST_CASE("rates that are not finite") {
   const duet::vector6<double> twist(0, 0, 1, infinity, 0, 0);
   CHECK_THROWS_WITH_AS(
-      (duet::end_acceleration{twist, duet::vector6<double>(0 * twist)}.check()),
+      (duet::curve_ends<duet::screw_dual<double>>(
+          duet::end_acceleration{twist, duet::vector6<double>(0 * twist)})),
       "duet: end_acceleration: the rate at the start, (0, 0, 1, inf, 0, 0), is not finite",
       duet::invalid_input);
   const vector zero = vector::Zero();
@@ -129,6 +130,13 @@ TEST_CASE("rates that are not finite") {
         "duet: clamped: the rate at the start, (0, nan, 0), is not finite");
   CHECK(with(zero, vector(infinity, 0, 0)) ==
         "duet: clamped: the rate at the end, (inf, 0, 0), is not finite");
+}
+
+TEST_CASE("cubics cannot be told velocities and accelerations") {
+  const vector zero = vector::Zero();
+  const duet::fully_clamped both{duet::clamped{zero, zero}, duet::end_acceleration{zero, zero}};
+  CHECK(message_of<duet::invalid_input>({0, 1, 2}, {one, one, one}, both) ==
+        "duet: interpolate: a cubic's ends take velocities or accelerations, not both");
 }
 
 TEST_CASE("neighbours far apart at uneven parameters: a curve, or a word why not") {

@@ -57,7 +57,7 @@ struct way {
 template <class Spline, class Ends>
 way way_of_newton(const rows& data, const Ends& ends) {
   const duet::detail::equations_of_t<Spline> f(data.parameters, data.orientations,
-                                               duet::detail::curve_ends<double>(ends));
+                                               duet::curve_ends<double>(ends));
   const duet::detail::spline_newton newton(f);
   const auto start = f.start();
   double difference = 0, size = 0;
@@ -105,7 +105,7 @@ TEST_CASE("no step is small where one is not a number") {
   const rows data = small_steps();
   const duet::detail::equations_of_t<cumulative> f(
       data.parameters, data.orientations,
-      duet::detail::curve_ends<double>(duet::detail::end_kind::natural));
+      duet::curve_ends<double>(duet::detail::end_kind::natural));
   auto change = f.start();
   change[change.size() / 2][0] = nan;
   CHECK(std::isnan(f.relative_step(f.start(), change)));

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <concepts>
 #include <type_traits>
 
 /// \file
@@ -25,6 +26,11 @@ inline constexpr body_frame body{};
 inline constexpr hybrid_frame hybrid{};
 
 } // namespace frame
+
+/// The type of a constant in namespace `frame`.
+template <class Frame>
+concept FrameConstant = std::same_as<Frame, spatial_frame> || std::same_as<Frame, body_frame> ||
+    std::same_as<Frame, hybrid_frame>;
 
 namespace detail {
 

@@ -25,11 +25,6 @@
 
 namespace duet {
 
-/// The type of a constant in namespace `frame`.
-template <class Frame>
-concept FrameConstant = std::same_as<Frame, spatial_frame> || std::same_as<Frame, body_frame> ||
-    std::same_as<Frame, hybrid_frame>;
-
 /// What the drivers with a frame differentiate by: scalars, fixed-size vectors, arrays, rotations,
 /// poses, and tuples of them.
 template <class X>

@@ -122,7 +122,7 @@ template <class F, class Variables, class Frame>
 /// the entries of a matrix, column by column as Eigen stores them; the angular velocity of a
 /// rotation (N7); the twist [v; ω] of a pose (N18). Rotations and poses, on both sides, are taken
 /// as unit, and in `frame::spatial` or `frame::body`.
-template <Formula F, class... Symbols, class Frame>
+template <Formula F, class... Symbols, FrameConstant Frame>
 [[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>, Frame frame) {
   static_cast<void>(duet::detail::is_spatial(frame));
   return detail::make_jacobian<F, variables<Symbols...>, Frame>(f);

@@ -67,7 +67,7 @@ private:
 /// `auto [q, omega, alpha] = motion(f, u, frame::body)(u = 0.3)`. ω and its derivative by u of a
 /// rotation (N7), the twist [v; ω] and its derivative of a pose (N18), per unit of u, in
 /// `frame::spatial` or `frame::body`.
-template <Formula F, Symbol U, class Frame>
+template <Formula F, Symbol U, FrameConstant Frame>
 [[nodiscard]] constexpr auto motion(const F& f, const U&, Frame frame) {
   static_cast<void>(duet::detail::is_spatial(frame));
   constexpr kind k = F::node_type::kind_of;

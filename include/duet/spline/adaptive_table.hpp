@@ -32,7 +32,7 @@ struct table_options {
 
 /// A table, the curve through it, and the largest distance of the curve from what it stands for
 /// that was seen: radians, of poses as `distance`.
-template <class Spline>
+template <CurveType Spline>
 struct table_result {
   look_up_table<typename Spline::scalar_type> table;
   Spline curve;
@@ -74,10 +74,12 @@ template <class Spline, class F, class R>
 /// \param tolerance  radians, of poses as `distance` with `options.length`
 /// \throws invalid_input for a tolerance that is not positive or a range that is empty;
 ///         no_convergence where `options.most_rows` do not reach the tolerance; as `interpolate`
-template <class Spline, class F, class Ends = not_a_knot>
+template <CurveType Spline, class F>
 [[nodiscard]] table_result<Spline>
 adaptive_table(const F& f, typename Spline::real_type first, typename Spline::real_type last,
-               double tolerance, const Ends& ends = {}, const table_options& options = {}) {
+               double tolerance,
+               const curve_ends<typename Spline::scalar_type>& ends = not_a_knot{},
+               const table_options& options = {}) {
   using T = typename Spline::scalar_type;
   using R = typename Spline::real_type;
   static_assert(std::convertible_to<std::invoke_result_t<const F&, const R&>, quaternion<T>>,
@@ -135,9 +137,10 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
 /// curve misses between its rows, p = `Spline::convergence`; measured, the estimate is
 /// one to three times the error where the table resolves the motion.
 /// \throws invalid_input for fewer than nine rows; as `interpolate`
-template <class Spline, class Ends = not_a_knot>
+template <CurveType Spline>
 [[nodiscard]] std::vector<double>
-estimated_errors(const look_up_table<typename Spline::scalar_type>& table, const Ends& ends = {},
+estimated_errors(const look_up_table<typename Spline::scalar_type>& table,
+                 const curve_ends<typename Spline::scalar_type>& ends = not_a_knot{},
                  double length = 1) {
   const std::size_t rows = table.parameters.size();
   if (rows < 9 || rows != table.elements.size()) {

@@ -1,18 +1,23 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/half_rate.hpp>
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstddef>
+#include <sstream>
 
 /// \file
 /// End conditions as data, so that no equation is compiled for each of them.
 
-namespace duet::detail {
+namespace duet {
+namespace detail {
 
 enum class end_kind {
   natural,
@@ -23,34 +28,68 @@ enum class end_kind {
   periodic
 };
 
-/// What is asked of a curve at its ends, whatever kind of curve it is.
+/// \throws invalid_input for a rate that is not finite
+template <class V>
+void check_end_rates(const char* condition, const V& start, const V& end) {
+  static_assert(V::SizeAtCompileTime == 3 || V::SizeAtCompileTime == 6,
+                "duet: end rates are angular, 3-vectors, or twists [v; ω], 6-vectors");
+  const auto check = [&](const char* which, const V& rate) {
+    for (int i = 0; i < V::SizeAtCompileTime; ++i) {
+      if (!(innermost(rate[i]) - innermost(rate[i]) == 0)) {
+        std::ostringstream message;
+        message << "duet: " << condition << ": the rate at the " << which << ", ("
+                << rate.transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "})
+                << "), is not finite";
+        throw invalid_input(message.str());
+      }
+    }
+  };
+  check("start", start);
+  check("end", end);
+}
+
+} // namespace detail
+
+/// What is asked of a curve over T at its ends, whatever kind of curve it is: `natural{}`,
+/// `clamped{…}`, `end_acceleration{…}`, `fully_clamped{…}`, `not_a_knot{}` or `periodic{}`.
+/// \throws invalid_input for a rate that is not finite
 template <class T>
 struct curve_ends {
   using rates = std::array<vector3<T>, 2>; ///< at the start and at the end
 
-  end_kind kind;
+  detail::end_kind kind;
   rates velocity, acceleration; ///< halved, in spatial axes; zero where none are given
 
-  explicit curve_ends(end_kind k) : kind(k) {
+  explicit curve_ends(detail::end_kind k) : kind(k) {
     velocity.fill(vector3<T>::Constant(T(real_type_t<T>(0))));
     acceleration = velocity;
   }
-  explicit curve_ends(const natural&) : curve_ends(end_kind::natural) {}
+  curve_ends(const natural&) : curve_ends(detail::end_kind::natural) {}
   template <class V>
-  explicit curve_ends(const clamped<V>& ends) : curve_ends(end_kind::velocity) {
-    velocity = {half_rate<T>(ends.start), half_rate<T>(ends.end)};
+  curve_ends(const clamped<V>& ends) : curve_ends(detail::end_kind::velocity) {
+    detail::check_end_rates("clamped", ends.start, ends.end);
+    velocity = {detail::half_rate<T>(ends.start), detail::half_rate<T>(ends.end)};
   }
   template <class V>
-  explicit curve_ends(const end_acceleration<V>& ends) : curve_ends(end_kind::acceleration) {
-    acceleration = {half_rate<T>(ends.start), half_rate<T>(ends.end)};
+  curve_ends(const end_acceleration<V>& ends) : curve_ends(detail::end_kind::acceleration) {
+    detail::check_end_rates("end_acceleration", ends.start, ends.end);
+    acceleration = {detail::half_rate<T>(ends.start), detail::half_rate<T>(ends.end)};
   }
   template <class V>
-  explicit curve_ends(const fully_clamped<V>& ends) : curve_ends(ends.velocity) {
-    kind = end_kind::velocity_and_acceleration;
+  curve_ends(const fully_clamped<V>& ends) : curve_ends(ends.velocity) {
+    kind = detail::end_kind::velocity_and_acceleration;
     acceleration = curve_ends(ends.acceleration).acceleration;
   }
-  explicit curve_ends(const not_a_knot&) : curve_ends(end_kind::not_a_knot) {}
-  explicit curve_ends(const periodic&) : curve_ends(end_kind::periodic) {}
+  curve_ends(const not_a_knot&) : curve_ends(detail::end_kind::not_a_knot) {}
+  curve_ends(const periodic&) : curve_ends(detail::end_kind::periodic) {}
+
+  /// Anything else is refused.
+  template <class Other>
+  curve_ends(const Other&) {
+    static_assert(refused<Other>,
+                  "duet: interpolate: the ends are natural{}, clamped{velocity, velocity}, "
+                  "end_acceleration{…}, fully_clamped{…}, not_a_knot{} or periodic{}");
+  }
 
   [[nodiscard]] curve_ends<real_type_t<T>> real_part() const {
     curve_ends<real_type_t<T>> result(kind);
@@ -62,6 +101,10 @@ struct curve_ends {
     }
     return result;
   }
+
+private:
+  template <class Other>
+  static constexpr bool refused = false;
 };
 
-} // namespace duet::detail
+} // namespace duet

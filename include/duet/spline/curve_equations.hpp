@@ -13,7 +13,18 @@
 /// \file
 /// What `interpolate` needs to know of a kind of curve.
 
-namespace duet::detail {
+namespace duet {
+
+/// A type of curves through rotations or poses: over which scalar, by which parameter, of which
+/// order.
+template <class S>
+concept CurveType = requires {
+  typename S::scalar_type;
+  typename S::real_type;
+  S::order;
+};
+
+namespace detail {
 
 /// The equations over T of curves of type `Spline`: a new kind of curve specialises this, and
 /// `interpolate` finds it.
@@ -42,4 +53,5 @@ concept CurveEquations = requires(E e, const E f, const typename E::unknowns x,
   jacobian.solve(r);
 };
 
-} // namespace duet::detail
+} // namespace detail
+} // namespace duet

@@ -25,7 +25,7 @@
 namespace duet {
 
 /// A fitted curve, and how far the rows are from it.
-template <class Spline>
+template <CurveType Spline>
 struct fit_result {
   using real_type = typename Spline::real_type;
   Spline curve;
@@ -80,7 +80,7 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 /// \throws invalid_row for a row that is not finite, not a unit, outside the knots' domain or does
 ///         not follow the row before; invalid_input for counts that differ, too few rows somewhere,
 ///         a length that is not positive, a limit that is negative; no_convergence
-template <class Spline, class R, class T>
+template <CurveType Spline, class R, class T>
 [[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> rows,
                                      std::vector<R> knots, const fit_options& options = {}) {
   static_assert(std::is_same_v<Spline, cumulative_bspline<T, Spline::order>> &&

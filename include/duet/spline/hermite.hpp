@@ -27,7 +27,7 @@ namespace duet {
 /// \param frame       theirs: `frame::spatial` or `frame::body`
 /// \throws invalid_row for a row that no curve can go through, and for a velocity that is not
 /// finite; invalid_input for fewer than two rows or counts that differ
-template <class T, class V, class Frame>
+template <class T, class V, FrameConstant Frame>
 [[nodiscard]] rotation_vector_spline<T, 4>
 hermite_spline(const std::vector<real_type_t<T>>& parameters, std::vector<quaternion<T>> elements,
                const std::vector<V>& velocities, Frame frame) {

