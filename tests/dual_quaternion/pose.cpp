@@ -3,13 +3,18 @@
 #include "dual_quaternion/cases.hpp"
 
 #include <duet/core/errors.hpp>
+#include <duet/core/known_constant.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 // N17: rigid displacements of points, directions, lines and planes, against Eigen's isometries.
 
@@ -37,6 +42,44 @@ const vector point(0.7, -1.9, 0.4);
 const vector direction(0.6, 0, -0.8);
 
 } // namespace
+
+/// Three-vectors and displacements, which chains are followed with, are known to the compiler.
+namespace compiled {
+
+using duet::detail::displacement;
+using duet::detail::known_number;
+using duet::detail::partly_known_quaternion;
+using duet::detail::three_vector;
+
+constexpr bool are_equal(const three_vector<double>& a, const three_vector<double>& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+constexpr three_vector<double> i{1, 0, 0}, j{0, 1, 0}, k{0, 0, 1}, a{2, -3, 5}, b{7, 11, -13};
+static_assert(are_equal(cross(i, j), k) && are_equal(cross(j, k), i) && are_equal(cross(k, i), j));
+static_assert(are_equal(cross(a, b), {-16, 61, 43}) && dot(a, cross(a, b)) == 0);
+static_assert(are_equal(2 * a - b, {-3, -17, 23}) && dot(a, b) == -84);
+
+// Half a turn about y, about x + y + z a third.
+constexpr displacement about_y{duet::quaternion<double>(0, 0, 1, 0), a};
+constexpr displacement third{duet::quaternion<double>(.5, .5, .5, .5), b};
+static_assert(are_equal(about_y.point(b), {-5, 8, 18}) && are_equal(third.point(a), {12, 13, -16}));
+static_assert(are_equal((about_y * third).point(a), about_y.point(third.point(a))));
+static_assert(are_equal((third * about_y).point(a), third.point(about_y.point(a))));
+
+// What is known stays so: where the other factor is infinite or NaN too.
+constexpr known_number<0> o;
+constexpr known_number<1> one;
+static_assert(std::is_same_v<decltype(o * 2.0), known_number<0>>);
+static_assert(std::is_same_v<decltype(one - one), known_number<0>>);
+static_assert(one * 3.0 == 3 && -one * 3.0 == -3 && one - 3.0 == -2 && 3.0 - one == 2);
+static_assert(o - 3.0 == -3 && 3.0 - o == 3 && 3.0 + -one == 2);
+constexpr displacement slide{partly_known_quaternion{one, o, o, o},
+                             three_vector{o, o, std::numeric_limits<double>::infinity()}};
+static_assert(std::is_same_v<decltype((slide * slide).rotation),
+                             decltype(partly_known_quaternion{one, o, o, o})>);
+static_assert((slide * slide).translation.z == std::numeric_limits<double>::infinity());
+
+} // namespace compiled
 
 TEST_CASE("there and back") {
   for (const auto& a : poses()) {

@@ -22,7 +22,7 @@ namespace op {
 
 /// a or b of a + εb; what is made of dual numbers becomes what is made of real ones.
 template <bool Dual>
-struct part {
+struct part_of_dual {
   static constexpr kind kind_of(kind k) {
     return k == kind::dual_vector ? kind::vector : k == kind::pose ? kind::quaternion : k;
   }
@@ -40,7 +40,7 @@ struct part {
   }
   template <class X, class DX>
   static constexpr auto differential(X, DX dx) {
-    return apply<part>(dx);
+    return apply<part_of_dual>(dx);
   }
   template <int I>
   static constexpr auto simplified(unit_vector_node<kind::dual_vector, I>) {
@@ -55,7 +55,7 @@ struct part {
     if constexpr (is_zero<X>) {
       return zero_of<kind_of(X::kind_of)>();
     } else {
-      return applied_node<part, X>{};
+      return applied_node<part_of_dual, X>{};
     }
   }
   static printed print(notation style, const printed& x) {
@@ -120,13 +120,13 @@ template <Term X>
   if constexpr (PoseTerm<X>) {
     return apply<op::rotation>(x);
   } else {
-    return apply<op::part<false>>(x);
+    return apply<op::part_of_dual<false>>(x);
   }
 }
 /// b of a + εb.
 template <Term X>
   requires(!VectorTerm<X> && !QuaternionTerm<X>)
-[[nodiscard]] constexpr auto dual_part(const X& x) { return apply<op::part<true>>(x); }
+[[nodiscard]] constexpr auto dual_part(const X& x) { return apply<op::part_of_dual<true>>(x); }
 /// a − εb of a dual number (N10) or dual quaternion, its second conjugate (N15).
 template <Term X>
   requires(ScalarTerm<X> || PoseTerm<X>)

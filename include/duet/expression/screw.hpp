@@ -151,7 +151,7 @@ template <class N, class D, class Tag = decltype([](op::turn*) {})>
 [[nodiscard]] constexpr auto slide(const N& n, const D& d) {
   const auto direction = detail::term<Tag>(n);
   if constexpr (DualVectorTerm<std::remove_cvref_t<decltype(direction)>>) {
-    return apply<op::slide>(apply<op::part<false>>(direction), detail::term<Tag>(d));
+    return apply<op::slide>(apply<op::part_of_dual<false>>(direction), detail::term<Tag>(d));
   } else {
     return apply<op::slide>(direction, detail::term<Tag>(d));
   }

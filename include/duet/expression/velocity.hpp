@@ -121,7 +121,7 @@ template <class A, class Motion>
 struct velocity<applied_node<op::rotation, A>, Motion> {
   template <class Frame>
   static constexpr auto in() {
-    return apply<op::part<false>>(velocity_of<Frame, A, Motion>());
+    return apply<op::part_of_dual<false>>(velocity_of<Frame, A, Motion>());
   }
 };
 
@@ -174,8 +174,9 @@ template <class A, class Motion>
 struct rate<applied_node<op::translation, A>, Motion> {
   static constexpr auto make() {
     constexpr auto twist = velocity_of<spatial_frame, A, Motion>();
-    return apply<op::part<true>>(twist) +
-           apply<op::cross>(apply<op::part<false>>(twist), applied_node<op::translation, A>{});
+    return apply<op::part_of_dual<true>>(twist) +
+           apply<op::cross>(apply<op::part_of_dual<false>>(twist),
+                            applied_node<op::translation, A>{});
   }
   using type = decltype(make());
 };

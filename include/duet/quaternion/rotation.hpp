@@ -119,31 +119,24 @@ public:
     const T xx = x2 * q.x(), yy = y2 * q.y(), zz = z2 * q.z();
     const T xy = x2 * q.y(), yz = y2 * q.z(), zx = z2 * q.x();
     const T wx = x2 * q.w(), wy = y2 * q.w(), wz = z2 * q.w();
-    xx_ = 1 - (yy + zz);
-    xy_ = xy - wz;
-    xz_ = zx + wy;
-    yx_ = xy + wz;
-    yy_ = 1 - (zz + xx);
-    yz_ = yz - wx;
-    zx_ = zx - wy;
-    zy_ = yz + wx;
-    zz_ = 1 - (xx + yy);
+    x_ = {1 - (yy + zz), xy - wz, zx + wy};
+    y_ = {xy + wz, 1 - (zz + xx), yz - wx};
+    z_ = {zx - wy, yz + wx, 1 - (xx + yy)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE three_vector<T> operator()(const three_vector<T>& v) const {
-    return {xx_ * v.x + xy_ * v.y + xz_ * v.z, yx_ * v.x + yy_ * v.y + yz_ * v.z,
-            zx_ * v.x + zy_ * v.y + zz_ * v.z};
+    return {dot(x_, v), dot(y_, v), dot(z_, v)};
   }
 
   [[nodiscard]] DUET_ALWAYS_INLINE matrix3<T> matrix() const {
     matrix3<T> r;
-    r << xx_, xy_, xz_, //
-        yx_, yy_, yz_,  //
-        zx_, zy_, zz_;
+    r << x_.x, x_.y, x_.z, //
+        y_.x, y_.y, y_.z,  //
+        z_.x, z_.y, z_.z;
     return r;
   }
 
 private:
-  T xx_, xy_, xz_, yx_, yy_, yz_, zx_, zy_, zz_;
+  three_vector<T> x_, y_, z_; ///< rows
 };
 
 } // namespace detail
