@@ -13,65 +13,64 @@ namespace duet::detail {
 template <int N>
 struct known_number {
   static_assert(-1 <= N && N <= 1);
-  static constexpr int value = N;
 };
 using known_zero = known_number<0>;
 using known_one = known_number<1>;
 
 template <class X>
-inline constexpr bool is_known = false;
+concept Number = Scalar<X> || Arithmetic<X>;
+
+template <int N, int M>
+[[nodiscard]] constexpr auto operator*(known_number<N>, known_number<M>) {
+  return known_number<N * M>{};
+}
+template <int N, Number B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(known_number<N> zero, const B& b) {
+  if constexpr (N == 0) {
+    return zero;
+  } else if constexpr (N > 0) {
+    return b;
+  } else {
+    return B(-b);
+  }
+}
+template <Number A, int N>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, known_number<N> n) {
+  return n * a;
+}
+
 template <int N>
-inline constexpr bool is_known<known_number<N>> = true;
-template <class X>
-concept Known = is_known<X>;
+[[nodiscard]] constexpr auto operator-(known_number<N>) {
+  return known_number<-N>{};
+}
 
-/// What a component may be multiplied by.
-template <class X>
-concept Factor = Known<X> || Scalar<X> || Arithmetic<X>;
-
-template <class A, class B>
-  requires((Known<A> || Known<B>)&&Factor<A>&& Factor<B>)
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, const B& b) {
-  if constexpr (!Known<A>) {
-    return b * a;
-  } else if constexpr (Known<B>) {
-    return known_number<A::value * B::value>{};
-  } else if constexpr (A::value == 0) {
+template <int N, int M>
+[[nodiscard]] constexpr auto operator+(known_number<N>, known_number<M>) {
+  return known_number<N + M>{};
+}
+template <Number A, int N>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, known_number<N>) {
+  if constexpr (N == 0) {
     return a;
-  } else if constexpr (A::value > 0) {
-    return b;
   } else {
-    return B(-b);
+    return A(a + N);
   }
 }
-
-template <Known A>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A&) {
-  return known_number<-A::value>{};
+template <int N, Number B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(known_number<N> n, const B& b) {
+  return b + n;
 }
 
-template <class A, class B>
-  requires((Known<A> || Known<B>)&&Factor<A>&& Factor<B>)
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, const B& b) {
-  if constexpr (!Known<A>) {
-    return b + a;
-  } else if constexpr (Known<B>) {
-    return known_number<A::value + B::value>{};
-  } else if constexpr (A::value == 0) {
-    return b;
-  } else {
-    return B(b + A::value);
-  }
+template <class A, int N>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, known_number<N> n) {
+  return a + -n;
 }
-template <class A, class B>
-  requires((Known<A> || Known<B>)&&Factor<A>&& Factor<B>)
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, const B& b) {
-  if constexpr (Known<B>) {
-    return a + -b;
-  } else if constexpr (A::value == 0) {
+template <int N, Number B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(known_number<N>, const B& b) {
+  if constexpr (N == 0) {
     return B(-b);
   } else {
-    return B(A::value - b);
+    return B(N - b);
   }
 }
 
@@ -89,11 +88,11 @@ template <class Get>
 /// Any of them as a number.
 template <class S, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr S number(const X& x) {
-  if constexpr (Known<X>) {
-    return S(X::value);
-  } else {
-    return S(x);
-  }
+  return S(x);
+}
+template <class S, int N>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr S number(known_number<N>) {
+  return S(N);
 }
 
 } // namespace duet::detail

@@ -46,25 +46,22 @@ template <class Get>
                       known([] { return Get{}().z; })};
 }
 
-template <class Q>
-inline constexpr bool is_partly_known = false;
-template <class W, class X, class Y, class Z>
-inline constexpr bool is_partly_known<partly_known_quaternion<W, X, Y, Z>> = true;
-
-template <class S, class Q>
-  requires(Factor<S>&& is_partly_known<Q>)
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const S& s, const Q& q) {
+template <Number S, class W, class X, class Y, class Z>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto
+operator*(const S& s, const partly_known_quaternion<W, X, Y, Z>& q) {
   return partly_known_quaternion{s * q.w(), s * q.x(), s * q.y(), s * q.z()};
 }
-template <class P, class Q>
-  requires(is_partly_known<P> || is_partly_known<Q>)
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const P& p, const Q& q) {
+template <class A, class B, class C, class D, class W, class X, class Y, class Z>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto
+operator+(const partly_known_quaternion<A, B, C, D>& p,
+          const partly_known_quaternion<W, X, Y, Z>& q) {
   return partly_known_quaternion{p.w() + q.w(), p.x() + q.x(), p.y() + q.y(), p.z() + q.z()};
 }
 /// N1
-template <class P, class Q>
-  requires((is_partly_known<P> || is_partly_known<Q>)&&!Factor<P>)
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const P& p, const Q& q) {
+template <class A, class B, class C, class D, class W, class X, class Y, class Z>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto
+operator*(const partly_known_quaternion<A, B, C, D>& p,
+          const partly_known_quaternion<W, X, Y, Z>& q) {
   return partly_known_quaternion{p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
                                  p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),
                                  p.w() * q.y() - p.x() * q.z() + p.y() * q.w() + p.z() * q.x(),

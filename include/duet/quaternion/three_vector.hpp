@@ -54,7 +54,7 @@ template <class X, class Y, class Z, class U, class V, class W>
                                                           const three_vector<U, V, W>& b) {
   return three_vector{a.x - b.x, a.y - b.y, a.z - b.z};
 }
-template <Factor S, class X, class Y, class Z>
+template <Number S, class X, class Y, class Z>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const S& s,
                                                           const three_vector<X, Y, Z>& a) {
   return three_vector{s * a.x, s * a.y, s * a.z};
