@@ -100,7 +100,7 @@ template <bool WithRotation, class S, class C, class X, class Visit>
     const auto count = std::size_t(links);
     const half_turns<S, C::joints, X> turns(theta, chain.size(), links);
     for (std::size_t i = 0; i < count; ++i) {
-      const auto& step = chain.steps()[i];
+      const step_in_memory<typename C::scalar_type> step{chain.steps()[i]};
       const S x(vector_argument<X>::get(theta, Eigen::Index(i)));
       const auto seen = [&](const auto&... a) DUET_INLINE_LAMBDA { visit(i, a...); };
       const auto turn = [&]() DUET_INLINE_LAMBDA { return turns[int(i)]; };

@@ -64,11 +64,11 @@ spatial_columns(const C& chain, const X& theta, int link, J& m) {
       [&](std::size_t i, const auto& step, const auto& axis, const auto& point) DUET_INLINE_LAMBDA {
         const three_vector<S> zero{S(0), S(0), S(0)};
         twist_column<S> screw{zero, zero};
-        if (step.turns) {
+        if (step.turns()) {
           screw = {cross(point, axis), axis};
         }
-        if (step.slides) {
-          screw.v = screw.v + step.pitch * axis;
+        if (step.slides()) {
+          screw.v = screw.v + step.pitch() * axis;
         }
         set_column(m, screw, Eigen::Index(i));
       });
