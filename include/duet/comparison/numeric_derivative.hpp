@@ -64,9 +64,10 @@ template <class F, std::floating_point T>
   return detail::imaginary_part(detail::result_of_call(f(std::complex<T>(x, h))), h);
 }
 
+/// What `central_difference_derivative` returns.
 template <class Y>
 struct derivative_and_error {
-  Y derivative;
+  Y derivative; ///< f′(x)
   double error; ///< estimate of the largest error of a component
 };
 

@@ -49,8 +49,9 @@ template <class A, class B>
 
 } // namespace detail
 
-/// Of one lane.
+/// Is it so in any lane? Of one lane.
 [[nodiscard]] constexpr bool any(std::same_as<bool> auto x) { return x; }
+/// Is it so in all lanes? Of one lane.
 [[nodiscard]] constexpr bool all(std::same_as<bool> auto x) { return x; }
 
 } // namespace duet

@@ -107,7 +107,7 @@ public:
   static constexpr int part_count = N > 0 ? N + 1 : N - 1;
   /// The value, then the partials.
   [[nodiscard]] constexpr T part(int k) const { return k == 0 ? value_ : partials_.get(k - 1); }
-  /// The same partials beside another value.
+  /// Another value with these partials.
   [[nodiscard]] constexpr dual with_value(const T& value) const { return {value, partials_}; }
   /// f of the values, then of every partial: the same level over what f returns.
   template <class F, class... Duals>

@@ -86,7 +86,7 @@ public:
            : k <= N ? partial(k - 1)
                     : second_partial((k - N - 1) / N, (k - N - 1) % N);
   }
-  /// The same derivatives of another value.
+  /// Another value with these derivatives.
   [[nodiscard]] second_dual with_value(const T& value) const {
     return {value, gradient_, hessian_};
   }

@@ -89,7 +89,7 @@ public:
   static constexpr int part_count = K + 1;
   /// The k-th derivative.
   [[nodiscard]] constexpr T part(int k) const { return derivative(k); }
-  /// The same derivatives of another value.
+  /// Another value with these derivatives.
   [[nodiscard]] constexpr taylor with_value(const T& value) const {
     taylor result = *this;
     result.coefficients_[0] = value;

@@ -137,10 +137,12 @@ template <Term C, class A, class B, class TagA = decltype([](op::less<true>*) {}
   return apply<op::select>(condition, detail::term<TagA>(a), detail::term<TagB>(b));
 }
 
+/// |x|; its derivative at ±0 is ±1, the side of the sign bit.
 template <ScalarTerm X>
 [[nodiscard]] constexpr auto abs(const X& x) {
   return apply<op::abs>(x);
 }
+/// The larger of two scalars, with its derivatives; of equal ones the first.
 template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto max(const A& a, const B& b) {
@@ -148,6 +150,7 @@ template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   const auto second = detail::term<Tag>(b);
   return select(first < second, second, first);
 }
+/// The smaller of two scalars, with its derivatives; of equal ones the first.
 template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
   requires Operands<A, B>
 [[nodiscard]] constexpr auto min(const A& a, const B& b) {

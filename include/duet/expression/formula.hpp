@@ -27,6 +27,7 @@ namespace duet::expression {
 template <Node NodeType, class Held>
 class formula;
 
+/// Is T a `formula`?
 template <class T>
 inline constexpr bool is_formula = false;
 template <class NodeType, class Held>
@@ -53,6 +54,9 @@ template <class T>
 
 } // namespace detail
 
+// Terms of one kind.
+
+/// A formula or node of a scalar.
 template <class T>
 concept ScalarTerm = Term<T> && detail::kind_of_term<T>()
 == kind::scalar;

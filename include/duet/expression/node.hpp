@@ -72,6 +72,7 @@ struct applied_node {
   static constexpr kind kind_of = Operation::kind_of(Operands::kind_of...);
 };
 
+/// A formula's type: empty, and of a `kind`.
 template <class T>
 concept Node = requires {
   T::kind_of;
@@ -79,21 +80,25 @@ concept Node = requires {
   requires std::is_same_v<std::remove_cvref_t<decltype(T::kind_of)>, kind>;
 };
 
+/// A number known to the compiler?
 template <class T>
 inline constexpr bool is_number = false;
 template <std::uint64_t Bits>
 inline constexpr bool is_number<number_node<Bits>> = true;
 
+/// A variable?
 template <class T>
 inline constexpr bool is_symbol = false;
 template <kind K, char... Letters>
 inline constexpr bool is_symbol<symbol_node<K, Letters...>> = true;
 
+/// That operation, applied?
 template <class T, class Operation>
 inline constexpr bool is_applied = false;
 template <class Operation, class... Operands>
 inline constexpr bool is_applied<applied_node<Operation, Operands...>, Operation> = true;
 
+/// Any operation, applied?
 template <class T>
 inline constexpr bool is_operation = false;
 template <class Operation, class... Operands>
@@ -112,6 +117,7 @@ template <class T>
 
 } // namespace detail
 
+/// 0 of any kind?
 template <class T>
 inline constexpr bool is_zero = detail::is_number_equal_to<T>(0);
 template <kind K>

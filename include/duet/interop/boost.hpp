@@ -10,11 +10,13 @@
 
 namespace duet {
 
+/// q as Boost's, component by component.
 template <class T>
 [[nodiscard]] boost::math::quaternion<T> to_boost(const quaternion<T>& q) {
   return boost::math::quaternion<T>(q.w(), q.x(), q.y(), q.z());
 }
 
+/// Boost's q as duet's, component by component.
 template <class T>
 [[nodiscard]] quaternion<T> from_boost(const boost::math::quaternion<T>& q) {
   return {q.R_component_1(), q.R_component_2(), q.R_component_3(), q.R_component_4()};

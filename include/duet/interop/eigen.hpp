@@ -31,6 +31,7 @@ template <class T>
   return from_eigen(Eigen::Quaternion<T>(rotation));
 }
 
+/// The isometry x ↦ R x + t of a pose of unit norm.
 template <class T>
 [[nodiscard]] Eigen::Transform<T, 3, Eigen::Isometry> to_eigen(const dual_quaternion<T>& a) {
   Eigen::Transform<T, 3, Eigen::Isometry> result;
@@ -38,7 +39,7 @@ template <class T>
   return result;
 }
 
-/// \throws invalid_input where the linear part is no rotation
+/// The pose of an isometry x ↦ R x + t. \throws invalid_input where the linear part is no rotation
 template <class T>
 [[nodiscard]] dual_quaternion<T>
 from_eigen(const Eigen::Transform<T, 3, Eigen::Isometry>& isometry) {

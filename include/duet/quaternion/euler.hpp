@@ -35,6 +35,8 @@ struct euler_sequence {
   [[nodiscard]] constexpr int sign() const { return (second - first + 3) % 3 == 1 ? 1 : -1; }
 };
 
+// The twelve sequences, named by the axes turned about one after the other.
+
 inline constexpr euler_sequence xyz{0, 1, 2}, yzx{1, 2, 0}, zxy{2, 0, 1};
 inline constexpr euler_sequence xzy{0, 2, 1}, yxz{1, 0, 2}, zyx{2, 1, 0};
 inline constexpr euler_sequence xyx{0, 1, 0}, yzy{1, 2, 1}, zxz{2, 0, 2};

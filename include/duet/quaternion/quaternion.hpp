@@ -101,6 +101,7 @@ struct structure<quaternion<T>> {
   }
 };
 
+/// Is T a `quaternion`?
 template <class T>
 inline constexpr bool is_quaternion = false;
 template <class T>
