@@ -67,6 +67,18 @@ template <class C, class Start, class Objective, class Scene>
       is_out_of_reach ? follower.stay(theta, stop_reason::out_of_reach) : follower.plan(theta));
 }
 
+/// Along screw motions from pose to pose, pose i at i.
+template <class T>
+struct path_through {
+  std::vector<dual_quaternion<T>> poses;
+
+  [[nodiscard]] dual_quaternion<T> operator()(T u) const {
+    const std::size_t i = std::min(std::size_t(u), poses.size() - 1);
+    const std::size_t next = std::min(i + 1, poses.size() - 1);
+    return sclerp(poses[i], poses[next], u - T(i));
+  }
+};
+
 template <PosePath Path>
 [[nodiscard]] auto checked(const Path& path) {
   return [&path](double u) {
@@ -144,18 +156,13 @@ follow_path(const C& chain, const Start& start, std::span<const dual_quaternion<
   if (poses.empty()) {
     throw invalid_input("duet: follow_path: the list of poses is empty");
   }
-  std::vector<dual_quaternion<double>> unit_poses;
+  detail::path_through<double> target;
   std::vector<double> stops;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     detail::require_pose(poses[i], "follow_path", "pose " + std::to_string(i));
-    unit_poses.push_back(normalized(poses[i]));
+    target.poses.push_back(normalized(poses[i]));
     stops.push_back(double(i));
   }
-  const auto target = [&](double u) {
-    const std::size_t i = std::min(std::size_t(u), unit_poses.size() - 1);
-    const std::size_t next = std::min(i + 1, unit_poses.size() - 1);
-    return sclerp(unit_poses[i], unit_poses[next], u - double(i));
-  };
   return detail::follow(chain, start, target, std::move(stops), options, objective, around);
 }
 

@@ -59,8 +59,7 @@ template <SerialChain C, VectorLike Start>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options = {}) {
-  const detail::chain_model<C> model(chain);
-  const detail::search_on<C> search(model, detail::search_start(chain, start), options);
+  const detail::search_on<C> search(chain, detail::search_start(chain, start), options);
   detail::require_pose(goal, "inverse_kinematics", "the goal");
   return detail::found_for<C>(search(normalized(goal)));
 }
@@ -77,8 +76,7 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
     throw invalid_input("duet: inverse_kinematics: " + std::to_string(goals.size()) +
                         " goals, but room for " + std::to_string(out.size()) + " results");
   }
-  const detail::chain_model<C> model(chain);
-  const detail::search_on<C> search(model, detail::search_start(chain, start), options);
+  const detail::search_on<C> search(chain, detail::search_start(chain, start), options);
   for (std::size_t i = 0; i < goals.size(); ++i) {
     detail::require_pose(goals[i], "inverse_kinematics", "goal " + std::to_string(i));
   }

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -78,17 +79,19 @@ class inverse_kinematics_search {
 
 public:
   template <class C>
-  inverse_kinematics_search(const chain_model<C>& model, const vector& start,
+  inverse_kinematics_search(const C& chain, const vector& start,
                             const inverse_kinematics_options& options)
-      : model_(model), options_(options), reach_(model.chain()), turn_(start), beyond_(start),
-        spread_(start), start_(start) {
+      : set_([&chain](chain_state<N>& state, const vector& theta) {
+          set_state(state, chain, theta);
+        }),
+        options_(options), reach_(chain), lower_(lower_limits(chain)), upper_(upper_limits(chain)),
+        turn_(start), beyond_(start), spread_(start), start_(start) {
     require_options(options);
     for (Eigen::Index i = 0; i < start.size(); ++i) {
       require_finite_start(i, start[i]);
-      const auto& step = model.chain().steps()[std::size_t(i)];
+      const auto& step = chain.steps()[std::size_t(i)];
       constexpr double turn = 2 * std::numbers::pi;
-      const bool has_turn =
-          step.turns && !step.slides && model.upper()[i] - model.lower()[i] >= turn;
+      const bool has_turn = step.turns && !step.slides && upper_[i] - lower_[i] >= turn;
       turn_[i] = has_turn ? turn : 0;
       beyond_[i] = has_turn ? std::numeric_limits<double>::infinity() : 0;
       spread_[i] = step.turns ? std::numbers::pi : reach_.scale();
@@ -99,7 +102,7 @@ public:
   /// \param goal  a unit dual quaternion
   [[nodiscard]] result_type operator()(const dual_quaternion<double>& goal) const {
     if (reach_.is_beyond(goal, options_.tolerance)) {
-      result_type result{start_, deviation_between(model_.pose(start_), goal)};
+      result_type result{start_, equations_at(start_, goal).left};
       result.reason = stop_reason::out_of_reach;
       return result;
     }
@@ -140,7 +143,7 @@ private:
   [[nodiscard]] equations equations_at(const vector& theta,
                                        const dual_quaternion<double>& goal) const {
     equations result;
-    model_.set(result.at, theta);
+    set_(result.at, theta);
     const dual_quaternion<double>& a = result.at.pose;
     result.e = error_twist(a, goal);
     result.left = {(translation(goal) - translation(a)).norm(), result.e.template tail<3>().norm()};
@@ -155,8 +158,8 @@ private:
   /// Levenberg and Marquardt's step.
   [[nodiscard]] bounded_step_result<vector> step(const equations& x) const {
     const vector& theta = x.at.theta;
-    return bounded_step(x.at.jacobian, x.e, vector(model_.lower() - theta - beyond_),
-                        vector(model_.upper() - theta + beyond_),
+    return bounded_step(x.at.jacobian, x.e, vector(lower_ - theta - beyond_),
+                        vector(upper_ - theta + beyond_),
                         std::min(.02 * x.e.squaredNorm(), .08) + 1e-9);
   }
 
@@ -203,7 +206,7 @@ private:
   /// Turning joints whose range holds a whole turn are turned back into it, others stop at limits.
   [[nodiscard]] vector within_limits(vector theta) const {
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      const double lower = model_.lower()[i], upper = model_.upper()[i];
+      const double lower = lower_[i], upper = upper_[i];
       if (turn_[i] > 0 && theta[i] > upper) {
         theta[i] -= turn_[i] * std::ceil((theta[i] - upper) / turn_[i]);
       } else if (turn_[i] > 0 && theta[i] < lower) {
@@ -218,7 +221,7 @@ private:
   [[nodiscard]] vector configuration(random_source& random) const {
     vector theta = start_;
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      double lower = model_.lower()[i], upper = model_.upper()[i];
+      double lower = lower_[i], upper = upper_[i];
       if (!(upper - lower < std::numeric_limits<double>::infinity())) {
         lower = std::max(lower, start_[i] - spread_[i]);
         upper = std::min(upper, start_[i] + spread_[i]);
@@ -228,9 +231,10 @@ private:
     return theta;
   }
 
-  const planning_model<N>& model_;
+  std::function<void(chain_state<N>&, const vector&)> set_; ///< a state to that at some θ
   inverse_kinematics_options options_;
   chain_reach reach_;
+  vector lower_, upper_;
   vector turn_;   ///< a whole turn where it leads to the same pose within limits, else 0
   vector beyond_; ///< how far steps may go beyond limits: any way if they are turned back
   vector spread_; ///< how far from the start random coordinates are that have no limits

@@ -10,6 +10,7 @@
 #include <duet/quaternion/rotation.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -57,10 +58,11 @@ struct pose_deviation {
   double angle = 0;
 };
 /// Of a from b, or of b from a: the same.
-[[nodiscard]] inline pose_deviation deviation_between(const dual_quaternion<double>& a,
-                                                      const dual_quaternion<double>& b) {
+template <std::floating_point T>
+[[nodiscard]] pose_deviation deviation_between(const dual_quaternion<T>& a,
+                                               const dual_quaternion<T>& b) {
   return {(translation(b) - translation(a)).norm(),
-          rotation_vector(quaternion<double>(conj(rotation(a)) * rotation(b))).norm()};
+          rotation_vector(quaternion<T>(conj(rotation(a)) * rotation(b))).norm()};
 }
 
 namespace detail {

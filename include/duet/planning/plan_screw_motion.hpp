@@ -10,6 +10,30 @@
 
 namespace duet {
 
+namespace detail {
+
+/// The shorter screw motion between two poses (N19).
+template <class T>
+class screw_path {
+public:
+  screw_path(const dual_quaternion<T>& first, const dual_quaternion<T>& last) : first_(first) {
+    dual_quaternion<T> between = conj(first) * normalized(last);
+    if (innermost(between.w()) < 0) {
+      between = -between;
+    }
+    half_ = log_vector(between, "plan_screw_motion");
+  }
+  [[nodiscard]] dual_quaternion<T> operator()(T tau) const {
+    return dual_quaternion<T>(first_ * exp(dual_vector<T>(half_ * screw_dual<T>(tau))));
+  }
+
+private:
+  dual_quaternion<T> first_;
+  dual_vector<T> half_; ///< of the screw's angle and travel, along its axis
+};
+
+} // namespace detail
+
 /// Joint coordinates that take the tip of a chain from where it is at `start` to the pose `goal`
 /// along the screw motion between the two (N19), the shorter way round: `follow_path` along it.
 ///
@@ -29,16 +53,8 @@ plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<doub
                   const plan_options& options = {}, const Objective& objective = {},
                   const Scene& around = {}) {
   detail::require_problem(chain, start, goal);
-  const auto first = chain.pose(start);
-  auto between = conj(first) * normalized(goal);
-  if (innermost(between.w()) < 0) {
-    between = -between;
-  }
-  const auto half = detail::log_vector(between, "plan_screw_motion");
-  const auto target = [&](double tau) {
-    return dual_quaternion<double>(first *
-                                   exp(dual_vector<double>(half * screw_dual<double>(tau))));
-  };
+  const auto theta = detail::joint_vector_of<detail::joint_room(C::joints)>(start, chain.size());
+  const detail::screw_path target(detail::chain_model<C>(chain).pose(theta), goal);
   const bool is_out_of_reach = detail::chain_reach(chain).is_beyond(target(1), options.tolerance);
   return detail::follow(chain, start, target, {0, 1}, options, objective, around, is_out_of_reach);
 }

@@ -30,6 +30,15 @@ struct chain_state {
   joint_columns<double, 6, N> jacobian;
 };
 
+/// Makes a state that of a chain at θ.
+template <class C, int N>
+void set_state(chain_state<N>& state, const C& chain, const joint_vector<double, N>& theta) {
+  const auto tip = pose_and_jacobian(chain, joint_vector<double, C::joints>(theta), frame::hybrid);
+  state.theta = theta;
+  state.pose = tip.value;
+  state.jacobian = tip.jacobian;
+}
+
 /// A step in the presence of obstacles.
 template <int N>
 struct step_beside_obstacles {
@@ -52,7 +61,6 @@ public:
   [[nodiscard]] const vector& lower() const { return lower_; }
   [[nodiscard]] const vector& upper() const { return upper_; }
   [[nodiscard]] virtual dual_quaternion<double> pose(const vector& theta) const = 0;
-  /// Makes a state that at θ.
   virtual void set(chain_state<N>& state, const vector& theta) const = 0;
 
   /// The distance of the bodies of the chain from obstacles.
@@ -78,7 +86,6 @@ private:
 template <class C>
 class chain_model : public planning_model<joint_room(C::joints)> {
   using base = planning_model<joint_room(C::joints)>;
-  using own_vector = joint_vector<double, C::joints>;
 
 public:
   using typename base::vector;
@@ -88,13 +95,10 @@ public:
 
   [[nodiscard]] const C& chain() const { return chain_; }
   [[nodiscard]] dual_quaternion<double> pose(const vector& theta) const override {
-    return chain_.pose(own_vector(theta));
+    return chain_.pose(joint_vector<double, C::joints>(theta));
   }
   void set(chain_state<joint_room(C::joints)>& state, const vector& theta) const override {
-    const auto tip = pose_and_jacobian(chain_, own_vector(theta), frame::hybrid);
-    state.theta = theta;
-    state.pose = tip.value;
-    state.jacobian = tip.jacobian;
+    set_state(state, chain_, theta);
   }
 
 private:
