@@ -22,14 +22,14 @@ namespace duet {
 
 namespace detail {
 
-template <class C>
-using search_on = inverse_kinematics_search<joint_room(C::joints)>;
-
 /// \throws invalid_input for another number of coordinates than of joints
 template <class C, class Start>
-[[nodiscard]] auto search_start(const C& chain, const Start& start) {
+[[nodiscard]] auto search_on(const C& chain, const Start& start,
+                             const inverse_kinematics_options& options) {
+  constexpr int room = joint_room(C::joints);
   require_size(chain, start);
-  return joint_vector_of<joint_room(C::joints)>(start, chain.size());
+  return inverse_kinematics_search<room>(chain, joint_vector_of<room>(start, chain.size()),
+                                         options);
 }
 
 /// What a search has found, in the chain's own type.
@@ -59,7 +59,7 @@ template <SerialChain C, VectorLike Start>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options = {}) {
-  const detail::search_on<C> search(chain, detail::search_start(chain, start), options);
+  const auto search = detail::search_on(chain, start, options);
   detail::require_pose(goal, "inverse_kinematics", "the goal");
   return detail::found_for<C>(search(normalized(goal)));
 }
@@ -76,7 +76,7 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
     throw invalid_input("duet: inverse_kinematics: " + std::to_string(goals.size()) +
                         " goals, but room for " + std::to_string(out.size()) + " results");
   }
-  const detail::search_on<C> search(chain, detail::search_start(chain, start), options);
+  const auto search = detail::search_on(chain, start, options);
   for (std::size_t i = 0; i < goals.size(); ++i) {
     detail::require_pose(goals[i], "inverse_kinematics", "goal " + std::to_string(i));
   }

@@ -12,25 +12,17 @@ namespace duet {
 
 namespace detail {
 
-/// The shorter screw motion between two poses (N19).
+/// The shorter screw motion between two poses (N19), by τ.
 template <class T>
-class screw_path {
-public:
-  screw_path(const dual_quaternion<T>& first, const dual_quaternion<T>& last) : first_(first) {
-    dual_quaternion<T> between = conj(first) * normalized(last);
-    if (innermost(between.w()) < 0) {
-      between = -between;
-    }
-    half_ = log_vector(between, "plan_screw_motion");
+[[nodiscard]] auto screw_path(const dual_quaternion<T>& first, const dual_quaternion<T>& last) {
+  dual_quaternion<T> between = conj(first) * normalized(last);
+  if (innermost(between.w()) < 0) {
+    between = -between;
   }
-  [[nodiscard]] dual_quaternion<T> operator()(T tau) const {
-    return dual_quaternion<T>(first_ * exp(dual_vector<T>(half_ * screw_dual<T>(tau))));
-  }
-
-private:
-  dual_quaternion<T> first_;
-  dual_vector<T> half_; ///< of the screw's angle and travel, along its axis
-};
+  return [first, half = log_vector(between, "plan_screw_motion")](T tau) {
+    return dual_quaternion<T>(first * exp(dual_vector<T>(half * screw_dual<T>(tau))));
+  };
+}
 
 } // namespace detail
 
@@ -54,7 +46,7 @@ plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<doub
                   const Scene& around = {}) {
   detail::require_problem(chain, start, goal);
   const auto theta = detail::joint_vector_of<detail::joint_room(C::joints)>(start, chain.size());
-  const detail::screw_path target(detail::chain_model<C>(chain).pose(theta), goal);
+  const auto target = detail::screw_path<double>(detail::chain_model<C>(chain).pose(theta), goal);
   const bool is_out_of_reach = detail::chain_reach(chain).is_beyond(target(1), options.tolerance);
   return detail::follow(chain, start, target, {0, 1}, options, objective, around, is_out_of_reach);
 }
