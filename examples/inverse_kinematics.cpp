@@ -8,6 +8,8 @@
 #include "support/poses.hpp"
 #include "support/program.hpp"
 
+#include <duet/core/csv.hpp>
+#include <duet/core/progress_line.hpp>
 #include <duet/duet.hpp>
 
 #include <algorithm>

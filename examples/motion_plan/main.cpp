@@ -12,6 +12,8 @@
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
 
+#include <duet/core/progress_line.hpp>
+
 #include <chrono>
 #include <cstdio>
 #include <filesystem>

@@ -3,7 +3,9 @@
 
 #include "options.hpp"
 
+#include <duet/core/csv.hpp>
 #include <duet/duet.hpp>
+#include <duet/planning/save_plan.hpp>
 
 #include <algorithm>
 #include <cmath>

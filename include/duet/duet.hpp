@@ -2,14 +2,16 @@
 #pragma once
 
 /// \file
-/// All of duet but `interop/`.
+/// All of duet but what programs ask for by name, as it takes compilers long or is rare: robots'
+/// description files (mechanism/urdf.hpp), tables and plans as files (spline/table_file.hpp,
+/// planning/save_plan.hpp, core/csv.hpp), progress_line (core/progress_line.hpp), the notes' own
+/// planner (planning/printed_plan.hpp), the nearest point of a screw motion
+/// (dual_quaternion/nearest.hpp), and `interop/`.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
-#include <duet/core/csv.hpp>
 #include <duet/core/number_text.hpp>
 #include <duet/core/parallel_for.hpp>
-#include <duet/core/progress_line.hpp>
 #include <duet/core/vector_sine_cosine.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/chunked.hpp>
@@ -29,7 +31,6 @@
 #include <duet/dual_quaternion/distance.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
-#include <duet/dual_quaternion/nearest.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/screw.hpp>
@@ -56,11 +57,8 @@
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/screw_axes.hpp>
 #include <duet/mechanism/sweep.hpp>
-#include <duet/mechanism/urdf.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
-#include <duet/planning/printed_plan.hpp>
-#include <duet/planning/save_plan.hpp>
 #include <duet/planning/time_parametrised.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>

@@ -5,6 +5,7 @@
 #include <duet/core/file.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/spline/look_up_table.hpp>
+#include <duet/spline/table_file.hpp>
 
 #include <doctest/doctest.h>
 

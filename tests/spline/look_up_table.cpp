@@ -6,6 +6,7 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/look_up_table.hpp>
+#include <duet/spline/table_file.hpp>
 
 #include <doctest/doctest.h>
 
