@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/known_constant.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <array>
@@ -84,3 +85,16 @@ template <class Q, class X, class Y, class Z>
 }
 
 } // namespace duet::detail
+
+/// Three scalars.
+template <class T>
+struct duet::structure<duet::detail::three_vector<T>> {
+  using scalar = T;
+  template <class F, class... Rest>
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr auto
+  map(F&& f, const duet::detail::three_vector<T>& v, const Rest&... rest) {
+    using result = std::decay_t<decltype(f(v.x, rest.x...))>;
+    return duet::detail::three_vector<result>{f(v.x, rest.x...), f(v.y, rest.y...),
+                                              f(v.z, rest.z...)};
+  }
+};

@@ -155,7 +155,9 @@ private:
     auto m = curve().template on_span<Rates>(span, u);
     if constexpr (Rates > 0) {
       for (auto* rate : {&m.velocity, &m.acceleration, &m.jerk}) {
-        *rate = blended(is_at_rest, std::decay_t<decltype(*rate)>::Zero().eval(), *rate);
+        *rate = map_scalars(
+            [&](const auto& x) { return blended(is_at_rest, std::decay_t<decltype(x)>(R(0)), x); },
+            *rate);
       }
     }
     return m;
