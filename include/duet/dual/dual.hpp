@@ -155,7 +155,7 @@ public:
   template <int Sign>
   [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<dual>
   lift_pair(const detail::sine_cosine<T>& y, const dual& x) {
-    const T minus(Sign * y.sine);
+    const T minus = Sign < 0 ? T(-y.sine) : y.sine;
     if constexpr (std::floating_point<T>) {
       // Both are finite or neither. Asked of their sum, clang computes them at once.
       const bool is_finite = detail::is_all_finite(T(y.sine + y.cosine));

@@ -118,8 +118,9 @@ public:
   template <int Sign>
   [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<second_dual>
   lift_pair(const detail::sine_cosine<T>& y, const second_dual& x) {
-    const T minus(Sign * y.sine);
-    return {x.composed(y.sine, y.cosine, minus), x.composed(y.cosine, minus, T(Sign * y.cosine))};
+    const T minus = Sign < 0 ? T(-y.sine) : y.sine;
+    const T bent = Sign < 0 ? T(-y.cosine) : y.cosine;
+    return {x.composed(y.sine, y.cosine, minus), x.composed(y.cosine, minus, bent)};
   }
   /// Writes value[gradient; rows of the lower half of the Hessian].
   template <class Out>
