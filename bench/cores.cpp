@@ -6,9 +6,9 @@
 /// one on one core and on all; `times` is how many times faster all cores are, by the shortest
 /// times of both.
 
-#include <duet/comparison/random_source.hpp>
-#include <duet/core/batch.hpp>
+#include <duet/core/batch/batch.hpp>
 #include <duet/core/parallel_for.hpp>
+#include <duet/core/random_source.hpp>
 #include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/sweep.hpp>

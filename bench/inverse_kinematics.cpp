@@ -4,7 +4,7 @@
 /// Inverse kinematics of four arms, 10 000 reachable poses each, and the solvers of Orocos KDL
 /// beside it: what share is solved to 1e-6 within the limits, and the mean time of a pose.
 
-#include <duet/comparison/random_source.hpp>
+#include <duet/core/random_source.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 

@@ -5,7 +5,7 @@
 /// problems are solved, and how long one takes. A program of its own:
 /// build/bench/bench/duet_planning_bench
 
-#include <duet/comparison/random_source.hpp>
+#include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/planning/plan_screw_motion.hpp>

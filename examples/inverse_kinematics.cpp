@@ -8,8 +8,8 @@
 #include "support/poses.hpp"
 #include "support/program.hpp"
 
-#include <duet/core/csv.hpp>
-#include <duet/core/progress_line.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/progress_line.hpp>
 #include <duet/duet.hpp>
 
 #include <algorithm>

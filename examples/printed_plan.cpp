@@ -5,7 +5,7 @@
 /// a step, plans towards a goal, inverse kinematics, a path of poses, and what the step size beta
 /// does. Prints what docs/printed_plan.md holds.
 
-#include <duet/comparison/random_source.hpp>
+#include <duet/core/random_source.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/planning/printed_plan.hpp>
 

@@ -6,7 +6,7 @@
 #include "support/folder.hpp"
 #include "support/gnuplot.hpp"
 #include "support/program.hpp"
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/curves.hpp>

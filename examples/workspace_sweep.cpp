@@ -11,9 +11,9 @@
 #include "support/gnuplot.hpp"
 #include "support/program.hpp"
 
-#include <duet/core/csv.hpp>
 #include <duet/core/parallel_for.hpp>
-#include <duet/core/progress_line.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/progress_line.hpp>
 #include <duet/mechanism/sweep.hpp>
 
 #include <Eigen/Core>

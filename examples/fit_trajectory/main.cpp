@@ -11,7 +11,7 @@
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 
 #include <cstddef>
 #include <cstdio>

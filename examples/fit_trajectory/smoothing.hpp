@@ -3,8 +3,8 @@
 
 #include "trajectory.hpp"
 
-#include <duet/core/csv.hpp>
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/comparison/random_source.hpp>
-#include <duet/core/file.hpp>
-#include <duet/core/number_text.hpp>
+#include <duet/core/random_source.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>

@@ -10,8 +10,8 @@
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
 
-#include <duet/core/csv.hpp>
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/mechanism/closed_loop.hpp>
 

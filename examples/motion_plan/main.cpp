@@ -12,7 +12,7 @@
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
 
-#include <duet/core/progress_line.hpp>
+#include <duet/core/text/progress_line.hpp>
 
 #include <chrono>
 #include <cstdio>

@@ -3,7 +3,7 @@
 
 #include "options.hpp"
 
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 #include <duet/duet.hpp>
 #include <duet/planning/save_plan.hpp>
 

@@ -9,7 +9,7 @@
 #include "options.hpp"
 #include "tables.hpp"
 
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 #include <duet/planning/follow_path.hpp>
 
 #include <algorithm>

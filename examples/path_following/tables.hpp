@@ -3,7 +3,7 @@
 
 #include "options.hpp"
 
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/planning/motion_plan.hpp>
 

@@ -4,8 +4,8 @@
 #include "../support/command_line.hpp"
 #include "../support/poses.hpp"
 
-#include <duet/core/csv.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/text/csv.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/rotation.hpp>
 

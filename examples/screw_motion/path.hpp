@@ -4,7 +4,7 @@
 #include "options.hpp"
 
 #include <duet/core/constants.hpp>
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/screw.hpp>

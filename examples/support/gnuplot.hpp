@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/file.hpp>
+#include <duet/core/text/file.hpp>
 
 #include <csignal>
 #include <cstdlib>

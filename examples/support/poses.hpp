@@ -3,9 +3,9 @@
 
 #include "numbers.hpp"
 
-#include <duet/core/csv.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/spline/table_rows.hpp>

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/file.hpp>
-#include <duet/core/printable.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/printable.hpp>
 
 #include <csignal>
 #include <cstdio>

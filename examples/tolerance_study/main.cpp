@@ -15,9 +15,9 @@
 #include "../support/program.hpp"
 #include "../wheel_carrier/hardpoints_file.hpp"
 
-#include <duet/core/csv.hpp>
 #include <duet/core/parallel_for.hpp>
-#include <duet/core/progress_line.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/progress_line.hpp>
 
 #include <cmath>
 #include <cstddef>

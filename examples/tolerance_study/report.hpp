@@ -5,8 +5,8 @@
 #include "samples.hpp"
 #include "toleranced_carrier.hpp"
 
-#include <duet/core/csv.hpp>
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/number_text.hpp>
 
 #include <algorithm>
 #include <array>

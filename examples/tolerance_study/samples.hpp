@@ -3,7 +3,7 @@
 
 #include "toleranced_carrier.hpp"
 
-#include <duet/comparison/random_source.hpp>
+#include <duet/core/random_source.hpp>
 
 #include <boost/math/statistics/univariate_statistics.hpp>
 

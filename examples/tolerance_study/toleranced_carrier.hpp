@@ -3,7 +3,7 @@
 
 #include "../wheel_carrier/carrier.hpp"
 
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/mechanism/closed_loop.hpp>
 #include <duet/quaternion/rotation.hpp>

@@ -7,7 +7,7 @@
 #include "splines.hpp"
 #include "table.hpp"
 
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 
 #include <array>
 #include <cstddef>

@@ -3,7 +3,7 @@
 
 #include "carrier.hpp"
 
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 
 #include <array>
 #include <cstddef>

@@ -18,7 +18,7 @@
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -5,7 +5,7 @@
 
 #include "../support/command_line.hpp"
 
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/number_text.hpp>
 
 #include <algorithm>
 #include <array>

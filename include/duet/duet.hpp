@@ -4,15 +4,16 @@
 /// \file
 /// All of duet but what programs ask for by name, as it takes compilers long or is rare: robots'
 /// description files (mechanism/urdf.hpp), tables and plans as files (spline/table_file.hpp,
-/// planning/save_plan.hpp, core/csv.hpp), progress_line (core/progress_line.hpp), the notes' own
-/// planner (planning/printed_plan.hpp), the nearest point of a screw motion
+/// planning/save_plan.hpp, core/text/csv.hpp), progress_line (core/text/progress_line.hpp), the
+/// notes' own planner (planning/printed_plan.hpp), the nearest point of a screw motion
 /// (dual_quaternion/nearest.hpp), and `interop/`.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
-#include <duet/core/number_text.hpp>
+#include <duet/comparison/rotations.hpp>
+#include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/parallel_for.hpp>
-#include <duet/core/vector_sine_cosine.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -62,7 +63,6 @@
 #include <duet/planning/time_parametrised.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
-#include <duet/quaternion/domain.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
@@ -73,10 +73,10 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>
 #include <duet/spline/adaptive_table.hpp>
-#include <duet/spline/bspline_fit.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>
 #include <duet/spline/fit.hpp>
+#include <duet/spline/fitting/bspline_fit.hpp>
 #include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/look_up_table.hpp>

@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/comparison/domain.hpp>
+#include <duet/comparison/rotations.hpp>
 #include <duet/comparison/sampler.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/interop/multiprecision.hpp>
-#include <duet/quaternion/domain.hpp>
 
 #include <doctest/doctest.h>
 

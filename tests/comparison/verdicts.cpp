@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/comparison/compare.hpp>
+#include <duet/comparison/rotations.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/interop/multiprecision.hpp>
-#include <duet/quaternion/domain.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/tangent.hpp>

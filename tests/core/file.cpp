@@ -2,7 +2,7 @@
 
 #include "support/message.hpp"
 
-#include <duet/core/file.hpp>
+#include <duet/core/text/file.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 
 #include "support/skip.hpp"
 
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/number_text.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/core/printable.hpp>
+#include <duet/core/text/printable.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/core/parallel_for.hpp>
-#include <duet/core/progress_line.hpp>
+#include <duet/core/text/progress_line.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 
 #include "support/message.hpp"
 
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/core/vector_sine_cosine.hpp>
+#include <duet/core/batch/vector_sine_cosine.hpp>
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"

@@ -3,10 +3,10 @@
 #include "dual_quaternion/cases.hpp"
 #include "support/message.hpp"
 
+#include <duet/comparison/rotations.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/average.hpp>
-#include <duet/quaternion/domain.hpp>
 #include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>

@@ -3,11 +3,11 @@
 #include "dual_quaternion/cases.hpp"
 
 #include <duet/comparison/compare.hpp>
+#include <duet/comparison/rotations.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/interop/multiprecision.hpp>
-#include <duet/quaternion/domain.hpp>
 #include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>

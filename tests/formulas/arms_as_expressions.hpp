@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/expression/number.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/tree/number.hpp>
 
 #include <tuple>
 

@@ -5,10 +5,10 @@
 #include "formulas/parts.hpp"
 
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/node.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/text.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
 
 #include <cstddef>
 #include <tuple>

@@ -3,7 +3,7 @@
 
 #include "support/random.hpp"
 
-#include <duet/core/csv.hpp>
+#include <duet/core/text/csv.hpp>
 
 #include <cstddef>
 #include <stdexcept>

@@ -2,7 +2,7 @@
 
 #include "fuzz/seeded_loop.hpp"
 
-#include <duet/core/file.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/spline/look_up_table.hpp>
 #include <duet/spline/table_file.hpp>

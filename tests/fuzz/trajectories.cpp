@@ -3,8 +3,8 @@
 #include "../../examples/fit_trajectory/trajectory.hpp"
 #include "fuzz/seeded_loop.hpp"
 
-#include <duet/core/csv.hpp>
-#include <duet/core/file.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 
 #include <doctest/doctest.h>

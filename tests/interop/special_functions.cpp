@@ -3,8 +3,8 @@
 #include "support/multiprecision.hpp"
 #include "support/ulp.hpp"
 
-#include <duet/core/batch.hpp>
-#include <duet/core/batch_math.hpp>
+#include <duet/core/batch/batch.hpp>
+#include <duet/core/batch/math.hpp>
 #include <duet/dual/second_dual.hpp>
 #include <duet/interop/boost_math.hpp>
 #include <duet/interop/special_functions.hpp>

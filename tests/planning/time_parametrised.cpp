@@ -3,7 +3,7 @@
 #include "support/message.hpp"
 #include "support/random.hpp"
 
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/planning/time_parametrised.hpp>
 
 #include <doctest/doctest.h>

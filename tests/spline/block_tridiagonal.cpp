@@ -4,7 +4,7 @@
 
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/block_tridiagonal.hpp>
+#include <duet/spline/blocks/tridiagonal.hpp>
 
 #include <Eigen/Dense>
 #include <doctest/doctest.h>

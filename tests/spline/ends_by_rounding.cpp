@@ -4,7 +4,7 @@
 #include "support/lanes.hpp"
 #include "support/message.hpp"
 
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>

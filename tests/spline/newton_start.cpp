@@ -6,12 +6,12 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/curve_ends.hpp>
-#include <duet/spline/curve_equations.hpp>
 #include <duet/spline/end_conditions.hpp>
+#include <duet/spline/equations/curve_equations.hpp>
+#include <duet/spline/equations/newton.hpp>
+#include <duet/spline/equations/small_turns.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
-#include <duet/spline/small_turns.hpp>
-#include <duet/spline/spline_newton.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/comparison/random_source.hpp>
+#include <duet/core/random_source.hpp>
 
 namespace duet_test {
 

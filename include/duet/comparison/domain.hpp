@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/comparison/random_source.hpp>
-#include <duet/core/number_text.hpp>
+#include <duet/core/random_source.hpp>
+#include <duet/core/text/number_text.hpp>
 
 #include <Eigen/Core>
 

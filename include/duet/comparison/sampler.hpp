@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/comparison/domain.hpp>
-#include <duet/comparison/random_source.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/random_source.hpp>
 
 #include <algorithm>
 #include <cstddef>

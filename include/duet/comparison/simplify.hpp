@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/comparison/domain.hpp>
-#include <duet/core/number_text.hpp>
+#include <duet/core/text/number_text.hpp>
 
 #include <cmath>
 #include <cstddef>

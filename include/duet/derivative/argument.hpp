@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual/tag.hpp>
+#include <duet/dual/number/tag.hpp>
 
 #include <Eigen/Core>
 

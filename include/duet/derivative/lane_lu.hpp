@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch_math.hpp>
+#include <duet/core/batch/math.hpp>
 #include <duet/core/config.hpp>
-#include <duet/dual/eigen_structure.hpp>
+#include <duet/dual/eigen/structure.hpp>
 
 #include <Eigen/Core>
 

@@ -6,7 +6,7 @@
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual/eigen_traits.hpp>
-#include <duet/dual/promotion.hpp>
+#include <duet/dual/number/promotion.hpp>
 
 #include <Eigen/Core>
 

@@ -6,7 +6,7 @@
 #include <duet/derivative/argument.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/parts.hpp>
-#include <duet/dual/structural_zero.hpp>
+#include <duet/dual/storage/structural_zero.hpp>
 
 #include <Eigen/Core>
 

@@ -5,7 +5,7 @@
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/partials.hpp>
+#include <duet/dual/storage/partials.hpp>
 
 #include <Eigen/Core>
 

@@ -10,8 +10,8 @@
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
-#include <duet/dual/partials.hpp>
 #include <duet/dual/parts.hpp>
+#include <duet/dual/storage/partials.hpp>
 
 #include <Eigen/Core>
 

@@ -3,12 +3,12 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/algebra.hpp>
 #include <duet/dual/level.hpp>
-#include <duet/dual/partials.hpp>
-#include <duet/dual/promotion.hpp>
-#include <duet/dual/structural_zero.hpp>
-#include <duet/dual/tag.hpp>
+#include <duet/dual/number/algebra.hpp>
+#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/number/tag.hpp>
+#include <duet/dual/storage/partials.hpp>
+#include <duet/dual/storage/structural_zero.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -130,7 +130,7 @@ public:
                 },
                 slope.partials_, x.partials_)};
   }
-  /// The function of a rule, see rules.hpp: f(a + εb) = f(a) + ε f′(a) b.
+  /// The function of a rule, see rules/elementary.hpp: f(a + εb) = f(a) + ε f′(a) b.
   template <class Rule>
   [[nodiscard]] DUET_ALWAYS_INLINE static dual lift(const Rule& rule, const dual& x) {
     const T y = rule.value(x.value_);

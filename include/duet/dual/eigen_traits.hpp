@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual/eigen_products.hpp>
-#include <duet/dual/eigen_solvers.hpp>
-#include <duet/dual/eigen_structure.hpp>
+#include <duet/dual/eigen/products.hpp>
+#include <duet/dual/eigen/solvers.hpp>
+#include <duet/dual/eigen/structure.hpp>
 #include <duet/dual/math.hpp>
 
 #include <Eigen/Core>

@@ -5,9 +5,9 @@
 /// Dual and Taylor numbers with everything a `double` has: functions, limits, streams.
 
 #include <duet/dual/dual.hpp>
-#include <duet/dual/functions.hpp>
-#include <duet/dual/limits.hpp>
-#include <duet/dual/piecewise.hpp>
-#include <duet/dual/scaling.hpp>
-#include <duet/dual/stream.hpp>
+#include <duet/dual/number/limits.hpp>
+#include <duet/dual/number/stream.hpp>
+#include <duet/dual/rules/functions.hpp>
+#include <duet/dual/rules/piecewise.hpp>
+#include <duet/dual/rules/scaling.hpp>
 #include <duet/dual/taylor.hpp>

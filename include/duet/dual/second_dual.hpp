@@ -3,13 +3,14 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/algebra.hpp>
 #include <duet/dual/level.hpp>
-#include <duet/dual/lower_triangle.hpp>
-#include <duet/dual/partials.hpp>
-#include <duet/dual/promotion.hpp>
-#include <duet/dual/structural_zero.hpp>
-#include <duet/dual/tag.hpp>
+#include <duet/dual/number/algebra.hpp>
+#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/number/tag.hpp>
+#include <duet/dual/rules/second_dual_lift.hpp>
+#include <duet/dual/storage/lower_triangle.hpp>
+#include <duet/dual/storage/partials.hpp>
+#include <duet/dual/storage/structural_zero.hpp>
 
 #include <array>
 #include <concepts>
@@ -110,10 +111,12 @@ public:
                                                      const second_dual& x) {
     return product(slope, x);
   }
-  /// The function of a rule, see rules.hpp and second_dual_lift.hpp.
+  /// The function of a rule, see rules/elementary.hpp and rules/second_dual_lift.hpp.
   template <class Rule, class... Rest>
   [[nodiscard]] DUET_ALWAYS_INLINE static second_dual lift(const Rule& rule, const second_dual& x,
-                                                           const Rest&... rest);
+                                                           const Rest&... rest) {
+    return detail::lift_by_slopes(rule, x, rest...);
+  }
   /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1).
   template <int Sign>
   [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<second_dual>
@@ -280,6 +283,3 @@ struct scalar_traits<second_dual<T, N, Tag>> {
 };
 
 } // namespace duet
-
-// Functions of such numbers.
-#include <duet/dual/second_dual_lift.hpp>

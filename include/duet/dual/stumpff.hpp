@@ -3,8 +3,8 @@
 
 #include <duet/core/select.hpp>
 #include <duet/core/stumpff.hpp>
-#include <duet/dual/lift.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/dual/rules/lift.hpp>
 
 #include <array>
 #include <cmath>

@@ -3,13 +3,14 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/algebra.hpp>
 #include <duet/dual/level.hpp>
-#include <duet/dual/partials.hpp>
-#include <duet/dual/promotion.hpp>
-#include <duet/dual/series_product.hpp>
-#include <duet/dual/structural_zero.hpp>
-#include <duet/dual/tag.hpp>
+#include <duet/dual/number/algebra.hpp>
+#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/number/tag.hpp>
+#include <duet/dual/rules/taylor_lift.hpp>
+#include <duet/dual/storage/partials.hpp>
+#include <duet/dual/storage/series_product.hpp>
+#include <duet/dual/storage/structural_zero.hpp>
 
 #include <array>
 #include <concepts>
@@ -117,14 +118,25 @@ public:
     }
     return result;
   }
-  /// The function of a rule, see rules.hpp and taylor_lift.hpp.
+  /// The function of a rule, see rules/elementary.hpp and rules/taylor_lift.hpp.
   template <class Rule, class... Series>
   [[nodiscard]] DUET_ALWAYS_INLINE static taylor lift(const Rule& rule, const taylor& x,
-                                                      const Series&... rest);
-  /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1).
+                                                      const Series&... rest) {
+    if constexpr (std::floating_point<T> && K <= detail::in_place_order && sizeof...(rest) == 0) {
+      return detail::lift_in_place(rule, x);
+    } else {
+      return detail::lift_by_call(rule, x, rest...);
+    }
+  }
+  /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1), by one
+  /// recurrence: applying their rules one by one would evaluate the pair at every order.
   template <int Sign>
   [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<taylor>
-  lift_pair(const detail::sine_cosine<T>& y, const taylor& x);
+  lift_pair(const detail::sine_cosine<T>& y, const taylor& x) {
+    detail::sine_cosine<taylor> result{taylor(y.sine), taylor(y.cosine)};
+    detail::extend_pair<Sign>(x, result.sine, result.cosine);
+    return result;
+  }
   /// Writes (x0 + x1 e + x2 e^2 + …).
   template <class Out>
   void write(Out& out) const {
@@ -259,6 +271,3 @@ struct scalar_traits<taylor<T, K, Tag>> {
 };
 
 } // namespace duet
-
-// Functions of series.
-#include <duet/dual/taylor_lift.hpp>

@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/expression/arithmetic.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/number.hpp>
-#include <duet/expression/product.hpp>
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/algebra/product.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
 
 #include <type_traits>
 #include <utility>

@@ -4,12 +4,12 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/function.hpp>
-#include <duet/expression/given.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/printed.hpp>
+#include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/rotation.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/printed.hpp>
 #include <duet/expression/vector.hpp>
 
 /// \file

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <duet/dual/math.hpp>
-#include <duet/dual/rules_of_many.hpp>
-#include <duet/expression/arithmetic.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/function.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/number.hpp>
-#include <duet/expression/power.hpp>
+#include <duet/dual/rules/of_many.hpp>
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/algebra/power.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
 
 /// \file
 /// Functions of two scalars and more.

@@ -3,11 +3,11 @@
 
 #include <duet/core/config.hpp>
 #include <duet/derivative/gradient.hpp>
-#include <duet/expression/call.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/variables.hpp>
+#include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/variables.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
 
 #include <Eigen/Core>
 #include <boost/mp11/list.hpp>

@@ -5,10 +5,10 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/expression/arm/pose_chain.hpp>
-#include <duet/expression/call.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/variables.hpp>
+#include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/variables.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
 #include <duet/expression/velocity.hpp>
 
 #include <Eigen/Core>

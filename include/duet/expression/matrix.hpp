@@ -1,13 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/expression/matrix_block.hpp>
-#include <duet/expression/matrix_entries.hpp>
-#include <duet/expression/matrix_functions.hpp>
-#include <duet/expression/matrix_product.hpp>
-#include <duet/expression/node.hpp>
+#include <duet/expression/evaluate/variables.hpp>
+#include <duet/expression/matrix/block.hpp>
+#include <duet/expression/matrix/entries.hpp>
+#include <duet/expression/matrix/functions.hpp>
+#include <duet/expression/matrix/product.hpp>
 #include <duet/expression/symbol.hpp>
-#include <duet/expression/variables.hpp>
+#include <duet/expression/tree/node.hpp>
 
 #include <cstddef>
 #include <utility>

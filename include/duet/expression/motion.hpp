@@ -4,10 +4,10 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/twist.hpp>
-#include <duet/expression/call.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/node.hpp>
+#include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
 #include <duet/expression/velocity.hpp>
 
 #include <type_traits>

@@ -3,14 +3,14 @@
 
 #include <duet/core/config.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/function.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/number.hpp>
-#include <duet/expression/printed.hpp>
-#include <duet/expression/product.hpp>
-#include <duet/expression/pushforward.hpp>
-#include <duet/expression/scalar_factor.hpp>
+#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/algebra/scalar_factor.hpp>
+#include <duet/expression/evaluate/pushforward.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
 #include <duet/expression/vector.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>

@@ -1,11 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/expression/formula.hpp>
-#include <duet/expression/function.hpp>
-#include <duet/expression/matrix_product.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/printed.hpp>
+#include <duet/expression/matrix/product.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/printed.hpp>
 #include <duet/expression/velocity.hpp>
 #include <duet/quaternion/rotation.hpp>
 

@@ -6,12 +6,12 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/expression/dual_parts.hpp>
 #include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/number.hpp>
-#include <duet/expression/printed.hpp>
-#include <duet/expression/pushforward.hpp>
+#include <duet/expression/evaluate/pushforward.hpp>
 #include <duet/expression/rotation.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
 #include <duet/expression/vector.hpp>
 
 #include <string>

@@ -1,14 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual/rules_hyperbolic.hpp>
-#include <duet/dual/rules_special.hpp>
+#include <duet/dual/rules/hyperbolic.hpp>
+#include <duet/dual/rules/special.hpp>
+#include <duet/expression/algebra/power.hpp>
 #include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/function.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/number.hpp>
-#include <duet/expression/power.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
 
 /// \file
 /// Hyperbolic, error and gamma functions of scalar formulas.

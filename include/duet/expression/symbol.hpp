@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/expression/formula.hpp>
-#include <duet/expression/node.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
 
 #include <cstddef>
 #include <utility>

@@ -2,16 +2,16 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/dual/rules_of_many.hpp>
-#include <duet/expression/arithmetic.hpp>
+#include <duet/dual/rules/of_many.hpp>
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/algebra/product.hpp>
 #include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/formula.hpp>
-#include <duet/expression/function.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/node_values.hpp>
-#include <duet/expression/number.hpp>
-#include <duet/expression/printed.hpp>
-#include <duet/expression/product.hpp>
+#include <duet/expression/evaluate/node_values.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>

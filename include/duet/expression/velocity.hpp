@@ -2,13 +2,13 @@
 #pragma once
 
 #include <duet/derivative/frame.hpp>
+#include <duet/expression/algebra/scalar_factor.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/node.hpp>
-#include <duet/expression/number.hpp>
+#include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/rotation.hpp>
-#include <duet/expression/scalar_factor.hpp>
 #include <duet/expression/screw.hpp>
-#include <duet/expression/variables.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
 #include <duet/expression/vector.hpp>
 
 #include <type_traits>

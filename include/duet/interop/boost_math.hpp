@@ -3,7 +3,7 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
-#include <duet/dual/functions.hpp>
+#include <duet/dual/rules/functions.hpp>
 #include <duet/dual/stumpff.hpp>
 
 #include <boost/math/special_functions/cbrt.hpp>

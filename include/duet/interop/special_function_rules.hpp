@@ -21,7 +21,8 @@
 #include <type_traits>
 
 /// \file
-/// The derivatives of the special functions of special_functions.hpp; see dual/rules.hpp.
+/// The derivatives of the special functions of special_functions.hpp; see
+/// dual/rules/elementary.hpp.
 
 namespace duet {
 namespace detail {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/number_text.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/manifold.hpp>

@@ -1,13 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/core/vector_sine_cosine.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/partials.hpp>
-#include <duet/dual/sine_cosine.hpp>
+#include <duet/dual/rules/sine_cosine.hpp>
+#include <duet/dual/storage/partials.hpp>
 
 #include <array>
 #include <concepts>

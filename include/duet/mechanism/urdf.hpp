@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/printable.hpp>
+#include <duet/core/text/printable.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/mechanism/urdf_reader.hpp>

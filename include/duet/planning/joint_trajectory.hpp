@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/number_text.hpp>
 #include <duet/core/rounding.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 
 #include <algorithm>

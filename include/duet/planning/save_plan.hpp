@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/csv.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/text/csv.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/planning/joint_trajectory.hpp>
 #include <duet/planning/motion_plan.hpp>

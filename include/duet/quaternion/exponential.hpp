@@ -1,11 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch_lanes.hpp>
+#include <duet/core/batch/lanes.hpp>
 #include <duet/core/constants.hpp>
 #include <duet/core/select.hpp>
+#include <duet/dual/rules/universal_functions.hpp>
 #include <duet/dual/stumpff.hpp>
-#include <duet/dual/universal_functions.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/undetermined.hpp>

@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch_lanes.hpp>
+#include <duet/core/batch/lanes.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
-#include <duet/dual/structural_zero.hpp>
+#include <duet/dual/storage/structural_zero.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <algorithm>

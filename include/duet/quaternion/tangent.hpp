@@ -3,8 +3,8 @@
 
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/dual/promotion.hpp>
-#include <duet/dual/tag.hpp>
+#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/number/tag.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>

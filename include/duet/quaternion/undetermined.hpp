@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/lift.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/dual/rules/lift.hpp>
 
 #include <array>
 #include <limits>

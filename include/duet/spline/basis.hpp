@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/all_digits.hpp>
-#include <duet/core/batch_lanes.hpp>
+#include <duet/core/batch/lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/text/all_digits.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/location.hpp>
 

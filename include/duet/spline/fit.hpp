@@ -1,13 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/all_digits.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/text/all_digits.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/basis.hpp>
-#include <duet/spline/bspline_fit.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/fit_options.hpp>
+#include <duet/spline/fitting/bspline_fit.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/orientations.hpp>
 

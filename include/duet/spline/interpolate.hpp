@@ -3,16 +3,16 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/spline/cubic_equations.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/curve_ends.hpp>
-#include <duet/spline/curve_equations.hpp>
 #include <duet/spline/end_conditions.hpp>
+#include <duet/spline/equations/cubic.hpp>
+#include <duet/spline/equations/curve_equations.hpp>
+#include <duet/spline/equations/newton.hpp>
+#include <duet/spline/equations/rotation_vector_cubic.hpp>
+#include <duet/spline/equations/rotation_vector_quintic.hpp>
 #include <duet/spline/orientations.hpp>
-#include <duet/spline/rotation_vector_cubic_equations.hpp>
-#include <duet/spline/rotation_vector_quintic_equations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
-#include <duet/spline/spline_newton.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/csv.hpp>
-#include <duet/core/number_text.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/quaternion/norm.hpp>

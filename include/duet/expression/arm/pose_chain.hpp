@@ -5,11 +5,11 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/arm/moving_frame.hpp>
-#include <duet/expression/call.hpp>
-#include <duet/expression/node.hpp>
+#include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/screw.hpp>
-#include <duet/expression/variables.hpp>
+#include <duet/expression/tree/node.hpp>
 #include <duet/expression/vector.hpp>
 #include <duet/expression/velocity.hpp>
 

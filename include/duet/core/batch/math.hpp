@@ -1,0 +1,168 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/batch/batch.hpp>
+#include <duet/core/batch/lanes.hpp>
+#include <duet/core/batch/vector_sine_cosine.hpp>
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+/// \file
+/// Functions of batches that take all lanes in one step: square root, sine and cosine, absolute
+/// value, extremes.
+
+namespace duet {
+namespace detail {
+
+/// f of every lane.
+template <class F, class T, int W, class... Rest>
+[[nodiscard]] batch<T, W> each_lane(const F& f, const batch<T, W>& x, const Rest&... rest) {
+  batch<T, W> result;
+  for (int i = 0; i < W; ++i) {
+    result.set(i, static_cast<T>(f(x[i], lane(rest, i)...)));
+  }
+  return result;
+}
+
+template <class T, int W>
+struct sine_cosine_batches {
+  batch<T, W> sine;
+  batch<T, W> cosine;
+};
+
+/// By the C library.
+template <class T, int W>
+[[nodiscard, gnu::noinline]] sine_cosine_batches<T, W> sine_cosine_of_lanes(batch<T, W> x) {
+  return {each_lane([](T a) { return std::sin(a); }, x),
+          each_lane([](T a) { return std::cos(a); }, x)};
+}
+
+/// By the kernel of vector_sine_cosine.hpp, which all lanes must be small enough for.
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine_batches<T, W>
+sine_cosine_of_small(const batch<T, W>& x) {
+  using storage = packets<T, W>;
+  std::array<vector_sines_and_cosines<typename storage::packet>, std::size_t(storage::count)> both;
+  storage::for_each([&](int p) DUET_INLINE_LAMBDA {
+    both[std::size_t(p)] = vector_sine_and_cosine_of_moderate(x.packet_at(p));
+  });
+  return {batch<T, W>::from_packets([&](int p)
+                                        DUET_INLINE_LAMBDA { return both[std::size_t(p)].sine; }),
+          batch<T, W>::from_packets(
+              [&](int p) DUET_INLINE_LAMBDA { return both[std::size_t(p)].cosine; })};
+}
+
+/// Where some lanes are large, infinite or not a number.
+template <class T, int W>
+[[nodiscard, gnu::noinline, gnu::cold]] sine_cosine_batches<T, W>
+sine_cosine_of_mixed(const batch<T, W> x, const lane_mask<T, W> is_small) {
+  const auto little = sine_cosine_of_small(blended(is_small, x, batch<T, W>(0)));
+  const auto large = sine_cosine_of_lanes(x);
+  return {blended(is_small, little.sine, large.sine),
+          blended(is_small, little.cosine, large.cosine)};
+}
+
+/// sin x and cos x.
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine_batches<T, W>
+sine_cosine_of_batch(const batch<T, W>& x) {
+  if constexpr (std::same_as<T, double> && packets<T, W>::is_vector) {
+    const auto is_small = x * x < vector_sine_limit * vector_sine_limit;
+    if (all(is_small)) [[likely]] {
+      return sine_cosine_of_small(x);
+    }
+    return sine_cosine_of_mixed(x, is_small);
+  } else {
+    return sine_cosine_of_lanes(x);
+  }
+}
+
+template <class P>
+[[nodiscard]] DUET_ALWAYS_INLINE P root_of_packet(const P& x) {
+#if defined(__AVX512F__)
+  if constexpr (std::same_as<P, typename packet_type<double, 8>::packet>) {
+    return P(_mm512_maskz_sqrt_pd(__mmask8(-1), x));
+  }
+#endif
+#if defined(__AVX__)
+  if constexpr (std::same_as<P, typename packet_type<double, 4>::packet>) {
+    return P(_mm256_sqrt_pd(x));
+  } else if constexpr (std::same_as<P, typename packet_type<float, 8>::packet>) {
+    return P(_mm256_sqrt_ps(x));
+  }
+#endif
+#if defined(__SSE2__)
+  if constexpr (std::same_as<P, typename packet_type<double, 2>::packet>) {
+    return P(_mm_sqrt_pd(x));
+  } else if constexpr (std::same_as<P, typename packet_type<float, 4>::packet>) {
+    return P(_mm_sqrt_ps(x));
+  }
+#endif
+  P result = x;
+  for (int i = 0; i < int(sizeof(P) / sizeof(x[0])); ++i) {
+    result[i] = std::sqrt(x[i]);
+  }
+  return result;
+}
+
+/// x without its sign bit.
+template <class P>
+[[nodiscard]] DUET_ALWAYS_INLINE P absolute_packet(const P& x) {
+  if constexpr (std::is_class_v<P>) {
+    return P::map([](const auto& a) { return std::abs(a); }, x);
+  } else {
+    using bits = decltype(x == x);
+    const P negative_zero = -P{};
+    bits sign, value;
+    std::memcpy(&sign, &negative_zero, sizeof(P));
+    std::memcpy(&value, &x, sizeof(P));
+    value &= ~sign;
+    P result;
+    std::memcpy(&result, &value, sizeof(P));
+    return result;
+  }
+}
+
+} // namespace detail
+
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> sqrt(const batch<T, W>& x) {
+  return batch<T, W>::from_packets(
+      [&](int p) DUET_INLINE_LAMBDA { return detail::root_of_packet(x.packet_at(p)); });
+}
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> sin(const batch<T, W>& x) {
+  return detail::sine_cosine_of_batch(x).sine;
+}
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> cos(const batch<T, W>& x) {
+  return detail::sine_cosine_of_batch(x).cosine;
+}
+
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> abs(const batch<T, W>& x) {
+  return batch<T, W>::from_packets(
+      [&](int p) DUET_INLINE_LAMBDA { return detail::absolute_packet(x.packet_at(p)); });
+}
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> fabs(const batch<T, W>& x) {
+  return abs(x);
+}
+/// The larger, as `std::max`.
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> max(const batch<T, W>& a, const batch<T, W>& b) {
+  return blended(a < b, b, a);
+}
+template <class T, int W>
+[[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> min(const batch<T, W>& a, const batch<T, W>& b) {
+  return blended(b < a, b, a);
+}
+
+} // namespace duet

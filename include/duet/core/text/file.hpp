@@ -1,0 +1,289 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/printable.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
+
+/// \file
+/// Files written as a whole or not at all.
+
+namespace duet {
+
+/// A file that cannot be used: `path:line: reason`, on one line whatever it quotes.
+class file_error : public std::runtime_error {
+public:
+  file_error(const std::string& path, const std::string& reason)
+      : std::runtime_error(printable(path + ": " + reason)) {}
+  file_error(const std::string& path, std::size_t line, const std::string& reason)
+      : std::runtime_error(printable(path + ":" + std::to_string(line) + ": " + reason)) {}
+};
+
+namespace detail {
+
+/// `path: cannot be written: reason`
+[[nodiscard]] inline file_error cannot_write(const std::string& path, int error) {
+  return {path, "cannot be written: " + std::generic_category().message(error)};
+}
+
+/// A stream of C, closed when it goes.
+class c_file {
+public:
+  c_file(const std::string& path, const char* mode) : file_(std::fopen(path.c_str(), mode)) {}
+  c_file(const c_file&) = delete;
+  c_file& operator=(const c_file&) = delete;
+  ~c_file() { close(); }
+
+  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
+  /// Is all of it written? Else errno says why not.
+  [[nodiscard]] bool write(const std::string& content) {
+    return std::fwrite(content.data(), 1, content.size(), file_) == content.size() &&
+           std::fflush(file_) == 0;
+  }
+  /// \return no error
+  bool close() {
+    std::FILE* const file = std::exchange(file_, nullptr);
+    return file == nullptr || std::fclose(file) == 0;
+  }
+
+private:
+  std::FILE* file_;
+};
+
+/// Is there something at a path that is neither a file nor a folder: a device, a pipe, a socket?
+[[nodiscard]] inline bool is_special_file(const std::string& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  return exists(status) && !is_regular_file(status) && !is_directory(status);
+}
+
+/// Is it the file that standard output goes to, by whatever name? To replace it would lose the
+/// rest. Of terminals and pipes `equivalent` may not know.
+[[nodiscard]] inline bool is_standard_output(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::equivalent(path, "/dev/stdout", ignored);
+}
+
+/// The file that a path leads to over all links, there or not.
+/// \throws file_error where something is there that is no file, or one that may not be written
+[[nodiscard]] inline std::filesystem::path link_target(const std::string& path) {
+  constexpr int most_links = 40;
+  std::filesystem::path result(path);
+  std::error_code error;
+  for (int links = 0; is_symlink(std::filesystem::symlink_status(result, error)); ++links) {
+    if (links == most_links) {
+      throw cannot_write(path, ELOOP);
+    }
+    const std::filesystem::path next = std::filesystem::read_symlink(result, error);
+    if (error) {
+      throw cannot_write(path, error.value());
+    }
+    result = result.parent_path() / next;
+  }
+  const auto status = std::filesystem::status(result, error);
+  if (!status_known(status)) {
+    throw cannot_write(path, error.value());
+  }
+  if (exists(status)) {
+    if (!is_regular_file(status)) {
+      throw cannot_write(path, is_directory(status) ? EISDIR : EINVAL);
+    }
+    if (!c_file(result.string(), "r+b").is_open()) { // changes nothing
+      throw cannot_write(path, errno);
+    }
+  }
+  return result;
+}
+
+/// The name of a draft, for handlers of signals: these can neither lock nor allocate, and may run
+/// while another thread is done with the draft. Only who has changed `owner` to `busy` uses `name`.
+struct listed_draft {
+  static constexpr unsigned long nobody = 0, busy = 1;
+  static_assert(std::atomic<unsigned long>::is_always_lock_free);
+
+  std::atomic<unsigned long> owner{nobody};
+  std::array<char, 4096> name{}; ///< as long as a path can be on Linux
+};
+inline constinit std::array<listed_draft, 64> listed_drafts{};
+inline std::atomic<unsigned long> last_draft{listed_draft::busy};
+
+} // namespace detail
+
+/// Removes drafts: for the handler of a signal that ends the program. Signal-safe on POSIX.
+inline void remove_drafts() noexcept {
+  using detail::listed_draft;
+  for (listed_draft& draft : detail::listed_drafts) {
+    unsigned long owner = draft.owner.load();
+    if (owner > listed_draft::busy &&
+        draft.owner.compare_exchange_strong(owner, listed_draft::busy)) {
+#if __has_include(<unistd.h>)
+      ::unlink(draft.name.data()); // POSIX does not say so of std::remove
+#else
+      std::remove(draft.name.data());
+#endif
+      draft.owner.store(listed_draft::nobody);
+    }
+  }
+}
+
+/// A file under another name, in the same folder, until it is whole: then it takes its place, and
+/// has the permissions of the one that was there. Without `commit` it is removed.
+///
+/// Links are followed, so that a link stays one.
+class file_draft {
+public:
+  /// Makes the draft, an empty file.
+  /// \throws file_error where the file cannot be written
+  explicit file_draft(const std::string& path) : path_(path), target_(detail::link_target(path)) {
+    using enum std::filesystem::perms;
+    for (int number = 0;; ++number) {
+      // Nobody else has this name: files are made, not opened.
+      const auto time = std::chrono::system_clock::now().time_since_epoch().count();
+      name_ = (target_.parent_path() /
+               (".duet-" + std::to_string(time) + "-" + std::to_string(number) + ".part"))
+                  .string();
+      enlist(); // before it is made: a signal in between would leave it
+      if (detail::c_file(name_, "wbx").is_open()) {
+        // Who may not read the file may not read its draft.
+        if (const auto error = take_permissions(owner_read | owner_write)) {
+          remove();
+          throw detail::cannot_write(path, error.value());
+        }
+        return;
+      }
+      const int error = errno;
+      strike();
+      if (error != EEXIST || number == 1000) {
+        throw detail::cannot_write(path, error);
+      }
+    }
+  }
+  file_draft(const file_draft&) = delete;
+  file_draft& operator=(const file_draft&) = delete;
+  ~file_draft() {
+    if (!name_.empty()) {
+      remove();
+    }
+  }
+
+  /// Where it is until then.
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+  /// \throws file_error
+  void write(const std::string& content) const {
+    detail::c_file out(name_, "wb");
+    if (!out.is_open() || !out.write(content) || !out.close()) {
+      throw detail::cannot_write(path_, errno);
+    }
+  }
+
+  /// Puts it in its place.
+  /// \throws file_error
+  void commit() {
+    std::error_code error = take_permissions(std::filesystem::perms::none);
+    if (!error) {
+      std::filesystem::rename(name_, target_, error);
+    }
+    if (error) {
+      throw detail::cannot_write(path_, error.value());
+    }
+    strike();
+    name_.clear();
+  }
+
+private:
+  /// Those of the file that is there, if one is, and these.
+  [[nodiscard]] std::error_code take_permissions(std::filesystem::perms also) const {
+    std::error_code error;
+    const auto before = std::filesystem::status(target_, error);
+    if (!exists(before)) {
+      return {};
+    }
+    const auto wanted = before.permissions() | also;
+    const auto now = std::filesystem::status(name_, error);
+    if (!error && now.permissions() != wanted) { // some file systems have the same for all files
+      std::filesystem::permissions(name_, wanted, error);
+    }
+    return error;
+  }
+
+  void enlist() {
+    using detail::listed_draft;
+    id_ = ++detail::last_draft;
+    for (listed_draft& draft : detail::listed_drafts) {
+      unsigned long owner = listed_draft::nobody;
+      if (name_.size() < draft.name.size() &&
+          draft.owner.compare_exchange_strong(owner, listed_draft::busy)) {
+        *std::copy(name_.begin(), name_.end(), draft.name.begin()) = '\0';
+        draft.owner.store(id_);
+        return;
+      }
+    }
+  }
+  void strike() const {
+    for (detail::listed_draft& draft : detail::listed_drafts) {
+      unsigned long mine = id_;
+      if (draft.owner.compare_exchange_strong(mine, detail::listed_draft::nobody)) {
+        return;
+      }
+    }
+  }
+  void remove() const {
+    std::remove(name_.c_str());
+    strike();
+  }
+
+  std::string path_;
+  std::filesystem::path target_;
+  std::string name_;
+  unsigned long id_ = 0; ///< in the list of drafts; of this one alone
+};
+
+/// Finds out before the work whether `write_file` could write its result; changes nothing.
+/// \throws file_error
+inline void require_writable(const std::string& path) {
+  if (!detail::is_special_file(path) && !detail::is_standard_output(path)) {
+    file_draft{path};
+  }
+}
+
+/// Writes a whole file or none: a `file_draft`, which then takes the file's place. Links are
+/// followed; to a device, a pipe or standard output it writes directly.
+/// \throws file_error
+inline void write_file(const std::string& path, const std::string& content) {
+  if (detail::is_standard_output(path)) {
+    if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
+        std::fflush(stdout) != 0) {
+      throw detail::cannot_write(path, errno);
+    }
+    return;
+  }
+  if (detail::is_special_file(path)) {
+    std::fflush(stdout); // it may go there, too: what was printed before comes first
+    detail::c_file out(path, "wb");
+    if (!out.is_open() || !out.write(content) || !out.close()) {
+      throw detail::cannot_write(path, errno);
+    }
+    return;
+  }
+  file_draft draft(path);
+  draft.write(content);
+  draft.commit();
+}
+
+} // namespace duet

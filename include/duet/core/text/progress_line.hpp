@@ -1,0 +1,86 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/progress.hpp>
+#include <duet/core/text/number_text.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <utility>
+
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
+
+/// \file
+/// Progress for people.
+
+namespace duet {
+
+/// Where progress is shown, and how often.
+struct progress_display {
+  std::FILE* stream;
+  bool is_terminal; ///< one line, written over and over, instead of many
+  double interval;  ///< seconds from line to line, and to the first
+
+  /// Standard error: every second where that is a terminal, else every ten. The environment
+  /// variable `DUET_PROGRESS_INTERVAL` gives other seconds; with 0 nothing is passed over, with
+  /// `inf` all is.
+  [[nodiscard]] static progress_display standard() {
+#if __has_include(<unistd.h>)
+    const bool is_terminal = isatty(STDERR_FILENO) == 1;
+#else
+    const bool is_terminal = false;
+#endif
+    const char* const text = std::getenv("DUET_PROGRESS_INTERVAL");
+    const double wanted = parse_number(text == nullptr ? "" : text)
+                              .value_or(std::numeric_limits<double>::quiet_NaN());
+    return {stderr, is_terminal, wanted >= 0 ? wanted : is_terminal ? 1.0 : 10.0};
+  }
+};
+
+/// Tells people how far a long run is, `progress: 3 of 40 blocks`, and nothing of a short one: a
+/// report for `execution` or `comparison_options`.
+///
+/// Example: `progress_line line("blocks"); parallel_for(n, body, {.threads = 0, .report = line});`
+class progress_line {
+public:
+  explicit progress_line(std::string things,
+                         const progress_display& display = progress_display::standard())
+      : things_(std::move(things)), display_(display) {}
+  progress_line(const progress_line&) = delete;
+  progress_line& operator=(const progress_line&) = delete;
+  ~progress_line() {
+    if (has_spoken_ && display_.is_terminal) {
+      std::fputs("\n", display_.stream);
+    }
+  }
+
+  void operator()(const progress& p) {
+    say(std::to_string(p.done) + " of " + std::to_string(p.count) + " " + things_,
+        p.done == p.count && has_spoken_);
+  }
+
+  /// Shows a text where one is due.
+  void say(const std::string& text, bool is_last = false) {
+    const std::chrono::duration<double> silence = std::chrono::steady_clock::now() - spoke_;
+    if (silence.count() >= display_.interval || is_last) {
+      const std::string line = "progress: " + text;
+      std::fputs((display_.is_terminal ? "\r" + line : line + "\n").c_str(), display_.stream);
+      std::fflush(display_.stream);
+      has_spoken_ = true;
+      spoke_ = std::chrono::steady_clock::now();
+    }
+  }
+
+private:
+  std::string things_;
+  progress_display display_;
+  bool has_spoken_ = false;
+  std::chrono::steady_clock::time_point spoke_ = std::chrono::steady_clock::now();
+};
+
+} // namespace duet

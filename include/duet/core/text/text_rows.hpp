@@ -1,0 +1,134 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/input_file.hpp>
+#include <duet/core/text/number_text.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <fstream>
+#include <ios>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+/// \file
+/// Text files, line by line and cell by cell.
+
+namespace duet::detail {
+
+/// Calls f(number, text) for every line, counted from 1, without its end and without a byte order
+/// mark.
+/// \throws file_error for what cannot be read or is no text
+template <class F>
+void for_each_line(const std::string& path, const F& f) {
+  std::ifstream in;
+  if (const std::string fault = open_input(path, in); !fault.empty()) {
+    throw file_error(path, fault);
+  }
+  std::string buffer(std::size_t(1) << 14, '\0');
+  std::string_view unread;
+  for (std::size_t line = 1;; ++line) {
+    std::size_t end = unread.find('\n');
+    while (end == std::string_view::npos && in) {
+      if (unread.size() > 1'000'000) {
+        throw file_error(path, line, "more than a million characters: no file of rows");
+      }
+      // What is unread goes to the front, and more behind it.
+      std::copy(unread.begin(), unread.end(), buffer.begin());
+      const std::size_t size = unread.size();
+      if (2 * size > buffer.size()) {
+        buffer.resize(2 * buffer.size());
+      }
+      in.read(buffer.data() + size, std::streamsize(buffer.size() - size));
+      if (in.bad()) {
+        throw file_error(path, line, "cannot be read");
+      }
+      const auto count = std::size_t(in.gcount());
+      unread = {buffer.data(), size + count};
+      end = unread.find('\n', size);
+    }
+    if (unread.empty()) {
+      return;
+    }
+    std::string_view text = unread.substr(0, end);
+    unread.remove_prefix(std::min(text.size() + 1, unread.size()));
+    if (line == 1) {
+      if (text.starts_with("\xef\xbb\xbf")) {
+        text.remove_prefix(3);
+      } else if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+        throw file_error(path, "is UTF-16: UTF-8 expected");
+      }
+    }
+    f(line, text);
+  }
+}
+
+/// What stands before `#`, and after it.
+struct split_line {
+  std::string_view text, comment;
+
+  explicit split_line(std::string_view line) : text(line) {
+    if (const auto hash = line.find('#'); hash != std::string_view::npos) {
+      text = trimmed(line.substr(0, hash));
+      comment = trimmed(line.substr(hash + 1));
+    } else {
+      text = trimmed(line);
+    }
+  }
+};
+
+/// The cells of a line: apart by commas where it has any, one at its end not counted, else by
+/// blanks, where units in brackets, as in `t [s]`, belong to the cell before.
+inline void split_cells(std::string_view text, std::vector<std::string_view>& cells) {
+  cells.clear();
+  text = trimmed(text);
+  if (text.find(',') != std::string_view::npos) {
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find(','), text.size());
+      cells.push_back(trimmed(text.substr(0, end)));
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return;
+  }
+  constexpr std::string_view blanks = " \t\r\n";
+  for (std::size_t first = 0; (first = text.find_first_not_of(blanks, first)) != text.npos;) {
+    const std::size_t end = std::min(text.find_first_of(blanks, first), text.size());
+    if ((text[first] == '[' || text[first] == '(') && !cells.empty()) {
+      const char* const begin = cells.back().data();
+      cells.back() = {begin, std::size_t(text.data() + end - begin)};
+    } else {
+      cells.push_back(text.substr(first, end - first));
+    }
+    first = end;
+  }
+}
+
+/// Does a line of cells hold no number?
+[[nodiscard]] inline bool are_words(const std::vector<std::string_view>& cells) {
+  return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
+    double number = 0;
+    return read_number(cell, number) != std::errc::invalid_argument;
+  });
+}
+
+/// The number of a cell.
+/// \return what is wrong with it as a number, empty if nothing
+/// \throws file_error where it is no number
+[[nodiscard]] inline std::string read_cell(const std::string& path, std::size_t line,
+                                           const std::string& name, std::string_view cell,
+                                           double& number) {
+  const std::errc error = read_number(cell, number);
+  if (error == std::errc::invalid_argument) {
+    throw file_error(path, line, name + " is not a number: '" + std::string(cell) + "'");
+  }
+  if (error != std::errc() || !(number - number == 0)) {
+    return name + " is " + std::string(cell) +
+           (error == std::errc() ? "" : ", beyond the range of a double");
+  }
+  return {};
+}
+
+} // namespace duet::detail

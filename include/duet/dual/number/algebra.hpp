@@ -1,0 +1,244 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/number/promotion.hpp>
+
+#include <concepts>
+#include <type_traits>
+
+/// \file
+/// The operators of infinitesimal numbers, written once for `dual` and `taylor`.
+
+namespace duet::detail {
+
+/// What the kernels take a constant of type U as: a T. Arithmetic constants stay plain however deep
+/// T is nested, or its zero partials would meet infinite values; and where T is over another field
+/// than the reals, so that x · 2 is what that field makes of it: a complex 2 would cost digits and
+/// signs of zeros.
+template <class T, class U>
+using operand_t = std::conditional_t<Arithmetic<U>, constant_t<T>, T>;
+
+/// Base of an infinitesimal number D over T, which supplies the kernels: `sum`, `difference`,
+/// `product`, `quotient` of two D, `negated`, `plus`, `times`, `divided_by` with an operand_t, and
+/// `dividing` with a T.
+template <class D, class T>
+struct infinitesimal_operators {
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a) { return a; }
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a) { return a.negated(); }
+
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a, const D& b) {
+    return D::sum(a, b);
+  }
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a, const D& b) {
+    return D::difference(a, b);
+  }
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const D& a, const D& b) {
+    return D::product(a, b);
+  }
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const D& a, const D& b) {
+    return D::quotient(a, b);
+  }
+
+  // A constant meets a number without being widened to one, which would multiply by zeros.
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a, const U& b) {
+    return a.plus(static_cast<operand_t<T, U>>(b));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const U& a, const D& b) {
+    return b.plus(static_cast<operand_t<T, U>>(a));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a, const U& b) {
+    using operand = operand_t<T, U>;
+    return a.plus(operand(-static_cast<operand>(b)));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const U& a, const D& b) {
+    return b.negated().plus(static_cast<operand_t<T, U>>(a));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const D& a, const U& b) {
+    return a.times(static_cast<operand_t<T, U>>(b));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const U& a, const D& b) {
+    return b.times(static_cast<operand_t<T, U>>(a));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const D& a, const U& b) {
+    return a.divided_by(static_cast<operand_t<T, U>>(b));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const U& a, const D& b) {
+    return b.dividing(static_cast<T>(a));
+  }
+
+  template <std::convertible_to<D> U>
+  friend DUET_ALWAYS_INLINE constexpr D& operator+=(D& a, const U& b) {
+    return a = a + b;
+  }
+  template <std::convertible_to<D> U>
+  friend DUET_ALWAYS_INLINE constexpr D& operator-=(D& a, const U& b) {
+    return a = a - b;
+  }
+  template <std::convertible_to<D> U>
+  friend DUET_ALWAYS_INLINE constexpr D& operator*=(D& a, const U& b) {
+    return a = a * b;
+  }
+  template <std::convertible_to<D> U>
+  friend DUET_ALWAYS_INLINE constexpr D& operator/=(D& a, const U& b) {
+    return a = a / b;
+  }
+  friend DUET_ALWAYS_INLINE constexpr void swap(D& a, D& b) {
+    const D c = a;
+    a = b;
+    b = c;
+  }
+  friend constexpr D& operator++(D& a) { return a = a.plus(T(1)); }
+  friend constexpr D& operator--(D& a) { return a = a.plus(T(-1)); }
+  friend constexpr D operator++(D& a, int) {
+    const D before = a;
+    ++a;
+    return before;
+  }
+  friend constexpr D operator--(D& a, int) {
+    const D before = a;
+    --a;
+    return before;
+  }
+};
+
+/// At least one of the two is infinitesimal, and they can meet.
+template <class A, class B>
+concept MixedScalars = (Infinitesimal<A> || Infinitesimal<B>)&&(Scalar<A> || Arithmetic<A>)&&(
+    Scalar<B> || Arithmetic<B>)&&Promotable<A, B>;
+
+/// They meet in numbers that have an order, which complex numbers do not.
+template <class A, class B>
+concept OrderedScalars = MixedScalars<A, B> && requires(const real_type_t<promote_t<A, B>>& x) {
+  x < x;
+};
+
+/// They meet in numbers over the reals, where functions need not be analytic.
+template <class A, class B>
+concept MixedReals = MixedScalars<A, B> && Real<real_type_t<promote_t<A, B>>>;
+
+/// Neither is a constant for the other: both must be brought to their common nesting first.
+template <class A, class B>
+concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& Scalar<B> &&
+                            !std::is_same_v<A, B> && Promotable<A, B> && !ConstantOf<A, B> &&
+                            !ConstantOf<B, A>;
+
+/// Of one differentiation, but of different numbers of partials or different orders.
+template <class A, class B>
+concept DifferentSizes = Infinitesimal<A> && Infinitesimal<B> && !Promotable<A, B> &&
+                         Promotable<real_type_t<A>, real_type_t<B>>;
+
+/// Stands in the declaration of deleted operators, for compilers to quote.
+struct different_numbers_of_partials_or_orders {};
+
+/// The value of x for a comparison of A and B. Fields other than the reals need not compare with
+/// every arithmetic type; to built-in reals an integer is converted here, as a literal would be,
+/// because of -Wconversion.
+template <class A, class B, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr decltype(auto) comparable(const X& x) {
+  using number = real_type_t<promote_t<A, B>>;
+  if constexpr (std::integral<X> && std::floating_point<number>) {
+    return static_cast<number>(x);
+  } else if constexpr (Real<number>) {
+    return innermost(x);
+  } else {
+    return number(innermost(x));
+  }
+}
+
+} // namespace duet::detail
+
+namespace duet {
+// Comparisons look at values only, as an `if` in the differentiated function should.
+template <class A, class B>
+  requires detail::MixedScalars<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator==(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) == detail::comparable<A, B>(b);
+}
+template <class A, class B>
+  requires detail::MixedScalars<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator!=(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) != detail::comparable<A, B>(b);
+}
+template <class A, class B>
+  requires detail::OrderedScalars<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) < detail::comparable<A, B>(b);
+}
+template <class A, class B>
+  requires detail::OrderedScalars<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<=(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) <= detail::comparable<A, B>(b);
+}
+template <class A, class B>
+  requires detail::OrderedScalars<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) > detail::comparable<A, B>(b);
+}
+template <class A, class B>
+  requires detail::OrderedScalars<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>=(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) >= detail::comparable<A, B>(b);
+}
+
+template <class A, class B>
+  requires detail::DifferentNestings<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  return static_cast<common>(a) + static_cast<common>(b);
+}
+template <class A, class B>
+  requires detail::DifferentNestings<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  return static_cast<common>(a) - static_cast<common>(b);
+}
+template <class A, class B>
+  requires detail::DifferentNestings<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  return static_cast<common>(a) * static_cast<common>(b);
+}
+template <class A, class B>
+  requires detail::DifferentNestings<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator/(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  return static_cast<common>(a) / static_cast<common>(b);
+}
+
+template <class A, class B>
+  requires detail::DifferentSizes<A, B>
+auto operator+(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, class B>
+  requires detail::DifferentSizes<A, B>
+auto operator-(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, class B>
+  requires detail::DifferentSizes<A, B>
+auto operator*(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, class B>
+  requires detail::DifferentSizes<A, B>
+auto operator/(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+} // namespace duet
+
+namespace std {
+
+template <class A, class B>
+  requires duet::detail::MixedScalars<A, B>
+struct common_type<A, B> {
+  using type = duet::promote_t<A, B>;
+};
+
+} // namespace std

@@ -1,0 +1,166 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/number/tag.hpp>
+
+#include <concepts>
+#include <type_traits>
+
+/// \file
+/// The common type of two scalars: one nesting of levels that holds both.
+
+namespace duet {
+
+/// What the outermost ε of T means.
+template <class T>
+using level_tag = typename scalar_traits<T>::tag;
+
+/// The outermost level of T over another scalar.
+template <class T, class U>
+using over = typename scalar_traits<T>::template over<U>;
+
+namespace detail {
+
+/// Does any level of T carry this tag?
+template <class T, class Tag>
+[[nodiscard]] constexpr bool contains_tag() {
+  if constexpr (Infinitesimal<T>) {
+    return std::is_same_v<level_tag<T>, Tag> ||
+           contains_tag<typename scalar_traits<T>::value_type, Tag>();
+  } else {
+    return false;
+  }
+}
+
+struct no_promotion {};
+
+/// Are arithmetic constants of type U numbers at the bottom of T? 0.5 is none of a field over the
+/// integers.
+template <class U, class T>
+concept ArithmeticOf = Arithmetic<U> &&(std::integral<U> || !std::integral<constant_t<T>>);
+
+template <class A, class B>
+[[nodiscard]] constexpr auto promotion();
+
+template <class A, class B>
+using promotion_t = typename decltype(promotion<A, B>())::type;
+
+/// The level of A laid over the promotion of what is below it with B.
+template <class A, class Below, class B>
+[[nodiscard]] constexpr auto promotion_below() {
+  using below = promotion_t<Below, B>;
+  if constexpr (std::is_same_v<below, no_promotion>) {
+    return std::type_identity<no_promotion>{};
+  } else {
+    return std::type_identity<over<A, below>>{};
+  }
+}
+
+template <class A, class B>
+[[nodiscard]] constexpr auto promotion_of_levels() {
+  using value_a = typename scalar_traits<A>::value_type;
+  using value_b = typename scalar_traits<B>::value_type;
+  using tag_a = level_tag<A>;
+  using tag_b = level_tag<B>;
+  constexpr bool a_in_b = contains_tag<B, tag_a>();
+  constexpr bool b_in_a = contains_tag<A, tag_b>();
+  if constexpr (std::is_same_v<tag_a, tag_b>) {
+    if constexpr (std::is_same_v<over<A, value_b>, B>) {
+      return promotion_below<A, value_a, value_b>();
+    } else {
+      return std::type_identity<no_promotion>{}; // another number of partials or another order
+    }
+  } else if constexpr (a_in_b && b_in_a) {
+    return std::type_identity<no_promotion>{};
+  } else if constexpr (a_in_b) {
+    return promotion_below<B, value_b, A>();
+  } else if constexpr (b_in_a) {
+    return promotion_below<A, value_a, B>();
+  } else {
+    static_assert(tags_can_be_told_apart<tag_a, tag_b>(),
+                  "duet: two differentiations of functions with the same name meet here and cannot "
+                  "be told apart; give one its own tag: derivative<struct my_tag>(f, x)");
+    if constexpr (is_outside<tag_a, tag_b>()) {
+      return promotion_below<A, value_a, B>();
+    } else {
+      return promotion_below<B, value_b, A>();
+    }
+  }
+}
+
+/// Two numbers, at least one of a field other than the reals: no digits may be lost.
+template <class A, class B>
+[[nodiscard]] constexpr auto promotion_of_fields() {
+  if constexpr (Arithmetic<A>) {
+    return promotion_of_fields<B, A>();
+  } else if constexpr (Arithmetic<B>) {
+    using constant = constant_t<A>;
+    return std::type_identity<std::conditional_t<
+        std::is_same_v<std::common_type_t<constant, B>, constant>, A, no_promotion>>{};
+  } else if constexpr (Field<A> && Field<B> && requires { typename std::common_type_t<A, B>; }) {
+    return std::common_type<A, B>{};
+  } else {
+    return std::type_identity<no_promotion>{};
+  }
+}
+
+template <class A, class B>
+[[nodiscard]] constexpr auto promotion() {
+  if constexpr (std::is_same_v<A, B>) {
+    return std::type_identity<A>{};
+  } else if constexpr (Infinitesimal<A> && ArithmeticOf<B, A>) {
+    return std::type_identity<A>{}; // a literal takes the precision of what it meets
+  } else if constexpr (ArithmeticOf<A, B> && Infinitesimal<B>) {
+    return std::type_identity<B>{};
+  } else if constexpr (Infinitesimal<A> && Infinitesimal<B>) {
+    return promotion_of_levels<A, B>();
+  } else if constexpr (Infinitesimal<A> && Field<B>) {
+    return promotion_below<A, typename scalar_traits<A>::value_type, B>();
+  } else if constexpr (Field<A> && Infinitesimal<B>) {
+    return promotion_below<B, typename scalar_traits<B>::value_type, A>();
+  } else if constexpr (Arithmetic<A> && Arithmetic<B>) {
+    return std::common_type<A, B>{};
+  } else if constexpr (Real<A> && Arithmetic<B>) {
+    return std::type_identity<A>{};
+  } else if constexpr (Arithmetic<A> && Real<B>) {
+    return std::type_identity<B>{};
+  } else if constexpr (field_traits<A>::is_field || field_traits<B>::is_field) {
+    return promotion_of_fields<A, B>();
+  } else {
+    return std::type_identity<no_promotion>{};
+  }
+}
+
+} // namespace detail
+
+/// The scalar that holds both A and B: levels merged into one nesting, the screw ε outermost.
+/// Arithmetic types take the precision of the scalar they meet.
+template <class A, class B>
+using promote_t = detail::promotion_t<A, B>;
+
+/// A and B can meet in one expression.
+template <class A, class B>
+concept Promotable = !std::same_as<promote_t<A, B>, detail::no_promotion>;
+
+/// U is a constant for the level of D: an arithmetic type or a scalar of what is below.
+template <class U, class D>
+concept ConstantOf = Infinitesimal<D> &&
+    (detail::ArithmeticOf<U, D> ||
+     (!Arithmetic<U> && Scalar<U> && !std::same_as<U, D> &&
+      std::same_as<promote_t<typename scalar_traits<D>::value_type, U>,
+                   typename scalar_traits<D>::value_type>));
+
+namespace detail {
+
+/// Stands in the declaration of a deleted conversion, for compilers to quote.
+struct epsilon_of_a_rigid_motion_is_not_that_of_a_derivative {};
+
+/// U has a screw ε where D has a derivative's, or the other way round, and is no constant for D.
+template <class U, class D>
+concept OtherKindOfEpsilon = Infinitesimal<U> && Infinitesimal<D> && !ConstantOf<U, D> &&
+                             contains_tag<U, screw_tag>() != contains_tag<D, screw_tag>();
+
+} // namespace detail
+
+} // namespace duet

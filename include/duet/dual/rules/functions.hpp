@@ -1,0 +1,225 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/number/algebra.hpp>
+#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/rules/elementary.hpp>
+#include <duet/dual/rules/hyperbolic.hpp>
+#include <duet/dual/rules/lift.hpp>
+#include <duet/dual/rules/of_many.hpp>
+#include <duet/dual/rules/powers.hpp>
+#include <duet/dual/rules/special.hpp>
+
+/// \file
+/// The smooth functions of `<cmath>`, and `midpoint`, over dual and Taylor numbers. Values are
+/// those of the standard library; derivatives are in elementary.hpp and its like. Complex numbers
+/// have those of `<complex>` that are in complex.hpp's list.
+///
+/// By value where Boost.Math declares f(T): with const D& neither would be more specialised.
+
+namespace duet {
+
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D sqrt(const D& x) {
+  return detail::lift(rule::sqrt{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D cbrt(D x) {
+  return detail::lift(rule::cbrt{}, x);
+}
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D exp(const D& x) {
+  return detail::lift(rule::exp{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D exp2(const D& x) {
+  return detail::lift(rule::exp2{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D expm1(D x) {
+  return detail::lift(rule::expm1{}, x);
+}
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D log(const D& x) {
+  return detail::lift(rule::log{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D log2(const D& x) {
+  return detail::lift(rule::log2{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D log10(const D& x) {
+  return detail::lift(rule::log10{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D log1p(D x) {
+  return detail::lift(rule::log1p{}, x);
+}
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D sin(const D& x) {
+  return detail::lift(rule::sin{}, x);
+}
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D cos(const D& x) {
+  return detail::lift(rule::cos{}, x);
+}
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D tan(const D& x) {
+  return detail::lift(rule::tan{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D asin(const D& x) {
+  return detail::lift(rule::asin{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D acos(const D& x) {
+  return detail::lift(rule::acos{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D atan(const D& x) {
+  return detail::lift(rule::atan{}, x);
+}
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D sinh(const D& x) {
+  return detail::lift(rule::sinh{}, x);
+}
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D cosh(const D& x) {
+  return detail::lift(rule::cosh{}, x);
+}
+template <Infinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D tanh(const D& x) {
+  return detail::lift(rule::tanh{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D asinh(D x) {
+  return detail::lift(rule::asinh{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D acosh(D x) {
+  return detail::lift(rule::acosh{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D atanh(D x) {
+  return detail::lift(rule::atanh{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D erf(D x) {
+  return detail::lift(rule::erf{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D erfc(D x) {
+  return detail::lift(rule::erfc{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D tgamma(D x) {
+  return detail::lift(rule::tgamma{}, x);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D lgamma(D x) {
+  return detail::lift(rule::lgamma{}, x);
+}
+
+namespace detail {
+
+/// A constant as what exponents and bases are held in: arithmetic types become reals of the
+/// precision of D.
+template <class D, class U>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto as_constant(const U& x) {
+  if constexpr (Arithmetic<U>) {
+    return static_cast<constant_t<D>>(x);
+  } else {
+    return x;
+  }
+}
+
+/// Apply a rule of several arguments in their common nesting.
+template <class Rule, class... A>
+[[nodiscard]] DUET_ALWAYS_INLINE auto lift_promoted(const Rule& rule, const A&... a) {
+  using common = std::common_type_t<A...>;
+  return lift(rule, static_cast<const common&>(a)...);
+}
+
+} // namespace detail
+
+/// x^p. A constant exponent or base has no slope of its own, so `pow(x, 0)`, `pow(0, p)` and
+/// `pow(−2, 2)` are regular.
+template <class A, class B>
+  requires detail::MixedScalars<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto pow(const A& x, const B& p) {
+  if constexpr (ConstantOf<B, A>) {
+    const auto exponent = detail::as_constant<A>(p);
+    return detail::lift(rule::power<std::remove_const_t<decltype(exponent)>>{exponent}, x);
+  } else if constexpr (ConstantOf<A, B>) {
+    const auto base = detail::as_constant<B>(x);
+    return detail::lift(rule::exponential<std::remove_const_t<decltype(base)>>{base}, p);
+  } else {
+    return detail::lift_promoted(rule::pow{}, x, p);
+  }
+}
+
+/// The angle of the point (x, y), in (−π, π].
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto atan2(const A& y, const B& x) {
+  return detail::lift_promoted(rule::atan2{}, y, x);
+}
+
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto hypot(A x, B y) {
+  return detail::lift_promoted(rule::hypot{}, x, y);
+}
+
+template <class A, class B, class C>
+  requires detail::MixedReals<A, promote_t<B, C>>
+[[nodiscard]] DUET_ALWAYS_INLINE auto hypot(const A& x, const B& y, const C& z) {
+  return detail::lift_promoted(rule::hypot{}, x, y, z);
+}
+
+/// x y + z, the value rounded once.
+template <class A, class B, class C>
+  requires detail::MixedReals<A, promote_t<B, C>>
+[[nodiscard]] DUET_ALWAYS_INLINE auto fma(const A& x, const B& y, const C& z) {
+  return detail::lift_promoted(rule::fma{}, x, y, z);
+}
+
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto fmod(const A& x, const B& y) {
+  return detail::lift_promoted(rule::fmod{}, x, y);
+}
+
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto remainder(const A& x, const B& y) {
+  return detail::lift_promoted(rule::remainder{}, x, y);
+}
+
+/// remainder(x, y), and the low bits of the quotient.
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] auto remquo(const A& x, const B& y, int* quotient) {
+  using std::remquo;
+  using real = real_type_t<promote_t<A, B>>;
+  static_cast<void>(remquo(real(innermost(x)), real(innermost(y)), quotient));
+  return remainder(x, y);
+}
+
+/// a + t (b − a), exact at t = 0 and t = 1.
+template <class A, class B, class C>
+  requires detail::MixedReals<A, promote_t<B, C>>
+[[nodiscard]] DUET_ALWAYS_INLINE auto lerp(const A& a, const B& b, const C& t) {
+  return detail::lift_promoted(rule::lerp{}, a, b, t);
+}
+
+/// (a + b)/2 without overflow, as that of `<numeric>`.
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto midpoint(const A& a, const B& b) {
+  return detail::lift_promoted(rule::midpoint{}, a, b);
+}
+
+} // namespace duet

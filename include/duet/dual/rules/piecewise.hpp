@@ -1,0 +1,191 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
+#include <duet/dual/number/algebra.hpp>
+#include <duet/dual/number/promotion.hpp>
+
+#include <cmath>
+#include <concepts>
+#include <type_traits>
+
+/// \file
+/// The functions of `<cmath>` that are linear, constant or chosen piece by piece, over dual and
+/// Taylor numbers; and classification. All decide by the innermost value.
+///
+/// By value where Boost.Math declares f(T): with const D& neither would be more specialised.
+
+namespace duet {
+
+template <RealInfinitesimal D>
+[[nodiscard]] auto signbit(D x) {
+  using std::signbit;
+  const auto is_negative = signbit(innermost(x));
+  if constexpr (std::integral<std::remove_cvref_t<decltype(is_negative)>>) {
+    return bool(is_negative != 0); // of Boost.Multiprecision an int
+  } else {
+    return is_negative;
+  }
+}
+template <RealInfinitesimal D>
+[[nodiscard]] auto isfinite(D x) {
+  using std::isfinite;
+  return isfinite(innermost(x));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] auto isinf(D x) {
+  using std::isinf;
+  return isinf(innermost(x));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] auto isnan(D x) {
+  using std::isnan;
+  return isnan(innermost(x));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] auto isnormal(D x) {
+  using std::isnormal;
+  return isnormal(innermost(x));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] int fpclassify(D x) {
+  using std::fpclassify;
+  return fpclassify(innermost(x));
+}
+
+// The quiet comparisons of <cmath>: false, and no exception, where either is NaN.
+
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] auto isunordered(const A& a, const B& b) {
+  using std::isnan;
+  return isnan(innermost(a)) || isnan(innermost(b));
+}
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] auto isless(const A& a, const B& b) { return !isunordered(a, b) && a < b; }
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] auto islessequal(const A& a, const B& b) { return !isunordered(a, b) && a <= b; }
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] auto isgreater(const A& a, const B& b) { return !isunordered(a, b) && a > b; }
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] auto isgreaterequal(const A& a, const B& b) { return !isunordered(a, b) && a >= b; }
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] auto islessgreater(const A& a, const B& b) { return !isunordered(a, b) && a != b; }
+
+/// |x|; at 0 the derivative from the side of the sign bit.
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D abs(const D& x) {
+  return select(
+      signbit(x), [&] { return D(-x); }, [&] { return x; });
+}
+template <RealInfinitesimal D>
+[[nodiscard]] DUET_ALWAYS_INLINE D fabs(const D& x) {
+  return abs(x);
+}
+
+/// |magnitude| with the sign of `sign`, which only its sign bit enters.
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto copysign(const A& magnitude, const B& sign) {
+  using std::signbit;
+  using common = promote_t<A, B>;
+  const common x(magnitude);
+  return select(
+      signbit(innermost(magnitude)) == signbit(innermost(sign)), [&] { return x; },
+      [&] { return common(-x); });
+}
+
+/// The larger; where one is NaN the other, as in `<cmath>`.
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto fmax(const A& a, const B& b) {
+  using std::isnan;
+  using common = promote_t<A, B>;
+  using real = real_type_t<common>;
+  return select(
+      isnan(innermost(a)) || detail::quiet_less(real(innermost(a)), real(innermost(b))),
+      [&] { return common(b); }, [&] { return common(a); });
+}
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto fmin(const A& a, const B& b) {
+  using std::isnan;
+  using common = promote_t<A, B>;
+  using real = real_type_t<common>;
+  return select(
+      isnan(innermost(a)) || detail::quiet_less(real(innermost(b)), real(innermost(a))),
+      [&] { return common(b); }, [&] { return common(a); });
+}
+
+/// max(a − b, 0); NaN where either is.
+template <class A, class B>
+  requires detail::MixedReals<A, B>
+[[nodiscard]] DUET_ALWAYS_INLINE auto fdim(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  using real = real_type_t<common>;
+  return select(
+      detail::quiet_less_equal(real(innermost(a)), real(innermost(b))), [&] { return common(0); },
+      [&] { return common(a - b); });
+}
+
+// Rounding: flat wherever it is differentiable.
+
+template <RealInfinitesimal D>
+[[nodiscard]] D floor(const D& x) {
+  using std::floor;
+  return D(real_type_t<D>(floor(innermost(x))));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D ceil(const D& x) {
+  using std::ceil;
+  return D(real_type_t<D>(ceil(innermost(x))));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D trunc(const D& x) {
+  using std::trunc;
+  return D(real_type_t<D>(trunc(innermost(x))));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D round(const D& x) {
+  using std::round;
+  return D(real_type_t<D>(round(innermost(x))));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D rint(const D& x) {
+  using std::rint;
+  return D(real_type_t<D>(rint(innermost(x))));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D nearbyint(const D& x) {
+  using std::nearbyint;
+  return D(real_type_t<D>(nearbyint(innermost(x))));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] long lround(const D& x) {
+  using std::lround;
+  return lround(innermost(x));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] long long llround(const D& x) {
+  using std::llround;
+  return llround(innermost(x));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] long lrint(const D& x) {
+  using std::lrint;
+  return lrint(innermost(x));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] long long llrint(const D& x) {
+  using std::llrint;
+  return llrint(innermost(x));
+}
+
+} // namespace duet

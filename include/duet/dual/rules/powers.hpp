@@ -1,0 +1,129 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
+#include <duet/dual/parts.hpp>
+#include <duet/dual/storage/structural_zero.hpp>
+
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+/// \file
+/// The derivatives of powers, by the base, by the exponent and by both; see elementary.hpp.
+
+namespace duet::detail {
+
+/// What decides how fast 0^x vanishes: x, or its real part.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr decltype(auto) real_part(const T& x) {
+  if constexpr (Real<T>) {
+    return (x);
+  } else {
+    return x.real();
+  }
+}
+
+/// log b as a number that T's numbers can be multiplied by; that of −2 is complex where they are.
+template <class T, class Base>
+[[nodiscard]] DUET_ALWAYS_INLINE auto log_of_base(const Base& base) {
+  using std::log;
+  if constexpr (Arithmetic<Base> && !Real<real_type_t<T>>) {
+    return log(real_type_t<T>(base));
+  } else {
+    return log(base);
+  }
+}
+
+} // namespace duet::detail
+
+namespace duet::rule {
+
+/// x ↦ x^p. A zero exponent has no slope, even at x = 0.
+template <class Exponent>
+struct power {
+  Exponent exponent;
+
+  template <class T>
+  T value(const T& x) const {
+    using std::pow;
+    return pow(x, exponent);
+  }
+  template <class T>
+  T slope(const T& x, [[maybe_unused]] const T& y) const {
+    using std::pow;
+    const auto by_power = [&] {
+      return T(exponent * pow(x, Exponent(exponent - detail::integer<Exponent>(1))));
+    };
+    return select(
+        detail::is_structural_zero(exponent) ||
+            (innermost(exponent) == detail::integer<Exponent>(0) &&
+             innermost(x) == detail::integer<T>(0)),
+        [] { return T(0); },
+        [&] {
+          if constexpr (Real<real_type_t<T>>) {
+            // Below ½ p − 1 is rounded, which x^(p−1) far from 1 shows; from there on it is exact,
+            // and x^p may overflow or vanish before its slope does.
+            using std::isfinite;
+            return select(
+                detail::quiet_less(innermost(exponent), 0.5) && innermost(x) != 0 &&
+                    isfinite(innermost(x)),
+                [&] { return T(exponent * y / x); }, by_power);
+          } else {
+            return by_power();
+          }
+        });
+  }
+};
+
+/// x ↦ b^x. Where b = 0 the value jumps at x = 0 and is flat beyond.
+template <class Base>
+struct exponential {
+  Base base;
+
+  template <class T>
+  T value(const T& x) const {
+    using std::pow;
+    return pow(base, x);
+  }
+  template <class T>
+  T slope(const T& x, const T& y) const {
+    const T regular = y * detail::log_of_base<T>(base);
+    // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
+    const auto& real_x = detail::real_part(innermost(x));
+    using R = std::remove_cvref_t<decltype(real_x)>;
+    const auto vanishes =
+        innermost(base) == detail::integer<Base>(0) && detail::quiet_less(R(0), real_x);
+    const auto is_flat =
+        is_constant(base) || detail::quiet_less(R(scalar_traits<T>::order), real_x);
+    return select(
+        vanishes && is_flat, [] { return T(0); },
+        [&] {
+          return select(
+              vanishes, [&] { return T(detail::with_innermost(regular, real_type_t<T>(0))); },
+              [&] { return regular; });
+        });
+  }
+
+private:
+  template <class U>
+  static auto is_constant(const U& u) {
+    return detail::is_structural_zero(detail::with_innermost(u, real_type_t<U>(0)));
+  }
+};
+
+struct pow {
+  template <class T>
+  T value(const T& x, const T& p) const {
+    using std::pow;
+    return pow(x, p);
+  }
+  template <class T>
+  std::array<T, 2> slopes(const T& y, const T& x, const T& p) const {
+    return {power<T>{p}.slope(x, y), exponential<T>{x}.slope(p, y)};
+  }
+};
+
+} // namespace duet::rule

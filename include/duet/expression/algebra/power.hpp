@@ -1,0 +1,136 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/dual/rules/powers.hpp>
+#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
+
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+/// \file
+/// Powers of scalars.
+
+namespace duet::expression {
+
+namespace op {
+
+struct log;
+
+/// x^n by products, for whole n that the compiler knows.
+template <int Exponent>
+struct whole_power {
+  static_assert(Exponent >= 2 || Exponent <= -1);
+  static constexpr kind kind_of(kind a) { return a; }
+  template <class X>
+  DUET_ALWAYS_INLINE static constexpr X value(const X& x) {
+    if constexpr (Exponent == -1) {
+      return X(1 / x);
+    } else if constexpr (Exponent < 0) { // x^n may be out of range where its reciprocal is not
+      return X(1 / power_of<-Exponent / 2>(x) / power_of<(1 - Exponent) / 2>(x));
+    } else if constexpr (Exponent == 2) {
+      return X(x * x);
+    } else if constexpr (Exponent == 3) {
+      return X(x * x * x);
+    } else {
+      const X root = power_of<Exponent / 2>(x);
+      if constexpr (Exponent % 2 == 0) {
+        return X(root * root);
+      } else {
+        return X(root * root * x);
+      }
+    }
+  }
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
+    if constexpr (Exponent == 2) {
+      return whole<Exponent> * x;
+    } else {
+      return whole<Exponent> * applied_node<whole_power<Exponent - 1>, X>{};
+    }
+  }
+  static printed print(notation style, const printed& x) {
+    const std::string n = std::to_string(Exponent);
+    return {x.inside(precedence::atom) + "^" + (style == notation::latex ? "{" + n + "}" : n),
+            precedence::power};
+  }
+
+private:
+  template <int N, class X>
+  DUET_ALWAYS_INLINE static constexpr X power_of(const X& x) {
+    if constexpr (N == 1) {
+      return x;
+    } else {
+      return whole_power<N>::value(x);
+    }
+  }
+};
+
+/// x^p.
+struct power : detail::function<power, duet::rule::pow> {
+  static constexpr bool slopes_take_value = true;
+  template <class X, class P>
+  static constexpr auto simplified([[maybe_unused]] X x, [[maybe_unused]] P p) {
+    if constexpr (is_zero<P> || is_one<X>) {
+      return whole<1>;
+    } else if constexpr (is_number<P>) {
+      constexpr double value = P::value;
+      if constexpr (value == 1) {
+        return x;
+      } else if constexpr (value >= -16 && value <= 16 && value == int(value)) {
+        return applied_node<whole_power<int(value)>, X>{};
+      } else {
+        return applied_node<power, X, P>{};
+      }
+    } else {
+      return applied_node<power, X, P>{};
+    }
+  }
+  template <class X, class P>
+  static auto value(const X& x, const P& p) {
+    using std::pow;
+    return static_cast<promote_t<X, P>>(pow(x, p));
+  }
+  /// A constant exponent or base has no slope of its own.
+  template <int I, class Y, class X, class P>
+  static Y slope_at(const Y& y, const X& x, const P& p) {
+    if constexpr (I == 0 && std::is_same_v<X, Y>) {
+      return duet::rule::power<P>{p}.slope(x, y);
+    } else if constexpr (I == 1 && std::is_same_v<P, Y>) {
+      return duet::rule::exponential<X>{x}.slope(p, y);
+    } else {
+      return duet::rule::pow{}.slopes(y, Y(x), Y(p))[I];
+    }
+  }
+  template <int I, class X, class P>
+  static constexpr auto written_slope(X x, P p) {
+    if constexpr (I == 0) {
+      return p * apply<power>(x, p - whole<1>);
+    } else {
+      return apply<power>(x, p) * apply<log>(x);
+    }
+  }
+  static printed print(notation style, const printed& x, const printed& p) {
+    return {x.inside(precedence::atom) + "^" +
+                (style == notation::latex ? "{" + p.text + "}" : p.inside(precedence::atom)),
+            precedence::power};
+  }
+};
+
+} // namespace op
+
+/// x^p of scalars. Exponents that the compiler knows, as `c<2>`, are simplified.
+template <class X, class P, class Tag = decltype([](op::power*) {})>
+  requires Operands<X, P> &&(!QuaternionTerm<X> && !PoseTerm<X>)
+      [[nodiscard]] constexpr auto pow(const X& x, const P& p) {
+    return apply<op::power>(detail::term<Tag>(x), detail::term<Tag>(p));
+  }
+
+} // namespace duet::expression

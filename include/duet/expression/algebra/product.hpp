@@ -1,0 +1,241 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
+
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
+/// \file
+/// Products of scalars, quaternions and poses, scaling, and quotients. (Those of matrices are in
+/// matrix/product.hpp.)
+
+namespace duet::expression {
+
+namespace op {
+
+template <int Exponent>
+struct whole_power;
+struct matrix_product;
+
+} // namespace op
+
+namespace detail {
+
+/// The whole exponent of a power of X, 1 for X itself, 0 for what is none.
+template <class T, class X>
+inline constexpr int exponent_of = 0;
+template <class X>
+inline constexpr int exponent_of<X, X> = 1;
+template <int N, class X>
+inline constexpr int exponent_of<applied_node<op::whole_power<N>, X>, X> = N;
+
+/// A product of scalars, the second a whole positive power of X.
+template <class T, class X>
+inline constexpr bool ends_with_power_of = false;
+template <class A, class B, class X>
+inline constexpr bool ends_with_power_of<applied_node<op::product, A, B>, X> =
+    exponent_of<B, X> > 0 && X::kind_of == kind::scalar;
+
+/// X of x^n, and x itself of what is no power.
+template <class T>
+struct base {
+  using type = T;
+};
+template <int N, class X>
+struct base<applied_node<op::whole_power<N>, X>> {
+  using type = X;
+};
+
+template <class T>
+inline constexpr bool is_inverse = false;
+template <class X>
+inline constexpr bool is_inverse<applied_node<op::quotient, number_node<bits_of(1)>, X>> = true;
+
+/// a/b is a double without rounding.
+[[nodiscard]] constexpr bool is_quotient_exact(double a, double b) {
+  const double ratio = b == 0 ? 0 : a / b;
+  return b != 0 && ratio * b == a && is_product_exact(ratio, b);
+}
+
+/// A number, a product with one, or a sum of such, all of whose numbers are divided by Divisor
+/// without rounding.
+template <class T, class Divisor>
+inline constexpr bool is_divided_exactly = false;
+template <std::uint64_t Bits, class Divisor>
+inline constexpr bool is_divided_exactly<number_node<Bits>, Divisor> =
+    is_quotient_exact(number_node<Bits>::value, Divisor::value);
+template <std::uint64_t Bits, class B, class Divisor>
+inline constexpr bool is_divided_exactly<applied_node<op::product, number_node<Bits>, B>, Divisor> =
+    is_divided_exactly<number_node<Bits>, Divisor>;
+template <class A, class B, class Divisor>
+inline constexpr bool is_divided_exactly<applied_node<op::sum, A, B>, Divisor> =
+    is_divided_exactly<A, Divisor>&& is_divided_exactly<B, Divisor>;
+template <class A, class B, class Divisor>
+inline constexpr bool is_divided_exactly<applied_node<op::difference, A, B>, Divisor> =
+    is_divided_exactly<A, Divisor>&& is_divided_exactly<B, Divisor>;
+
+[[nodiscard]] constexpr bool is_product_of_kinds(kind a, kind b) {
+  return a == kind::scalar || b == kind::scalar ||
+         (a == b && (a == kind::quaternion || a == kind::pose)) ||
+         (is_matrix(a) && is_matrix(b) && (a != b || a != kind::vector));
+}
+
+} // namespace detail
+
+namespace op {
+
+/// a b; a scalar comes first, a number before other scalars.
+struct product {
+  static constexpr kind kind_of(kind a, kind b) { return a == kind::scalar ? b : a; }
+  template <class A, class B>
+  static constexpr auto simplified(A a, B b) {
+    static_assert(detail::is_product_of_kinds(A::kind_of, B::kind_of),
+                  "duet: a product is of scalars, of a scalar and anything, of two matrices, two "
+                  "quaternions or two poses; vectors have dot and cross, rotations rotate(q, v)");
+    using base_of_a = typename detail::base<A>::type;
+    using base_of_b = typename detail::base<B>::type;
+    if constexpr (is_matrix(A::kind_of) && is_matrix(B::kind_of)) {
+      return apply<matrix_product>(a, b);
+    } else if constexpr (is_zero<A> || is_zero<B>) {
+      return zero_of<kind_of(A::kind_of, B::kind_of)>();
+    } else if constexpr (is_one<A>) {
+      return b;
+    } else if constexpr (is_one<B>) {
+      return a;
+    } else if constexpr (is_number<A> && is_number<B>) {
+      if constexpr (detail::is_product_exact(A::value, B::value)) {
+        return number_node<detail::bits_of(A::value * B::value)>{};
+      } else {
+        return applied_node<product, A, B>{};
+      }
+    } else if constexpr (B::kind_of == kind::scalar &&
+                         (A::kind_of != kind::scalar || is_number<B>)) {
+      return b * a;
+    } else if constexpr (detail::is_number_equal_to<A>(-1)) {
+      return -b;
+    } else if constexpr (is_applied<A, negative>) {
+      return -(operand<0>(a) * b);
+    } else if constexpr (is_applied<B, negative>) {
+      return -(a * operand<0>(b));
+    } else if constexpr (detail::is_placed<B>) {
+      return detail::placed_like(b, a * operand<0>(b));
+    } else if constexpr (is_number<A>) {
+      if constexpr (has_number<B>) {
+        constexpr double inner = decltype(operand<0>(b))::value;
+        if constexpr (detail::is_product_exact(A::value, inner)) {
+          return number_node<detail::bits_of(A::value * inner)>{} * operand<1>(b);
+        } else {
+          return applied_node<product, A, B>{};
+        }
+      } else {
+        return applied_node<product, A, B>{};
+      }
+    } else if constexpr (has_number<A>) {
+      return operand<0>(a) * (operand<1>(a) * b);
+    } else if constexpr (has_number<B>) {
+      return operand<0>(b) * (a * operand<1>(b));
+    } else if constexpr (detail::is_inverse<A>) {
+      return b / operand<1>(a);
+    } else if constexpr (detail::is_inverse<B>) {
+      return a / operand<1>(b);
+    } else if constexpr (A::kind_of == kind::scalar && std::is_same_v<base_of_a, base_of_b> &&
+                         detail::exponent_of<A, base_of_a> > 0 &&
+                         detail::exponent_of<B, base_of_b> > 0) {
+      constexpr int n = detail::exponent_of<A, base_of_a> + detail::exponent_of<B, base_of_b>;
+      return applied_node<whole_power<n>, base_of_a>{};
+    } else if constexpr (detail::ends_with_power_of<A, base_of_b>) {
+      return operand<0>(a) * (operand<1>(a) * b);
+    } else {
+      return applied_node<product, A, B>{};
+    }
+  }
+  template <class A, class B>
+  DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
+    return detail::componentwise(
+        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x * y; }, a, b);
+  }
+  template <class A, class B, class DA, class DB>
+  static constexpr auto differential(A a, B b, DA da, DB db) {
+    return da * b + a * db;
+  }
+  static printed print(notation style, const printed& a, const printed& b) {
+    const std::string right = b.inside(precedence::product);
+    const bool is_digit = right[0] >= '0' && right[0] <= '9';
+    const std::string sign = style == notation::text ? " * " : is_digit ? " \\cdot " : " ";
+    return {a.inside(precedence::negative_number) + sign + right, precedence::product};
+  }
+};
+
+/// a/b for a scalar b.
+struct quotient {
+  static constexpr kind kind_of(kind a, kind) { return a; }
+  template <class A, class B>
+  static constexpr auto simplified(A a, B b) {
+    static_assert(B::kind_of == kind::scalar,
+                  "duet: formulas are divided by scalars; for rotations and poses there is conj");
+    if constexpr (is_zero<A> || is_one<B>) {
+      return a;
+    } else if constexpr (is_number<A> && is_number<B>) {
+      if constexpr (detail::is_divided_exactly<A, B>) {
+        return number_node<detail::bits_of(A::value / B::value)>{};
+      } else {
+        return applied_node<quotient, A, B>{};
+      }
+    } else if constexpr (detail::is_placed<A>) {
+      return detail::placed_like(a, operand<0>(a) / b);
+    } else if constexpr (detail::starts_with_minus<A>()) {
+      return -(-a / b);
+    } else if constexpr (detail::starts_with_minus<B>()) {
+      return -(a / -b);
+    } else if constexpr (is_number<B>) {
+      return divided(a, b);
+    } else {
+      return applied_node<quotient, A, B>{};
+    }
+  }
+  template <class A, class B>
+  DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
+    return detail::componentwise(
+        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x / y; }, a, b);
+  }
+  template <class A, class B, class DA, class DB>
+  static constexpr auto differential(A a, B b, DA da, DB db) {
+    if constexpr (is_zero<DB>) {
+      return da / b;
+    } else {
+      return (da - db * (a / b)) / b;
+    }
+  }
+  static printed print(notation style, const printed& a, const printed& b) {
+    if (style == notation::latex) {
+      return {"\\frac{" + a.text + "}{" + b.text + "}", precedence::product};
+    }
+    return {a.inside(precedence::product) + " / " + b.inside(precedence::power),
+            precedence::product};
+  }
+
+private:
+  /// By a number: the polynomials of a derivative lose the divisor of what was differentiated.
+  template <class A, class B>
+  static constexpr auto divided(A a, B b) {
+    if constexpr (!detail::is_divided_exactly<A, B>) {
+      return applied_node<quotient, A, B>{};
+    } else if constexpr (is_applied<A, sum>) {
+      return operand<0>(a) / b + operand<1>(a) / b;
+    } else if constexpr (is_applied<A, difference>) {
+      return operand<0>(a) / b - operand<1>(a) / b;
+    } else {
+      return (operand<0>(a) / b) * operand<1>(a);
+    }
+  }
+};
+
+} // namespace op
+} // namespace duet::expression

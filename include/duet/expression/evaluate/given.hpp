@@ -1,0 +1,169 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/structure.hpp>
+#include <duet/dual/number/promotion.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/expression/tree/held.hpp>
+#include <duet/expression/tree/node.hpp>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// The values that a formula is evaluated at, and what its nodes are of them.
+
+namespace duet::expression::detail {
+
+/// The value of a symbol.
+template <class Symbol, class T>
+struct argument {
+  using symbol_type = Symbol;
+  using value_type = T;
+  T value;
+};
+
+template <class T>
+inline constexpr bool is_screw_dual = false;
+template <class T>
+inline constexpr bool is_screw_dual<screw_dual<T>> = true;
+
+/// What an argument is made of; of rigid motion, real and dual part apart.
+template <class T>
+struct scalar_of {
+  using type = T;
+};
+template <class T>
+struct scalar_of<screw_dual<T>> {
+  using type = T;
+};
+template <class T, int Rows, int Columns, int Options>
+struct scalar_of<Eigen::Matrix<T, Rows, Columns, Options>> : scalar_of<T> {};
+template <class T>
+struct scalar_of<quaternion<T>> : scalar_of<T> {};
+
+/// The real type in which numbers of a formula meet its arguments.
+template <class... T>
+struct common_real {
+  using type = double;
+};
+template <class T>
+struct common_real<T> {
+  using type = real_type_t<typename scalar_of<T>::type>;
+};
+template <class A, class B, class... Rest>
+struct common_real<A, B, Rest...> {
+  using type =
+      typename common_real<promote_t<typename common_real<A>::type, typename common_real<B>::type>,
+                           Rest...>::type;
+};
+
+/// The scalar that holds all arguments.
+template <class Real, class... T>
+struct common_scalar {
+  using type = Real;
+};
+template <class Real, class T, class... Rest>
+struct common_scalar<Real, T, Rest...> {
+  using type = typename common_scalar<promote_t<Real, typename scalar_of<T>::type>, Rest...>::type;
+};
+
+/// A constant as arguments of some precision meet it.
+template <class Real, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const T& x) {
+  const auto of_part = [](const auto& part)
+                           DUET_INLINE_LAMBDA { return constant_over<Real>(part); };
+  if constexpr (std::floating_point<T>) {
+    return static_cast<Real>(x);
+  } else if constexpr (Infinitesimal<T> && duet::detail::contains_tag<T, screw_tag>()) {
+    return x.zip(of_part);
+  } else if constexpr (Scalar<T> || !Structured<T>) {
+    return x;
+  } else {
+    return map_scalars(of_part, x);
+  }
+}
+
+/// In what a formula holds: it wants the sines of the C library.
+struct library_sines {};
+
+/// Arguments and constants of a formula.
+template <class Held, class... Arguments>
+struct given : Held, Arguments... {
+  static constexpr bool has_library_sines = std::is_base_of_v<holding<library_sines>, Held>;
+  using real = typename common_real<typename Arguments::value_type...>::type;
+  using scalar = typename common_scalar<real, typename Arguments::value_type...>::type;
+};
+
+template <class Symbol, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& value_in(const argument<Symbol, T>& x) {
+  return x.value;
+}
+template <class Node, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T&
+value_in(const holding<held_constant<Node, T>>& x) {
+  return x.value;
+}
+
+/// What numbers in a formula are made of.
+template <class Real>
+struct numbers_as {
+  using real = Real;
+};
+
+/// The value of a node that is neither an operation nor given.
+template <class Node, class Given>
+struct leaf;
+
+template <std::uint64_t Bits, class Given>
+struct leaf<number_node<Bits>, Given> {
+  DUET_ALWAYS_INLINE static constexpr auto value(const Given&) {
+    return static_cast<typename Given::real>(number_node<Bits>::value);
+  }
+};
+template <kind K, class Given>
+struct leaf<zero_node<K>, Given> {
+  static constexpr auto value(const Given&) {
+    using real = typename Given::real;
+    if constexpr (is_matrix(K)) {
+      using matrix = Eigen::Matrix<real, rows_of(K), columns_of(K)>;
+      return matrix(matrix::Zero());
+    } else if constexpr (K == kind::dual_vector) {
+      using D = screw_dual<real>;
+      return dual_vector<real>(D(real(0)), D(real(0)), D(real(0)));
+    } else if constexpr (K == kind::quaternion) {
+      return quaternion<real>();
+    } else {
+      return dual_quaternion<real>();
+    }
+  }
+};
+
+/// In what the value of a node is held.
+template <class Node, class Given>
+struct value_of {
+  using type = decltype(leaf<Node, numbers_as<typename Given::real>>::value({}));
+};
+template <kind K, char... Letters, class Given>
+struct value_of<symbol_node<K, Letters...>, Given> {
+  using type =
+      std::remove_cvref_t<decltype(value_in<symbol_node<K, Letters...>>(std::declval<Given>()))>;
+};
+template <kind K, class Tag, class Given>
+struct value_of<constant_node<K, Tag>, Given> {
+  using type = decltype(constant_over<typename Given::real>(
+      value_in<constant_node<K, Tag>>(std::declval<Given>())));
+};
+template <class Operation, class... Operands, class Given>
+struct value_of<applied_node<Operation, Operands...>, Given> {
+  using type = decltype(Operation::value(
+      std::declval<const typename value_of<Operands, Given>::type&>()...));
+};
+
+} // namespace duet::expression::detail

@@ -1,0 +1,260 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
+#include <duet/expression/vector.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+
+/// \file
+/// Blocks of matrices, transposed matrices, and a block among zeros, which is how derivatives by
+/// entries begin.
+
+namespace duet::expression {
+
+namespace op {
+
+struct transpose;
+template <int Rows, int Columns>
+struct entries;
+
+/// Zeros but for the block X that begins at (I, J). Only derivatives by entries
+/// have it, which are not printed.
+template <int Rows, int Columns, int I, int J>
+struct placed {
+  static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
+  template <class X>
+  static constexpr auto simplified(X x) {
+    if constexpr (is_zero<X>) {
+      return zero_of<kind_of(X::kind_of)>();
+    } else if constexpr (rows_of(X::kind_of) == Rows && columns_of(X::kind_of) == Columns) {
+      return x;
+    } else if constexpr (Rows == 3 && Columns == 1 && X::kind_of == kind::scalar) {
+      return x * unit_vector_node<kind::vector, I>{};
+    } else {
+      return applied_node<placed, X>{};
+    }
+  }
+  template <class X>
+  static auto value(const X& x) {
+    if constexpr (detail::EigenMatrix<X>) {
+      using T = typename X::Scalar;
+      Eigen::Matrix<T, Rows, Columns> m = Eigen::Matrix<T, Rows, Columns>::Zero();
+      m.template block<X::RowsAtCompileTime, X::ColsAtCompileTime>(I, J) = x;
+      return m;
+    } else {
+      Eigen::Matrix<X, Rows, Columns> m = Eigen::Matrix<X, Rows, Columns>::Zero();
+      m(I, J) = x;
+      return m;
+    }
+  }
+  template <class X, class DX>
+  static constexpr auto differential(X, DX dx) {
+    return apply<placed>(dx);
+  }
+};
+
+} // namespace op
+
+namespace detail {
+
+/// 1 at (I, J), otherwise 0.
+template <int Rows, int Columns, int I, int J>
+using unit_matrix = decltype(apply<op::placed<Rows, Columns, I, J>>(whole<1>));
+
+/// Whether all but a block is known to be 0, and where that is: X of `placed`.
+template <class M>
+struct sparsity {
+  static constexpr bool is_sparse = false;
+};
+template <int Rows, int Columns, int Row, int Column, class X>
+struct sparsity<applied_node<op::placed<Rows, Columns, Row, Column>, X>> {
+  static constexpr bool is_sparse = true;
+  using block = X;
+  static constexpr int row = Row, column = Column;
+  static constexpr int rows = rows_of(X::kind_of), columns = columns_of(X::kind_of);
+};
+template <int I>
+struct sparsity<unit_vector_node<kind::vector, I>> {
+  static constexpr bool is_sparse = true;
+  using block = number_node<bits_of(1)>;
+  static constexpr int row = I, column = 0, rows = 1, columns = 1;
+};
+
+[[nodiscard]] inline std::string printed_range(notation style, int begin, int size) {
+  const int first = begin + (style == notation::latex ? 1 : 0);
+  return std::to_string(first) + (size == 1 ? "" : ":" + std::to_string(first + size - 1));
+}
+
+} // namespace detail
+
+namespace op {
+
+/// The Rows x Columns entries that begin at (I, J).
+template <int I, int J, int Rows, int Columns>
+struct block {
+  static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
+  template <class M>
+  static constexpr auto simplified(M m) {
+    if constexpr (Rows == rows_of(M::kind_of) && Columns == columns_of(M::kind_of)) {
+      return m;
+    } else if constexpr (is_zero<M>) {
+      return zero_of<kind_of(M::kind_of)>();
+    } else if constexpr (is_applied<M, negative>) {
+      return -apply<block>(operand<0>(m));
+    } else if constexpr (is_applied<M, product>) { // of a scalar
+      return operand<0>(m) * apply<block>(operand<1>(m));
+    } else if constexpr (is_applied<M, quotient>) {
+      return apply<block>(operand<0>(m)) / operand<1>(m);
+    } else if constexpr (is_applied<M, transpose>) {
+      return apply<transpose>(apply<op::block<J, I, Columns, Rows>>(operand<0>(m)));
+    } else if constexpr (detail::sparsity<M>::is_sparse) {
+      return of_sparse<detail::sparsity<M>>();
+    } else {
+      return of(m);
+    }
+  }
+  template <class M>
+  static auto value(const M& m) {
+    if constexpr (Rows == 1 && Columns == 1) {
+      return typename M::Scalar(m(I, J));
+    } else {
+      return Eigen::Matrix<typename M::Scalar, Rows, Columns>(
+          m.template block<Rows, Columns>(I, J));
+    }
+  }
+  template <class M, class DM>
+  static constexpr auto differential(M, DM dm) {
+    return apply<block>(dm);
+  }
+  static printed print(notation style, const printed& m) {
+    const std::string i = detail::printed_range(style, I, Rows);
+    const std::string j = detail::printed_range(style, J, Columns);
+    return style == notation::latex
+               ? detail::with_index(m, i + "," + j)
+               : printed{m.inside(precedence::atom) + "(" + i + ", " + j + ")"};
+  }
+
+private:
+  template <class M>
+  static constexpr auto of(M m) {
+    if constexpr (Rows == 1 && Columns == 1 && columns_of(M::kind_of) == 1) {
+      return apply<component<I>>(m);
+    } else {
+      return applied_node<block, M>{};
+    }
+  }
+  template <int Row, int Column, int R, int C, class M>
+  static constexpr auto of(applied_node<op::block<Row, Column, R, C>, M>) {
+    return apply<op::block<I + Row, J + Column, Rows, Columns>>(M{});
+  }
+  template <int R, int C, class... X>
+  static constexpr auto of(applied_node<entries<R, C>, X...> m) {
+    if constexpr (Rows == 1 && Columns == 1) {
+      return std::tuple_element_t<I * C + J, std::tuple<X...>>{};
+    } else {
+      return applied_node<block, decltype(m)>{};
+    }
+  }
+  /// What of the block that is not 0 is in this one.
+  template <class S>
+  static constexpr auto of_sparse() {
+    constexpr int top = std::max(I, S::row), bottom = std::min(I + Rows, S::row + S::rows);
+    constexpr int left = std::max(J, S::column),
+                  right = std::min(J + Columns, S::column + S::columns);
+    if constexpr (top >= bottom || left >= right) {
+      return zero_of<matrix_kind(Rows, Columns)>();
+    } else {
+      return apply<placed<Rows, Columns, top - I, left - J>>(
+          apply<op::block<top - S::row, left - S::column, bottom - top, right - left>>(
+              typename S::block{}));
+    }
+  }
+};
+
+/// Aᵀ
+struct transpose {
+  static constexpr kind kind_of(kind m) { return matrix_kind(columns_of(m), rows_of(m)); }
+  template <class M>
+  static constexpr auto simplified(M m) {
+    if constexpr (M::kind_of == kind::scalar) {
+      return m;
+    } else if constexpr (is_zero<M>) {
+      return zero_of<kind_of(M::kind_of)>();
+    } else if constexpr (is_applied<M, transpose>) {
+      return operand<0>(m);
+    } else if constexpr (is_applied<M, negative>) {
+      return -apply<transpose>(operand<0>(m));
+    } else if constexpr (is_applied<M, product>) { // of a scalar
+      return operand<0>(m) * apply<transpose>(operand<1>(m));
+    } else if constexpr (is_applied<M, quotient>) {
+      return apply<transpose>(operand<0>(m)) / operand<1>(m);
+    } else if constexpr (detail::sparsity<M>::is_sparse) {
+      using sparse = detail::sparsity<M>;
+      return apply<
+          placed<columns_of(M::kind_of), rows_of(M::kind_of), sparse::column, sparse::row>>(
+          apply<transpose>(typename sparse::block{}));
+    } else {
+      return applied_node<transpose, M>{};
+    }
+  }
+  template <class M>
+  static auto value(const M& m) {
+    return Eigen::Matrix<typename M::Scalar, M::ColsAtCompileTime, M::RowsAtCompileTime>(
+        m.transpose());
+  }
+  template <class M, class DM>
+  static constexpr auto differential(M, DM dm) {
+    return apply<transpose>(dm);
+  }
+  static printed print(notation style, const printed& m) {
+    return style == notation::latex
+               ? printed{m.inside(precedence::atom) + "^{\\top}", precedence::power}
+               : printed{"transpose(" + m.text + ")"};
+  }
+};
+
+} // namespace op
+
+/// Aᵀ.
+template <MatrixTerm M>
+[[nodiscard]] constexpr auto transpose(const M& m) {
+  return apply<op::transpose>(m);
+}
+
+/// The Rows x Columns block that begins at (I, J), from 0.
+template <int I, int J, int Rows, int Columns, MatrixTerm M>
+[[nodiscard]] constexpr auto block(const M& m) {
+  constexpr kind k = detail::kind_of_term<M>();
+  static_assert(0 <= I && 0 <= J && 0 < Rows && 0 < Columns && I + Rows <= rows_of(k) &&
+                    J + Columns <= columns_of(k),
+                "duet: an entry or a block that is not in the matrix");
+  return apply<op::block<I, J, Rows, Columns>>(m);
+}
+/// A_IJ, counted from 0; of a column J may be left out.
+template <int I, int J = 0, MatrixTerm M>
+[[nodiscard]] constexpr auto entry(const M& m) {
+  return block<I, J, 1, 1>(m);
+}
+/// The I-th row, counted from 0.
+template <int I, MatrixTerm M>
+[[nodiscard]] constexpr auto row(const M& m) {
+  return block<I, 0, 1, columns_of(detail::kind_of_term<M>())>(m);
+}
+/// The J-th column, counted from 0.
+template <int J, MatrixTerm M>
+[[nodiscard]] constexpr auto column(const M& m) {
+  return block<0, J, rows_of(detail::kind_of_term<M>()), 1>(m);
+}
+
+} // namespace duet::expression

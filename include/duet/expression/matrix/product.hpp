@@ -1,0 +1,178 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/eigen_traits.hpp>
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/matrix/block.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/printed.hpp>
+#include <duet/expression/vector.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+
+/// \file
+/// Products of matrices and their traces. A factor that is 0 but for a block takes out of the other
+/// one what it needs.
+
+namespace duet::expression {
+
+namespace detail {
+
+/// A factor over S; what Eigen can multiply as it is, as it is.
+template <class S, class M>
+[[nodiscard]] decltype(auto) factor_over(const M& m) {
+  if constexpr (Field<S>) {
+    return m.template cast<S>();
+  } else {
+    return (m);
+  }
+}
+
+} // namespace detail
+
+namespace op {
+
+struct matrix_product {
+  static constexpr kind kind_of(kind a, kind b) { return matrix_kind(rows_of(a), columns_of(b)); }
+  template <class A, class B>
+  static constexpr auto simplified(A a, B b) {
+    static_assert(columns_of(A::kind_of) == rows_of(B::kind_of),
+                  "duet: a product of matrices of sizes that do not fit: the first must have as "
+                  "many columns as the second has rows");
+    constexpr int rows = rows_of(A::kind_of), columns = columns_of(B::kind_of);
+    if constexpr (is_zero<A> || is_zero<B>) {
+      return zero_of<matrix_kind(rows, columns)>();
+    } else if constexpr (is_applied<A, negative>) {
+      return -(operand<0>(a) * b);
+    } else if constexpr (is_applied<B, negative>) {
+      return -(a * operand<0>(b));
+    } else if constexpr (is_applied<A, product>) { // of a scalar
+      return operand<0>(a) * (operand<1>(a) * b);
+    } else if constexpr (is_applied<B, product>) {
+      return operand<0>(b) * (a * operand<1>(b));
+    } else if constexpr (detail::sparsity<A>::is_sparse) {
+      using s = detail::sparsity<A>;
+      return apply<placed<rows, columns, s::row, 0>>(
+          typename s::block{} * apply<block<s::column, 0, s::columns, columns>>(b));
+    } else if constexpr (detail::sparsity<B>::is_sparse) {
+      using s = detail::sparsity<B>;
+      return apply<placed<rows, columns, 0, s::column>>(apply<block<0, s::row, rows, s::rows>>(a) *
+                                                        typename s::block{});
+    } else {
+      return applied_node<matrix_product, A, B>{};
+    }
+  }
+  template <class A, class B>
+  static auto value(const A& a, const B& b) {
+    using S = promote_t<typename A::Scalar, typename B::Scalar>;
+    constexpr int rows = A::RowsAtCompileTime, columns = B::ColsAtCompileTime;
+    const Eigen::Matrix<S, rows, columns> result =
+        detail::factor_over<S>(a).lazyProduct(detail::factor_over<S>(b));
+    if constexpr (rows == 1 && columns == 1) {
+      return S(result(0, 0));
+    } else {
+      return result;
+    }
+  }
+  template <class A, class B, class DA, class DB>
+  static constexpr auto differential(A a, B b, DA da, DB db) {
+    return da * b + a * db;
+  }
+  static printed print(notation style, const printed& a, const printed& b) {
+    return product::print(style, a, b);
+  }
+};
+
+/// tr(A B), without the product.
+struct trace_of_product {
+  static constexpr kind kind_of(kind, kind) { return kind::scalar; }
+  template <class A, class B>
+  static constexpr auto simplified(A a, B b);
+  template <class A, class B>
+  static auto value(const A& a, const B& b) {
+    using S = promote_t<typename A::Scalar, typename B::Scalar>;
+    return S(detail::factor_over<S>(a).cwiseProduct(detail::factor_over<S>(b).transpose()).sum());
+  }
+  template <class A, class B, class DA, class DB>
+  static constexpr auto differential(A a, B b, DA da, DB db) {
+    return apply<trace_of_product>(da, b) + apply<trace_of_product>(a, db);
+  }
+  static printed print(notation style, const printed& a, const printed& b);
+};
+
+/// tr A
+struct trace {
+  static constexpr kind kind_of(kind) { return kind::scalar; }
+  template <class M>
+  static constexpr auto simplified(M m) {
+    if constexpr (M::kind_of == kind::scalar) {
+      return m;
+    } else if constexpr (is_zero<M>) {
+      return whole<0>;
+    } else if constexpr (is_applied<M, negative>) {
+      return -apply<trace>(operand<0>(m));
+    } else if constexpr (is_applied<M, product>) { // of a scalar
+      return operand<0>(m) * apply<trace>(operand<1>(m));
+    } else if constexpr (is_applied<M, transpose>) {
+      return apply<trace>(operand<0>(m));
+    } else if constexpr (is_applied<M, matrix_product>) {
+      return apply<trace_of_product>(operand<0>(m), operand<1>(m));
+    } else if constexpr (detail::is_placed<M>) {
+      return of_sparse<detail::sparsity<M>>();
+    } else {
+      return applied_node<trace, M>{};
+    }
+  }
+  template <class M>
+  static auto value(const M& m) {
+    return typename M::Scalar(m.trace());
+  }
+  template <class M, class DM>
+  static constexpr auto differential(M, DM dm) {
+    return apply<trace>(dm);
+  }
+  static printed print(notation style, const printed& m) {
+    return detail::printed_call(style, {"trace", "\\operatorname{tr}"}, m.text);
+  }
+
+private:
+  /// Of what is not 0, where the diagonal meets it.
+  template <class S>
+  static constexpr auto of_sparse() {
+    constexpr int begin = std::max(S::row, S::column);
+    constexpr int size = std::min(S::row + S::rows, S::column + S::columns) - begin;
+    if constexpr (size <= 0) {
+      return whole<0>;
+    } else {
+      return apply<trace>(
+          apply<block<begin - S::row, begin - S::column, size, size>>(typename S::block{}));
+    }
+  }
+};
+
+template <class A, class B>
+constexpr auto trace_of_product::simplified(A a, B b) {
+  if constexpr (is_zero<A> || is_zero<B>) {
+    return whole<0>;
+  } else if constexpr (is_applied<A, negative> || is_applied<A, product> ||
+                       is_applied<B, negative> || is_applied<B, product> ||
+                       detail::sparsity<A>::is_sparse) {
+    return apply<trace>(a * b);
+  } else if constexpr (detail::sparsity<B>::is_sparse) {
+    return apply<trace>(b * a);
+  } else {
+    return applied_node<trace_of_product, A, B>{};
+  }
+}
+
+inline printed trace_of_product::print(notation style, const printed& a, const printed& b) {
+  return trace::print(style, matrix_product::print(style, a, b));
+}
+
+} // namespace op
+} // namespace duet::expression

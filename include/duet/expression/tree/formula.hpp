@@ -1,0 +1,268 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/node_values.hpp>
+#include <duet/expression/tree/held.hpp>
+#include <duet/expression/tree/node.hpp>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <type_traits>
+
+/// \file
+/// A formula: a node and the constants in it, and how operations are applied.
+
+namespace duet::expression {
+
+/// A formula over symbols, a plain value: it refers to nothing, so `auto`, returning it from
+/// functions and `constexpr` variables are safe.
+///
+/// \tparam NodeType  the formula as a type
+/// \tparam Held      the constants in it, and the symbols it was written with
+template <Node NodeType, class Held>
+class formula;
+
+/// Is T a `formula`?
+template <class T>
+inline constexpr bool is_formula = false;
+template <class NodeType, class Held>
+inline constexpr bool is_formula<formula<NodeType, Held>> = true;
+
+/// A formula, or a symbol.
+template <class T>
+concept Formula = is_formula<std::remove_cv_t<T>>;
+
+/// A node by itself, as in the rules of derivatives, or a formula.
+template <class T>
+concept Term = Node<T> || Formula<T>;
+
+namespace detail {
+
+template <class T>
+[[nodiscard]] constexpr kind kind_of_term() {
+  if constexpr (Node<T>) {
+    return T::kind_of;
+  } else {
+    return T::node_type::kind_of;
+  }
+}
+
+} // namespace detail
+
+// Terms of one kind.
+
+/// A formula or node of a scalar.
+template <class T>
+concept ScalarTerm = Term<T> && detail::kind_of_term<T>()
+== kind::scalar;
+template <class T>
+concept VectorTerm = Term<T> && detail::kind_of_term<T>()
+== kind::vector;
+/// A matrix that is no scalar; a vector is one of 3 x 1.
+template <class T>
+concept MatrixTerm = Term<T> && is_matrix(detail::kind_of_term<T>());
+template <class T>
+concept QuaternionTerm = Term<T> && detail::kind_of_term<T>()
+== kind::quaternion;
+template <class T>
+concept DualVectorTerm = Term<T> && detail::kind_of_term<T>()
+== kind::dual_vector;
+template <class T>
+concept PoseTerm = Term<T> && detail::kind_of_term<T>()
+== kind::pose;
+
+namespace detail {
+
+/// A column of three, of Eigen.
+template <class T>
+concept ThreeComponents = std::derived_from<T, Eigen::MatrixBase<T>> && T::RowsAtCompileTime == 3 &&
+                          T::ColsAtCompileTime == 1;
+
+/// Which kind of constant an ordinary value is, and what it is held in.
+template <class T>
+struct constant_traits {
+  static constexpr bool is_constant = false;
+};
+template <class T>
+  requires(Scalar<T> || Arithmetic<T>)
+struct constant_traits<T> {
+  static constexpr bool is_constant = true;
+  static constexpr kind kind_of = kind::scalar;
+  using held_type = std::conditional_t<std::integral<T>, double, T>;
+};
+template <class T>
+  requires std::derived_from<T, Eigen::MatrixBase<T>>
+struct constant_traits<T> {
+  static constexpr int rows = T::RowsAtCompileTime;
+  static constexpr int columns = T::ColsAtCompileTime;
+  static_assert(
+      1 <= rows && rows <= 6 && 1 <= columns && columns <= 6 && rows * columns > 1,
+      "duet: a matrix in a formula has 1 to 6 rows and columns, known to the compiler; of "
+      "1 x 1 it is a scalar");
+  static constexpr bool is_constant = true;
+  static constexpr kind kind_of =
+      is_screw_dual<typename T::Scalar> ? kind::dual_vector : matrix_kind(rows, columns);
+  using held_type = Eigen::Matrix<typename T::Scalar, rows, columns>;
+};
+template <class T>
+struct constant_traits<quaternion<T>> {
+  static constexpr bool is_constant = true;
+  static constexpr kind kind_of = is_screw_dual<T> ? kind::pose : kind::quaternion;
+  using held_type = quaternion<T>;
+};
+
+} // namespace detail
+
+/// A number, vector, matrix, quaternion, dual vector or dual quaternion.
+template <class T>
+concept Constant = !std::is_array_v<T> && detail::constant_traits<T>::is_constant;
+
+/// What an operation takes: at least one formula, the others formulas or constants.
+template <class... T>
+concept Operands = (Term<T> || ...) && ((Term<T> || Constant<T>)&&...);
+
+/// A term and a constant, in either order.
+template <class A, class B>
+concept TermAndConstant = Operands<A, B> && !(Term<A> && Term<B>);
+
+namespace detail {
+
+/// Of a term or a constant.
+template <class T>
+[[nodiscard]] constexpr kind kind_of_operand() {
+  if constexpr (Term<T>) {
+    return kind_of_term<T>();
+  } else {
+    return constant_traits<T>::kind_of;
+  }
+}
+/// Operands of which one at least is a matrix that is neither scalar nor vector.
+template <class... T>
+concept SizedOperands = Operands<T...> &&(is_sized_matrix(kind_of_operand<T>()) || ...);
+
+} // namespace detail
+
+/// A formula: its type is the tree of its operations, its members are its constants alone.
+template <Node NodeType, class Held>
+class formula {
+public:
+  using node_type = NodeType;
+  using held_type = Held;
+
+  constexpr formula() = default;
+  constexpr explicit formula(const Held& held) : held_(held) {}
+
+  [[nodiscard]] constexpr const Held& held() const { return held_; }
+
+  /// The value where symbols have values: `f(u = 0.3, w = w0)`, over any scalars. Every symbol that
+  /// the formula was written with is given one, also where simplification removed it. What occurs
+  /// more than once is evaluated once.
+  template <class... Arguments>
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator()(const Arguments&... arguments) const {
+    if constexpr (detail::call_of<Held>::template is_complete<Arguments...>()) {
+      return detail::called<NodeType>(held_, arguments...).template get<0>();
+    }
+  }
+
+  /// A value for a symbol, to be handed to a formula.
+  template <class T>
+    requires is_symbol<NodeType>
+  [[nodiscard]] constexpr auto operator=(const T& value) const {
+    constexpr bool is_right_kind = [] {
+      if constexpr (Constant<T>) {
+        return detail::constant_traits<T>::kind_of == NodeType::kind_of;
+      } else {
+        return false;
+      }
+    }();
+    static_assert(
+        is_right_kind || is_sized_matrix(NodeType::kind_of),
+        "duet: a symbol is given a value of another kind; scalar, vector, quaternion, dual "
+        "vector and pose symbols take just that");
+    static_assert(is_right_kind || !is_sized_matrix(NodeType::kind_of),
+                  "duet: a matrix symbol is given a value of another size; matrix_symbol<\"A\", 2, "
+                  "4> takes a matrix of Eigen of 2 rows and 4 columns");
+    if constexpr (is_right_kind) {
+      using held_type_of_value = typename detail::constant_traits<T>::held_type;
+      return detail::argument<NodeType, held_type_of_value>{static_cast<held_type_of_value>(value)};
+    }
+  }
+
+private:
+  [[no_unique_address]] Held held_;
+};
+
+/// A formula of what is already a node.
+template <class NodeType, class Held>
+[[nodiscard]] constexpr formula<NodeType, Held> make_formula(NodeType, const Held& held) {
+  return formula<NodeType, Held>(held);
+}
+
+namespace detail {
+
+// What tells constants apart is the type of a closure, another one wherever a function is called.
+// Each header's closures take a parameter of their own: clang 14 counts closures by namespace
+// block, but names them by namespace, so those of two headers would be taken for one.
+
+template <class Tag, Term T>
+[[nodiscard]] constexpr const T& term(const T& x) {
+  return x;
+}
+template <class Tag, Constant T>
+[[nodiscard]] constexpr auto term(const T& x) {
+  using traits = constant_traits<T>;
+  using node = constant_node<traits::kind_of, Tag>;
+  using value = typename traits::held_type;
+  return make_formula(node{}, held<held_constant<node, value>>{{static_cast<value>(x)}});
+}
+
+template <class T>
+struct node_of {
+  using type = T;
+};
+template <class N, class Held>
+struct node_of<formula<N, Held>> {
+  using type = N;
+};
+template <class T>
+using node_t = typename node_of<T>::type;
+
+template <Node T>
+[[nodiscard]] constexpr held<> held_of(const T&) {
+  return {};
+}
+template <Formula T>
+[[nodiscard]] constexpr const auto& held_of(const T& x) {
+  return x.held();
+}
+
+template <class Operation, Node... N>
+[[nodiscard]] constexpr auto simplified() {
+  if constexpr (requires { Operation::simplified(N{}...); }) {
+    return Operation::simplified(N{}...);
+  } else {
+    return applied_node<Operation, N...>{};
+  }
+}
+
+} // namespace detail
+
+/// The operation applied to terms, simplified. Nodes give a node, formulas a formula.
+template <class Operation, Node... N>
+[[nodiscard]] constexpr auto apply(N...) {
+  return decltype(detail::simplified<Operation, N...>()){};
+}
+template <class Operation, Term... T>
+  requires(Formula<T> || ...)
+[[nodiscard]] constexpr auto apply(const T&... x) {
+  using held = decltype(merged(detail::held_of(x)...));
+  using node = decltype(detail::simplified<Operation, detail::node_t<T>...>());
+  return formula<node, held>(merged(detail::held_of(x)...));
+}
+
+} // namespace duet::expression

@@ -1,0 +1,234 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/constants.hpp>
+#include <duet/dual/dual.hpp>
+#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/rules/elementary.hpp>
+#include <duet/dual/rules/special.hpp>
+#include <duet/expression/evaluate/node_values.hpp>
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
+
+#include <string>
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// What all functions of scalars have in common, and those that only derivatives need.
+
+namespace duet::expression {
+
+namespace detail {
+
+template <class... T>
+struct common_scalar_of;
+template <class T>
+struct common_scalar_of<T> {
+  using type = T;
+};
+template <class A, class B, class... Rest>
+struct common_scalar_of<A, B, Rest...> : common_scalar_of<promote_t<A, B>, Rest...> {};
+/// The scalar that holds the arguments of a function.
+template <class... T>
+using common_scalar_t = typename common_scalar_of<T...>::type;
+
+} // namespace detail
+
+namespace op {
+
+/// The derivative of a function, of order `Orders` by each of its arguments, by the rule of the
+/// dual numbers. Its operands are the arguments, behind the value where the rule looks at that.
+template <class Function, int... Orders>
+struct partial {
+  template <class... Kinds>
+  static constexpr kind kind_of(Kinds...) {
+    return kind::scalar;
+  }
+  template <class First, class... Rest>
+  DUET_ALWAYS_INLINE static auto value(const First& first, const Rest&... rest) {
+    if constexpr (Function::slopes_take_value) {
+      return at(first, rest...);
+    } else {
+      return at(first, first, rest...);
+    }
+  }
+  template <int I, class... X>
+  static constexpr auto slope_by(X... x) {
+    constexpr int argument = Function::slopes_take_value ? I - 1 : I;
+    if constexpr (argument < 0) {
+      return whole<0>; // the value moves as the arguments do
+    } else {
+      return [&]<int... K>(std::integer_sequence<int, K...>) {
+        return apply<partial<Function, (Orders + int(K == argument))...>>(x...);
+      }
+      (std::make_integer_sequence<int, int(sizeof...(Orders))>{});
+    }
+  }
+
+  /// Where the value is y.
+  template <class Y, class... X>
+  DUET_ALWAYS_INLINE static auto at(const Y& y, const X&... x) {
+    using R = detail::common_scalar_t<X...>;
+    if constexpr ((0 + ... + Orders) == 1) {
+      return R(Function::template slope_at<last_argument>(R(y), x...));
+    } else {
+      return [&]<int... K>(std::integer_sequence<int, K...>) {
+        using D = dual<R, 1, derivative_tag<partial>>;
+        const auto moved = [](auto is_moving, const auto& a) {
+          if constexpr (is_moving) {
+            return D::variable(R(a));
+          } else {
+            return a;
+          }
+        };
+        const auto moving_value = [&] {
+          if constexpr (Function::slopes_take_value) {
+            return D(R(y), R(Function::template slope_at<last_argument>(R(y), x...)));
+          } else {
+            return R(y);
+          }
+        }();
+        using lower = partial<Function, (Orders - int(K == last_argument))...>;
+        return lower::at(moving_value, moved(std::bool_constant<K == last_argument>{}, x)...)
+            .epsilon();
+      }
+      (std::make_integer_sequence<int, int(sizeof...(Orders))>{});
+    }
+  }
+
+  /// The last argument by which it is a derivative.
+  static constexpr int last_argument = [] {
+    const int orders[] = {Orders...};
+    int i = int(sizeof...(Orders)) - 1;
+    while (orders[i] == 0) {
+      --i;
+    }
+    return i;
+  }();
+};
+
+} // namespace op
+
+namespace detail {
+
+/// The derivative by the I-th argument.
+template <class Function, int I, int... K, class... X>
+[[nodiscard]] constexpr auto partial_by(std::integer_sequence<int, K...>, X... x) {
+  using operation = op::partial<Function, int(K == I)...>;
+  if constexpr (Function::slopes_take_value) {
+    return apply<operation>(apply<Function>(x...), x...);
+  } else {
+    return apply<operation>(x...);
+  }
+}
+
+struct function_name {
+  const char* text;
+  const char* latex; ///< a command, or empty
+};
+
+[[nodiscard]] inline printed printed_call(notation style, const function_name& name,
+                                          const std::string& arguments) {
+  if (style == notation::text) {
+    return {std::string(name.text) + "(" + arguments + ")"};
+  }
+  const std::string command = name.latex;
+  if (command == "\\sqrt") {
+    return {"\\sqrt{" + arguments + "}"};
+  }
+  if (command == "\\exp") {
+    return {"e^{" + arguments + "}", precedence::power};
+  }
+  const bool is_high = arguments.find_first_of("^{") != std::string::npos;
+  return {(command.empty() ? "\\operatorname{" + std::string(name.text) + "}" : command) +
+          (is_high ? "\\left(" : "(") + arguments + (is_high ? "\\right)" : ")")};
+}
+
+/// What one function of scalars and another have in common. What derives from this has `name` and,
+/// unless its derivative is a function too, `written_slope<I>(x…)`, the derivative by the I-th
+/// argument as it is printed. Numbers come from `Rule`, the rule of the dual numbers.
+template <class Function, class Rule>
+struct function {
+  /// Do the rule's slopes look at the value?
+  static constexpr bool slopes_take_value = false;
+
+  template <class... Kinds>
+  static constexpr kind kind_of(Kinds...) {
+    return kind::scalar;
+  }
+  template <class... X>
+  DUET_ALWAYS_INLINE static common_scalar_t<X...> value(const X&... x) {
+    return Rule{}.value(common_scalar_t<X...>(x)...);
+  }
+  /// The derivative by the I-th argument where the value is y.
+  template <int I, class Y, class... X>
+  DUET_ALWAYS_INLINE static Y slope_at(const Y& y, const X&... x) {
+    if constexpr (sizeof...(X) == 1) {
+      return Rule{}.slope(Y(x)..., y);
+    } else {
+      return Rule{}.slopes(y, Y(x)...)[I];
+    }
+  }
+  template <int I, class... X>
+  static constexpr auto slope_by(X... x) {
+    return partial_by<Function, I>(std::make_integer_sequence<int, int(sizeof...(X))>{}, x...);
+  }
+  template <class... P>
+  static printed print(notation style, const printed& first, const P&... rest) {
+    return printed_call(style, Function::name, (first.text + ... + (", " + rest.text)));
+  }
+};
+
+} // namespace detail
+
+/// π in the precision of the arguments.
+struct pi_node {
+  static constexpr kind kind_of = kind::scalar;
+};
+
+namespace detail {
+
+template <class Given>
+struct leaf<pi_node, Given> {
+  static constexpr auto value(const Given&) { return constant::pi<typename Given::real>(); }
+};
+
+} // namespace detail
+
+/// π as a formula.
+inline constexpr formula<pi_node, held<>> pi{};
+
+namespace op {
+
+/// The N-th derivative of ψ, the logarithmic derivative of Γ.
+template <int N>
+struct polygamma {
+  static constexpr kind kind_of(kind a) { return a; }
+  template <class X>
+  static X value(const X& x) {
+    if constexpr (N == 0) {
+      return duet::detail::digamma(x);
+    } else {
+      using D = dual<X, 1, derivative_tag<polygamma>>;
+      return polygamma<N - 1>::value(D::variable(x)).epsilon();
+    }
+  }
+  template <int, class X>
+  static constexpr auto slope_by(X x) {
+    return apply<polygamma<N + 1>>(x);
+  }
+  static printed print(notation style, const printed& x) {
+    const std::string n = std::to_string(N);
+    const std::string text = "polygamma(" + n + ", " + x.text + ")";
+    return {style == notation::latex
+                ? "\\psi^{(" + n + ")}" + printed{x.text, {}, style}.in_parentheses()
+                : text};
+  }
+};
+
+} // namespace op
+} // namespace duet::expression

@@ -1,0 +1,105 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/expression/tree/node.hpp>
+
+#include <boost/mp11/algorithm.hpp>
+#include <boost/mp11/list.hpp>
+
+#include <concepts>
+#include <string>
+#include <type_traits>
+
+/// \file
+/// What a formula holds beside its type: the values of the constants in it, and by their types all
+/// symbols it was written with, those that simplification removed included.
+
+namespace duet::expression {
+
+/// A constant of a place in the code, and what its value is held in.
+template <class ConstantNode, class T>
+struct held_constant {};
+
+namespace detail {
+
+/// A symbol: nothing to hold.
+template <class Item>
+struct holding {};
+template <class ConstantNode, class T>
+struct holding<held_constant<ConstantNode, T>> {
+  T value;
+};
+
+} // namespace detail
+
+template <class... Items>
+struct held : detail::holding<Items>... {};
+
+namespace detail {
+
+template <class T>
+[[nodiscard]] constexpr bool are_same_value(const T& a, const T& b) {
+  return a == b || (a != a && b != b);
+}
+
+template <class T>
+void refuse(const T& a, const T& b) {
+  std::string values;
+  if constexpr (std::floating_point<T>) {
+    values = ", " + to_text(a) + " and " + to_text(b);
+  }
+  throw invalid_input("duet: a formula: one place in the code made two constants" + values +
+                      ", which would be taken for one; make what changes a symbol");
+}
+
+/// Refuses another value of a constant that both hold.
+template <class Item, class A, class B>
+constexpr void require_same_value(const A& a, const B& b) {
+  if constexpr (!std::is_empty_v<holding<Item>> && std::is_base_of_v<holding<Item>, A>) {
+    const holding<Item>& first = a;
+    const holding<Item>& second = b;
+    if (!are_same_value(first.value, second.value)) {
+      refuse(first.value, second.value);
+    }
+  }
+}
+
+/// Items if they are not held already.
+template <class A, class Item>
+using if_new = boost::mp11::mp_if_c<std::is_base_of_v<holding<Item>, A>, boost::mp11::mp_list<>,
+                                    boost::mp11::mp_list<Item>>;
+
+template <class... InA, class... InB, class... New>
+[[nodiscard]] constexpr held<InA..., New...>
+merged_with(const held<InA...>& a, const held<InB...>& b, boost::mp11::mp_list<New...>) {
+  (require_same_value<InB>(a, b), ...);
+  return {static_cast<const holding<InA>&>(a)..., static_cast<const holding<New>&>(b)...};
+}
+
+} // namespace detail
+
+/// What either holds. \throws invalid_input where one place in the code, as in a function that was
+/// called twice, made constants of different values
+template <class... InA, class... InB>
+[[nodiscard]] constexpr auto merged(const held<InA...>& a, const held<InB...>& b) {
+  if constexpr (sizeof...(InB) == 0) {
+    return a;
+  } else {
+    using added =
+        boost::mp11::mp_append<boost::mp11::mp_list<>, detail::if_new<held<InA...>, InB>...>;
+    return detail::merged_with(a, b, added{});
+  }
+}
+
+template <class A, class B, class C, class... Rest>
+[[nodiscard]] constexpr auto merged(const A& a, const B& b, const C& c, const Rest&... rest) {
+  return merged(merged(a, b), c, rest...);
+}
+template <class A>
+[[nodiscard]] constexpr A merged(const A& a) {
+  return a;
+}
+
+} // namespace duet::expression

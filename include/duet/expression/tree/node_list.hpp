@@ -1,0 +1,93 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/expression/tree/node.hpp>
+
+#include <boost/mp11/algorithm.hpp>
+#include <boost/mp11/list.hpp>
+
+#include <type_traits>
+#include <utility>
+
+/// \file
+/// All different nodes of some formulas in one list, operands first, and their places in it.
+
+namespace duet::expression::detail {
+
+namespace mp11 = boost::mp11;
+
+template <class Node>
+struct listed {};
+
+// While the list grows, every node is a base: whether one is there, the compiler knows without
+// looking through a list of types.
+struct no_nodes {};
+template <class Before, class Node>
+struct followed_by : Before, listed<Node> {};
+
+template <class Nodes, class Node, bool IsThere = std::is_base_of_v<listed<Node>, Nodes>>
+struct with_node {
+  using type = Nodes;
+};
+template <class Nodes, class Node>
+using with_node_t = typename with_node<Nodes, Node>::type;
+
+/// With what a node needs.
+template <class Nodes, class Node>
+struct with_operands {
+  using type = Nodes;
+};
+template <class Nodes, class Operation, class... Operands>
+struct with_operands<Nodes, applied_node<Operation, Operands...>> {
+  using type = mp11::mp_fold<mp11::mp_list<Operands...>, Nodes, with_node_t>;
+};
+template <class Nodes, class Node>
+struct with_node<Nodes, Node, false> {
+  using type = followed_by<typename with_operands<Nodes, Node>::type, Node>;
+};
+
+/// Where the one that is true stands among some, -1 if there is none.
+[[nodiscard]] constexpr int place_of_true(const bool* all, int count) {
+  for (int i = 0; i < count; ++i) {
+    if (all[i]) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+/// Nodes in an order.
+template <class... Nodes>
+class node_list {
+  static constexpr int count = int(sizeof...(Nodes));
+  // By the compilers' own comparison: it costs them less than to deduce a base, and, unlike that of
+  // addresses, is a constant under sanitizers too. With one more at the end, as there are no arrays
+  // of none.
+  template <class Node>
+  static constexpr bool is_it[] = {__is_same(Nodes, Node)..., false};
+
+public:
+  using places = std::make_integer_sequence<int, count>;
+  /// The number of a node, -1 of others.
+  template <class Node>
+  static constexpr int place = place_of_true(is_it<Node>, count);
+};
+
+template <class Grown, class... Nodes>
+struct in_order;
+template <class... Nodes>
+struct in_order<no_nodes, Nodes...> {
+  using type = node_list<Nodes...>;
+};
+template <class Before, class Node, class... Nodes>
+struct in_order<followed_by<Before, Node>, Nodes...> : in_order<Before, Node, Nodes...> {};
+template <class Before, class A, class B, class C, class D, class... Nodes>
+struct in_order<followed_by<followed_by<followed_by<followed_by<Before, A>, B>, C>, D>, Nodes...>
+    : in_order<Before, A, B, C, D, Nodes...> {};
+
+/// The nodes that some need, and themselves.
+template <class... Roots>
+using nodes_of =
+    typename in_order<mp11::mp_fold<mp11::mp_list<Roots...>, no_nodes, with_node_t>>::type;
+
+} // namespace duet::expression::detail

@@ -1,0 +1,102 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/node.hpp>
+
+#include <bit>
+#include <cstdint>
+
+/// \file
+/// Numbers that the compiler knows: `c<2>`, `0.5_c`. Unlike numbers written as 2 or 0.5 they are
+/// part of a formula's type: they are simplified, and equal ones are one.
+
+namespace duet::expression {
+
+namespace detail {
+
+/// a + b is a double without rounding.
+[[nodiscard]] constexpr bool is_sum_exact(double a, double b) {
+  const double sum = a + b;
+  const double b_rounded = sum - a;
+  return (a - (sum - b_rounded)) + (b - b_rounded) == 0;
+}
+
+/// a b is a double without rounding.
+[[nodiscard]] constexpr bool is_product_exact(double a, double b) {
+  const auto upper = [](double x) {
+    const double scaled = x * 0x8000001p0;
+    return scaled - (scaled - x);
+  };
+  const double a_high = upper(a), b_high = upper(b);
+  const double a_low = a - a_high, b_low = b - b_high;
+  return ((a_high * b_high - a * b) + a_high * b_low + a_low * b_high) + a_low * b_low == 0;
+}
+
+[[nodiscard]] constexpr std::uint64_t bits_of(double x) {
+  return std::bit_cast<std::uint64_t>(x == 0 ? 0.0 : x);
+}
+
+} // namespace detail
+
+/// N as a node.
+template <int N>
+inline constexpr number_node<detail::bits_of(N)> whole{};
+
+/// The whole number N as a formula.
+template <int N>
+inline constexpr formula<number_node<detail::bits_of(N)>, held<>> c{};
+
+namespace detail {
+
+/// The value of decimal digits with a point and an exponent.
+template <char... Letters>
+[[nodiscard]] constexpr double number_spelt() {
+  constexpr char text[] = {Letters..., '\0'};
+  static_assert(!(text[0] == '0' && (text[1] == 'x' || text[1] == 'b')),
+                "duet: a number with the suffix _c is decimal");
+  double digits = 0;
+  int exponent = 0;
+  bool is_fraction = false;
+  int i = 0;
+  for (; text[i] != '\0' && text[i] != 'e' && text[i] != 'E'; ++i) {
+    if (text[i] == '.') {
+      is_fraction = true;
+    } else if (text[i] != '\'') {
+      digits = 10 * digits + (text[i] - '0');
+      exponent -= is_fraction;
+    }
+  }
+  if (text[i] != '\0') {
+    const bool is_negative = text[++i] == '-';
+    i += text[i] == '-' || text[i] == '+';
+    int power = 0;
+    for (; text[i] != '\0'; ++i) {
+      power = 10 * power + (text[i] - '0');
+    }
+    exponent += is_negative ? -power : power;
+  }
+  double scale = 1;
+  for (int k = 0; k < (exponent < 0 ? -exponent : exponent); ++k) {
+    scale *= 10;
+  }
+  // Correctly rounded as long as both are exact, as the compiler reads such numbers too.
+  return digits <= 0x1p53 && scale <= 1e22 ? (exponent < 0 ? digits / scale : digits * scale) : -1;
+}
+
+} // namespace detail
+
+inline namespace literals {
+
+/// `0.5_c`: the number that the compiler reads, of at most 15 digits and with a decimal exponent of
+/// at most 22.
+template <char... Letters>
+[[nodiscard]] constexpr auto operator""_c() {
+  constexpr double value = detail::number_spelt<Letters...>();
+  static_assert(value >= 0, "duet: a number with the suffix _c has at most 15 digits");
+  return formula<number_node<detail::bits_of(value)>, held<>>{};
+}
+
+} // namespace literals
+
+} // namespace duet::expression

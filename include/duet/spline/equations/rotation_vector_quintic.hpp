@@ -1,0 +1,292 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/dual.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+#include <duet/spline/blocks/band_lu.hpp>
+#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/equations/curve_equations.hpp>
+#include <duet/spline/equations/quintic_piece.hpp>
+#include <duet/spline/equations/rotation_vector_ends.hpp>
+#include <duet/spline/equations/rotation_vector_table.hpp>
+#include <duet/spline/equations/small_turns.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// What the rates at the knots of a quintic rotation-vector spline have to fulfil.
+
+namespace duet::detail {
+
+/// Unknown are all rates w_0 … w_3 that the pieces share at each knot; there are the equations of
+/// every piece, and two of each end. With fewer unknowns, w_0 and w_1, the others would be
+/// differences over powers of h: of a piece much shorter than its neighbours no digits were left.
+template <class T>
+class rotation_vector_quintic_equations {
+  using R = real_type_t<T>;
+  using ends_type = rotation_vector_ends<T, 6>;
+  using piece = quintic_piece<T>;
+  static constexpr std::size_t count = piece::count;
+  static constexpr int n = 3 * int(count);
+  template <class S>
+  using coefficients = typename piece::template coefficients<S>;
+
+public:
+  using curve_type = rotation_vector_spline<T, 6>;
+  using real_type = R;
+  using unknown = Eigen::Matrix<T, n, 1>;
+  using unknowns = std::vector<unknown>;
+  using matrix = block_band_lu<R, n>;
+
+  /// \param u  increasing, as many as `ends` need or more
+  /// \param q  as many unit elements, signs aligned
+  rotation_vector_quintic_equations(const std::vector<R>& u, const std::vector<quaternion<T>>& q,
+                                    const curve_ends<T>& ends)
+      : ends_(ends, q.front(), q.back()), table_(u, q),
+        lengths_(ends_.is_cyclic ? u.size() - 1 : u.size(), R(0)) {
+    for (std::size_t i = 0; i < table_.steps.size(); ++i) {
+      for (const std::size_t knot : {i, next(i)}) {
+        lengths_[knot] = std::max(lengths_[knot], table_.steps[i]);
+      }
+    }
+    make_pieces();
+  }
+
+  [[nodiscard]] static std::size_t least_rows(end_kind kind) { return ends_type::least_rows(kind); }
+
+  /// The equations of a motion that turns less: turns from row to row and rates at the ends times
+  /// λ.
+  [[nodiscard]] rotation_vector_quintic_equations scaled(const R& lambda) const {
+    rotation_vector_quintic_equations result = *this;
+    for (vector3<T>& turn : result.table_.turns) {
+      turn = lambda * components(turn);
+    }
+    for (auto& end : result.ends_.given) {
+      for (vector3<T>& rate : end) {
+        rate = lambda * components(rate);
+      }
+    }
+    result.make_pieces();
+    return result;
+  }
+
+  [[nodiscard]] R unevenness() const { return table_.unevenness(); }
+  [[nodiscard]] std::pair<R, std::size_t> largest_turn() const { return table_.largest_turn(); }
+
+  /// How large a step from x is in relation to what it changes. For real T.
+  [[nodiscard]] R relative_step(const unknowns& x, const unknowns& step) const {
+    return relative_step_of_rates(x, step, table_.turns, table_.steps);
+  }
+
+  /// Where Newton's method starts: the rates of parabolas through three rows, as if turns were
+  /// small.
+  [[nodiscard]] unknowns start() const {
+    unknowns x(lengths_.size(), unknown::Zero());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const auto [velocity, acceleration] = table_.parabola(i, ends_.is_cyclic);
+      x[i].template head<3>() = velocity;
+      x[i].template segment<3>(3) = acceleration;
+    }
+    return x;
+  }
+
+  /// What x leaves of the equations: of each piece, then of the ends.
+  void residuals(const unknowns& x, unknowns& r) const {
+    r.assign(x.size(), unknown::Constant(T(R(0))));
+    const auto rates = rates_of<T>(x);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const auto left = pieces_[i].left(taylor<T>(i, rates), scale_of(i));
+      for (std::size_t m = 0; m < count; ++m) {
+        r[i].template segment<3>(3 * int(m)) = left[m];
+      }
+    }
+    for_each_end_equation([&](std::size_t end, std::size_t k, std::size_t knot, const R& scale) {
+      vector3<T> left;
+      const auto [joint, derivative] = ends_.equations[k];
+      if (joint == 0) {
+        left = rates(knot)[derivative] - ends_.given[end][k] * T(table_.unit_to(derivative + 1));
+      } else {
+        const auto before = pieces_[knot - 1].last_rate_at_end(taylor<T>(knot - 1, rates));
+        const auto after = pieces_[knot].last_rate_at_start(at_identity_, taylor<T>(knot, rates));
+        left = before[0] + before[1] - after[0] - after[1];
+      }
+      r.back().template segment<3>(end_row(end, k)) = (scale * components(left)).eigen();
+    });
+  }
+
+  /// Residuals and factorised Jacobian; false where that is singular. For real T.
+  [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
+    static_assert(Real<T>);
+    using D = dual<R, n, derivative_tag<rotation_vector_quintic_equations>>;
+    using equations = typename matrix::equations;
+    using panel = typename matrix::panel;
+    residuals(x, r);
+    const auto rates = rates_of<D>(x);
+    // Adds the partials of factor · v to three rows.
+    const auto add = [](auto&& rows, const R& factor, const vector3<D>& v) {
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < n; ++b) {
+          rows(a, b) += factor * v[a].partial(b);
+        }
+      }
+    };
+    std::vector<equations> groups;
+    groups.reserve(pieces_.size() + 4);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const auto e = taylor<D>(i, rates);
+      const auto of_x = pieces_[i].factors_of_start(scale_of(i));
+      const auto of_y = pieces_[i].factors_of_end(scale_of(i));
+      panel at_start = panel::Zero(n, n), at_end = at_start;
+      for (std::size_t m = 0; m < count; ++m) {
+        for (std::size_t k = 0; k < count; ++k) {
+          add(at_start.template middleRows<3>(3 * Eigen::Index(m)), of_x[m][k], e.x[k]);
+          add(at_end.template middleRows<3>(3 * Eigen::Index(m)), of_y[m][k], e.y[k]);
+        }
+      }
+      equations group{i, i * std::size_t(n), {}, {}};
+      if (!ends_.is_cyclic || i + 2 < pieces_.size()) {
+        group.coefficients.resize(n, 2 * n);
+        group.coefficients << at_start, at_end;
+      } else if (i + 2 == pieces_.size()) {
+        group.coefficients = at_start;
+        group.of_last = at_end;
+      } else { // from the last knot to the first one
+        group.first = 0;
+        group.coefficients = at_end;
+        group.of_last = at_start;
+      }
+      groups.push_back(std::move(group));
+    }
+    for_each_end_equation([&](std::size_t end, std::size_t k, std::size_t knot, const R& scale) {
+      const auto [joint, derivative] = ends_.equations[k];
+      const std::size_t row = pieces_.size() * std::size_t(n) + std::size_t(end_row(end, k));
+      equations group{joint == 0 ? knot : knot - 1, row, {}, {}};
+      if (joint == 0) {
+        group.coefficients = panel::Zero(3, n);
+        group.coefficients.template middleCols<3>(3 * Eigen::Index(derivative))
+            .diagonal()
+            .fill(scale);
+      } else {
+        group.coefficients = panel::Zero(3, 3 * n);
+        const auto of = [&](int at) { return group.coefficients.template middleCols<n>(at * n); };
+        const auto before = pieces_[knot - 1].last_rate_at_end(taylor<D>(knot - 1, rates));
+        const auto after = pieces_[knot].last_rate_at_start(at_identity_, taylor<D>(knot, rates));
+        add(of(0), scale, before[0]);
+        add(of(1), scale, before[1]);
+        add(of(1), R(-scale), after[0]);
+        add(of(2), R(-scale), after[1]);
+      }
+      groups.push_back(std::move(group));
+    });
+    return jacobian.factorise(units(), std::move(groups), ends_.is_cyclic);
+  }
+
+  [[nodiscard]] curve_type curve(const std::vector<R>& u, std::vector<quaternion<T>> q,
+                                 const unknowns& x) const {
+    std::vector<std::array<vector3<T>, 6>> pieces;
+    pieces.reserve(pieces_.size());
+    const auto rates = rates_of<T>(x);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      pieces.push_back(pieces_[i].polynomial(taylor<T>(i, rates)));
+    }
+    table_.in_own_units(pieces);
+    return curve_type::from_pieces(u, std::move(q), std::move(pieces));
+  }
+
+private:
+  [[nodiscard]] std::size_t next(std::size_t i) const { return (i + 1) % lengths_.size(); }
+  /// What brings the rates at a piece's ends to one size.
+  [[nodiscard]] R scale_of(std::size_t i) const { return std::min(lengths_[i], lengths_[next(i)]); }
+
+  /// The rates at a knot, as variables where S is a dual number over T.
+  template <class S>
+  [[nodiscard]] static auto rates_of(const unknowns& x) {
+    return [&x](std::size_t knot) {
+      coefficients<S> result;
+      for (int a = 0; a < n; ++a) {
+        S& each = result[std::size_t(a / 3)][a % 3];
+        if constexpr (std::is_same_v<S, T>) {
+          each = x[knot][a];
+        } else {
+          each = S::variable(x[knot][a], a);
+        }
+      }
+      return result;
+    };
+  }
+
+  /// Of piece i, with the rates at its knots.
+  template <class S, class Rates>
+  [[nodiscard]] auto taylor(std::size_t i, const Rates& rates) const {
+    return pieces_[i].template taylor<S>(at_identity_, rates(i), rates(next(i)));
+  }
+
+  /// Calls f(end, k, knot, scale) for equation k of either end, which is about a knot; times the
+  /// scale it has the size of the others.
+  template <class F>
+  void for_each_end_equation(F&& f) const {
+    for (std::size_t end = 0; end < 2 && !ends_.is_cyclic; ++end) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const auto [joint, derivative] = ends_.equations[k];
+        const std::size_t knot = end == 0 ? joint : pieces_.size() - joint;
+        R scale(1);
+        if (joint == 0) {
+          for (std::size_t i = 0; i < derivative; ++i) {
+            scale *= lengths_[knot];
+          }
+        } else {
+          const R l = std::min({lengths_[knot - 1], lengths_[knot], lengths_[knot + 1]});
+          scale = std::min(table_.steps[knot - 1], table_.steps[knot]) * l * l * l;
+        }
+        f(end, k, knot, scale);
+      }
+    }
+  }
+  [[nodiscard]] static int end_row(std::size_t end, std::size_t k) {
+    return 6 * int(end) + 3 * int(k);
+  }
+
+  /// Rates as large as those of a turn by one over the longer piece next to each knot.
+  [[nodiscard]] std::vector<typename matrix::block> units() const {
+    std::vector<typename matrix::block> result(lengths_.size());
+    for (std::size_t i = 0; i < lengths_.size(); ++i) {
+      R power(1);
+      for (int k = 0; k < int(count); ++k) {
+        result[i].template segment<3>(3 * k).fill(power);
+        power /= lengths_[i];
+      }
+    }
+    return result;
+  }
+
+  void make_pieces() {
+    pieces_.clear();
+    pieces_.reserve(table_.steps.size());
+    for (std::size_t i = 0; i < table_.steps.size(); ++i) {
+      pieces_.emplace_back(table_.steps[i], table_.turns[i]);
+    }
+  }
+
+  ends_type ends_;
+  rotation_vector_table<T> table_;
+  std::vector<R> lengths_; ///< of each knot's longer piece
+  std::vector<piece> pieces_;
+  typename piece::identity_coefficients at_identity_{R(0)};
+};
+
+template <class Own, class T>
+struct equations_of<rotation_vector_spline<Own, 6>, T> {
+  using type = rotation_vector_quintic_equations<T>;
+};
+
+} // namespace duet::detail

@@ -1,0 +1,115 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/larger.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/blocks/tridiagonal.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+/// \file
+/// The increments of an interpolating curve where turns are small: the start of Newton's method.
+
+namespace duet::detail {
+
+/// Σ weights_j x_j = right: where turns are so small that their order does not matter, coordinates
+/// do not mix.
+template <class T>
+struct small_turn_equation {
+  std::array<real_type_t<T>, 3> weights;
+  vector3<T> right;
+};
+
+/// The solution of all these equations, a tridiagonal system of numbers; zero where it is singular.
+template <class R, class Equations>
+[[nodiscard]] std::vector<vector3<R>> small_turn_solution(const Equations& equations) {
+  const std::size_t n = equations.size();
+  block_tridiagonal<R, 1> matrix;
+  auto& rows = matrix.rows();
+  rows.resize(n);
+  std::vector<Eigen::Matrix<R, 1, 3>> x(n);
+  for (std::size_t row = 0; row < n; ++row) {
+    const small_turn_equation<R> equation = equations.small_turns(row);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const int at = equations.place(row, j);
+      auto& block = at == 0 ? rows[row].lower : at == 1 ? rows[row].diagonal : rows[row].upper;
+      block(0, 0) = equation.weights[j];
+    }
+    x[row] = equation.right;
+  }
+  if (!matrix.factorise(equations.corner_columns())) {
+    return std::vector<vector3<R>>(n, vector3<R>::Zero());
+  }
+  matrix.solve(x);
+  return std::vector<vector3<R>>(x.begin(), x.end());
+}
+
+/// How large a step of the unknowns from x is in relation to what it changes: the largest such
+/// ratio of all equations, each measured by the largest of its own terms. Those of short intervals
+/// are small, and count as much as those of long ones.
+template <class R, class Equations>
+[[nodiscard]] R relative_step(const Equations& equations, const std::vector<vector3<R>>& x,
+                              const std::vector<vector3<R>>& step) {
+  using std::abs;
+  const std::size_t n = x.size();
+  std::vector<R> moved(n, R(0)), term(n);
+  R largest(0);
+  for (std::size_t row = 0; row < n; ++row) {
+    const small_turn_equation<R> equation = equations.small_turns(row);
+    term[row] = equation.right.norm();
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t k = equations.unknown(row, j);
+      const R weight = abs(equation.weights[j]);
+      const R change = weight * step[k].norm();
+      moved[row] += change;
+      term[row] = std::max(R(term[row] + change), R(weight * x[k].norm()));
+    }
+    largest = std::max(largest, term[row]);
+  }
+  // What is far from all that turns decays to nothing, at last below the smallest numbers.
+  const R epsilon = std::numeric_limits<R>::epsilon();
+  const R least = largest * (epsilon * epsilon) * (epsilon * epsilon);
+  R result(0);
+  for (std::size_t row = 0; row < n; ++row) {
+    const R ratio = moved[row] > 0 ? R(moved[row] / std::max(term[row], least)) : moved[row];
+    result = larger_or_nan(result, ratio);
+  }
+  return result;
+}
+
+/// How large a step is in relation to what it changes, where rates at knots are the unknowns,
+/// several vectors each, from velocities upwards: each is measured by itself and by what the turns
+/// next to the knot would make of it. \param lengths  of the pieces that turn so; as many as the
+/// knots where the curve is closed
+template <class R, int N>
+[[nodiscard]] R relative_step_of_rates(const std::vector<Eigen::Matrix<R, N, 1>>& x,
+                                       const std::vector<Eigen::Matrix<R, N, 1>>& step,
+                                       const std::vector<vector3<R>>& turns,
+                                       const std::vector<R>& lengths) {
+  const std::size_t pieces = turns.size();
+  R result(0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::size_t left = i > 0 ? i - 1 : x.size() == pieces ? pieces - 1 : 0;
+    const std::size_t right = std::min(i, pieces - 1);
+    R size =
+        std::max(R(turns[left].norm() / lengths[left]), R(turns[right].norm() / lengths[right]));
+    for (int k = 0; k < N; k += 3) {
+      const R moved = step[i].template segment<3>(k).norm();
+      const R now = x[i].template segment<3>(k).norm();
+      const R ratio = moved > 0 ? R(moved / std::max(size, std::max(now, moved))) : moved;
+      result = larger_or_nan(result, ratio);
+      size /= std::max(lengths[left], lengths[right]);
+    }
+  }
+  return result;
+}
+
+} // namespace duet::detail

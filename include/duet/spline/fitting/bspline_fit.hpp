@@ -1,0 +1,300 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/manifold.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/tangent.hpp>
+#include <duet/spline/basis.hpp>
+#include <duet/spline/blocks/cholesky.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/fit_options.hpp>
+#include <duet/spline/fitting/bspline_residuals.hpp>
+#include <duet/spline/fitting/fit_start.hpp>
+#include <duet/spline/orientations.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The least-squares problem behind `fit`.
+
+namespace duet::detail {
+
+/// The least-squares problem: control elements c, moved by tangent vectors in body axes, such that
+/// Σ ρ(rᵢ) is least. Normal equations are banded, as a row meets `Order` neighbouring controls.
+template <class T, int Order>
+class bspline_fit : bspline_residuals<T, Order> {
+  using residual_type = bspline_residuals<T, Order>;
+  using residual_type::dimension;
+  using residual_type::first;
+  using residual_type::residual_at;
+  using residual_type::rows;
+  using residual_type::size_of;
+  using residual_type::unknowns;
+  using typename residual_type::basis_type;
+  using typename residual_type::element;
+  using typename residual_type::R;
+  using typename residual_type::tangent;
+
+public:
+  bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> elements,
+              const fit_options& options)
+      : residual_type(basis, u, std::move(elements), R(options.length)), options_(options),
+        limits_(u.size(), R(options.outlier)) {
+    if (is_robust()) {
+      controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
+      approach();
+    } else {
+      controls_ = elements_at_averages(basis, u, this->rows());
+      const std::vector<R> sizes = residuals();
+      if (!(*std::max_element(sizes.begin(), sizes.end()) < too_far())) {
+        controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
+        fail_at_farthest();
+      }
+    }
+  }
+
+  /// Does row i count? Outliers that are too far off do not.
+  [[nodiscard]] bool counts(std::size_t i) const { return limits_[i] > 0; }
+  [[nodiscard]] R outlier() const { return R(options_.outlier); }
+
+  [[nodiscard]] cumulative_bspline<T, Order> curve(const basis_type& basis) const {
+    std::vector<vector3<T>> increments{vector3<T>::Zero()};
+    for (std::size_t i = 1; i < controls_.size(); ++i) {
+      increments.push_back(log(conj(controls_[i - 1]) * controls_[i]).vec());
+    }
+    return {basis, controls_, std::move(increments)};
+  }
+
+  [[nodiscard]] std::vector<R> residuals() const { return residual_type::residuals(controls_); }
+
+  /// Moves the controls to where the cost is least: the number of steps.
+  /// \throws no_convergence
+  int solve() { return iterations_ + descend(options_.max_iterations, true); }
+
+private:
+  static constexpr R tolerance = R(1e-11); // rad
+  static constexpr R longest_turn = R(0.5);
+  static constexpr R least_outlier = R(1e-9); ///< rows that fit to rounding have no outliers
+
+  [[nodiscard]] bool is_robust() const {
+    return options_.outlier < std::numeric_limits<double>::infinity();
+  }
+
+  /// Levenberg's and Marquardt's iteration: the number of steps. \throws no_convergence
+  int descend(int most, bool must_converge) {
+    const R gain = must_converge ? std::numeric_limits<R>::epsilon() : R(0.1);
+    using std::sqrt;
+    const R rounding = 8 * std::numeric_limits<R>::epsilon() * sqrt(R(rows().size()));
+    R damping(0), step(0), before(std::numeric_limits<R>::max()), rate(1);
+    for (int iteration = 1; iteration <= most; ++iteration) {
+      bool is_bold = must_converge && is_robust();
+      const R cost = assemble(is_bold);
+      R next(0);
+      for (;;) {
+        std::vector<element> moved = moved_controls(damping, step);
+        next = moved.empty() ? std::numeric_limits<R>::infinity() : cost_of(moved);
+        const bool is_tiny = !moved.empty() && step <= tolerance;
+        if (next <= cost * (1 + rounding) || (is_tiny && damping == 0)) {
+          controls_ = std::move(moved);
+          damping = damping > R(1e-9) ? R(damping / 10) : R(0);
+          break;
+        }
+        if (is_tiny) { // as low as rounding lets it be
+          return iteration;
+        }
+        if (is_bold) {
+          is_bold = false;
+          static_cast<void>(assemble(false));
+          continue;
+        }
+        damping = damping > 0 ? R(damping * 10) : R(1e-6);
+        if (!(damping < R(1e12))) {
+          if (!must_converge) {
+            return iteration;
+          }
+          fail("finds no step that brings the curve nearer", iteration, step);
+        }
+      }
+      // At last the cost tells no more, as an error of e in the controls adds e² to it. Steps do:
+      // they shrink, at a rate that the last two tell, until only rounding is left of them.
+      const bool is_low = step <= tolerance || cost - next <= gain * next;
+      const bool is_shrinking = 2 * step <= before;
+      const R last_rate = std::exchange(rate, damping > 0 ? R(1) : R(step / before));
+      before = step;
+      if (is_low && (!must_converge || !is_shrinking || iteration == most ||
+                     step * std::max(rate, last_rate) <= std::numeric_limits<R>::epsilon())) {
+        return iteration;
+      }
+    }
+    if (must_converge) {
+      fail("does not converge", most, step);
+    }
+    return most;
+  }
+
+  /// To the rows, by medians: what is an outlier depends on how far the rows around it are from
+  /// the curve so far.
+  void approach() {
+    constexpr int rounds = 12;
+    R scale = std::numeric_limits<R>::infinity(); // sum of the limits
+    for (int round = 0; round < rounds; ++round) {
+      const R last = scale;
+      scale = set_limits();
+      if (!(scale < R(0.9) * last)) {
+        break;
+      }
+      iterations_ += descend(round == 0 ? 1 : 4, false);
+    }
+    if (!(options_.outlier > 0)) {
+      options_.outlier = double(std::max(R(3 * median_of(residuals())), least_outlier));
+    }
+    set_limits();
+    for (R& limit : limits_) {
+      limit = std::min(limit, R(options_.outlier));
+    }
+  }
+
+  /// Three times the median residual around each row, at least `options.outlier`; zero for rows
+  /// that are four times as far off and more. Returns the sum of the limits.
+  R set_limits() {
+    const std::vector<R> sizes = residuals();
+    const std::vector<R> medians = local_medians(sizes, first());
+    R sum(0);
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      const R limit = std::max({R(3 * medians[i]), R(options_.outlier), least_outlier});
+      limits_[i] = sizes[i] <= 4 * limit && sizes[i] < too_far() ? limit : R(0);
+      sum += std::min(limit, too_far());
+    }
+    return sum;
+  }
+
+  /// Squares of larger residuals, and products of those, would overflow.
+  [[nodiscard]] static R too_far() {
+    using std::sqrt;
+    return sqrt(sqrt(std::numeric_limits<R>::max()));
+  }
+  [[noreturn]] void fail_at_farthest() const {
+    const std::vector<R> sizes = residuals();
+    const auto farthest = std::max_element(sizes.begin(), sizes.end());
+    std::ostringstream reason;
+    reason << "is " << *farthest << " from the rows around it, too far for least squares: "
+           << "fit_options::outlier makes the fit robust";
+    throw invalid_row(std::size_t(farthest - sizes.begin()), reason.str());
+  }
+
+  /// Huber's loss: ½ r² up to the limit, from there on along the tangent.
+  [[nodiscard]] static R loss(const R& r, const R& limit) {
+    return r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
+  }
+  [[nodiscard]] R cost_of(const std::vector<element>& controls) const {
+    R sum(0);
+    typename residual_type::last_span last;
+    for (std::size_t i = 0; i < rows().size(); ++i) {
+      if (counts(i)) {
+        sum += loss(size_of(residual_at(i, controls, last)), limits_[i]);
+      }
+    }
+    return sum;
+  }
+
+  /// JᵀWJ and −JᵀW r at the controls, W the weights of Huber's loss; the cost there.
+  /// \param is_bold  without most of the curvature that the loss lacks along residuals beyond the
+  ///                 limit: right near the end, maybe too long before; with it, too short
+  [[nodiscard]] R assemble(bool is_bold) {
+    R cost(0);
+    gradient_.setZero(Eigen::Index(controls_.size()) * dimension);
+    normal_.set_zero(controls_.size());
+    typename residual_type::last_span last;
+    Eigen::Matrix<R, unknowns, unknowns> squares = Eigen::Matrix<R, unknowns, unknowns>::Zero();
+    const auto flush = [&](std::size_t span) { // once for all rows on it
+      for (std::size_t a = 0; a < std::size_t(Order); ++a) {
+        for (std::size_t b = 0; b <= a; ++b) {
+          normal_.at(span + a, span + b) += squares.template block<dimension, dimension>(
+              Eigen::Index(a) * dimension, Eigen::Index(b) * dimension);
+        }
+      }
+      squares.setZero();
+    };
+    for (std::size_t i = 0; i < rows().size(); ++i) {
+      if (!counts(i)) {
+        continue;
+      }
+      if (first()[i] != last.first && last.first != std::size_t(-1)) {
+        flush(last.first);
+      }
+      const auto [value, slope] = this->linearised(i, controls_, last);
+      const R length = size_of(value);
+      cost += loss(length, limits_[i]);
+      const R weight = length <= limits_[i] ? R(1) : R(limits_[i] / length);
+      gradient_.template segment<unknowns>(Eigen::Index(last.first) * dimension) -=
+          weight * (slope * value);
+      const Eigen::Matrix<R, unknowns, dimension> weighted = weight * slope;
+      for (int a = 0; a < unknowns; ++a) { // columns are what Eigen is fast at
+        squares.col(a).noalias() += slope.lazyProduct(weighted.row(a).transpose());
+      }
+      if (weight < 1 && is_bold) {
+        const Eigen::Matrix<R, unknowns, 1> along = slope * (value / length);
+        squares -= R(0.9) * weight * along.lazyProduct(along.transpose());
+      }
+    }
+    if (last.first != std::size_t(-1)) {
+      flush(last.first);
+    }
+    return cost;
+  }
+
+  /// The controls after one step, none where there is no step with this damping.
+  [[nodiscard]] std::vector<element> moved_controls(const R& damping, R& step) {
+    factors_ = normal_;
+    if (damping > 0) {
+      factors_.scale_diagonal(1 + damping);
+    }
+    if (!factors_.factorise()) {
+      return {};
+    }
+    Eigen::Matrix<R, Eigen::Dynamic, 1> delta = gradient_;
+    factors_.solve(delta);
+    step = delta.template lpNorm<Eigen::Infinity>();
+    if (!delta.allFinite()) {
+      return {};
+    }
+    R turn(0); // of the controls: shifts are linear, and may be of any length
+    for (Eigen::Index i = dimension; i <= delta.size(); i += dimension) {
+      turn = std::max(turn, R(delta.template segment<3>(i - 3).norm()));
+    }
+    const R fraction = turn > longest_turn ? R(longest_turn / turn) : R(1);
+    std::vector<element> moved = controls_;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const tangent d = fraction * delta.template segment<dimension>(Eigen::Index(i) * dimension);
+      moved[i] = normalized(element(manifold<element>::plus(moved[i], d, frame::body)));
+    }
+    return moved;
+  }
+
+  [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
+    std::ostringstream message;
+    message << "duet: fit: the iteration " << what << " after " << iterations_ + iterations
+            << " steps, the last one " << step;
+    throw no_convergence(message.str());
+  }
+
+  fit_options options_;
+  std::vector<R> limits_; ///< of Huber's loss, row by row; zero: does not count
+  std::vector<element> controls_;
+  int iterations_ = 0;
+  block_band_matrix<R, dimension, std::size_t(Order) - 1> normal_, factors_;
+  Eigen::Matrix<R, Eigen::Dynamic, 1> gradient_;
+};
+
+} // namespace duet::detail

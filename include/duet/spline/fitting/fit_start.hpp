@@ -1,0 +1,222 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/dual/number/tag.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/basis.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+/// \file
+/// Where fits start, and what is an outlier to a robust one: medians, which up to half of the rows
+/// may spoil without moving them far.
+
+namespace duet::detail {
+
+/// The mean of the Order − 1 inner knots of basis function i (Greville's abscissa).
+template <int Order, Real R>
+[[nodiscard]] R knot_average(const bspline_basis<Order, R>& basis, std::size_t i) {
+  R sum(0);
+  for (std::size_t j = 1; j < std::size_t(Order); ++j) {
+    sum += basis.knots()[i + j];
+  }
+  return sum / R(Order - 1);
+}
+
+/// Where the rows are at the knots' averages (Greville's abscissae).
+template <class T, int Order>
+[[nodiscard]] std::vector<quaternion<T>>
+elements_at_averages(const bspline_basis<Order, real_type_t<T>>& basis,
+                     const std::vector<real_type_t<T>>& u, const std::vector<quaternion<T>>& rows) {
+  using R = real_type_t<T>;
+  std::vector<quaternion<T>> result;
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    const R at = knot_average(basis, i);
+    const auto above = std::size_t(std::upper_bound(u.begin(), u.end(), at) - u.begin());
+    const std::size_t right = std::clamp<std::size_t>(above, 1, u.size() - 1);
+    const R fraction = std::clamp(R((at - u[right - 1]) / (u[right] - u[right - 1])), R(0), R(1));
+    result.push_back(slerp(rows[right - 1], rows[right], fraction));
+    if (i > 0 && innermost(dot(result[i - 1], result[i])) < 0) {
+      result[i] = -result[i];
+    }
+  }
+  return result;
+}
+
+/// The upper median of x, which it puts into another order; at least one x. NaN counts as infinite.
+template <Real R>
+[[nodiscard]] R median_within(std::vector<R>& x) {
+  for (R& each : x) {
+    each = each == each ? each : std::numeric_limits<R>::infinity();
+  }
+  const auto middle = x.begin() + std::ptrdiff_t(x.size() / 2);
+  std::nth_element(x.begin(), middle, x.end());
+  return *middle;
+}
+
+template <Real R>
+[[nodiscard]] R median_of(std::vector<R> x) {
+  return median_within(x);
+}
+
+/// Row by row the median of x over the rows around, 61 or more if there are as many: those that
+/// belong to the same piece of the curve, which is told by a number that does not decrease.
+template <Real R>
+[[nodiscard]] std::vector<R> local_medians(const std::vector<R>& x,
+                                           const std::vector<std::size_t>& piece) {
+  constexpr std::size_t enough = 61;
+  const std::size_t n = x.size();
+  std::vector<R> result, around;
+  result.reserve(n);
+  for (std::size_t first = 0, last = 0; first < n; first = last) {
+    while (last < n && piece[last] == piece[first]) {
+      ++last;
+    }
+    const std::size_t more = last - first < enough ? (enough - (last - first) + 1) / 2 : 0;
+    const std::size_t count = std::min(n, last - first + 2 * more);
+    const std::size_t from = std::min(first > more ? first - more : 0, n - count);
+    const auto begin = x.begin() + std::ptrdiff_t(from);
+    around.assign(begin, begin + std::ptrdiff_t(count));
+    result.resize(last, median_within(around));
+  }
+  return result;
+}
+
+/// Rows in coordinates that have medians: the matrix of a rotation, whatever the sign of its
+/// quaternion, and of a pose its shift as a multiple of the length that counts as much as 1 rad.
+template <class T>
+class median_coordinates {
+  static constexpr bool is_pose = contains_tag<T, screw_tag>();
+
+public:
+  using R = real_type_t<T>;
+  using point = std::array<R, is_pose ? 12 : 9>;
+
+  [[nodiscard]] static point of(const quaternion<T>& q, const R& length) {
+    point result;
+    const auto put = [&](const auto& entries, std::size_t at) {
+      for (Eigen::Index i = 0; i < entries.size(); ++i) {
+        result[at + std::size_t(i)] = entries(i);
+      }
+    };
+    if constexpr (is_pose) {
+      constexpr R most = std::numeric_limits<R>::max() / 64; // sums of differences stay finite
+      put(rotation_matrix(rotation(q)), 0);
+      put(vector3<R>((translation(q) / length).cwiseMin(most).cwiseMax(-most)), 9);
+    } else {
+      put(rotation_matrix(q), 0);
+    }
+    return result;
+  }
+
+  /// The sum of the coordinates' distances.
+  [[nodiscard]] static R separation(const point& a, const point& b) {
+    using std::abs;
+    R sum(0);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      sum += abs(a[i] - b[i]);
+    }
+    return sum;
+  }
+};
+
+/// The middle of rows of which up to half are anywhere: coordinate by coordinate the median, and
+/// the row that is nearest to that.
+template <class T>
+class robust_centre {
+  using coordinates = median_coordinates<T>;
+  using point = typename coordinates::point;
+  using R = real_type_t<T>;
+
+public:
+  /// Control elements for a robust fit: around each knot average (Greville's abscissa) the middle
+  /// of the rows, sought from many rows to few, so that outliers do not pass for a motion where by
+  /// chance they are many.
+  template <int Order>
+  [[nodiscard]] std::vector<quaternion<T>>
+  controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u,
+           const std::vector<quaternion<T>>& rows, const R& length) {
+    constexpr std::array<std::size_t, 5> windows{81, 41, 21, 11, 5};
+    std::vector<quaternion<T>> result;
+    for (std::size_t i = 0; i < basis.size(); ++i) {
+      const auto above = std::lower_bound(u.begin(), u.end(), knot_average(basis, i));
+      const std::size_t middle = std::min(std::size_t(above - u.begin()), rows.size() - 1);
+      const auto first_of = [&](std::size_t count) {
+        return std::min(middle > count / 2 ? middle - count / 2 : 0, rows.size() - count);
+      };
+      const std::size_t all = std::min(rows.size(), windows.front()), from = first_of(all);
+      points_.clear();
+      for (std::size_t k = from; k < from + all; ++k) {
+        points_.push_back(coordinates::of(rows[k], length));
+      }
+      centre_ = middle - from;
+      radius_ = std::numeric_limits<R>::infinity();
+      for (const std::size_t window : windows) {
+        const std::size_t count = std::min(all, window);
+        move(first_of(count) - from, count);
+      }
+      result.push_back(rows[from + centre_]);
+      if (i > 0 && innermost(dot(result[i - 1], result[i])) < 0) {
+        result[i] = -result[i];
+      }
+    }
+    return result;
+  }
+
+private:
+  /// To the middle of those of `count` points that are within the radius, which becomes three times
+  /// the median separation from there.
+  void move(std::size_t first, std::size_t count) {
+    near_rows_.clear();
+    for (std::size_t k = first; k < first + count; ++k) {
+      if (coordinates::separation(points_[centre_], points_[k]) <= radius_) {
+        near_rows_.push_back(k);
+      }
+    }
+    if (3 * near_rows_.size() < count) {
+      if (count < 21) {
+        return; // by chance: few rows do not prove the others wrong
+      }
+      near_rows_.resize(count); // the motion is another one here
+      std::iota(near_rows_.begin(), near_rows_.end(), first);
+    }
+    point middle;
+    for (std::size_t i = 0; i < middle.size(); ++i) {
+      numbers_.clear();
+      for (const std::size_t k : near_rows_) {
+        numbers_.push_back(points_[k][i]);
+      }
+      middle[i] = median_within(numbers_);
+    }
+    const auto nearest = [&](std::size_t a, std::size_t b) {
+      return coordinates::separation(points_[a], middle) <
+             coordinates::separation(points_[b], middle);
+    };
+    centre_ = *std::min_element(near_rows_.begin(), near_rows_.end(), nearest);
+    numbers_.clear();
+    for (const std::size_t k : near_rows_) {
+      numbers_.push_back(coordinates::separation(points_[k], points_[centre_]));
+    }
+    radius_ = 3 * median_within(numbers_);
+  }
+
+  std::vector<point> points_; ///< of the rows around
+  std::vector<std::size_t> near_rows_;
+  std::vector<R> numbers_;
+  std::size_t centre_ = 0;
+  R radius_ = 0;
+};
+
+} // namespace duet::detail
