@@ -3,6 +3,7 @@
 #include <duet/core/batch/functions.hpp>
 #include <duet/core/batch/lanes.hpp>
 #include <duet/core/select.hpp>
+#include <duet/dual/math.hpp>
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"

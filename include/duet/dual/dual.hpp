@@ -32,7 +32,7 @@ DUET_ABI_BEGIN
 ///
 /// Example: `auto x = dual<double>::variable(3); (x * x).epsilon() == 6`.
 template <class T, int N = 1, class Tag = derivative_tag<>>
-class dual : detail::infinitesimal_operators<dual<T, N, Tag>, T> {
+class dual : public detail::infinitesimal_operators<dual<T, N, Tag>, T> {
   static_assert(Scalar<T>,
                 "duet: dual<T> needs a real number, one of an opted-in field (field_traits), "
                 "or a scalar of duet as T");
@@ -190,11 +190,6 @@ public:
     }
     return result;
   }
-
-  /// Drops the derivatives; explicit for that reason.
-  template <Arithmetic U>
-    requires std::constructible_from<U, T>
-  [[nodiscard]] constexpr explicit operator U() const { return static_cast<U>(value_); }
 
   /// The ε of a rigid motion is not the ε of a derivative, whichever way: put one inside the other,
   /// or take the part you mean.

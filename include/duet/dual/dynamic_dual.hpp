@@ -23,8 +23,9 @@ namespace detail {
 /// partials meet as if the first were n zeros; so do rows of any two sizes.
 template <class T, int Capacity>
 class dynamic_partials {
-  using packet = typename packing<T, Capacity>::packet;
-  static constexpr int width = packing<T, Capacity>::width;
+  using row = packing<T, Capacity>;
+  using packet = typename row::packet;
+  static constexpr int width = row::width;
   static constexpr int max_packets = (Capacity + width - 1) / width;
 
 public:
@@ -36,16 +37,16 @@ public:
   }
 
   [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] T get(int i) const { return i < size_ ? element(i) : T(0); }
+  [[nodiscard]] T get(int i) const { return i < size_ ? T(row::get(packets_, i)) : T(0); }
   /// Makes the row longer where need be.
   /// \throws invalid_input beyond the capacity
   void set(int i, const T& x) {
     grow(i + 1);
-    set_element(i, x);
+    row::set(packets_, i, x);
   }
   void copy_to(T* out) const {
     for (int i = 0; i < size_; ++i) {
-      out[i] = element(i);
+      out[i] = row::get(packets_, i);
     }
   }
 
@@ -54,7 +55,7 @@ public:
   [[nodiscard]] static dynamic_partials unit(int i, int n) {
     dynamic_partials result;
     result.grow(std::max(n, i + 1));
-    result.set_element(i, T(1));
+    row::set(result.packets_, i, T(1));
     return result;
   }
 
@@ -81,7 +82,7 @@ public:
     dynamic_partials result;
     result.grow(std::max({rows.size_...}));
     for (int i = 0; i < result.size_; ++i) {
-      result.set_element(i, f(rows.get(i)...));
+      row::set(result.packets_, i, f(rows.get(i)...));
     }
     return result;
   }
@@ -89,21 +90,6 @@ public:
 private:
   struct uninitialised {};
   dynamic_partials(uninitialised, int size) : size_(size) {}
-
-  [[nodiscard]] T element(int i) const {
-    if constexpr (width > 1) {
-      return packets_[i / width][i % width];
-    } else {
-      return packets_[i];
-    }
-  }
-  void set_element(int i, const T& x) {
-    if constexpr (width > 1) {
-      packets_[i / width][i % width] = x;
-    } else {
-      packets_[i] = x;
-    }
-  }
 
   [[nodiscard]] DUET_ALWAYS_INLINE packet packet_or_zero(int p) const {
     return size_ > 0 ? packets_[p] : packet{};
@@ -119,7 +105,7 @@ private:
       packets_[p] = packet{};
     }
     for (int i = size_; i < std::min(size, (size_ + width - 1) / width * width); ++i) {
-      set_element(i, T(0));
+      row::set(packets_, i, T(0));
     }
     size_ = std::max(size_, size);
   }

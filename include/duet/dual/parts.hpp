@@ -4,6 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual/number/promotion.hpp>
+#include <duet/dual/storage/structural_zero.hpp>
 
 #include <type_traits>
 
@@ -32,6 +33,13 @@ template <class T>
   } else {
     return value;
   }
+}
+
+/// Are all infinitesimal parts of x exactly zero?
+template <class T>
+  requires(Scalar<T> || Arithmetic<T>)
+[[nodiscard]] auto is_constant(const T& x) {
+  return is_structural_zero(with_innermost(x, real_type_t<T>(0)));
 }
 
 /// Part of a scalar with respect to the level tagged `Tag`, wherever it stands in the nesting: 0

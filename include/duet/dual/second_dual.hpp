@@ -29,7 +29,7 @@ DUET_ABI_BEGIN
 /// It computes what a dual of N partials over a dual of N partials does, save that each second
 /// derivative is kept and computed once: `hessian` runs on it.
 template <class T, int N, class Tag = derivative_tag<>>
-class second_dual : detail::infinitesimal_operators<second_dual<T, N, Tag>, T> {
+class second_dual : public detail::infinitesimal_operators<second_dual<T, N, Tag>, T> {
   static_assert(Scalar<T>, "duet: second_dual<T, N> needs a real number or a scalar of duet as T");
   static_assert(N >= 1, "duet: second_dual<T, N> needs at least one variable");
   static_assert(
@@ -151,11 +151,6 @@ public:
     }
     return result;
   }
-
-  /// Drops the derivatives; explicit for that reason.
-  template <Arithmetic U>
-    requires std::constructible_from<U, T>
-  [[nodiscard]] explicit operator U() const { return static_cast<U>(value_); }
 
   // The kernels behind the operators of detail::infinitesimal_operators.
 

@@ -14,28 +14,6 @@
 /// sine, cosine and arctangent forms are not, with exact derivatives of every order.
 
 namespace duet {
-namespace detail {
-
-template <class B>
-[[nodiscard, gnu::noinline]] std::array<B, 2> first_stumpff_pair_of_large(B s) {
-  const B root = sqrt(s);
-  const auto both = sine_and_cosine_of(root);
-  return {both.cosine, both.sine / root};
-}
-
-/// c₀(s) and c₁(s) of a batch, whose larger lanes share one sine and cosine.
-template <class B>
-[[nodiscard]] DUET_ALWAYS_INLINE std::array<B, 2> first_stumpff_pair(const B& s) {
-  return select(
-      s <= 1,
-      [&]() DUET_INLINE_LAMBDA {
-        return std::array<B, 2>{stumpff_of_small<0>(s), stumpff_of_small<1>(s)};
-      },
-      [&]() DUET_INLINE_LAMBDA { return first_stumpff_pair_of_large(s); });
-}
-
-} // namespace detail
-
 namespace rule {
 
 template <int N>
@@ -100,6 +78,32 @@ struct arc_ratio {
 };
 
 } // namespace rule
+
+namespace detail {
+
+template <class B>
+[[nodiscard, gnu::noinline]] std::array<B, 2> first_stumpff_pair_of_large(B s) {
+  const B root = sqrt(s);
+  const auto both = sine_and_cosine_of(root);
+  return {both.cosine, both.sine / root};
+}
+
+/// c₀(s) and c₁(s); the larger lanes of a batch share one sine and cosine.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<T, 2> first_stumpff_pair(const T& s) {
+  if constexpr (lane_traits<T>::is_batch) {
+    return select(
+        s <= 1,
+        [&] {
+          return std::array{stumpff_of_small<0>(s), stumpff_of_small<1>(s)};
+        },
+        [&] { return first_stumpff_pair_of_large(s); });
+  } else {
+    return {stumpff<0>(s), stumpff<1>(s)};
+  }
+}
+
+} // namespace detail
 
 /// L(s, w) = atan2(√s, w)/√s, s ≥ 0: what turns the vector part v of a quaternion, s = v·v, into
 /// that of its logarithm. At s = 0 it is 1/w for w > 0; for w < 0 it is infinite there.

@@ -30,7 +30,7 @@ DUET_ABI_BEGIN
 ///
 /// Coefficients are the Taylor coefficients x_k = x^(k)/k!; `derivative(k)` multiplies by k!.
 template <class T, int K, class Tag = derivative_tag<>>
-class taylor : detail::infinitesimal_operators<taylor<T, K, Tag>, T> {
+class taylor : public detail::infinitesimal_operators<taylor<T, K, Tag>, T> {
   static_assert(Scalar<T>,
                 "duet: taylor<T, K> needs a real number, one of an opted-in field (field_traits), "
                 "or a scalar of duet as T");
@@ -158,11 +158,6 @@ public:
     }
     return result;
   }
-
-  /// Drops the derivatives; explicit for that reason.
-  template <Arithmetic U>
-    requires std::constructible_from<U, T>
-  [[nodiscard]] constexpr explicit operator U() const { return static_cast<U>(value()); }
 
   /// The ε of a rigid motion is not the ε of a derivative.
   template <detail::OtherKindOfEpsilon<taylor> U>

@@ -75,7 +75,7 @@ private:
   }
 
   const X& theta_;
-  std::array<vector_sines_and_cosines<packet>, std::size_t(vectors)> values_;
+  std::array<sine_cosine<packet>, std::size_t(vectors)> values_;
 };
 
 } // namespace duet::detail

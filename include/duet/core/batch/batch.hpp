@@ -29,7 +29,8 @@ public:
   using packet = typename storage::mask;
 
   lane_mask() = default;
-  explicit lane_mask(bool x) {
+  /// x in all lanes.
+  lane_mask(bool x) {
     for (int i = 0; i < W; ++i) {
       set(i, x);
     }
@@ -70,14 +71,6 @@ public:
                                                                const lane_mask& b) {
     return from_packets([&](int p) DUET_INLINE_LAMBDA { return a.packets_[p] | b.packets_[p]; });
   }
-  [[nodiscard]] friend lane_mask operator&&(const lane_mask& a, bool b) {
-    return a && lane_mask(b);
-  }
-  [[nodiscard]] friend lane_mask operator&&(bool a, const lane_mask& b) { return b && a; }
-  [[nodiscard]] friend lane_mask operator||(const lane_mask& a, bool b) {
-    return a || lane_mask(b);
-  }
-  [[nodiscard]] friend lane_mask operator||(bool a, const lane_mask& b) { return b || a; }
   [[nodiscard]] friend DUET_ALWAYS_INLINE lane_mask operator==(const lane_mask& a,
                                                                const lane_mask& b) {
     return from_packets([&](int p) DUET_INLINE_LAMBDA { return ~(a.packets_[p] ^ b.packets_[p]); });

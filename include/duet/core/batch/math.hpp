@@ -31,25 +31,19 @@ template <class F, class T, int W, class... Rest>
   return result;
 }
 
-template <class T, int W>
-struct sine_cosine_batches {
-  batch<T, W> sine;
-  batch<T, W> cosine;
-};
-
 /// By the C library.
 template <class T, int W>
-[[nodiscard, gnu::noinline]] sine_cosine_batches<T, W> sine_cosine_of_lanes(batch<T, W> x) {
+[[nodiscard, gnu::noinline]] sine_cosine<batch<T, W>> sine_cosine_of_lanes(batch<T, W> x) {
   return {each_lane([](T a) { return std::sin(a); }, x),
           each_lane([](T a) { return std::cos(a); }, x)};
 }
 
 /// By the kernel of vector_sine_cosine.hpp, which all lanes must be small enough for.
 template <class T, int W>
-[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine_batches<T, W>
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<batch<T, W>>
 sine_cosine_of_small(const batch<T, W>& x) {
   using storage = packets<T, W>;
-  std::array<vector_sines_and_cosines<typename storage::packet>, std::size_t(storage::count)> both;
+  std::array<sine_cosine<typename storage::packet>, std::size_t(storage::count)> both;
   storage::for_each([&](int p) DUET_INLINE_LAMBDA {
     both[std::size_t(p)] = vector_sine_and_cosine_of_moderate(x.packet_at(p));
   });
@@ -61,7 +55,7 @@ sine_cosine_of_small(const batch<T, W>& x) {
 
 /// Where some lanes are large, infinite or not a number.
 template <class T, int W>
-[[nodiscard, gnu::noinline, gnu::cold]] sine_cosine_batches<T, W>
+[[nodiscard, gnu::noinline, gnu::cold]] sine_cosine<batch<T, W>>
 sine_cosine_of_mixed(const batch<T, W> x, const lane_mask<T, W> is_small) {
   const auto little = sine_cosine_of_small(blended(is_small, x, batch<T, W>(0)));
   const auto large = sine_cosine_of_lanes(x);
@@ -71,7 +65,7 @@ sine_cosine_of_mixed(const batch<T, W> x, const lane_mask<T, W> is_small) {
 
 /// sin x and cos x.
 template <class T, int W>
-[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine_batches<T, W>
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<batch<T, W>>
 sine_cosine_of_batch(const batch<T, W>& x) {
   if constexpr (std::same_as<T, double> && packets<T, W>::is_vector) {
     const auto is_small = x * x < vector_sine_limit * vector_sine_limit;

@@ -14,11 +14,11 @@
 
 namespace duet::detail {
 
-/// sin and cos of the lanes of a vector.
-template <class V>
-struct vector_sines_and_cosines {
-  V sine;
-  V cosine;
+/// sin and cos of one argument: of a number, a batch or the lanes of a vector.
+template <class T>
+struct sine_cosine {
+  T sine;
+  T cosine;
 };
 
 /// From here on, and for infinities and NaN, the C library is asked: n below would have too many
@@ -35,8 +35,7 @@ concept VectorOfDoubles = requires(V v) {
 
 /// The lanes that are too large, by the C library.
 template <VectorOfDoubles V>
-[[gnu::noinline, gnu::cold]] inline void replace_sines_of_large(const V& x,
-                                                                vector_sines_and_cosines<V>& y) {
+[[gnu::noinline, gnu::cold]] inline void replace_sines_of_large(const V& x, sine_cosine<V>& y) {
   for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) {
     if (!(std::abs(x[i]) < vector_sine_limit)) {
       y.sine[i] = std::sin(x[i]);
@@ -47,8 +46,8 @@ template <VectorOfDoubles V>
 
 /// Sines and cosines of r + tail, |r| ≤ π/4 and the tail what r rounded off.
 template <VectorOfDoubles V>
-[[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V>
-vector_sine_and_cosine_of_reduced(const V& r, const V& tail) {
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<V> vector_sine_and_cosine_of_reduced(const V& r,
+                                                                                  const V& tail) {
   // Minimax polynomials on |r| ≤ π/4, relative errors 3.5e-18 and 5e-20.
   const V z = r * r, z2 = z * z, cube = z * r;
   const V s =
@@ -66,8 +65,7 @@ vector_sine_and_cosine_of_reduced(const V& r, const V& tail) {
 /// Sines and cosines of a vector all lanes of which are below `vector_sine_limit`; others give
 /// garbage.
 template <VectorOfDoubles V>
-[[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V>
-vector_sine_and_cosine_of_moderate(const V& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<V> vector_sine_and_cosine_of_moderate(const V& x) {
   // x = n π/2 + r + tail with |r| ≤ π/4. π/2 in three parts of 33 bits, whose products with n are
   // exact, and a rest: also next to a multiple of π/2, where the first parts cancel, r is exact.
   constexpr double round = 0x1.8p52; // leaves n in the lowest bits
@@ -107,9 +105,9 @@ template <VectorOfDoubles V>
 
 /// sin x and cos x, lane by lane: within one unit of the last place of the truth.
 template <VectorOfDoubles V>
-[[nodiscard]] DUET_ALWAYS_INLINE vector_sines_and_cosines<V> vector_sine_and_cosine(const V& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<V> vector_sine_and_cosine(const V& x) {
 #ifdef __FAST_MATH__ // would drop what the reduction compensates
-  vector_sines_and_cosines<V> y{};
+  sine_cosine<V> y{};
   for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) {
     y.sine[i] = std::sin(x[i]);
     y.cosine[i] = std::cos(x[i]);
@@ -122,7 +120,7 @@ template <VectorOfDoubles V>
     // above: a lane would depend on its neighbours in the last bit.
     return vector_sine_and_cosine_of_reduced(x, -V{});
   }
-  vector_sines_and_cosines<V> y = vector_sine_and_cosine_of_moderate(x);
+  sine_cosine<V> y = vector_sine_and_cosine_of_moderate(x);
   if (!are_all_below(size, vector_sine_limit)) [[unlikely]] {
     replace_sines_of_large(x, y);
   }

@@ -52,7 +52,7 @@ template <class M>
 struct structure<M> {
   using scalar = typename M::Scalar;
   template <class F, class... Rest>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto map(F&& f, const M& m, const Rest&... rest) {
+  [[nodiscard]] static auto map(F&& f, const M& m, const Rest&... rest) {
     using result = std::decay_t<decltype(f(m(0, 0), rest(0, 0)...))>;
     detail::matrix_over<M, result> y(m.rows(), m.cols());
     for (Eigen::Index j = 0; j < m.cols(); ++j) {

@@ -25,6 +25,13 @@ using operand_t = std::conditional_t<Arithmetic<U>, constant_t<T>, T>;
 /// `dividing` with a T.
 template <class D, class T>
 struct infinitesimal_operators {
+  /// Drops the derivatives; explicit for that reason.
+  template <Arithmetic U>
+    requires std::constructible_from<U, T>
+  [[nodiscard]] constexpr explicit operator U() const {
+    return static_cast<U>(static_cast<const D&>(*this).value());
+  }
+
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a) { return a; }
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a) { return a.negated(); }
 
@@ -122,9 +129,18 @@ concept OrderedScalars = MixedScalars<A, B> && requires(const real_type_t<promot
   x < x;
 };
 
-/// They meet in numbers over the reals, where functions need not be analytic.
+/// Functions of such a number follow from those of what it is made of: of the numbers below an
+/// infinitesimal one, of the lanes of a batch.
+template <class T>
+concept Lifted = Infinitesimal<T> || lane_traits<T>::is_batch;
+
+/// Over the reals, where functions need not be analytic.
+template <class T>
+concept LiftedReal = Lifted<T> && Real<real_type_t<T>>;
+
+/// At least one of the two is lifted, and they meet in numbers over the reals.
 template <class A, class B>
-concept MixedReals = MixedScalars<A, B> && Real<real_type_t<promote_t<A, B>>>;
+concept MixedReals = (Lifted<A> || Lifted<B>)&&Promotable<A, B>&& LiftedReal<promote_t<A, B>>;
 
 /// Neither is a constant for the other: both must be brought to their common nesting first.
 template <class A, class B>

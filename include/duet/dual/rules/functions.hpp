@@ -13,9 +13,10 @@
 #include <duet/dual/rules/special.hpp>
 
 /// \file
-/// The smooth functions of `<cmath>`, and `midpoint`, over dual and Taylor numbers. Values are
-/// those of the standard library; derivatives are in elementary.hpp and its like. Complex numbers
-/// have those of `<complex>` that are in complex.hpp's list.
+/// The smooth functions of `<cmath>`, and `midpoint`, over dual and Taylor numbers, and over
+/// batches lane by lane. Values are those of the standard library; derivatives are in
+/// elementary.hpp and its like. Complex numbers have those of `<complex>` that are in complex.hpp's
+/// list.
 ///
 /// By value where Boost.Math declares f(T): with const D& neither would be more specialised.
 
@@ -25,37 +26,13 @@ template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D sqrt(const D& x) {
   return detail::lift(rule::sqrt{}, x);
 }
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D cbrt(D x) {
-  return detail::lift(rule::cbrt{}, x);
-}
-template <Infinitesimal D>
+template <detail::Lifted D>
 [[nodiscard]] DUET_ALWAYS_INLINE D exp(const D& x) {
   return detail::lift(rule::exp{}, x);
 }
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D exp2(const D& x) {
-  return detail::lift(rule::exp2{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D expm1(D x) {
-  return detail::lift(rule::expm1{}, x);
-}
-template <Infinitesimal D>
+template <detail::Lifted D>
 [[nodiscard]] DUET_ALWAYS_INLINE D log(const D& x) {
   return detail::lift(rule::log{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D log2(const D& x) {
-  return detail::lift(rule::log2{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D log10(const D& x) {
-  return detail::lift(rule::log10{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D log1p(D x) {
-  return detail::lift(rule::log1p{}, x);
 }
 template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D sin(const D& x) {
@@ -65,61 +42,28 @@ template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D cos(const D& x) {
   return detail::lift(rule::cos{}, x);
 }
-template <Infinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D tan(const D& x) {
-  return detail::lift(rule::tan{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D asin(const D& x) {
-  return detail::lift(rule::asin{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D acos(const D& x) {
-  return detail::lift(rule::acos{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D atan(const D& x) {
-  return detail::lift(rule::atan{}, x);
-}
-template <Infinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D sinh(const D& x) {
-  return detail::lift(rule::sinh{}, x);
-}
-template <Infinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D cosh(const D& x) {
-  return detail::lift(rule::cosh{}, x);
-}
-template <Infinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D tanh(const D& x) {
-  return detail::lift(rule::tanh{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D asinh(D x) {
-  return detail::lift(rule::asinh{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D acosh(D x) {
-  return detail::lift(rule::acosh{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D atanh(D x) {
-  return detail::lift(rule::atanh{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D erf(D x) {
-  return detail::lift(rule::erf{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D erfc(D x) {
-  return detail::lift(rule::erfc{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] D tgamma(D x) {
-  return detail::lift(rule::tgamma{}, x);
-}
-template <RealInfinitesimal D>
-[[nodiscard]] D lgamma(D x) {
-  return detail::lift(rule::lgamma{}, x);
+[[nodiscard]] auto tan(const detail::Lifted auto& x) { return detail::lift(rule::tan{}, x); }
+[[nodiscard]] auto sinh(const detail::Lifted auto& x) { return detail::lift(rule::sinh{}, x); }
+[[nodiscard]] auto cosh(const detail::Lifted auto& x) { return detail::lift(rule::cosh{}, x); }
+[[nodiscard]] auto tanh(const detail::Lifted auto& x) { return detail::lift(rule::tanh{}, x); }
+
+[[nodiscard]] auto asin(const detail::LiftedReal auto& x) { return detail::lift(rule::asin{}, x); }
+[[nodiscard]] auto acos(const detail::LiftedReal auto& x) { return detail::lift(rule::acos{}, x); }
+[[nodiscard]] auto atan(const detail::LiftedReal auto& x) { return detail::lift(rule::atan{}, x); }
+[[nodiscard]] auto cbrt(detail::LiftedReal auto x) { return detail::lift(rule::cbrt{}, x); }
+[[nodiscard]] auto exp2(detail::LiftedReal auto x) { return detail::lift(rule::exp2{}, x); }
+[[nodiscard]] auto expm1(detail::LiftedReal auto x) { return detail::lift(rule::expm1{}, x); }
+[[nodiscard]] auto log1p(detail::LiftedReal auto x) { return detail::lift(rule::log1p{}, x); }
+[[nodiscard]] auto asinh(detail::LiftedReal auto x) { return detail::lift(rule::asinh{}, x); }
+[[nodiscard]] auto acosh(detail::LiftedReal auto x) { return detail::lift(rule::acosh{}, x); }
+[[nodiscard]] auto atanh(detail::LiftedReal auto x) { return detail::lift(rule::atanh{}, x); }
+[[nodiscard]] auto erf(detail::LiftedReal auto x) { return detail::lift(rule::erf{}, x); }
+[[nodiscard]] auto erfc(detail::LiftedReal auto x) { return detail::lift(rule::erfc{}, x); }
+[[nodiscard]] auto tgamma(detail::LiftedReal auto x) { return detail::lift(rule::tgamma{}, x); }
+[[nodiscard]] auto lgamma(detail::LiftedReal auto x) { return detail::lift(rule::lgamma{}, x); }
+[[nodiscard]] auto log2(const detail::LiftedReal auto& x) { return detail::lift(rule::log2{}, x); }
+[[nodiscard]] auto log10(const detail::LiftedReal auto& x) {
+  return detail::lift(rule::log10{}, x);
 }
 
 namespace detail {
@@ -137,7 +81,7 @@ template <class D, class U>
 
 /// Apply a rule of several arguments in their common nesting.
 template <class Rule, class... A>
-[[nodiscard]] DUET_ALWAYS_INLINE auto lift_promoted(const Rule& rule, const A&... a) {
+[[nodiscard]] auto lift_promoted(const Rule& rule, const A&... a) {
   using common = std::common_type_t<A...>;
   return lift(rule, static_cast<const common&>(a)...);
 }
@@ -147,8 +91,8 @@ template <class Rule, class... A>
 /// x^p. A constant exponent or base has no slope of its own, so `pow(x, 0)`, `pow(0, p)` and
 /// `pow(−2, 2)` are regular.
 template <class A, class B>
-  requires detail::MixedScalars<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto pow(const A& x, const B& p) {
+  requires(detail::MixedScalars<A, B> || detail::MixedReals<A, B>)
+[[nodiscard]] auto pow(const A& x, const B& p) {
   if constexpr (ConstantOf<B, A>) {
     const auto exponent = detail::as_constant<A>(p);
     return detail::lift(rule::power<std::remove_const_t<decltype(exponent)>>{exponent}, x);
@@ -163,38 +107,36 @@ template <class A, class B>
 /// The angle of the point (x, y), in (−π, π].
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto atan2(const A& y, const B& x) {
+[[nodiscard]] auto atan2(const A& y, const B& x) {
   return detail::lift_promoted(rule::atan2{}, y, x);
 }
 
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto hypot(A x, B y) {
-  return detail::lift_promoted(rule::hypot{}, x, y);
-}
+[[nodiscard]] auto hypot(A x, B y) { return detail::lift_promoted(rule::hypot{}, x, y); }
 
 template <class A, class B, class C>
   requires detail::MixedReals<A, promote_t<B, C>>
-[[nodiscard]] DUET_ALWAYS_INLINE auto hypot(const A& x, const B& y, const C& z) {
+[[nodiscard]] auto hypot(const A& x, const B& y, const C& z) {
   return detail::lift_promoted(rule::hypot{}, x, y, z);
 }
 
 /// x y + z, the value rounded once.
 template <class A, class B, class C>
   requires detail::MixedReals<A, promote_t<B, C>>
-[[nodiscard]] DUET_ALWAYS_INLINE auto fma(const A& x, const B& y, const C& z) {
+[[nodiscard]] auto fma(const A& x, const B& y, const C& z) {
   return detail::lift_promoted(rule::fma{}, x, y, z);
 }
 
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto fmod(const A& x, const B& y) {
+[[nodiscard]] auto fmod(const A& x, const B& y) {
   return detail::lift_promoted(rule::fmod{}, x, y);
 }
 
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto remainder(const A& x, const B& y) {
+[[nodiscard]] auto remainder(const A& x, const B& y) {
   return detail::lift_promoted(rule::remainder{}, x, y);
 }
 
@@ -211,14 +153,14 @@ template <class A, class B>
 /// a + t (b − a), exact at t = 0 and t = 1.
 template <class A, class B, class C>
   requires detail::MixedReals<A, promote_t<B, C>>
-[[nodiscard]] DUET_ALWAYS_INLINE auto lerp(const A& a, const B& b, const C& t) {
+[[nodiscard]] auto lerp(const A& a, const B& b, const C& t) {
   return detail::lift_promoted(rule::lerp{}, a, b, t);
 }
 
 /// (a + b)/2 without overflow, as that of `<numeric>`.
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto midpoint(const A& a, const B& b) {
+[[nodiscard]] auto midpoint(const A& a, const B& b) {
   return detail::lift_promoted(rule::midpoint{}, a, b);
 }
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch/math.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/rules/sine_cosine.hpp>
@@ -23,6 +24,11 @@ namespace detail {
 template <class Rule, Infinitesimal D, class... Rest>
 [[nodiscard]] DUET_ALWAYS_INLINE D lift(const Rule& rule, const D& x, const Rest&... rest) {
   return D::lift(rule, x, rest...);
+}
+/// Lane by lane.
+template <class Rule, class T, int W, class... Rest>
+[[nodiscard]] batch<T, W> lift(const Rule& rule, const batch<T, W>& x, const Rest&... rest) {
+  return each_lane([&](const auto&... lane) { return rule.value(lane...); }, x, rest...);
 }
 
 // One by one the rules of sine and cosine would evaluate both for each.

@@ -81,19 +81,19 @@ template <class A, class B>
 
 /// |x|; at 0 the derivative from the side of the sign bit.
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D abs(const D& x) {
+[[nodiscard]] D abs(const D& x) {
   return select(
       signbit(x), [&] { return D(-x); }, [&] { return x; });
 }
 template <RealInfinitesimal D>
-[[nodiscard]] DUET_ALWAYS_INLINE D fabs(const D& x) {
+[[nodiscard]] D fabs(const D& x) {
   return abs(x);
 }
 
 /// |magnitude| with the sign of `sign`, which only its sign bit enters.
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto copysign(const A& magnitude, const B& sign) {
+[[nodiscard]] auto copysign(const A& magnitude, const B& sign) {
   using std::signbit;
   using common = promote_t<A, B>;
   const common x(magnitude);
@@ -105,7 +105,7 @@ template <class A, class B>
 /// The larger; where one is NaN the other, as in `<cmath>`.
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto fmax(const A& a, const B& b) {
+[[nodiscard]] auto fmax(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
   using real = real_type_t<common>;
@@ -115,7 +115,7 @@ template <class A, class B>
 }
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto fmin(const A& a, const B& b) {
+[[nodiscard]] auto fmin(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
   using real = real_type_t<common>;
@@ -127,7 +127,7 @@ template <class A, class B>
 /// max(a − b, 0); NaN where either is.
 template <class A, class B>
   requires detail::MixedReals<A, B>
-[[nodiscard]] DUET_ALWAYS_INLINE auto fdim(const A& a, const B& b) {
+[[nodiscard]] auto fdim(const A& a, const B& b) {
   using common = promote_t<A, B>;
   using real = real_type_t<common>;
   return select(

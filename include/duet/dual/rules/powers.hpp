@@ -97,7 +97,7 @@ struct exponential {
     const auto vanishes =
         innermost(base) == detail::integer<Base>(0) && detail::quiet_less(R(0), real_x);
     const auto is_flat =
-        is_constant(base) || detail::quiet_less(R(scalar_traits<T>::order), real_x);
+        detail::is_constant(base) || detail::quiet_less(R(scalar_traits<T>::order), real_x);
     return select(
         vanishes && is_flat, [] { return T(0); },
         [&] {
@@ -105,12 +105,6 @@ struct exponential {
               vanishes, [&] { return T(detail::with_innermost(regular, real_type_t<T>(0))); },
               [&] { return regular; });
         });
-  }
-
-private:
-  template <class U>
-  static auto is_constant(const U& u) {
-    return detail::is_structural_zero(detail::with_innermost(u, real_type_t<U>(0)));
   }
 };
 

@@ -14,16 +14,9 @@
 namespace duet::detail {
 
 template <class T>
-struct sine_cosine {
-  T sine;
-  T cosine;
-};
-
-template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<T> sine_and_cosine_of(const T& x) {
   if constexpr (lane_traits<T>::is_batch) {
-    const auto both = sine_cosine_of_batch(x);
-    return {both.sine, both.cosine};
+    return sine_cosine_of_batch(x);
   } else {
     return {pure_sin(x), pure_cos(x)};
   }

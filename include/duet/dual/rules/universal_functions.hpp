@@ -32,13 +32,7 @@ using universal_values = std::array<T, Count>;
 /// c₀, c₁ and c₁′ beyond z = 1.
 template <class R>
 [[nodiscard, gnu::noinline]] std::array<R, 3> first_stumpff_functions_of_large(R z) {
-  const auto c = [&]() -> std::array<R, 2> {
-    if constexpr (lane_traits<R>::is_batch) {
-      return first_stumpff_pair_of_large(z);
-    } else {
-      return {stumpff_of_large<0>(z), stumpff_of_large<1>(z)};
-    }
-  }();
+  const auto c = first_stumpff_pair(z);
   return {c[0], c[1], rule::stumpff<1>{}.slope(z, c[1])};
 }
 
@@ -48,12 +42,12 @@ template <Real R>
 [[nodiscard]] DUET_ALWAYS_INLINE std::array<R, 3> first_stumpff_functions(const R& z) {
   return select(
       z <= R(1),
-      [&]() DUET_INLINE_LAMBDA {
+      [&] {
         const R c2 = stumpff_of_small<2, 1>(z);
         const R c3 = stumpff_of_small<3, 1>(z);
         return std::array<R, 3>{R(1 - z * c2), R(1 - z * c3), R((c3 - c2) / 2)};
       },
-      [&]() DUET_INLINE_LAMBDA { return first_stumpff_functions_of_large(z); });
+      [&] { return first_stumpff_functions_of_large(z); });
 }
 
 template <std::size_t Count, class B, class A>
@@ -68,14 +62,11 @@ universal_functions_by_square(const D& b, const D& alpha) {
   if constexpr (!Infinitesimal<D> && Count == 3) {
     const auto c = first_stumpff_functions(z);
     return {c[0], b * c[1], square * b * c[2]};
-  } else if constexpr (lane_traits<D>::is_batch) {
-    const auto c = first_stumpff_pair(z);
-    return {c[0], b * c[1]};
   } else {
-    const D c1 = stumpff<1>(z);
-    universal_values<D, Count> result{stumpff<0>(z), D(b * c1)};
+    const auto c = first_stumpff_pair(z);
+    universal_values<D, Count> result{c[0], D(b * c[1])};
     if constexpr (Count == 3) {
-      result[2] = square * b * rule::stumpff<1>{}.slope(z, c1);
+      result[2] = square * b * rule::stumpff<1>{}.slope(z, c[1]);
     }
     return result;
   }
@@ -90,10 +81,10 @@ template <std::size_t Count, class T, int K, class Tag, class V, class A>
     u[i].set_coefficient(0, below[i]);
   }
   // k u_k = Σ j b_j f_{k−j}, where f is the slope
-  unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
+  unrolled<K>([&](int i) {
     const int k = i + 1;
     V d0(0), d1(0), d2(0);
-    unrolled<K>([&](int m) DUET_INLINE_LAMBDA {
+    unrolled<K>([&](int m) {
       const int j = m + 1;
       if (j <= k) {
         const T db = b.coefficient(j) * integer<T>(j);
@@ -101,7 +92,7 @@ template <std::size_t Count, class T, int K, class Tag, class V, class A>
         d1 = j == 1 ? V(u[0].coefficient(k - j) * db) : V(d1 + u[0].coefficient(k - j) * db);
         if constexpr (Count == 3) {
           V moment = u[1].coefficient(k - j) * b.coefficient(0);
-          unrolled<K>([&](int n) DUET_INLINE_LAMBDA {
+          unrolled<K>([&](int n) {
             if (n < k - j) {
               moment = moment + u[1].coefficient(k - j - 1 - n) * b.coefficient(n + 1);
             }

@@ -58,6 +58,9 @@ template <class T, int N>
 struct packing {
   static constexpr int width = 1;
   using packet = T;
+
+  [[nodiscard]] static const T& get(const packet* packets, int i) { return packets[i]; }
+  static void set(packet* packets, int i, const T& x) { packets[i] = x; }
 };
 template <class T, int N>
   requires(N > 1 && (std::same_as<T, float> || std::same_as<T, double>))
@@ -67,6 +70,9 @@ struct packing<T, N> {
   static constexpr int native = bytes / int(sizeof(T));
   static constexpr int width = ceil_to_power_of_two(N) < native ? ceil_to_power_of_two(N) : native;
   typedef T packet __attribute__((vector_size(width * sizeof(T))));
+
+  [[nodiscard]] static T get(const packet* packets, int i) { return packets[i / width][i % width]; }
+  static void set(packet* packets, int i, T x) { packets[i / width][i % width] = x; }
 };
 
 /// N partials of any scalar type, in an array.

@@ -61,7 +61,7 @@ private:
     }
   }
 
-  duet::detail::vector_sines_and_cosines<packet> values_[vectors];
+  duet::detail::sine_cosine<packet> values_[vectors];
 };
 
 } // namespace duet::expression::detail
