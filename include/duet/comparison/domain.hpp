@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -88,12 +89,7 @@ struct vectors {
 
   [[nodiscard]] std::size_t size() const { return std::size_t(N); }
   [[nodiscard]] bool contains(std::span<const double> point) const {
-    for (const double x : point) {
-      if (!(std::abs(x) <= bound)) {
-        return false;
-      }
-    }
-    return true;
+    return std::ranges::all_of(point, [this](double x) { return std::abs(x) <= bound; });
   }
   [[nodiscard]] std::vector<coordinates> special_points() const {
     std::vector<coordinates> points = {coordinates(std::size_t(N), 0.0),

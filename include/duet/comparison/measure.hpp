@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/comparison/domain.hpp>
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/result.hpp>
@@ -117,16 +117,11 @@ template <class T, class F, class G, class Inputs>
                                  double tolerance) {
   const std::vector<T> a = evaluate_at<T>(automatic, inputs, point);
   const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point);
-  if (a.size() != b.size()) {
-    throw invalid_input("duet: compare \"" + label + "\": the automatic result has " +
-                        std::to_string(a.size()) + " components, the closed form " +
-                        std::to_string(b.size()));
-  }
+  require(a.size() == b.size(), "duet: compare \"", label, "\": the automatic result has ",
+          a.size(), " components, the closed form ", b.size());
   const T d = distance(a, b);
   if (d < 0) {
-    difference result;
-    result.is_finite = false;
-    return result;
+    return {.is_finite = false};
   }
   difference result;
   const T half_epsilon = std::numeric_limits<T>::epsilon() / 2;

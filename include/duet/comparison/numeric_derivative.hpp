@@ -5,9 +5,9 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/result.hpp>
+#include <duet/dual/complex.hpp>
 
-#include <Eigen/Core>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -22,33 +22,10 @@
 namespace duet {
 namespace detail {
 
-/// Im y / h, component by component.
-template <class T>
-[[nodiscard]] T imaginary_part(const std::complex<T>& y, const T& h) {
-  return y.imag() / h;
-}
-template <class Derived, class T>
-[[nodiscard]] auto imaginary_part(const Eigen::MatrixBase<Derived>& y, const T& h) {
-  return (y.imag() / h).eval();
-}
-template <class T, std::size_t N>
-[[nodiscard]] std::array<T, N> imaginary_part(const std::array<std::complex<T>, N>& y, const T& h) {
-  std::array<T, N> result;
-  for (std::size_t i = 0; i < N; ++i) {
-    result[i] = imaginary_part(y[i], h);
-  }
-  return result;
-}
-
 template <class T>
 [[nodiscard]] bool is_finite(const std::vector<T>& components) {
   using std::isfinite;
-  for (const T& x : components) {
-    if (!isfinite(x)) {
-      return false;
-    }
-  }
-  return true;
+  return std::ranges::all_of(components, [](const T& x) { return isfinite(x); });
 }
 
 } // namespace detail
@@ -61,7 +38,8 @@ template <class F, std::floating_point T>
 [[nodiscard]] auto complex_step_derivative(const F& f, const T& x) {
   // h² vanishes beside 1 whatever the function, and h itself is far from the smallest number.
   const T h = std::ldexp(T(1), std::numeric_limits<T>::min_exponent / 2);
-  return detail::imaginary_part(detail::result_of_call(f(std::complex<T>(x, h))), h);
+  return map_scalars([h](const std::complex<T>& y) { return y.imag() / h; },
+                     detail::result_of_call(f(std::complex<T>(x, h))));
 }
 
 /// What `central_difference_derivative` returns.

@@ -7,6 +7,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -63,14 +64,8 @@ struct quaternions {
 
   [[nodiscard]] std::size_t size() const { return 4; }
   [[nodiscard]] bool contains(std::span<const double> point) const {
-    bool is_zero = true;
-    for (const double x : point) {
-      if (!(std::abs(x) <= bound)) {
-        return false;
-      }
-      is_zero = is_zero && x == 0;
-    }
-    return !is_zero;
+    return std::ranges::all_of(point, [this](double x) { return std::abs(x) <= bound; }) &&
+           std::ranges::any_of(point, [](double x) { return x != 0; });
   }
   [[nodiscard]] std::vector<coordinates> special_points() const {
     std::vector<coordinates> points;

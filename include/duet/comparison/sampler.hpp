@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/comparison/domain.hpp>
-#include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
+#include <duet/core/require.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -44,14 +44,10 @@ public:
   /// Adds a point: the coordinates of all arguments in a row.
   /// \throws invalid_input where their number is wrong or one is out of range
   [[nodiscard]] sampler including(const coordinates& point) const {
-    if (point.size() != size()) {
-      throw invalid_input("duet: sampler: a point of " + std::to_string(point.size()) +
-                          " coordinates, but the arguments have " + std::to_string(size()));
-    }
-    if (!contains(point)) {
-      throw invalid_input("duet: sampler: the point " + detail::tuple_text(point) +
-                          " is outside the domain of the arguments");
-    }
+    detail::require(point.size() == size(), "duet: sampler: a point of ", point.size(),
+                    " coordinates, but the arguments have ", size());
+    detail::require(contains(point), "duet: sampler: the point ", detail::tuple_text(point),
+                    " is outside the domain of the arguments");
     sampler result = *this;
     result.own_points_.push_back(point);
     return result;

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 
-#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -23,12 +22,32 @@ namespace detail {
 template <class Out>
 void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::Index columns) {
   const auto text = [](Eigen::Index r, Eigen::Index c) {
-    return std::to_string(r) + (c == 1 ? "" : " x " + std::to_string(c));
+    return c == 1 ? message(r) : message(r, " x ", c);
   };
   if (out.rows() != rows || out.cols() != columns) {
-    throw invalid_input(std::string("duet: ") + driver + ": the result needs size " +
-                        text(rows, columns) + ", but has " + text(out.rows(), out.cols()));
+    throw invalid_input(message("duet: ", driver, ": the result needs size ", text(rows, columns),
+                                ", but has ", text(out.rows(), out.cols())));
   }
+}
+
+/// f(x); writes ∂f_i/∂x_j into `jacobian`, once `prepare(rows)` has made it fit.
+template <class Tag, int Chunk, class F, class X, class J, class Prepare>
+[[nodiscard]] auto write_jacobian(F&& f, const X& x, J& jacobian, const Prepare& prepare) {
+  using output = result_of_pass<Tag, Chunk, F, X>;
+  std::decay_t<decltype(parts<Tag>(std::declval<const output&>(), 0))> value{};
+  for_each_pass<Tag, Chunk>(f, x, [&](const output& y, Eigen::Index first, Eigen::Index count) {
+    const Eigen::Index rows = vector_argument<output>::size(y);
+    if (first == 0) {
+      prepare(rows);
+      value = parts<Tag>(y, 0);
+    }
+    for (Eigen::Index j = 0; j < count; ++j) {
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        jacobian(i, first + j) = part<Tag>(y[std::size_t(i)], int(j) + 1);
+      }
+    }
+  });
+  return value;
 }
 
 } // namespace detail
@@ -47,15 +66,12 @@ void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::
 template <int Chunk = 0, class Tag = void, class F, VectorLike X, class G>
 [[nodiscard]] auto gradient_into(F&& f, const X& x, G&& gradient) {
   static_assert(Chunk >= 0, "duet: gradient_into<Chunk> needs a number of partials");
-  using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
-  using D = dual<typename argument::scalar, detail::partials_per_pass<X, Chunk>, tag>;
-  using output = std::decay_t<decltype(detail::result_of_call(f(detail::constants<D>(x))))>;
+  using output = detail::result_of_pass<tag, Chunk, F, X>;
   static_assert(Scalar<output>, "duet: gradient_into needs a function that returns a scalar");
-  if (argument::size(x) == 0) {
-    throw invalid_input("duet: gradient_into of a function of no variables");
-  }
-  detail::require_size("gradient_into", gradient, argument::size(x), 1);
+  const Eigen::Index size = detail::vector_argument<X>::size(x);
+  detail::require(size > 0, "duet: gradient_into of a function of no variables");
+  detail::require_size("gradient_into", gradient, size, 1);
   decltype(detail::part<tag>(std::declval<const output&>(), 0)) value(0);
   detail::for_each_pass<tag, Chunk>(f, x,
                                     [&](const auto& y, Eigen::Index first, Eigen::Index count) {
@@ -72,30 +88,14 @@ template <int Chunk = 0, class Tag = void, class F, VectorLike X, class G>
 template <int Chunk = 0, class Tag = void, class F, VectorLike X, class J>
 [[nodiscard]] auto jacobian_into(F&& f, const X& x, J&& jacobian) {
   static_assert(Chunk >= 0, "duet: jacobian_into<Chunk> needs a number of partials");
-  using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
-  using D = dual<typename argument::scalar, detail::partials_per_pass<X, Chunk>, tag>;
-  using output = std::decay_t<decltype(detail::result_of_call(f(detail::constants<D>(x))))>;
+  using output = detail::result_of_pass<tag, Chunk, F, X>;
   static_assert(VectorLike<output>, "duet: jacobian_into needs a function that returns a vector");
-  if (argument::size(x) == 0) {
-    throw invalid_input("duet: jacobian_into of a function of no variables");
-  }
-  using values = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
-  values value{};
-  detail::for_each_pass<tag, Chunk>(
-      f, x, [&](const output& y, Eigen::Index first, Eigen::Index count) {
-        const Eigen::Index rows = detail::vector_argument<output>::size(y);
-        if (first == 0) {
-          detail::require_size("jacobian_into", jacobian, rows, argument::size(x));
-          value = detail::parts<tag>(y, 0);
-        }
-        for (Eigen::Index j = 0; j < count; ++j) {
-          for (Eigen::Index i = 0; i < rows; ++i) {
-            jacobian(i, first + j) = detail::part<tag>(y[std::size_t(i)], int(j) + 1);
-          }
-        }
-      });
-  return value;
+  const Eigen::Index size = detail::vector_argument<X>::size(x);
+  detail::require(size > 0, "duet: jacobian_into of a function of no variables");
+  return detail::write_jacobian<tag, Chunk>(f, x, jacobian, [&](Eigen::Index rows) {
+    detail::require_size("jacobian_into", jacobian, rows, size);
+  });
 }
 
 } // namespace duet

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/chunked.hpp>
 #include <duet/derivative/result.hpp>
@@ -39,15 +39,12 @@ template <class Tag = void, class F, VectorLike X>
 [[nodiscard]] auto gradient(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
-  using D = dual<typename argument::scalar, detail::partials_per_pass<X>, tag>;
-  using output = std::decay_t<decltype(detail::result_of_call(f(detail::constants<D>(x))))>;
+  using output = detail::result_of_pass<tag, 0, F, X>;
   static_assert(Scalar<output>, "duet: gradient needs a function that returns a scalar");
   using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
   using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
   value_and_gradient<S, vector> result{S(0), vector(argument::size(x))};
-  if (argument::size(x) == 0) {
-    throw invalid_input("duet: gradient of a function of no variables");
-  }
+  detail::require(argument::size(x) > 0, "duet: gradient of a function of no variables");
   result.value = gradient_into<0, std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
       f, x, result.gradient);
   return result;

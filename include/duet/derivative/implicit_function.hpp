@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/equilibrated_lu.hpp>
@@ -13,8 +14,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -46,11 +45,8 @@ template <int N, class R>
     static_assert(size == N || size == Eigen::Dynamic,
                   "duet: implicit_function: F must return as many residuals as the unknown has "
                   "coordinates, of which a rotation has three");
-    if (vector_argument<type>::size(r) != N) {
-      throw invalid_input("duet: implicit_function: F returned " +
-                          std::to_string(vector_argument<type>::size(r)) +
-                          " residuals for an unknown of " + std::to_string(N) + " coordinates");
-    }
+    require(vector_argument<type>::size(r) == N, "duet: implicit_function: F returned ",
+            vector_argument<type>::size(r), " residuals for an unknown of ", N, " coordinates");
     return r;
   }
 }
@@ -83,10 +79,8 @@ public:
   /// \throws no_convergence unless it has
   void require_converged() const {
     if (!has_converged()) {
-      std::ostringstream message;
-      message << "duet: implicit_function: Newton's method " << failure_ << " after " << iterations_
-              << " iterations; residual " << residual.norm();
-      throw no_convergence(message.str());
+      throw no_convergence(message("duet: implicit_function: Newton's method ", failure_, " after ",
+                                   iterations_, " iterations; residual ", residual.norm()));
     }
   }
 

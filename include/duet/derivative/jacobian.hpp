@@ -1,8 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/derivative/argument.hpp>
+#include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
@@ -10,7 +11,6 @@
 
 #include <Eigen/Core>
 
-#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -38,34 +38,19 @@ template <class Tag = void, class F, VectorLike X>
   requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
-  using T = typename argument::scalar;
   using tag = detail::tag_for<Tag, F>;
-  constexpr int n = detail::partials_per_pass<X>;
-  using output =
-      std::decay_t<decltype(detail::result_of_call(f(detail::constants<dual<T, n, tag>>(x))))>;
+  using output = detail::result_of_pass<tag, 0, F, X>;
   static_assert(VectorLike<output>,
                 "duet: jacobian needs a function that returns a vector; where it returns a "
                 "rotation, say the frame: jacobian(f, x, frame::body)");
-  using result_argument = detail::vector_argument<output>;
   using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
   using S = typename detail::vector_argument<value>::scalar;
-  value_and_jacobian<value, Eigen::Matrix<S, result_argument::size_at_compile_time,
+  value_and_jacobian<value, Eigen::Matrix<S, detail::vector_argument<output>::size_at_compile_time,
                                           argument::size_at_compile_time>>
       result{};
-  if (argument::size(x) == 0) {
-    throw invalid_input("duet: jacobian of a function of no variables");
-  }
-  detail::for_each_pass<tag>(f, x, [&](const output& y, Eigen::Index first, Eigen::Index count) {
-    const Eigen::Index rows = result_argument::size(y);
-    if (first == 0) {
-      result.value = detail::parts<tag>(y, 0);
-      result.jacobian.resize(rows, argument::size(x));
-    }
-    for (Eigen::Index j = 0; j < count; ++j) {
-      for (Eigen::Index i = 0; i < rows; ++i) {
-        result.jacobian(i, first + j) = detail::part<tag>(y[std::size_t(i)], int(j) + 1);
-      }
-    }
+  detail::require(argument::size(x) > 0, "duet: jacobian of a function of no variables");
+  result.value = detail::write_jacobian<tag, 0>(f, x, result.jacobian, [&](Eigen::Index rows) {
+    result.jacobian.resize(rows, argument::size(x));
   });
   return result;
 }
@@ -78,20 +63,10 @@ template <class Tag = void, class F, class X, class V>
   using tag = detail::tag_for<Tag, F>;
   const auto y = [&] {
     if constexpr (VectorLike<X>) {
-      using argument = detail::vector_argument<X>;
-      using direction = detail::vector_argument<V>;
-      using T = promote_t<typename argument::scalar, typename direction::scalar>;
-      using D = dual<T, 1, tag>;
-      if (argument::size(x) != direction::size(v)) {
-        throw invalid_input("duet: directional_derivative: the point has " +
-                            std::to_string(argument::size(x)) + " components, the direction " +
-                            std::to_string(direction::size(v)));
-      }
-      auto point = argument::template make<D>(x);
-      for (Eigen::Index i = 0; i < argument::size(x); ++i) {
-        point[std::size_t(i)] = D(T(argument::get(x, i)), T(direction::get(v, i)));
-      }
-      return detail::result_of_call(f(point));
+      using T = promote_t<typename detail::vector_argument<X>::scalar,
+                          typename detail::vector_argument<V>::scalar>;
+      return detail::result_of_call(
+          f(detail::moving<dual<T, 1, tag>>("directional_derivative", x, "direction", v)));
     } else {
       using T = promote_t<detail::differentiable_t<X>, detail::differentiable_t<V>>;
       return detail::result_of_call(f(dual<T, 1, tag>(T(x), T(v))));

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <type_traits>
 
 /// \file
@@ -28,18 +27,10 @@ void require_tall(const A& a, const B& b) {
                 "duet: least_squares: A must have as many rows as columns, or more");
   static_assert(can_be_same(A::RowsAtCompileTime, B::RowsAtCompileTime),
                 "duet: least_squares: b must have as many rows as A");
-  std::ostringstream message;
-  if (a.rows() < a.cols()) {
-    message << "duet: least_squares: A is " << a.rows() << " x " << a.cols()
-            << ": fewer equations than unknowns";
-  } else if (a.cols() == 0) {
-    message << "duet: least_squares: A is empty";
-  } else if (a.rows() != b.rows()) {
-    message << "duet: least_squares: A has " << a.rows() << " rows, but b " << b.rows();
-  } else {
-    return;
-  }
-  throw invalid_input(message.str());
+  require(a.rows() >= a.cols(), "duet: least_squares: A is ", a.rows(), " x ", a.cols(),
+          ": fewer equations than unknowns");
+  require(a.cols() > 0, "duet: least_squares: A is empty");
+  require(a.rows() == b.rows(), "duet: least_squares: A has ", a.rows(), " rows, but b ", b.rows());
 }
 
 /// (AᵀA)⁻¹ g = P R⁻¹R⁻ᵀPᵀ g for A P = Q R.
@@ -121,12 +112,8 @@ template <class A, class B>
   const R scale = detail::scale_of<R>(matrix); // exact, so that no bit of a result depends on it
   matrix *= scale;
   const Eigen::ColPivHouseholderQR<decltype(matrix)> qr(matrix);
-  if (qr.rank() < a.cols()) {
-    std::ostringstream message;
-    message << "duet: least_squares: A has rank " << qr.rank() << ", less than its " << a.cols()
-            << " columns";
-    throw invalid_input(message.str());
-  }
+  detail::require(qr.rank() == a.cols(), "duet: least_squares: A has rank ", qr.rank(),
+                  ", less than its ", a.cols(), " columns");
   const auto values = qr.solve(detail::real_values<R>(b)).eval();
   if constexpr (scalar_traits<S>::order == 0) {
     return (values * scale).eval();

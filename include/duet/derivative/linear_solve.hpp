@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/derivative/lane_lu.hpp>
@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <type_traits>
 
 /// \file
@@ -39,12 +38,9 @@ void require_regular(const LU& lu) {
     for (Eigen::Index j = 0; j < k; ++j) {
       terms += R(abs(R(factors(k, j) * factors(j, k))));
     }
-    if (any(pivot <= R(R(4 * n) * std::numeric_limits<R>::epsilon() * terms))) {
-      std::ostringstream message;
-      message << "duet: solve: A is singular: of pivot " << k + 1 << " of " << n
-              << " nothing but rounding remains, " << factors(k, k);
-      throw invalid_input(message.str());
-    }
+    require(!any(pivot <= R(R(4 * n) * std::numeric_limits<R>::epsilon() * terms)),
+            "duet: solve: A is singular: of pivot ", k + 1, " of ", n,
+            " nothing but rounding remains, ", factors(k, k));
   }
 }
 
@@ -58,17 +54,10 @@ void require_square(const A& a, const B& b) {
                 "duet: solve: A must be square");
   static_assert(can_be_same(A::RowsAtCompileTime, B::RowsAtCompileTime),
                 "duet: solve: b must have as many rows as A");
-  std::ostringstream message;
-  if (a.rows() != a.cols()) {
-    message << "duet: solve: A is " << a.rows() << " x " << a.cols() << ", but must be square";
-  } else if (a.rows() == 0) {
-    message << "duet: solve: A is empty";
-  } else if (a.rows() != b.rows()) {
-    message << "duet: solve: A has " << a.rows() << " rows, but b " << b.rows();
-  } else {
-    return;
-  }
-  throw invalid_input(message.str());
+  require(a.rows() == a.cols(), "duet: solve: A is ", a.rows(), " x ", a.cols(),
+          ", but must be square");
+  require(a.rows() > 0, "duet: solve: A is empty");
+  require(a.rows() == b.rows(), "duet: solve: A has ", a.rows(), " rows, but b ", b.rows());
 }
 
 } // namespace detail

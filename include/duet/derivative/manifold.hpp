@@ -82,7 +82,7 @@ struct manifold<std::array<X, N>> {
   using scalar = typename manifold<X>::scalar;
   template <class Delta, class Frame = spatial_frame>
   [[nodiscard]] static auto plus(const std::array<X, N>& x, const Delta& delta, Frame frame = {}) {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
       return std::array{
           manifold<X>::plus(x[I], delta.template segment<part>(int(I) * part), frame)...};
     }

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/core/select.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual/eigen_traits.hpp>
@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 
-#include <sstream>
 #include <type_traits>
 
 /// \file
@@ -63,18 +62,8 @@ template <class Derived>
 [[nodiscard]] bool is_constant(const Eigen::MatrixBase<Derived>& a) {
   using S = typename Derived::Scalar;
   bool result = true;
-  if constexpr (Infinitesimal<S>) {
-    for (Eigen::Index j = 0; j < a.cols(); ++j) {
-      for (Eigen::Index i = 0; i < a.rows(); ++i) {
-        bool is_value = true;
-        auto check = [&](const real_type_t<S>& part) {
-          result = result && (is_value || all(part == 0));
-          is_value = false;
-          return part;
-        };
-        static_cast<void>(map_reals(a(i, j), check));
-      }
-    }
+  for (const S& entry : a.eval().reshaped()) {
+    result = result && all(is_constant(entry));
   }
   return result;
 }
@@ -171,11 +160,8 @@ template <class Derived>
 void require_finite(const char* function, const Eigen::MatrixBase<Derived>& a) {
   for (Eigen::Index j = 0; j < a.cols(); ++j) {
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
-      if (!all(is_all_finite(a(i, j)))) {
-        std::ostringstream message;
-        message << "duet: " << function << ": entry (" << i << ", " << j << ") of A is not finite";
-        throw invalid_input(message.str());
-      }
+      require(all(is_all_finite(a(i, j))), "duet: ", function, ": entry (", i, ", ", j,
+              ") of A is not finite");
     }
   }
 }

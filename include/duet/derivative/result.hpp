@@ -3,6 +3,7 @@
 
 #include <duet/core/own_numbers.hpp>
 #include <duet/core/structure.hpp>
+#include <duet/dual/eigen/structure.hpp>
 
 #include <type_traits>
 #include <utility>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/result.hpp>
@@ -10,7 +9,6 @@
 
 #include <Eigen/Core>
 
-#include <string>
 #include <type_traits>
 
 /// \file
@@ -34,21 +32,11 @@ struct value_gradient_and_product {
 /// \throws invalid_input where the sizes differ or x is empty
 template <class Tag = void, class F, VectorLike X, VectorLike V>
 [[nodiscard]] auto hessian_vector_product(F&& f, const X& x, const V& v) {
-  using argument = detail::vector_argument<X>;
-  using direction = detail::vector_argument<V>;
-  using T = promote_t<typename argument::scalar, typename direction::scalar>;
+  using T = promote_t<typename detail::vector_argument<X>::scalar,
+                      typename detail::vector_argument<V>::scalar>;
   using tag = detail::tag_for<Tag, F>;
   using along = derivative_tag<tag, struct direction_of_gradient>;
-  using D = dual<T, 1, along>;
-  if (argument::size(x) != direction::size(v)) {
-    throw invalid_input("duet: hessian_vector_product: the point has " +
-                        std::to_string(argument::size(x)) + " components, the vector " +
-                        std::to_string(direction::size(v)));
-  }
-  auto moving = argument::template make<D>(x);
-  for (Eigen::Index i = 0; i < argument::size(x); ++i) {
-    moving[std::size_t(i)] = D(T(argument::get(x, i)), T(direction::get(v, i)));
-  }
+  const auto moving = detail::moving<dual<T, 1, along>>("hessian_vector_product", x, "vector", v);
   const auto [y, g] =
       gradient<std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(f, moving);
   const auto value = detail::part<along>(y, 0);

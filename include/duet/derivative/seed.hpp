@@ -2,8 +2,10 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/require.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/result.hpp>
+#include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/storage/partials.hpp>
 
@@ -93,11 +95,32 @@ template <class D, class X>
 [[nodiscard]] auto seeded(const X& x) {
   using argument = vector_argument<X>;
   auto result = argument::template make<D>(x);
-  unrolled<argument::size_at_compile_time>([&](int i) DUET_INLINE_LAMBDA {
-    result[std::size_t(i)] = D::variable(argument::get(x, i), i);
-  });
+  unrolled<argument::size_at_compile_time>(
+      [&](int i) { result[std::size_t(i)] = D::variable(argument::get(x, i), i); });
   return result;
 }
+
+/// x + ε v over D.
+/// \throws invalid_input where the sizes differ; it names the driver and v
+template <class D, class X, class V>
+[[nodiscard]] auto moving(const char* driver, const X& x, const char* name, const V& v) {
+  using T = typename D::value_type;
+  using argument = vector_argument<X>;
+  using direction = vector_argument<V>;
+  require(argument::size(x) == direction::size(v), "duet: ", driver, ": the point has ",
+          argument::size(x), " components, the ", name, " ", direction::size(v));
+  auto result = argument::template make<D>(x);
+  for (Eigen::Index i = 0; i < argument::size(x); ++i) {
+    result[std::size_t(i)] = D(T(argument::get(x, i)), T(direction::get(v, i)));
+  }
+  return result;
+}
+
+/// What f returns over the duals of one pass over the components of an X.
+template <class Tag, int Chosen, class F, class X>
+using result_of_pass = std::decay_t<decltype(result_of_call(std::declval<F&>()(
+    constants<dual<typename vector_argument<X>::scalar, partials_per_pass<X, Chosen>, Tag>>(
+        std::declval<const X&>()))))>;
 
 /// Calls visit(f(x seeded from `first`), first, count) for every pass over the components of x.
 /// From one pass to the next only the partials change that are not zero.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
 #include <Eigen/Core>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <type_traits>
 
 /// \file
@@ -35,16 +35,9 @@ template <class A>
 void require_symmetric(const A& a) {
   static_assert(can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
                 "duet: symmetric_eigen: A must be square");
-  std::ostringstream message;
-  if (a.rows() != a.cols()) {
-    message << "duet: symmetric_eigen: A is " << a.rows() << " x " << a.cols()
-            << ", but must be square";
-  } else if (a.rows() == 0) {
-    message << "duet: symmetric_eigen: A is empty";
-  } else {
-    return;
-  }
-  throw invalid_input(message.str());
+  require(a.rows() == a.cols(), "duet: symmetric_eigen: A is ", a.rows(), " x ", a.cols(),
+          ", but must be square");
+  require(a.rows() > 0, "duet: symmetric_eigen: A is empty");
 }
 
 /// \throws invalid_input where two of the ascending eigenvalues are one but for rounding.
@@ -58,13 +51,8 @@ void require_distinct(const Values& values) {
   const R rounding = R(4 * n) * std::numeric_limits<R>::epsilon() * std::max(low, high);
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
     const R gap = values[i + 1] - values[i];
-    if (gap <= rounding) {
-      std::ostringstream message;
-      message << "duet: symmetric_eigen: eigenvalues " << i << " and " << i + 1 << ", both "
-              << values[i] << " with a gap of " << gap
-              << ", have no derivatives, as A is not constant";
-      throw invalid_input(message.str());
-    }
+    require(!(gap <= rounding), "duet: symmetric_eigen: eigenvalues ", i, " and ", i + 1, ", both ",
+            values[i], " with a gap of ", gap, ", have no derivatives, as A is not constant");
   }
 }
 

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 /// \file
 /// How far poses are from each other.
@@ -26,11 +25,8 @@ namespace duet {
 template <class T>
 [[nodiscard]] T squared_distance(const dual_quaternion<T>& a, const dual_quaternion<T>& b,
                                  double length) {
-  if (!(length >= 0 && length - length == 0)) {
-    std::ostringstream message;
-    message << "duet: distance: length is " << length << ", not a number from 0 up";
-    throw invalid_input(message.str());
-  }
+  detail::require(length >= 0 && length - length == 0, "duet: distance: length is ", length,
+                  ", not a number from 0 up");
   const vector3<T> move = translation(b) - translation(a);
   const vector3<T> turn = rotation_vector(quaternion<T>(conj(rotation(a)) * rotation(b)));
   return move.dot(move) + real_type_t<T>(length * length) * turn.dot(turn);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <sstream>
 #include <vector>
 
 /// \file
@@ -25,27 +25,15 @@ namespace duet {
 namespace detail {
 
 inline void require_weights(std::size_t count, const std::vector<double>& weights) {
-  std::ostringstream message;
-  if (count == 0) {
-    message << "duet: average: there is nothing to average";
-  } else if (!weights.empty() && weights.size() != count) {
-    message << "duet: average: " << weights.size() << " weights for " << count << " elements";
-  } else {
-    double sum = weights.empty() ? 1 : 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      if (!(weights[i] >= 0 && weights[i] <= std::numeric_limits<double>::max())) {
-        message << "duet: average: weight " << i << " is " << weights[i]
-                << ", not a number from 0 up";
-        throw invalid_input(message.str());
-      }
-      sum += weights[i];
-    }
-    if (sum > 0) {
-      return;
-    }
-    message << "duet: average: all weights are 0";
+  require(count > 0, "duet: average: there is nothing to average");
+  require(weights.empty() || weights.size() == count, "duet: average: ", weights.size(),
+          " weights for ", count, " elements");
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    require(weights[i] >= 0 && weights[i] <= std::numeric_limits<double>::max(),
+            "duet: average: weight ", i, " is ", weights[i], ", not a number from 0 up");
   }
-  throw invalid_input(message.str());
+  require(weights.empty() || *std::max_element(weights.begin(), weights.end()) > 0,
+          "duet: average: all weights are 0");
 }
 
 /// Newton's method for the mean of real rotations; also the inverse matrix of its last equation,
@@ -78,10 +66,8 @@ struct rotation_mean {
       }
       last_step = length;
     }
-    std::ostringstream message;
-    message << "duet: average: no mean found in " << limit << " steps, the last one " << last_step
-            << " rad: the rotations are too far apart";
-    throw no_convergence(message.str());
+    throw no_convergence(message("duet: average: no mean found in ", limit, " steps, the last one ",
+                                 last_step, " rad: the rotations are too far apart"));
   }
 
 private:
@@ -126,11 +112,8 @@ template <class T>
   std::vector<R> w;
   std::vector<quaternion<R>> values;
   for (std::size_t k = 0; k < q.size(); ++k) {
-    if (!detail::is_all_finite(q[k])) {
-      std::ostringstream message;
-      message << "duet: average: element " << k << " is not finite: " << q[k];
-      throw invalid_input(message.str());
-    }
+    detail::require(detail::is_all_finite(q[k]), "duet: average: element ", k,
+                    " is not finite: ", q[k]);
     w.push_back(R(weights.empty() ? 1 : weights[k] / largest) / R(sum));
     values.push_back(detail::innermost_of(q[k]));
   }

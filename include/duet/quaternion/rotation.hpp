@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
-#include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -12,7 +12,6 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <sstream>
 
 /// \file
 /// Unit quaternions as active rotations v ↦ q v q*: vectors, axis and angle, rotation vectors,
@@ -36,9 +35,8 @@ template <class T, class S>
   using std::cos;
   using std::sin;
   const quaternion<T> direction(T(0), n);
-  if (any(detail::is_zero(direction))) {
-    throw invalid_input("duet: from_axis_angle: the axis is the zero vector");
-  }
+  detail::require(!any(detail::is_zero(direction)),
+                  "duet: from_axis_angle: the axis is the zero vector");
   const quaternion<T> axis = normalized(direction);
   using R = promote_t<T, S>;
   const R half = R(a) / 2;
@@ -157,12 +155,9 @@ template <class T>
   const real defect =
       (values * values.transpose() - matrix3<real>::Identity()).cwiseAbs().maxCoeff();
   const real tolerance = std::numeric_limits<real>::digits > 24 ? real(1e-6) : real(1e-3);
-  if (!(defect <= tolerance) || values.determinant() < 0) {
-    std::ostringstream message;
-    message << "duet: from_rotation_matrix: not a rotation: |R R^T - 1| = " << defect
-            << ", det R = " << values.determinant();
-    throw invalid_input(message.str());
-  }
+  require(defect <= tolerance && !(values.determinant() < 0),
+          "duet: from_rotation_matrix: not a rotation: |R R^T - 1| = ", defect,
+          ", det R = ", values.determinant());
   // 4q₀², 4q₁² … from the diagonal; dividing by the largest never loses digits.
   const T s[4] = {1 + r(0, 0) + r(1, 1) + r(2, 2), 1 + r(0, 0) - r(1, 1) - r(2, 2),
                   1 - r(0, 0) + r(1, 1) - r(2, 2), 1 - r(0, 0) - r(1, 1) + r(2, 2)};
