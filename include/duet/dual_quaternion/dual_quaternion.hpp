@@ -60,6 +60,18 @@ template <class T>
   return {v[0].epsilon(), v[1].epsilon(), v[2].epsilon()};
 }
 
+/// α, the rotation of a pose.
+template <class T>
+[[nodiscard]] constexpr quaternion<T> rotation(const dual_quaternion<T>& a) {
+  return real_part(a);
+}
+/// N17: t = 2 β α*.
+template <class T>
+[[nodiscard]] vector3<T> translation(const dual_quaternion<T>& a) {
+  const quaternion<T> half = dual_part(a) * conj(real_part(a));
+  return {2 * half.x(), 2 * half.y(), 2 * half.z()};
+}
+
 /// N10: a − εb, the conjugate of a dual number. (`conj` of a scalar is the identity in generic
 /// code.)
 template <class T>

@@ -3,16 +3,17 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/require.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/twist.hpp> // whoever has poses can differentiate by them
 #include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 /// \file
 /// Unit dual quaternions as rigid displacements x ↦ R x + t (N17): points, directions, lines,
@@ -35,9 +36,8 @@ template <class A, class B>
 
 template <class Q>
 [[noreturn, gnu::cold, gnu::noinline]] void refuse_rotation(Q q) {
-  std::ostringstream message;
-  message << "duet: pose: the rotation " << q << " is no unit quaternion: normalized(q)";
-  throw invalid_input(message.str());
+  throw invalid_input(
+      message("duet: pose: the rotation ", q, " is no unit quaternion: normalized(q)"));
 }
 
 } // namespace detail
@@ -57,18 +57,6 @@ pose(const quaternion<A>& rotation, const vector3<B>& translation) {
     detail::refuse_rotation(alpha);
   }
   return detail::pose_of_unit(rotation, translation);
-}
-
-/// α, the rotation of a pose.
-template <class T>
-[[nodiscard]] constexpr quaternion<T> rotation(const dual_quaternion<T>& a) {
-  return real_part(a);
-}
-/// N17: t = 2 β α*.
-template <class T>
-[[nodiscard]] vector3<T> translation(const dual_quaternion<T>& a) {
-  const quaternion<T> half = dual_part(a) * conj(real_part(a));
-  return {2 * half.x(), 2 * half.y(), 2 * half.z()};
 }
 
 /// R x + t.
@@ -127,20 +115,14 @@ template <class T>
 /// \throws invalid_input where the last row is another, and as `from_rotation_matrix`
 template <class T>
 [[nodiscard]] dual_quaternion<T> from_transform_matrix(const Eigen::Matrix<T, 4, 4>& m) {
-  if (!all(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 && innermost(m(3, 2)) == 0 &&
-           innermost(m(3, 3)) == 1)) {
-    std::ostringstream message;
-    message << "duet: from_transform_matrix: the last row is " << innermost(m(3, 0)) << " "
-            << innermost(m(3, 1)) << " " << innermost(m(3, 2)) << " " << innermost(m(3, 3))
-            << ", not 0 0 0 1";
-    throw invalid_input(message.str());
-  }
+  detail::require(all(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 &&
+                      innermost(m(3, 2)) == 0 && innermost(m(3, 3)) == 1),
+                  "duet: from_transform_matrix: the last row is ", innermost(m(3, 0)), " ",
+                  innermost(m(3, 1)), " ", innermost(m(3, 2)), " ", innermost(m(3, 3)),
+                  ", not 0 0 0 1");
   const matrix3<T> r = m.template topLeftCorner<3, 3>();
   const vector3<T> t = m.template topRightCorner<3, 1>();
   return detail::pose_of_unit(from_rotation_matrix(r), t);
 }
 
 } // namespace duet
-
-// Whoever has poses can differentiate by them.
-#include <duet/dual_quaternion/twist.hpp>

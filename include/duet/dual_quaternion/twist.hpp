@@ -4,10 +4,9 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
@@ -121,11 +120,7 @@ struct manifold<quaternion<dual<T, 1, screw_tag>>> {
     using S = std::decay_t<decltype(delta[0])>;
     const auto step =
         duet::exp(dual_vector<S>(dual_vector_of(vector6<S>(delta)) * real_type_t<S>(0.5)));
-    if constexpr (detail::is_spatial(frame)) {
-      return step * a;
-    } else {
-      return a * step;
-    }
+    return detail::composed_in(frame, step, a);
   }
   static constexpr bool takes_rates_of_any_scalar = true;
   template <class R, class Frame>

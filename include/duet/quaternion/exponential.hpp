@@ -2,16 +2,21 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/constants.hpp>
 #include <duet/core/select.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/derivative/manifold.hpp>
+#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/number/tag.hpp>
 #include <duet/dual/rules/universal_functions.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/undetermined.hpp>
 
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 /// \file
@@ -26,13 +31,8 @@ namespace duet {
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<T> exp(const vector3<T>& v) {
   const T s = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-  if constexpr (lane_traits<T>::is_batch) {
-    const auto c = detail::first_stumpff_pair(s);
-    return {c[0], v[0] * c[1], v[1] * c[1], v[2] * c[1]};
-  } else {
-    const T ratio = stumpff<1>(s);
-    return {stumpff<0>(s), v[0] * ratio, v[1] * ratio, v[2] * ratio};
-  }
+  const auto c = detail::first_stumpff_pair(s);
+  return {c[0], v[0] * c[1], v[1] * c[1], v[2] * c[1]};
 }
 
 namespace detail {
@@ -57,13 +57,6 @@ template <class T>
 
 namespace detail {
 
-/// Below this ratio of squares of vector part and whole, a full turn is near: |v|⁻³ and higher
-/// powers in the derivatives by s would overflow before those by v do.
-template <Real R>
-[[nodiscard]] R near_full_turn() {
-  return R(std::numeric_limits<R>::max_exponent >= 1024 ? 0x1p-100 : 0x1p-20);
-}
-
 /// The unit vector û along the vector part of q; undetermined where that is zero.
 template <class T>
 [[nodiscard]] quaternion<T> axis_of(const quaternion<T>& q) {
@@ -75,39 +68,33 @@ template <class T>
       [&] { return v; }));
 }
 
-/// û φ where |q| is out of range or a full turn is near.
-template <class T>
-[[nodiscard, gnu::cold]] vector3<T> log_vector_of_extreme(const quaternion<T>& q,
-                                                          const char* function) {
-  using real = real_type_t<T>;
-  require_not_zero(q, function);
-  const quaternion<T> near_one = scaled(q).near_one;
-  const quaternion<T> v(T(0), near_one.x(), near_one.y(), near_one.z());
-  const T s = norm2(v);
-  return select(
-      innermost(q.w()) > 0 || innermost(s) > near_full_turn<real>(),
-      [&] { return vector3<T>(v.vec() * arc_ratio(s, near_one.w())); },
-      [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
-        const T short_way = arc_ratio(s, T(-near_one.w()));
-        return vector3<T>((axis_of(near_one) * constant::pi<real>() - v * short_way).vec());
-      });
-}
-
-/// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|².
+/// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|². Next to a full turn |v|⁻³ and higher
+/// powers in the derivatives by s would overflow before those by v do.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> log_vector(const quaternion<T>& q, const T& s,
                                                        const T& square, const char* function) {
   using real = real_type_t<T>;
   const real& value = innermost(square);
-  return select(
+  return by_range(
       is_moderate(value) &&
-          !(innermost(q.w()) < 0 && innermost(s) < value * near_full_turn<real>()),
+          !(innermost(q.w()) < 0 && innermost(s) < value * least_moderate<real>()),
+      q,
       [&]() DUET_INLINE_LAMBDA {
         const T ratio = arc_ratio(s, q.w());
         return vector3<T>(q.x() * ratio, q.y() * ratio, q.z() * ratio);
       },
-      [&] {
-        return by_lane([=](const auto& p) { return log_vector_of_extreme(p, function); }, q);
+      [=]<class P>(const quaternion<P>& near_one, int) {
+        require_not_zero(near_one, function);
+        const quaternion<P> v(P(0), near_one.x(), near_one.y(), near_one.z());
+        const P of_v = norm2(v);
+        return select(
+            innermost(near_one.w()) > 0 || innermost(of_v) > least_moderate<real_type_t<P>>(),
+            [&] { return vector3<P>(v.vec() * arc_ratio(of_v, near_one.w())); },
+            [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
+              const P short_way = arc_ratio(of_v, P(-near_one.w()));
+              const quaternion<P> half_turn = axis_of(near_one) * constant::pi<real_type_t<P>>();
+              return vector3<P>((half_turn - v * short_way).vec());
+            });
       });
 }
 template <class T>
@@ -117,21 +104,16 @@ template <class T>
   return log_vector(q, s, T(s + q.w() * q.w()), function);
 }
 
-template <class T>
-[[nodiscard, gnu::cold]] T log_norm_of_extreme(const quaternion<T>& q) {
-  using std::log;
-  using real = real_type_t<T>;
-  const auto [near_one, e] = scaled(q);
-  return T(log(norm2(near_one)) / 2 + real(e) * constant::ln2<real>());
-}
-
 /// log|q|; `square` = |q|².
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE T log_norm(const quaternion<T>& q, const T& square) {
   using std::log;
-  return select(
-      is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return T(log(square) / 2); },
-      [&] { return by_lane([](const auto& p) { return log_norm_of_extreme(p); }, q); });
+  return by_range(
+      is_moderate(innermost(square)), q, [&]() DUET_INLINE_LAMBDA { return T(log(square) / 2); },
+      []<class P>(const quaternion<P>& near_one, int e) {
+        using real = real_type_t<P>;
+        return P(log(norm2(near_one)) / 2 + real(e) * constant::ln2<real>());
+      });
 }
 
 } // namespace detail
@@ -274,7 +256,26 @@ template <class A, class B, class S>
   return a * duet::exp(vector3<R>(v[0] * t, v[1] * t, v[2] * t));
 }
 
-} // namespace duet
+/// A unit quaternion is moved by a small rotation vector δ: exp(δ/2) q in spatial axes, q exp(δ/2)
+/// in those of the body. Its rate is told as the angular velocity (N7). (It stands here so that
+/// whoever can form a rotation can differentiate by it.)
+template <class T>
+  requires(!detail::contains_tag<T, screw_tag>())
+struct manifold<quaternion<T>> {
+  static constexpr int dimension = 3;
+  using scalar = T;
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const quaternion<T>& q, const Delta& delta, Frame frame = {}) {
+    using S = std::decay_t<decltype(delta[0])>;
+    const auto turn = duet::exp(vector3<S>(delta[0] / 2, delta[1] / 2, delta[2] / 2));
+    return detail::composed_in(frame, turn, q);
+  }
+  static constexpr bool takes_rates_of_any_scalar = true;
+  template <class R, class Frame>
+  [[nodiscard]] static vector3<promote_t<T, R>> velocity(const quaternion<T>& q,
+                                                         const quaternion<R>& rate, Frame frame) {
+    return angular_velocity(q, rate, frame);
+  }
+};
 
-// Whoever has the exponential can differentiate by rotations.
-#include <duet/quaternion/tangent.hpp>
+} // namespace duet

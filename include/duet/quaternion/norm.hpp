@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/storage/structural_zero.hpp>
@@ -35,15 +36,15 @@ template <Real R>
   return max(max(R(abs(q.w())), R(abs(q.x()))), max(R(abs(q.y())), R(abs(q.z()))));
 }
 
-/// Squares beyond these limits, or their powers in derivatives of the first orders, overflow or
-/// lose digits.
+/// Squares below it or above its inverse, or their powers in derivatives of the first orders,
+/// overflow or lose digits.
+template <Real R>
+[[nodiscard]] R least_moderate() {
+  return R(std::numeric_limits<R>::max_exponent >= 1024 ? 0x1p-100 : 0x1p-20);
+}
 template <Real R>
 [[nodiscard]] auto is_moderate(const R& square) {
-  if constexpr (std::numeric_limits<R>::max_exponent >= 1024) {
-    return square > R(0x1p-100) && square < R(0x1p100);
-  } else {
-    return square > R(0x1p-20) && square < R(0x1p20);
-  }
+  return square > least_moderate<R>() && square < 1 / least_moderate<R>();
 }
 
 /// Exactly zero in all components: squares of small numbers vanish too, and NaN is not zero.
@@ -96,25 +97,19 @@ template <class T>
   return {scaled_down(q, e), e};
 }
 
-template <class T>
-[[nodiscard, gnu::cold]] T norm_of_extreme(const quaternion<T>& q) {
-  using std::ldexp;
-  using std::sqrt;
-  const auto [near_one, e] = scaled(q);
-  return ldexp(T(sqrt(norm2(near_one))), e);
+template <class F, class T>
+[[nodiscard, gnu::cold, gnu::noinline]] auto of_scaled(const F& f, const quaternion<T>& q) {
+  const auto [near_one, exponent] = scaled(q);
+  return f(near_one, exponent);
 }
-template <class T>
-[[nodiscard, gnu::cold]] quaternion<T> normalized_of_extreme(const quaternion<T>& q) {
-  using std::sqrt;
-  require_not_zero(q, "normalized");
-  const quaternion<T> near_one = scaled(q).near_one;
-  return near_one / T(sqrt(norm2(near_one)));
-}
-template <class T>
-[[nodiscard, gnu::cold]] quaternion<T> inverse_of_extreme(const quaternion<T>& q) {
-  require_not_zero(q, "inverse");
-  const auto [near_one, e] = scaled(q);
-  return scaled_down(conj(near_one) / norm2(near_one), e);
+
+/// usual(), of q in range; lane by lane, where it is not, extreme(near_one, e) of near_one · 2^e =
+/// q.
+template <class Condition, class T, class F, class G>
+[[nodiscard]] DUET_ALWAYS_INLINE auto by_range(const Condition& is_in_range, const quaternion<T>& q,
+                                               const F& usual, const G& extreme) {
+  return select(is_in_range, usual,
+                [&] { return by_lane([&](const auto& p) { return of_scaled(extreme, p); }, q); });
 }
 
 } // namespace detail
@@ -122,11 +117,15 @@ template <class T>
 /// N3: |q|. Zero for the zero quaternion, where it has no derivative.
 template <class T>
 [[nodiscard]] T norm(const quaternion<T>& q) {
+  using std::ldexp;
   using std::sqrt;
   const T square = norm2(q);
-  return select(
-      detail::is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return T(sqrt(square)); },
-      [&] { return detail::by_lane([](const auto& p) { return detail::norm_of_extreme(p); }, q); });
+  return detail::by_range(
+      detail::is_moderate(innermost(square)), q,
+      [&]() DUET_INLINE_LAMBDA { return T(sqrt(square)); },
+      []<class P>(const quaternion<P>& near_one, int e) {
+        return P(ldexp(P(sqrt(norm2(near_one))), e));
+      });
 }
 
 /// q/|q|.
@@ -135,11 +134,12 @@ template <class T>
 [[nodiscard]] quaternion<T> normalized(const quaternion<T>& q) {
   using std::sqrt;
   const T square = norm2(q);
-  return select(
-      detail::is_moderate(innermost(square)),
+  return detail::by_range(
+      detail::is_moderate(innermost(square)), q,
       [&]() DUET_INLINE_LAMBDA { return q / T(sqrt(square)); },
-      [&] {
-        return detail::by_lane([](const auto& p) { return detail::normalized_of_extreme(p); }, q);
+      []<class P>(const quaternion<P>& near_one, int) {
+        detail::require_not_zero(near_one, "normalized");
+        return near_one / P(sqrt(norm2(near_one)));
       });
 }
 
@@ -148,10 +148,12 @@ template <class T>
 template <class T>
 [[nodiscard]] quaternion<T> inverse(const quaternion<T>& q) {
   const T square = norm2(q);
-  return select(
-      detail::is_moderate(innermost(square)), [&]() DUET_INLINE_LAMBDA { return conj(q) / square; },
-      [&] {
-        return detail::by_lane([](const auto& p) { return detail::inverse_of_extreme(p); }, q);
+  return detail::by_range(
+      detail::is_moderate(innermost(square)), q,
+      [&]() DUET_INLINE_LAMBDA { return conj(q) / square; },
+      [](const auto& near_one, int e) {
+        detail::require_not_zero(near_one, "inverse");
+        return detail::scaled_down(conj(near_one) / norm2(near_one), e);
       });
 }
 

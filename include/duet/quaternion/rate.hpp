@@ -14,18 +14,26 @@
 
 namespace duet {
 
+namespace detail {
+
+/// m q of a turn, or its rate, about spatial axes, q m about those of the body.
+template <class Frame, class M, class Q>
+[[nodiscard]] DUET_ALWAYS_INLINE auto composed_in(Frame frame, const M& m, const Q& q) {
+  if constexpr (is_spatial(frame)) {
+    return m * q;
+  } else {
+    return q * m;
+  }
+}
+
+} // namespace detail
+
 /// N7: ω^s = vec(2 q̇ q*) in spatial axes, ω^b = vec(2 q* q̇) in body axes; q of unit norm.
 template <class A, class B, class Frame>
   requires Promotable<A, B>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>>
 angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame_of_result) {
-  const auto half = [&]() DUET_INLINE_LAMBDA {
-    if constexpr (detail::is_spatial(frame_of_result)) {
-      return q_dot * conj(q);
-    } else {
-      return conj(q) * q_dot;
-    }
-  }();
+  const auto half = detail::composed_in(frame_of_result, q_dot, conj(q));
   return {2 * half.x(), 2 * half.y(), 2 * half.z()};
 }
 
@@ -42,11 +50,7 @@ template <class A, class B, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<A, B>>
 quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_omega) {
   const quaternion<B> half(B(0), vector3<B>(omega[0] / 2, omega[1] / 2, omega[2] / 2));
-  if constexpr (detail::is_spatial(frame_of_omega)) {
-    return half * q;
-  } else {
-    return q * half;
-  }
+  return detail::composed_in(frame_of_omega, half, q);
 }
 
 /// Without a frame it is not clear which is meant.
