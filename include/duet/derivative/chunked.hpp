@@ -3,6 +3,7 @@
 
 #include <duet/core/require.hpp>
 #include <duet/derivative/argument.hpp>
+#include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/dual/parts.hpp>
@@ -28,26 +29,6 @@ void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::
     throw invalid_input(message("duet: ", driver, ": the result needs size ", text(rows, columns),
                                 ", but has ", text(out.rows(), out.cols())));
   }
-}
-
-/// f(x); writes ∂f_i/∂x_j into `jacobian`, once `prepare(rows)` has made it fit.
-template <class Tag, int Chunk, class F, class X, class J, class Prepare>
-[[nodiscard]] auto write_jacobian(F&& f, const X& x, J& jacobian, const Prepare& prepare) {
-  using output = result_of_pass<Tag, Chunk, F, X>;
-  std::decay_t<decltype(parts<Tag>(std::declval<const output&>(), 0))> value{};
-  for_each_pass<Tag, Chunk>(f, x, [&](const output& y, Eigen::Index first, Eigen::Index count) {
-    const Eigen::Index rows = vector_argument<output>::size(y);
-    if (first == 0) {
-      prepare(rows);
-      value = parts<Tag>(y, 0);
-    }
-    for (Eigen::Index j = 0; j < count; ++j) {
-      for (Eigen::Index i = 0; i < rows; ++i) {
-        jacobian(i, first + j) = part<Tag>(y[std::size_t(i)], int(j) + 1);
-      }
-    }
-  });
-  return value;
 }
 
 } // namespace detail

@@ -3,7 +3,6 @@
 
 #include <duet/core/require.hpp>
 #include <duet/derivative/argument.hpp>
-#include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
@@ -32,6 +31,30 @@ struct value_and_jacobian {
   Y value;
   J jacobian;
 };
+
+namespace detail {
+
+/// f(x); writes ∂f_i/∂x_j into `jacobian`, once `prepare(rows)` has made it fit.
+template <class Tag, int Chunk, class F, class X, class J, class Prepare>
+[[nodiscard]] auto write_jacobian(F&& f, const X& x, J& jacobian, const Prepare& prepare) {
+  using output = result_of_pass<Tag, Chunk, F, X>;
+  std::decay_t<decltype(parts<Tag>(std::declval<const output&>(), 0))> value{};
+  for_each_pass<Tag, Chunk>(f, x, [&](const output& y, Eigen::Index first, Eigen::Index count) {
+    const Eigen::Index rows = vector_argument<output>::size(y);
+    if (first == 0) {
+      prepare(rows);
+      value = parts<Tag>(y, 0);
+    }
+    for (Eigen::Index j = 0; j < count; ++j) {
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        jacobian(i, first + j) = part<Tag>(y[std::size_t(i)], int(j) + 1);
+      }
+    }
+  });
+  return value;
+}
+
+} // namespace detail
 
 /// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors or `std::array`s.
 template <class Tag = void, class F, VectorLike X>

@@ -19,8 +19,7 @@
 
 namespace duet {
 
-template <RealInfinitesimal D>
-[[nodiscard]] auto signbit(D x) {
+[[nodiscard]] auto signbit(RealInfinitesimal auto x) {
   using std::signbit;
   const auto is_negative = signbit(innermost(x));
   if constexpr (std::integral<std::remove_cvref_t<decltype(is_negative)>>) {
@@ -29,28 +28,23 @@ template <RealInfinitesimal D>
     return is_negative;
   }
 }
-template <RealInfinitesimal D>
-[[nodiscard]] auto isfinite(D x) {
+[[nodiscard]] auto isfinite(RealInfinitesimal auto x) {
   using std::isfinite;
   return isfinite(innermost(x));
 }
-template <RealInfinitesimal D>
-[[nodiscard]] auto isinf(D x) {
+[[nodiscard]] auto isinf(RealInfinitesimal auto x) {
   using std::isinf;
   return isinf(innermost(x));
 }
-template <RealInfinitesimal D>
-[[nodiscard]] auto isnan(D x) {
+[[nodiscard]] auto isnan(RealInfinitesimal auto x) {
   using std::isnan;
   return isnan(innermost(x));
 }
-template <RealInfinitesimal D>
-[[nodiscard]] auto isnormal(D x) {
+[[nodiscard]] auto isnormal(RealInfinitesimal auto x) {
   using std::isnormal;
   return isnormal(innermost(x));
 }
-template <RealInfinitesimal D>
-[[nodiscard]] int fpclassify(D x) {
+[[nodiscard]] int fpclassify(RealInfinitesimal auto x) {
   using std::fpclassify;
   return fpclassify(innermost(x));
 }
@@ -85,10 +79,7 @@ template <RealInfinitesimal D>
   return select(
       signbit(x), [&] { return D(-x); }, [&] { return x; });
 }
-template <RealInfinitesimal D>
-[[nodiscard]] D fabs(const D& x) {
-  return abs(x);
-}
+[[nodiscard]] auto fabs(const RealInfinitesimal auto& x) { return abs(x); }
 
 /// |magnitude| with the sign of `sign`, which only its sign bit enters.
 template <class A, class B>
@@ -167,23 +158,19 @@ template <RealInfinitesimal D>
   using std::nearbyint;
   return D(real_type_t<D>(nearbyint(innermost(x))));
 }
-template <RealInfinitesimal D>
-[[nodiscard]] long lround(const D& x) {
+[[nodiscard]] long lround(const RealInfinitesimal auto& x) {
   using std::lround;
   return lround(innermost(x));
 }
-template <RealInfinitesimal D>
-[[nodiscard]] long long llround(const D& x) {
+[[nodiscard]] long long llround(const RealInfinitesimal auto& x) {
   using std::llround;
   return llround(innermost(x));
 }
-template <RealInfinitesimal D>
-[[nodiscard]] long lrint(const D& x) {
+[[nodiscard]] long lrint(const RealInfinitesimal auto& x) {
   using std::lrint;
   return lrint(innermost(x));
 }
-template <RealInfinitesimal D>
-[[nodiscard]] long long llrint(const D& x) {
+[[nodiscard]] long long llrint(const RealInfinitesimal auto& x) {
   using std::llrint;
   return llrint(innermost(x));
 }
