@@ -98,7 +98,7 @@ template <class T>
 }
 
 template <class F, class T>
-[[nodiscard, gnu::cold, gnu::noinline]] auto of_scaled(const F& f, const quaternion<T>& q) {
+[[nodiscard, gnu::cold, gnu::noinline]] auto of_scaled(F f, const quaternion<T>& q) {
   const auto [near_one, exponent] = scaled(q);
   return f(near_one, exponent);
 }
