@@ -60,11 +60,8 @@ public:
   template <class S>
   using knot_rates = std::array<vector3<S>, own>;
 
-  /// What x = 0 has in the place of d.
-  using identity_coefficients = jacobian_coefficients<std::size_t(Order) - 1, real>;
-
   rotation_vector_segment(const real& h, const vector3<T>& d)
-      : h_(h), d_(d), jacobian_(dot(components(d), components(d))),
+      : h_(h), d_(d), at_start_(real(0)), at_end_(dot(components(d), components(d))),
         inverse_(right_jacobian_inverse((real(2) * components(d)).eigen())) {}
 
   /// x_0 … x_{k−1} about the start, where x_0 = 0, over the scalar S of the rates, T or above.
@@ -125,15 +122,13 @@ public:
   /// x_1 … x_Count at the start, or about the end, that make these rates w_0 … w_{Count−1}.
   template <std::size_t Count, class S>
   [[nodiscard]] std::array<vector3<S>, Count>
-  taylor_at_start(const identity_coefficients& at_identity,
-                  const std::array<vector3<S>, Count>& w) const {
-    return taylor_of_rates(at_identity, vector3<real>(vector3<real>::Zero()), w,
-                           [](const vector3<S>& v) { return v; });
+  taylor_at_start(const std::array<vector3<S>, Count>& w) const {
+    return taylor_of_rates(at_start_, zero(), w, [](const vector3<S>& v) { return v; });
   }
   template <std::size_t Count, class S>
   [[nodiscard]] std::array<vector3<S>, Count>
   taylor_at_end(const std::array<vector3<S>, Count>& w) const {
-    return taylor_of_rates(jacobian_, d_, w,
+    return taylor_of_rates(at_end_, d_, w,
                            [this](const vector3<S>& v) { return times_inverse(v); });
   }
 
@@ -145,32 +140,29 @@ public:
   /// w_0 … w_{Count−1} at both ends of the piece.
   template <std::size_t Count, class S>
   [[nodiscard]] end_rates<Count, S>
-  rates(const identity_coefficients& at_identity,
-        const std::array<vector3<S>, std::size_t(Order)>& x) const {
+  rates(const std::array<vector3<S>, std::size_t(Order)>& x) const {
     const auto shifted = taylor_shift<Count + 1>(x, h_);
     std::array<vector3<S>, Count> before, after;
-    for (std::size_t k = 0; k < Count; ++k) {
-      before[k] = x[k + 1];
-      after[k] = shifted[k + 1];
-    }
-    return {half_body_rates(at_identity, vector3<real>(vector3<real>::Zero()), before),
-            half_body_rates(jacobian_, d_, after)};
+    std::copy_n(x.begin() + 1, Count, before.begin());
+    std::copy_n(shifted.begin() + 1, Count, after.begin());
+    return {rates_at_start(before), rates_at_end(after)};
   }
 
   /// w_0 … w_{Count−1} at the start, or the end, from x_1 … x_Count about it.
   template <std::size_t Count, class S>
   [[nodiscard]] std::array<vector3<S>, Count>
-  rates_at_start(const identity_coefficients& at_identity,
-                 const std::array<vector3<S>, Count>& x) const {
-    return half_body_rates(at_identity, vector3<real>(vector3<real>::Zero()), x);
+  rates_at_start(const std::array<vector3<S>, Count>& x) const {
+    return half_body_rates(at_start_, zero(), x);
   }
   template <std::size_t Count, class S>
   [[nodiscard]] std::array<vector3<S>, Count>
   rates_at_end(const std::array<vector3<S>, Count>& x) const {
-    return half_body_rates(jacobian_, d_, x);
+    return half_body_rates(at_end_, d_, x);
   }
 
 private:
+  [[nodiscard]] static vector3<real> zero() { return vector3<real>::Zero(); }
+
   /// Each x_{k+1} from w_k less what the ones before make of it.
   template <std::size_t Count, class S, class Coefficients, class X, class Inverse>
   [[nodiscard]] static std::array<vector3<S>, Count>
@@ -194,9 +186,8 @@ private:
   /// ẍ at the end, where w and its derivative are given.
   template <class S>
   [[nodiscard]] vector3<S> second_at_end(const std::array<vector3<S>, 2>& end) const {
-    const vector3<S> zero = vector3<S>::Constant(S(real(0)));
-    const auto without =
-        half_body_rates(jacobian_, d_, std::array<vector3<S>, 2>{times_inverse(end[0]), zero});
+    const vector3<S> none = vector3<S>::Constant(S(real(0)));
+    const auto without = rates_at_end(std::array<vector3<S>, 2>{times_inverse(end[0]), none});
     return times_inverse(vector3<S>(end[1] - without[1]));
   }
 
@@ -211,7 +202,8 @@ private:
 
   real h_;
   vector3<T> d_;
-  jacobian_coefficients<std::size_t(Order) - 1, T> jacobian_;
+  jacobian_coefficients<std::size_t(Order) - 1, real> at_start_;
+  jacobian_coefficients<std::size_t(Order) - 1, T> at_end_;
   matrix3<T> inverse_; ///< J(d)⁻¹
 };
 

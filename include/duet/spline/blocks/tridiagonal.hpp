@@ -17,6 +17,11 @@ namespace duet::detail {
 template <class R, int N>
 struct block_row {
   Eigen::Matrix<R, N, N> lower, diagonal, upper;
+
+  /// By its place: 0 lower, 1 diagonal, 2 upper.
+  [[nodiscard]] Eigen::Matrix<R, N, N>& at(std::size_t place) {
+    return place == 0 ? lower : place == 1 ? diagonal : upper;
+  }
 };
 
 /// Columns of the first row's `lower` and the last row's `upper`.

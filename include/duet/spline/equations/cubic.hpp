@@ -98,17 +98,15 @@ public:
     return result;
   }
 
-  /// The equations of a motion that turns less: Q_i⁻¹ Q_{i+1} to the power λ, end rates by the
-  /// factor λ.
-  [[nodiscard]] cubic_equations scaled(const R& lambda) const {
-    cubic_equations result = *this;
-    for (quaternion<T>& turn : result.turns_) {
+  /// Makes them the equations of a motion that turns less: Q_i⁻¹ Q_{i+1} to the power λ, end rates
+  /// by the factor λ.
+  void scale(const R& lambda) {
+    for (quaternion<T>& turn : turns_) {
       turn = duet::exp((lambda * components(log_vector(turn, "interpolate"))).eigen());
     }
-    for (vector3<T>& rate : result.end_rates_) {
+    for (vector3<T>& rate : end_rates_) {
       rate = lambda * components(rate);
     }
-    return result;
   }
 
   /// The j-th of the three unknowns in an equation.
@@ -120,9 +118,8 @@ public:
     return (row == 0 ? 0 : row == n - 1 ? n - 3 : row - 1) + j;
   }
   /// Its block's place: 0 lower, 1 diagonal, 2 upper, corners included.
-  [[nodiscard]] int place(std::size_t row, std::size_t j) const {
-    const int shift = is_cyclic() ? 0 : row == 0 ? 1 : row == size() - 1 ? 2 : 0;
-    return (int(j) + shift) % 3;
+  [[nodiscard]] std::size_t place(std::size_t row, std::size_t j) const {
+    return (j + (is_cyclic() ? 0 : row == 0 ? 1 : row == size() - 1 ? 2 : 0)) % 3;
   }
 
   /// What an equation leaves, a half-angle vector; end rates are brought to the size of an
@@ -193,8 +190,7 @@ public:
       }
       const vector3<D> left = residual(row, omega);
       for (std::size_t j = 0; j < 3; ++j) {
-        const int at = place(row, j);
-        auto& block = at == 0 ? rows[row].lower : at == 1 ? rows[row].diagonal : rows[row].upper;
+        matrix3<R>& block = rows[row].at(place(row, j));
         for (int a = 0; a < 3; ++a) {
           r[row][a] = left[a].value();
           for (int b = 0; b < 3; ++b) {

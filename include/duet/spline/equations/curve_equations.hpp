@@ -37,17 +37,17 @@ using equations_of_t = typename equations_of<Spline, T>::type;
 ///
 /// They are constructed from parameters, rows whose signs are aligned and ends, and have
 /// `least_rows(kind)` that those ends need; `start()`, near the solution where turns are small;
-/// `residuals(x, r)`, r = F(x); `scaled(λ)`, those of a motion that turns less; `relative_step(x,
-/// step)`, how large a step is in relation to what it changes; `curve(u, q, x)`, the curve that a
-/// solution makes. Over real numbers also `linearise(x, r, matrix)`, F and its factorised
-/// Jacobian, false where that is singular.
+/// `residuals(x, r)`, r = F(x); `scale(λ)`, become those of a motion that turns less;
+/// `relative_step(x, step)`, how large a step is in relation to what it changes; `curve(u, q, x)`,
+/// the curve that a solution makes. Over real numbers also `linearise(x, r, matrix)`, F and its
+/// factorised Jacobian, false where that is singular.
 template <class E>
 concept CurveEquations = requires(E e, const E f, const typename E::unknowns x,
                                   typename E::unknowns r, typename E::real_type lambda,
                                   const typename E::matrix& jacobian) {
   { E::least_rows(end_kind()) } -> std::same_as<std::size_t>;
   f.residuals(x, r);
-  { f.scaled(lambda) } -> std::same_as<E>;
+  e.scale(lambda);
   { f.largest_turn() } -> std::same_as<std::pair<typename E::real_type, std::size_t>>;
   { f.unevenness() } -> std::convertible_to<typename E::real_type>;
   jacobian.solve(r);

@@ -112,7 +112,11 @@ private:
         x_[k] += h * slope[k];
       }
       const int before = iterations_;
-      if (lambda + h < 1 ? descend(full_.scaled(lambda + h)) : descend(full_)) {
+      equations part = full_;
+      if (lambda + h < 1) {
+        part.scale(lambda + h);
+      }
+      if (descend(part)) {
         for (std::size_t k = 0; k < x_.size(); ++k) {
           slope[k] = (x_[k] - at[k]) / h;
         }

@@ -30,7 +30,6 @@ public:
   static constexpr std::size_t count = 4;
   template <class S>
   using coefficients = std::array<vector3<S>, count>;
-  using identity_coefficients = typename segment::identity_coefficients;
   using factors = std::array<std::array<R, count>, count>;
 
   quintic_piece(const R& h, const vector3<T>& d) : h_(h), d_(d), segment_(h, d) {}
@@ -40,10 +39,9 @@ public:
     coefficients<S> x, y;
   };
   template <class S>
-  [[nodiscard]] ends<S> taylor(const identity_coefficients& at_identity,
-                               const coefficients<S>& at_start,
+  [[nodiscard]] ends<S> taylor(const coefficients<S>& at_start,
                                const coefficients<S>& at_end) const {
-    return {segment_.template taylor_at_start<count>(at_identity, at_start),
+    return {segment_.template taylor_at_start<count>(at_start),
             segment_.template taylor_at_end<count>(at_end)};
   }
 
@@ -80,11 +78,9 @@ public:
 
   /// The fifth rate w_4 at the start: what the rates at the start and those at the end contribute.
   template <class S>
-  [[nodiscard]] std::array<vector3<S>, 2>
-  last_rate_at_start(const identity_coefficients& at_identity, const ends<S>& e) const {
+  [[nodiscard]] std::array<vector3<S>, 2> last_rate_at_start(const ends<S>& e) const {
     const R per_h = 1 / h_;
-    const vector3<S> w =
-        segment_.template rates_at_start<count + 1>(at_identity, with_zero(e.x))[count];
+    const vector3<S> w = segment_.template rates_at_start<count + 1>(with_zero(e.x))[count];
     return {components(w) + R(-per_h) * components(e.x[3]), per_h * components(e.y[3])};
   }
   /// The fifth rate at the end: what the rates at the start and those at the end contribute.

@@ -9,9 +9,7 @@
 #include <duet/spline/curve_ends.hpp>
 #include <duet/spline/equations/curve_equations.hpp>
 #include <duet/spline/equations/quintic_piece.hpp>
-#include <duet/spline/equations/rotation_vector_ends.hpp>
-#include <duet/spline/equations/rotation_vector_table.hpp>
-#include <duet/spline/equations/small_turns.hpp>
+#include <duet/spline/equations/rotation_vector_equations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <Eigen/Core>
@@ -32,10 +30,11 @@ namespace duet::detail {
 /// every piece, and two of each end. With fewer unknowns, w_0 and w_1, the others would be
 /// differences over powers of h: of a piece much shorter than its neighbours no digits were left.
 template <class T>
-class rotation_vector_quintic_equations {
-  using R = real_type_t<T>;
-  using ends_type = rotation_vector_ends<T, 6>;
+class rotation_vector_quintic_equations : public rotation_vector_equations<T, 6, quintic_piece<T>> {
   using piece = quintic_piece<T>;
+  using base = rotation_vector_equations<T, 6, piece>;
+  using base::ends_, base::steps_, base::pieces_;
+  using typename base::R;
   static constexpr std::size_t count = piece::count;
   static constexpr int n = 3 * int(count);
   template <class S>
@@ -43,49 +42,18 @@ class rotation_vector_quintic_equations {
 
 public:
   using curve_type = rotation_vector_spline<T, 6>;
-  using real_type = R;
   using unknown = Eigen::Matrix<T, n, 1>;
   using unknowns = std::vector<unknown>;
   using matrix = block_band_lu<R, n>;
 
-  /// \param u  increasing, as many as `ends` need or more
-  /// \param q  as many unit elements, signs aligned
   rotation_vector_quintic_equations(const std::vector<R>& u, const std::vector<quaternion<T>>& q,
                                     const curve_ends<T>& ends)
-      : ends_(ends, q.front(), q.back()), table_(u, q),
-        lengths_(ends_.is_cyclic ? u.size() - 1 : u.size(), R(0)) {
-    for (std::size_t i = 0; i < table_.steps.size(); ++i) {
+      : base(u, q, ends), lengths_(this->knots(), R(0)) {
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
       for (const std::size_t knot : {i, next(i)}) {
-        lengths_[knot] = std::max(lengths_[knot], table_.steps[i]);
+        lengths_[knot] = std::max(lengths_[knot], steps_[i]);
       }
     }
-    make_pieces();
-  }
-
-  [[nodiscard]] static std::size_t least_rows(end_kind kind) { return ends_type::least_rows(kind); }
-
-  /// The equations of a motion that turns less: turns from row to row and rates at the ends times
-  /// λ.
-  [[nodiscard]] rotation_vector_quintic_equations scaled(const R& lambda) const {
-    rotation_vector_quintic_equations result = *this;
-    for (vector3<T>& turn : result.table_.turns) {
-      turn = lambda * components(turn);
-    }
-    for (auto& end : result.ends_.given) {
-      for (vector3<T>& rate : end) {
-        rate = lambda * components(rate);
-      }
-    }
-    result.make_pieces();
-    return result;
-  }
-
-  [[nodiscard]] R unevenness() const { return table_.unevenness(); }
-  [[nodiscard]] std::pair<R, std::size_t> largest_turn() const { return table_.largest_turn(); }
-
-  /// How large a step from x is in relation to what it changes. For real T.
-  [[nodiscard]] R relative_step(const unknowns& x, const unknowns& step) const {
-    return relative_step_of_rates(x, step, table_.turns, table_.steps);
   }
 
   /// Where Newton's method starts: the rates of parabolas through three rows, as if turns were
@@ -93,7 +61,7 @@ public:
   [[nodiscard]] unknowns start() const {
     unknowns x(lengths_.size(), unknown::Zero());
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const auto [velocity, acceleration] = table_.parabola(i, ends_.is_cyclic);
+      const auto [velocity, acceleration] = this->parabola(i);
       x[i].template head<3>() = velocity;
       x[i].template segment<3>(3) = acceleration;
     }
@@ -114,10 +82,10 @@ public:
       vector3<T> left;
       const auto [joint, derivative] = ends_.equations[k];
       if (joint == 0) {
-        left = rates(knot)[derivative] - ends_.given[end][k] * T(table_.unit_to(derivative + 1));
+        left = rates(knot)[derivative] - ends_.given[end][k] * T(this->unit_to(derivative + 1));
       } else {
         const auto before = pieces_[knot - 1].last_rate_at_end(taylor<T>(knot - 1, rates));
-        const auto after = pieces_[knot].last_rate_at_start(at_identity_, taylor<T>(knot, rates));
+        const auto after = pieces_[knot].last_rate_at_start(taylor<T>(knot, rates));
         left = before[0] + before[1] - after[0] - after[1];
       }
       r.back().template segment<3>(end_row(end, k)) = (scale * components(left)).eigen();
@@ -180,7 +148,7 @@ public:
         group.coefficients = panel::Zero(3, 3 * n);
         const auto of = [&](int at) { return group.coefficients.template middleCols<n>(at * n); };
         const auto before = pieces_[knot - 1].last_rate_at_end(taylor<D>(knot - 1, rates));
-        const auto after = pieces_[knot].last_rate_at_start(at_identity_, taylor<D>(knot, rates));
+        const auto after = pieces_[knot].last_rate_at_start(taylor<D>(knot, rates));
         add(of(0), scale, before[0]);
         add(of(1), scale, before[1]);
         add(of(1), R(-scale), after[0]);
@@ -199,7 +167,7 @@ public:
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       pieces.push_back(pieces_[i].polynomial(taylor<T>(i, rates)));
     }
-    table_.in_own_units(pieces);
+    this->in_own_units(pieces);
     return curve_type::from_pieces(u, std::move(q), std::move(pieces));
   }
 
@@ -228,7 +196,7 @@ private:
   /// Of piece i, with the rates at its knots.
   template <class S, class Rates>
   [[nodiscard]] auto taylor(std::size_t i, const Rates& rates) const {
-    return pieces_[i].template taylor<S>(at_identity_, rates(i), rates(next(i)));
+    return pieces_[i].template taylor<S>(rates(i), rates(next(i)));
   }
 
   /// Calls f(end, k, knot, scale) for equation k of either end, which is about a knot; times the
@@ -246,7 +214,7 @@ private:
           }
         } else {
           const R l = std::min({lengths_[knot - 1], lengths_[knot], lengths_[knot + 1]});
-          scale = std::min(table_.steps[knot - 1], table_.steps[knot]) * l * l * l;
+          scale = std::min(steps_[knot - 1], steps_[knot]) * l * l * l;
         }
         f(end, k, knot, scale);
       }
@@ -269,19 +237,7 @@ private:
     return result;
   }
 
-  void make_pieces() {
-    pieces_.clear();
-    pieces_.reserve(table_.steps.size());
-    for (std::size_t i = 0; i < table_.steps.size(); ++i) {
-      pieces_.emplace_back(table_.steps[i], table_.turns[i]);
-    }
-  }
-
-  ends_type ends_;
-  rotation_vector_table<T> table_;
   std::vector<R> lengths_; ///< of each knot's longer piece
-  std::vector<piece> pieces_;
-  typename piece::identity_coefficients at_identity_{R(0)};
 };
 
 template <class Own, class T>

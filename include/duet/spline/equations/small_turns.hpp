@@ -39,9 +39,7 @@ template <class R, class Equations>
   for (std::size_t row = 0; row < n; ++row) {
     const small_turn_equation<R> equation = equations.small_turns(row);
     for (std::size_t j = 0; j < 3; ++j) {
-      const int at = equations.place(row, j);
-      auto& block = at == 0 ? rows[row].lower : at == 1 ? rows[row].diagonal : rows[row].upper;
-      block(0, 0) = equation.weights[j];
+      rows[row].at(equations.place(row, j))(0, 0) = equation.weights[j];
     }
     x[row] = equation.right;
   }

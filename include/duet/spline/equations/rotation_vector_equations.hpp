@@ -1,0 +1,152 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/equations/rotation_vector_ends.hpp>
+#include <duet/spline/equations/small_turns.hpp>
+#include <duet/spline/orientations.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+/// \file
+/// What the equations of rotation-vector splines of both orders are made of.
+
+namespace duet::detail {
+
+/// The rows between which a rotation-vector spline is made, as steps and turns from each to the
+/// next, and its ends. The parameter is counted in units of about one step, so that all derivatives
+/// have one size.
+///
+/// \tparam Piece  made of a step and a turn: what does not change while rates are sought
+template <class T, int Order, class Piece>
+class rotation_vector_equations {
+protected:
+  using R = real_type_t<T>;
+  using ends_type = rotation_vector_ends<T, Order>;
+
+public:
+  using real_type = R;
+
+  /// \param u  increasing, as many as `ends` need or more
+  /// \param q  as many unit elements, signs aligned
+  rotation_vector_equations(const std::vector<R>& u, const std::vector<quaternion<T>>& q,
+                            const curve_ends<T>& ends)
+      : ends_(ends, q.front(), q.back()) {
+    using std::frexp;
+    using std::ldexp;
+    const std::size_t last = u.size() - 1;
+    int exponent = 0;
+    static_cast<void>(frexp(R((u.back() - u.front()) / R(last)), &exponent));
+    unit_ = ldexp(R(1), exponent);
+    steps_.reserve(last);
+    turns_.reserve(last);
+    for (std::size_t i = 0; i < last; ++i) {
+      steps_.push_back((u[i + 1] - u[i]) / unit_);
+      turns_.push_back(log_vector(turn_between(q[i], q[i + 1]), "interpolate"));
+    }
+    make_pieces();
+  }
+
+  [[nodiscard]] static std::size_t least_rows(end_kind kind) { return ends_type::least_rows(kind); }
+
+  /// Makes them the equations of a motion that turns less: turns from row to row and rates at the
+  /// ends times λ.
+  void scale(const R& lambda) {
+    for (vector3<T>& turn : turns_) {
+      turn = lambda * components(turn);
+    }
+    for (auto& end : ends_.given) {
+      for (vector3<T>& rate : end) {
+        rate = lambda * components(rate);
+      }
+    }
+    make_pieces();
+  }
+
+  /// The longest interval of the parameter as a multiple of the shortest.
+  [[nodiscard]] R unevenness() const {
+    const auto [shortest, longest] = std::minmax_element(steps_.begin(), steps_.end());
+    return *longest / *shortest;
+  }
+
+  /// The largest angle from one row to the next, rad, and the row it starts from.
+  [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
+    using std::sqrt;
+    std::pair<R, std::size_t> largest{R(-1), 0};
+    for (std::size_t i = 0; i < turns_.size(); ++i) {
+      const R angle = 2 * sqrt(R(innermost(dot(components(turns_[i]), components(turns_[i])))));
+      if (angle > largest.first) {
+        largest = {angle, i};
+      }
+    }
+    return largest;
+  }
+
+  /// How large a step from x is in relation to what it changes. For real T.
+  template <class Unknowns>
+  [[nodiscard]] R relative_step(const Unknowns& x, const Unknowns& step) const {
+    return relative_step_of_rates(x, step, turns_, steps_);
+  }
+
+protected:
+  /// Number of knots: the last one of a closed curve is the first again.
+  [[nodiscard]] std::size_t knots() const { return steps_.size() + (ends_.is_cyclic ? 0 : 1); }
+
+  /// Velocity and acceleration at a row of the parabola through it and its neighbours, as if turns
+  /// were small.
+  [[nodiscard]] std::pair<vector3<T>, vector3<T>> parabola(std::size_t i) const {
+    const std::size_t last = steps_.size();
+    const std::size_t left = i > 0 ? i - 1 : ends_.is_cyclic ? last - 1 : 0;
+    const std::size_t right = i < last ? i : last - 1;
+    const vector3<T> before = turns_[left] / steps_[left];
+    const vector3<T> after = turns_[right] / steps_[right];
+    const R h = steps_[left] + steps_[right];
+    return {(before * steps_[right] + after * steps_[left]) / h, (after - before) * (2 / h)};
+  }
+
+  /// A power of the unit.
+  [[nodiscard]] R unit_to(std::size_t exponent) const {
+    R result(1);
+    for (std::size_t i = 0; i < exponent; ++i) {
+      result *= unit_;
+    }
+    return result;
+  }
+
+  /// Coefficients of polynomials of the parameter itself.
+  template <class Polynomial>
+  void in_own_units(std::vector<Polynomial>& polynomials) const {
+    for (Polynomial& each : polynomials) {
+      R per_unit(1);
+      for (vector3<T>& coefficient : each) {
+        coefficient = per_unit * components(coefficient);
+        per_unit /= unit_;
+      }
+    }
+  }
+
+  ends_type ends_;
+  R unit_;
+  std::vector<R> steps_;          ///< of the parameter, in units
+  std::vector<vector3<T>> turns_; ///< half-angle vectors
+  std::vector<Piece> pieces_;
+
+private:
+  void make_pieces() {
+    pieces_.clear();
+    pieces_.reserve(steps_.size());
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      pieces_.emplace_back(steps_[i], turns_[i]);
+    }
+  }
+};
+
+} // namespace duet::detail
