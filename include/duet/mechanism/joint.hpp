@@ -105,6 +105,14 @@ struct joint {
   [[nodiscard]] constexpr bool slides() const {
     return kind == joint_kind::prismatic || kind == joint_kind::helical;
   }
+  /// How far it slides along its axis per unit of its coordinate.
+  [[nodiscard]] constexpr T travel() const {
+    return kind == joint_kind::helical ? pitch : T(slides() ? 1 : 0);
+  }
+  /// The limits that hold: of a continuous joint that of its velocity alone.
+  [[nodiscard]] constexpr joint_limits<T> range() const {
+    return kind == joint_kind::continuous ? joint_limits<T>{.velocity = limits.velocity} : limits;
+  }
 };
 
 /// A frame fixed to a link of a chain. Link 0 is the base, link i what the i-th joint moves; the

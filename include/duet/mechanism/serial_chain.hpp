@@ -184,11 +184,9 @@ private:
     s.axis = detail::cleaned_direction(detail::rotated(a, n));
     s.turns = given.turns();
     s.slides = given.slides();
-    s.pitch = given.kind == joint_kind::helical ? given.pitch : T(s.slides ? 1 : 0);
+    s.pitch = given.travel();
     kinds_[i] = given.kind;
-    limits_[i] = given.kind == joint_kind::continuous
-                     ? joint_limits<T>{.velocity = given.limits.velocity}
-                     : given.limits;
+    limits_[i] = given.range();
     ++size_;
   }
 

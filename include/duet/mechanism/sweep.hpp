@@ -5,6 +5,8 @@
 #include <duet/core/batch/lanes.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/parallel_for.hpp>
+#include <duet/derivative/jacobian.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/jacobian.hpp>
 
 #include <Eigen/Core>
@@ -25,14 +27,23 @@ namespace duet {
 
 namespace detail {
 
-/// One lane of a matrix of batches.
+/// One lane of a result over batches: of a pose, a matrix, or both.
+template <class B, class To>
+void write_lane(const dual_quaternion<B>& a, int k, To& to) {
+  to = lane(a, k);
+}
 template <class M, class To>
-DUET_ALWAYS_INLINE void write_lane(const M& m, int k, To& to) {
+DUET_ALWAYS_INLINE void write_lane(const Eigen::MatrixBase<M>& m, int k, To& to) {
   for (Eigen::Index j = 0; j < m.cols(); ++j) {
     for (Eigen::Index i = 0; i < m.rows(); ++i) {
       to(i, j) = m(i, j)[k];
     }
   }
+}
+template <class V, class J, class To>
+void write_lane(const value_and_jacobian<V, J>& both, int k, To& to) {
+  write_lane(both.value, k, to.value);
+  write_lane(both.jacobian, k, to.jacobian);
 }
 
 /// Have the matrices of all results 6 rows and n columns?
@@ -49,18 +60,18 @@ void require_matrices(const char* function, Out& out, Eigen::Index n, const Matr
   }
 }
 
-/// Calls write(i, count, f(θ)) with the configurations i … i + count − 1 in the lanes of θ; those
-/// beyond the last are the last.
-template <class C, class X, class Write>
-void sweep(const char* function, const C& chain, std::span<const X> configurations,
-           std::size_t room, execution how, const Write& write) {
+/// out[i] = f(configurations[i]), with several in the lanes of f's argument; those beyond the last
+/// are the last.
+template <class C, class X, class Out, class F>
+void sweep(const char* function, const C& chain, std::span<const X> configurations, Out& out,
+           execution how, const F& f) {
   using argument = vector_argument<X>;
   using B = batch<typename argument::scalar>;
   using lanes = joint_vector<B, C::joints>;
-  if (configurations.size() != room) {
+  if (configurations.size() != std::size(out)) {
     std::ostringstream message;
     message << "duet: " << function << ": " << configurations.size()
-            << " configurations, but room for " << room << " results";
+            << " configurations, but room for " << std::size(out) << " results";
     throw invalid_input(message.str());
   }
   for (std::size_t i = 0; i < configurations.size(); ++i) {
@@ -83,7 +94,10 @@ void sweep(const char* function, const C& chain, std::span<const X> configuratio
               return argument::get(configurations[i + std::min(std::size_t(k), count - 1)], j);
             });
           }
-          write(i, count, theta);
+          const auto result = f(theta);
+          for (std::size_t k = 0; k < count; ++k) {
+            write_lane(result, int(k), out[i + k]);
+          }
         }
       },
       how);
@@ -117,13 +131,8 @@ template <SerialChain C, Configurations X, std::ranges::contiguous_range Out,
           PlaceOnChain<C> At = tip_of_chain>
 void poses(const C& chain, const X& configurations, Out&& out, execution how = one_core,
            const At& at = {}) {
-  detail::sweep("poses", chain, detail::read_only(configurations), std::size(out), how,
-                [&](std::size_t i, std::size_t count, const auto& theta) {
-                  const auto a = chain.pose(theta, at);
-                  for (std::size_t k = 0; k < count; ++k) {
-                    out[i + k] = lane(a, int(k));
-                  }
-                });
+  detail::sweep("poses", chain, detail::read_only(configurations), out, how,
+                [&](const auto& theta) { return chain.pose(theta, at); });
 }
 
 /// out[i] = jacobian(chain, configurations[i], frame, at), as `poses`.
@@ -136,13 +145,8 @@ void jacobians(const C& chain, const X& configurations, Frame frame_of_result, O
                execution how = one_core, const At& at = {}) {
   detail::require_matrices(
       "jacobians", out, chain.size(), [](auto& m) -> auto& { return m; });
-  detail::sweep("jacobians", chain, detail::read_only(configurations), std::size(out), how,
-                [&](std::size_t i, std::size_t count, const auto& theta) {
-                  const auto m = jacobian(chain, theta, frame_of_result, at);
-                  for (std::size_t k = 0; k < count; ++k) {
-                    detail::write_lane(m, int(k), out[i + k]);
-                  }
-                });
+  detail::sweep("jacobians", chain, detail::read_only(configurations), out, how,
+                [&](const auto& theta) { return jacobian(chain, theta, frame_of_result, at); });
 }
 
 /// out[i] = pose_and_jacobian(chain, configurations[i], frame, at), as `jacobians`.
@@ -152,14 +156,9 @@ void poses_and_jacobians(const C& chain, const X& configurations, Frame frame_of
                          execution how = one_core, const At& at = {}) {
   detail::require_matrices(
       "poses_and_jacobians", out, chain.size(), [](auto& both) -> auto& { return both.jacobian; });
-  detail::sweep("poses_and_jacobians", chain, detail::read_only(configurations), std::size(out),
-                how, [&](std::size_t i, std::size_t count, const auto& theta) {
-                  const auto both = pose_and_jacobian(chain, theta, frame_of_result, at);
-                  for (std::size_t k = 0; k < count; ++k) {
-                    out[i + k].value = lane(both.value, int(k));
-                    detail::write_lane(both.jacobian, int(k), out[i + k].jacobian);
-                  }
-                });
+  detail::sweep(
+      "poses_and_jacobians", chain, detail::read_only(configurations), out, how,
+      [&](const auto& theta) { return pose_and_jacobian(chain, theta, frame_of_result, at); });
 }
 
 } // namespace duet
