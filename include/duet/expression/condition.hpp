@@ -5,7 +5,6 @@
 #include <duet/core/select.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/expression/tree/formula.hpp>
-#include <duet/expression/tree/function.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
@@ -13,6 +12,7 @@
 #include <cmath>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 /// \file
 /// Choices by value: comparisons, `select`, |x|.
@@ -25,13 +25,8 @@ namespace op {
 template <bool OrEqual>
 struct less {
   static constexpr kind kind_of(kind, kind) { return kind::condition; }
-  template <class A, class B>
-  static constexpr auto value(const A& a, const B& b) {
-    if constexpr (OrEqual) {
-      return innermost(a) <= innermost(b);
-    } else {
-      return innermost(a) < innermost(b);
-    }
+  static constexpr auto value(const auto& a, const auto& b) {
+    return OrEqual ? innermost(a) <= innermost(b) : innermost(a) < innermost(b);
   }
   static printed print(notation style, const printed& a, const printed& b) {
     const std::string sign = !OrEqual ? " < " : style == notation::latex ? " \\le " : " <= ";
@@ -48,17 +43,13 @@ struct select {
                   "duet: select takes a condition, as a < b, and two formulas of one kind");
     if constexpr (std::is_same_v<A, B>) {
       return a;
-    } else {
-      return applied_node<select, C, A, B>{};
     }
   }
-  template <class C, class A, class B>
-  static constexpr auto value(const C& condition, const A& a, const B& b) {
+  static constexpr auto value(const auto& condition, const auto& a, const auto& b) {
     return duet::select(
         condition, [&] { return a; }, [&] { return b; });
   }
-  template <class C, class A, class B>
-  static constexpr auto differential(C c, A, B, auto, auto da, auto db) {
+  static constexpr auto differential(auto c, auto, auto, auto, auto da, auto db) {
     return apply<select>(c, da, db);
   }
   static printed print(notation style, const printed& c, const printed& a, const printed& b) {
@@ -72,6 +63,7 @@ struct select {
 
 /// 1, or −1 where the sign bit is set.
 struct sign {
+  static constexpr detail::function_name name = {"sign", ""};
   static constexpr kind kind_of(kind a) { return a; }
   template <class X>
   static X value(const X& x) {
@@ -79,80 +71,58 @@ struct sign {
     return duet::select(
         signbit(innermost(x)), [] { return X(-1); }, [] { return X(1); });
   }
-  template <int, class X>
-  static constexpr auto slope_by(X) {
-    return whole<0>;
-  }
-  static printed print(notation style, const printed& x) {
-    return detail::printed_call(style, {"sign", ""}, x.text);
-  }
+  static constexpr auto differential(auto, auto) { return whole<0>; }
 };
 
 /// |x|; at 0 the derivative from the side of the sign bit.
 struct abs {
+  static constexpr detail::function_name name = {"abs", "\\left|#\\right|"};
   static constexpr kind kind_of(kind a) { return a; }
   template <class X>
   static X value(const X& x) {
     using std::abs;
     return X(abs(x));
   }
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<sign>(x);
-  }
-  static printed print(notation style, const printed& x) {
-    return style == notation::latex ? printed{"\\left|" + x.text + "\\right|"}
-                                    : printed{"abs(" + x.text + ")"};
-  }
+  static constexpr auto differential(auto x, auto dx) { return apply<sign>(x) * dx; }
 };
 
 } // namespace op
 
-template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
-  requires Operands<A, B>
+template <class A, Operands<A> B, class Tag = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto operator<(const A& a, const B& b) {
   return apply<op::less<false>>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
-  requires Operands<A, B>
+template <class A, Operands<A> B, class Tag = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto operator<=(const A& a, const B& b) {
   return apply<op::less<true>>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
-  requires Operands<A, B>
+template <class A, Operands<A> B, class Tag = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto operator>(const A& a, const B& b) {
   return apply<op::less<false>>(detail::term<Tag>(b), detail::term<Tag>(a));
 }
-template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
-  requires Operands<A, B>
+template <class A, Operands<A> B, class Tag = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto operator>=(const A& a, const B& b) {
   return apply<op::less<true>>(detail::term<Tag>(b), detail::term<Tag>(a));
 }
 
 /// a where the condition holds, else b, of one kind. Both are evaluated, so both must be safe to
 /// evaluate anywhere; the derivative is that of the one chosen.
-template <Term C, class A, class B, class TagA = decltype([](op::less<true>*) {}),
-          class TagB = decltype([](op::less<true>*) {})>
+template <Term C, class A, class B, class Tag = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto select(const C& condition, const A& a, const B& b) {
-  return apply<op::select>(condition, detail::term<TagA>(a), detail::term<TagB>(b));
+  return detail::apply_to<op::select, Tag>(std::index_sequence_for<C, A, B>{}, condition, a, b);
 }
 
 /// |x|; its derivative at ±0 is ±1, the side of the sign bit.
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto abs(const X& x) {
-  return apply<op::abs>(x);
-}
+[[nodiscard]] constexpr auto abs(const ScalarTerm auto& x) { return apply<op::abs>(x); }
 /// The larger of two scalars, with its derivatives; of equal ones the first.
-template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
-  requires Operands<A, B>
+template <class A, Operands<A> B, class Tag = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto max(const A& a, const B& b) {
   const auto first = detail::term<Tag>(a);
   const auto second = detail::term<Tag>(b);
   return select(first < second, second, first);
 }
 /// The smaller of two scalars, with its derivatives; of equal ones the first.
-template <class A, class B, class Tag = decltype([](op::less<true>*) {})>
-  requires Operands<A, B>
+template <class A, Operands<A> B, class Tag = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto min(const A& a, const B& b) {
   const auto first = detail::term<Tag>(a);
   const auto second = detail::term<Tag>(b);

@@ -3,12 +3,13 @@
 
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
+#include <duet/expression/evaluate/pushforward.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 
-#include <type_traits>
+#include <concepts>
 #include <utility>
 
 /// \file
@@ -68,23 +69,34 @@ template <class Operation, class... Operands, class... Rates, int... I>
   return (... + rate_by_operand<I, Operation>(rates, Operands{}...));
 }
 
+template <class Operation>
+[[nodiscard]] constexpr auto rate_of_product(auto a, auto b, auto da, auto db) {
+  return apply<Operation>(da, b) + apply<Operation>(a, db);
+}
+
+/// The rate of an operation by those of its operands: by a `differential` of its own, as it is
+/// linear or has slopes, or else by dual numbers.
+template <class Operation, class... X, class... Rates>
+[[nodiscard]] constexpr auto rate_by_operands(applied_node<Operation, X...> node, Rates... rates) {
+  if constexpr (node.kind_of == kind::condition || (is_zero<Rates> && ...)) {
+    return zero_of<node.kind_of>();
+  } else if constexpr (requires { Operation::differential(X{}..., rates...); }) {
+    return Operation::differential(X{}..., rates...);
+  } else if constexpr (std::derived_from<Operation, linear_operation>) {
+    return apply<Operation>(rates...);
+  } else if constexpr (std::derived_from<Operation, bilinear_operation>) {
+    return rate_of_product<Operation>(X{}..., rates...);
+  } else if constexpr (requires { Operation::template slope_by<0>(X{}...); }) {
+    return rate_by_slopes(node, std::make_integer_sequence<int, int(sizeof...(X))>{}, rates...);
+  } else {
+    return apply<op::pushforward<Operation, std::index_sequence_for<X...>>>(X{}..., rates...);
+  }
+}
+
 template <class Operation, class... Operands, class Motion>
 struct rate<applied_node<Operation, Operands...>, Motion> {
-  static constexpr auto make() {
-    if constexpr (applied_node<Operation, Operands...>::kind_of == kind::condition ||
-                  (is_zero<rate_t<Operands, Motion>> && ...)) {
-      return zero_of<applied_node<Operation, Operands...>::kind_of>();
-    } else if constexpr (requires {
-                           Operation::differential(Operands{}..., rate_t<Operands, Motion>{}...);
-                         }) {
-      return Operation::differential(Operands{}..., rate_t<Operands, Motion>{}...);
-    } else {
-      return rate_by_slopes(applied_node<Operation, Operands...>{},
-                            std::make_integer_sequence<int, int(sizeof...(Operands))>{},
-                            rate_t<Operands, Motion>{}...);
-    }
-  }
-  using type = decltype(make());
+  using type = decltype(rate_by_operands(applied_node<Operation, Operands...>{},
+                                         rate_t<Operands, Motion>{}...));
 };
 
 template <class T>

@@ -7,7 +7,6 @@
 #include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/tree/formula.hpp>
-#include <duet/expression/tree/function.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>
 #include <duet/expression/vector.hpp>
@@ -22,7 +21,8 @@ namespace op {
 
 /// a or b of a + εb; what is made of dual numbers becomes what is made of real ones.
 template <bool Dual>
-struct part_of_dual {
+struct part_of_dual : linear_operation {
+  static constexpr detail::function_name name = {Dual ? "dual_part" : "real_part", ""};
   static constexpr kind kind_of(kind k) {
     return k == kind::dual_vector ? kind::vector : k == kind::pose ? kind::quaternion : k;
   }
@@ -38,10 +38,9 @@ struct part_of_dual {
       return duet::real_part(x);
     }
   }
-  template <class X, class DX>
-  static constexpr auto differential(X, DX dx) {
-    return apply<part_of_dual>(dx);
-  }
+  template <class V>
+    requires(V::kind_of == kind::vector && !Dual)
+  static constexpr auto simplified(V v) { return v; }
   template <int I>
   static constexpr auto simplified(unit_vector_node<kind::dual_vector, I>) {
     if constexpr ((I < 3) != Dual) {
@@ -50,47 +49,22 @@ struct part_of_dual {
       return zero_node<kind::vector>{};
     }
   }
-  template <class X>
-  static constexpr auto simplified(X) {
-    if constexpr (is_zero<X>) {
-      return zero_of<kind_of(X::kind_of)>();
-    } else {
-      return applied_node<part_of_dual, X>{};
-    }
-  }
-  static printed print(notation style, const printed& x) {
-    return detail::printed_call(style, {Dual ? "dual_part" : "real_part", ""}, x.text);
-  }
 };
 
 /// p of a rigid motion p + εq, whose velocity is known from that of the motion.
-struct rotation {
+struct rotation : linear_operation {
+  static constexpr detail::function_name name = {"rotation", ""};
   static constexpr kind kind_of(kind) { return kind::quaternion; }
-  template <class A>
-  static auto value(const A& a) {
-    return duet::rotation(a);
-  }
-  template <class A, class DA>
-  static constexpr auto differential(A, DA da) {
-    return apply<rotation>(da);
-  }
-  static printed print(notation style, const printed& a) {
-    return detail::printed_call(style, {"rotation", ""}, a.text);
-  }
+  static auto value(const auto& a) { return duet::rotation(a); }
 };
 
 /// a − εb.
-struct dual_conj {
+struct dual_conj : linear_operation {
+  static constexpr detail::function_name name = {"dual_conj", "\\overline{#}"};
   static constexpr kind kind_of(kind k) { return k; }
   template <class X>
-  static constexpr auto simplified(X x) {
-    if constexpr (is_applied<X, dual_conj>) {
-      return operand<0>(x);
-    } else if constexpr (is_zero<X>) {
-      return x;
-    } else {
-      return applied_node<dual_conj, X>{};
-    }
+  static constexpr auto simplified(applied_node<dual_conj, X>) {
+    return X{};
   }
   template <class X>
   static constexpr auto value(const X& x) {
@@ -99,14 +73,6 @@ struct dual_conj {
     } else {
       return duet::dual_conj(x);
     }
-  }
-  template <class X, class DX>
-  static constexpr auto differential(X, DX dx) {
-    return apply<dual_conj>(dx);
-  }
-  static printed print(notation style, const printed& x) {
-    return style == notation::latex ? printed{"\\overline{" + x.text + "}"}
-                                    : printed{"dual_conj(" + x.text + ")"};
   }
 };
 
@@ -132,9 +98,6 @@ template <Term X>
   requires(ScalarTerm<X> || PoseTerm<X>)
 [[nodiscard]] constexpr auto dual_conj(const X& x) { return apply<op::dual_conj>(x); }
 /// N15: the third conjugate p* − εq* of p + εq, which carries points: A (1 + εx) A^(3).
-template <PoseTerm A>
-[[nodiscard]] constexpr auto point_conj(const A& a) {
-  return dual_conj(conj(a));
-}
+[[nodiscard]] constexpr auto point_conj(const PoseTerm auto& a) { return dual_conj(conj(a)); }
 
 } // namespace duet::expression

@@ -16,212 +16,106 @@ namespace duet::expression {
 
 namespace op {
 
-struct sqrt;
-struct cbrt;
-struct exp;
-struct exp2;
-struct expm1;
-struct log;
-struct log2;
-struct log10;
-struct log1p;
-struct sin;
-struct cos;
-struct tan;
-struct asin;
-struct acos;
-struct atan;
-
 struct sqrt : detail::function<sqrt, duet::rule::sqrt> {
-  static constexpr detail::function_name name = {"sqrt", "\\sqrt"};
+  static constexpr detail::function_name name = {"sqrt", "\\sqrt{#}"};
   static constexpr bool slopes_take_value = true;
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
-    return whole<1> / (whole<2> * apply<sqrt>(x));
-  }
+  static constexpr auto written_slope(auto x) { return whole<1> / (whole<2> * apply<sqrt>(x)); }
 };
 struct cbrt : detail::function<cbrt, duet::rule::cbrt> {
   static constexpr detail::function_name name = {"cbrt", ""};
   static constexpr bool slopes_take_value = true;
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
+  static constexpr auto written_slope(auto x) {
     return whole<1> / (whole<3> * apply<whole_power<2>>(apply<cbrt>(x)));
   }
 };
 struct exp : detail::function<exp, duet::rule::exp> {
-  static constexpr detail::function_name name = {"exp", "\\exp"};
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<exp>(x);
-  }
+  static constexpr detail::function_name name = {"exp", "e^{#}"};
+  static constexpr auto differential(auto x, auto dx) { return apply<exp>(x) * dx; }
 };
 struct exp2 : detail::function<exp2, duet::rule::exp2> {
   static constexpr detail::function_name name = {"exp2", ""};
   static constexpr bool slopes_take_value = true;
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
-    return apply<log>(whole<2>) * apply<exp2>(x);
-  }
+  static constexpr auto written_slope(auto x) { return apply<log>(whole<2>) * apply<exp2>(x); }
 };
 struct expm1 : detail::function<expm1, duet::rule::expm1> {
   static constexpr detail::function_name name = {"expm1", ""};
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<exp>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return apply<exp>(x) * dx; }
 };
 struct log : detail::function<log, duet::rule::log> {
   static constexpr detail::function_name name = {"log", "\\log"};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
-    return whole<1> / x;
-  }
+  static constexpr auto written_slope(auto x) { return whole<1> / x; }
 };
 struct log2 : detail::function<log2, duet::rule::log2> {
   static constexpr detail::function_name name = {"log2", ""};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
-    return whole<1> / (apply<log>(whole<2>) * x);
-  }
+  static constexpr auto written_slope(auto x) { return whole<1> / (apply<log>(whole<2>) * x); }
 };
 struct log10 : detail::function<log10, duet::rule::log10> {
   static constexpr detail::function_name name = {"log10", ""};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
-    return whole<1> / (apply<log>(whole<10>) * x);
-  }
+  static constexpr auto written_slope(auto x) { return whole<1> / (apply<log>(whole<10>) * x); }
 };
 struct log1p : detail::function<log1p, duet::rule::log1p> {
   static constexpr detail::function_name name = {"log1p", ""};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
-    return whole<1> / (whole<1> + x);
-  }
+  static constexpr auto written_slope(auto x) { return whole<1> / (whole<1> + x); }
 };
 // A negated argument is taken as it is: one call of the C library gives both sine and cosine of
 // one argument, and where x and −x both occur, one pair serves them.
 struct sin : detail::function<sin, duet::rule::sin> {
   static constexpr detail::function_name name = {"sin", "\\sin"};
   template <class X>
-  static constexpr auto simplified(X x) {
-    if constexpr (is_applied<X, negative>) {
-      return -apply<sin>(operand<0>(x));
-    } else {
-      return applied_node<sin, X>{};
-    }
+  static constexpr auto simplified(applied_node<negative, X>) {
+    return -apply<sin>(X{});
   }
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<cos>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return apply<cos>(x) * dx; }
 };
 struct cos : detail::function<cos, duet::rule::cos> {
   static constexpr detail::function_name name = {"cos", "\\cos"};
   template <class X>
-  static constexpr auto simplified(X x) {
-    if constexpr (is_applied<X, negative>) {
-      return apply<cos>(operand<0>(x));
-    } else {
-      return applied_node<cos, X>{};
-    }
+  static constexpr auto simplified(applied_node<negative, X>) {
+    return apply<cos>(X{});
   }
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return -apply<sin>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return -apply<sin>(x) * dx; }
 };
 struct tan : detail::function<tan, duet::rule::tan> {
   static constexpr detail::function_name name = {"tan", "\\tan"};
   static constexpr bool slopes_take_value = true;
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
+  static constexpr auto written_slope(auto x) {
     return whole<1> + apply<whole_power<2>>(apply<tan>(x));
   }
 };
 struct asin : detail::function<asin, duet::rule::asin> {
   static constexpr detail::function_name name = {"asin", "\\arcsin"};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
+  static constexpr auto written_slope(auto x) {
     return whole<1> / apply<sqrt>(whole<1> - apply<whole_power<2>>(x));
   }
 };
 struct acos : detail::function<acos, duet::rule::acos> {
   static constexpr detail::function_name name = {"acos", "\\arccos"};
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return -asin::slope_by<0>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return -asin::slope_by<0>(x) * dx; }
 };
 struct atan : detail::function<atan, duet::rule::atan> {
   static constexpr detail::function_name name = {"atan", "\\arctan"};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
+  static constexpr auto written_slope(auto x) {
     return whole<1> / (whole<1> + apply<whole_power<2>>(x));
   }
 };
 
 } // namespace op
 
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto sqrt(const X& x) {
-  return apply<op::sqrt>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto cbrt(const X& x) {
-  return apply<op::cbrt>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto exp(const X& x) {
-  return apply<op::exp>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto exp2(const X& x) {
-  return apply<op::exp2>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto expm1(const X& x) {
-  return apply<op::expm1>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto log(const X& x) {
-  return apply<op::log>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto log2(const X& x) {
-  return apply<op::log2>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto log10(const X& x) {
-  return apply<op::log10>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto log1p(const X& x) {
-  return apply<op::log1p>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto sin(const X& x) {
-  return apply<op::sin>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto cos(const X& x) {
-  return apply<op::cos>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto tan(const X& x) {
-  return apply<op::tan>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto asin(const X& x) {
-  return apply<op::asin>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto acos(const X& x) {
-  return apply<op::acos>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto atan(const X& x) {
-  return apply<op::atan>(x);
-}
+[[nodiscard]] constexpr auto sqrt(const ScalarTerm auto& x) { return apply<op::sqrt>(x); }
+[[nodiscard]] constexpr auto cbrt(const ScalarTerm auto& x) { return apply<op::cbrt>(x); }
+[[nodiscard]] constexpr auto exp(const ScalarTerm auto& x) { return apply<op::exp>(x); }
+[[nodiscard]] constexpr auto exp2(const ScalarTerm auto& x) { return apply<op::exp2>(x); }
+[[nodiscard]] constexpr auto expm1(const ScalarTerm auto& x) { return apply<op::expm1>(x); }
+[[nodiscard]] constexpr auto log(const ScalarTerm auto& x) { return apply<op::log>(x); }
+[[nodiscard]] constexpr auto log2(const ScalarTerm auto& x) { return apply<op::log2>(x); }
+[[nodiscard]] constexpr auto log10(const ScalarTerm auto& x) { return apply<op::log10>(x); }
+[[nodiscard]] constexpr auto log1p(const ScalarTerm auto& x) { return apply<op::log1p>(x); }
+[[nodiscard]] constexpr auto sin(const ScalarTerm auto& x) { return apply<op::sin>(x); }
+[[nodiscard]] constexpr auto cos(const ScalarTerm auto& x) { return apply<op::cos>(x); }
+[[nodiscard]] constexpr auto tan(const ScalarTerm auto& x) { return apply<op::tan>(x); }
+[[nodiscard]] constexpr auto asin(const ScalarTerm auto& x) { return apply<op::asin>(x); }
+[[nodiscard]] constexpr auto acos(const ScalarTerm auto& x) { return apply<op::acos>(x); }
+[[nodiscard]] constexpr auto atan(const ScalarTerm auto& x) { return apply<op::atan>(x); }
 
 /// f with the sines and cosines of the C library, bit for bit. Otherwise those of several doubles
 /// are taken at once, four times as fast and within one unit of the last place too.

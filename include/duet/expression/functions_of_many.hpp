@@ -10,6 +10,8 @@
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 
+#include <utility>
+
 /// \file
 /// Functions of two scalars and more.
 
@@ -19,8 +21,8 @@ namespace op {
 
 struct atan2 : detail::function<atan2, duet::rule::atan2> {
   static constexpr detail::function_name name = {"atan2", ""};
-  template <int I, class Y, class X>
-  static constexpr auto written_slope(Y y, X x) {
+  template <int I>
+  static constexpr auto written_slope(auto y, auto x) {
     const auto square = apply<whole_power<2>>(x) + apply<whole_power<2>>(y);
     if constexpr (I == 0) {
       return x / square;
@@ -42,8 +44,7 @@ struct hypot : detail::function<hypot, duet::rule::hypot> {
 /// x y + z, rounded once.
 struct fma : detail::function<fma, duet::rule::fma> {
   static constexpr detail::function_name name = {"fma", ""};
-  template <class X, class Y, class Z>
-  static constexpr auto differential(X x, Y y, Z, auto dx, auto dy, auto dz) {
+  static constexpr auto differential(auto x, auto y, auto, auto dx, auto dy, auto dz) {
     return dx * y + x * dy + dz;
   }
 };
@@ -51,8 +52,7 @@ struct fma : detail::function<fma, duet::rule::fma> {
 /// a + t (b − a)
 struct lerp : detail::function<lerp, duet::rule::lerp> {
   static constexpr detail::function_name name = {"lerp", ""};
-  template <class A, class B, class T>
-  static constexpr auto differential(A a, B b, T t, auto da, auto db, auto dt) {
+  static constexpr auto differential(auto a, auto b, auto t, auto da, auto db, auto dt) {
     return (whole<1> - t) * da + t * db + (b - a) * dt;
   }
 };
@@ -60,14 +60,12 @@ struct lerp : detail::function<lerp, duet::rule::lerp> {
 } // namespace op
 
 /// The angle of the point (x, y), in (−π, π].
-template <class Y, class X, class Tag = decltype([](op::hypot*) {})>
-  requires Operands<Y, X>
+template <class Y, Operands<Y> X, class Tag = decltype([](op::hypot*) {})>
 [[nodiscard]] constexpr auto atan2(const Y& y, const X& x) {
   return apply<op::atan2>(detail::term<Tag>(y), detail::term<Tag>(x));
 }
 /// √(x² + y²)
-template <class X, class Y, class Tag = decltype([](op::hypot*) {})>
-  requires Operands<X, Y>
+template <class X, Operands<X> Y, class Tag = decltype([](op::hypot*) {})>
 [[nodiscard]] constexpr auto hypot(const X& x, const Y& y) {
   return apply<op::hypot>(detail::term<Tag>(x), detail::term<Tag>(y));
 }
@@ -78,16 +76,14 @@ template <class X, class Y, class Z, class Tag = decltype([](op::hypot*) {})>
   return apply<op::hypot>(detail::term<Tag>(x), detail::term<Tag>(y), z);
 }
 /// x y + z, the value rounded once.
-template <Term X, Term Y, Term Z>
-[[nodiscard]] constexpr auto fma(const X& x, const Y& y, const Z& z) {
+[[nodiscard]] constexpr auto fma(const Term auto& x, const Term auto& y, const Term auto& z) {
   return apply<op::fma>(x, y, z);
 }
 /// a + t (b − a) of scalars, exact at t = 0 and t = 1.
-template <class A, class B, class T, class TagA = decltype([](op::hypot*) {}),
-          class TagB = decltype([](op::hypot*) {})>
-  requires(Operands<A, B, T>&& Term<T>)
+template <class A, class B, Term T, class Tag = decltype([](op::hypot*) {})>
+  requires Operands<A, B, T>
 [[nodiscard]] constexpr auto lerp(const A& a, const B& b, const T& t) {
-  return apply<op::lerp>(detail::term<TagA>(a), detail::term<TagB>(b), t);
+  return detail::apply_to<op::lerp, Tag>(std::index_sequence_for<A, B, T>{}, a, b, t);
 }
 
 } // namespace duet::expression

@@ -5,6 +5,7 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
@@ -19,23 +20,16 @@ namespace duet::expression {
 
 namespace detail {
 
-/// The gradient of a formula, to be called with values for its symbols.
-template <class F, class Motions>
-class gradient_of;
-template <class F, class... Motions>
-class gradient_of<F, motion_list<Motions...>>
-    : public called_by_name<gradient_of<F, motion_list<Motions...>>, F> {
-  using base = called_by_name<gradient_of, F>;
-  using typename base::node;
-
-public:
-  using base::base;
-
-  template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
+/// The value and the gradient.
+template <class Motions>
+struct gradient_of;
+template <class... Motions>
+struct gradient_of<motion_list<Motions...>> {
+  template <class Node, class Given>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
     constexpr int n = int(sizeof...(Motions));
-    using S = typename base::template scalar<Arguments...>;
-    const auto values = called<node, rate_t<node, Motions>...>(this->f_.held(), arguments...);
+    using S = typename Given::scalar;
+    auto values = evaluated_nodes<Node, rate_t<Node, Motions>...>(g);
     value_and_gradient<S, Eigen::Matrix<S, n, 1>> result;
     result.value = values.template get<0>();
     int i = 0;
@@ -58,31 +52,23 @@ struct upper_triangle<Node, Motion, Rest...> {
       typename upper_triangle<Node, Rest...>::type>;
 };
 
-/// The Hessian, its upper triangle evaluated.
-template <class F, class Motions>
-class hessian_of;
-template <class F, class... Motions>
-class hessian_of<F, motion_list<Motions...>>
-    : public called_by_name<hessian_of<F, motion_list<Motions...>>, F> {
-  using base = called_by_name<hessian_of, F>;
-  using typename base::node;
-
-public:
-  using base::base;
-
-  template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
-    return with_second(typename upper_triangle<node, Motions...>::type{}, arguments...);
+/// The value, the gradient and the Hessian, its upper triangle evaluated.
+template <class Motions>
+struct hessian_of;
+template <class... Motions>
+struct hessian_of<motion_list<Motions...>> {
+  template <class Node, class Given>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
+    return with_second<Node>(g, typename upper_triangle<Node, Motions...>::type{});
   }
 
 private:
-  template <class... Second, class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto with_second(boost::mp11::mp_list<Second...>,
-                                                    const Arguments&... arguments) const {
+  template <class Node, class Given, class... Second>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto with_second(const Given& g,
+                                                           boost::mp11::mp_list<Second...>) {
     constexpr int n = int(sizeof...(Motions));
-    using S = typename base::template scalar<Arguments...>;
-    const auto values =
-        called<node, rate_t<node, Motions>..., Second...>(this->f_.held(), arguments...);
+    using S = typename Given::scalar;
+    auto values = evaluated_nodes<Node, rate_t<Node, Motions>..., Second...>(g);
     value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
     result.value = values.template get<0>();
     int i = 0;
@@ -108,7 +94,8 @@ template <Formula F, class... Symbols>
 [[nodiscard]] constexpr auto gradient(const F& f, variables<Symbols...>) {
   static_assert(F::node_type::kind_of == kind::scalar,
                 "duet: a gradient is that of a scalar formula; others have a jacobian");
-  return detail::gradient_of<F, typename variables<Symbols...>::motions>(f);
+  using gradient = detail::gradient_of<typename variables<Symbols...>::motions>;
+  return detail::called_by_name<gradient, F>(f);
 }
 
 /// f, its gradient and its symmetric Hessian, to be called likewise.
@@ -116,7 +103,8 @@ template <Formula F, class... Symbols>
 [[nodiscard]] constexpr auto hessian(const F& f, variables<Symbols...>) {
   static_assert(F::node_type::kind_of == kind::scalar,
                 "duet: a Hessian is that of a scalar formula");
-  return detail::hessian_of<F, typename variables<Symbols...>::motions>(f);
+  using hessian = detail::hessian_of<typename variables<Symbols...>::motions>;
+  return detail::called_by_name<hessian, F>(f);
 }
 
 } // namespace duet::expression

@@ -6,6 +6,7 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/expression/arm/pose_chain.hpp>
 #include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
@@ -32,40 +33,18 @@ template <class Node, class Motion, class Frame>
   }
 }
 
-template <class T, class V>
-DUET_ALWAYS_INLINE void write_column(T* column, const V& v) {
-  if constexpr (is_screw_dual<typename V::Scalar>) {
-    for (int i = 0; i < 3; ++i) {
-      column[i] = v[i].epsilon();
-      column[3 + i] = v[i].value();
-    }
-  } else {
-    for (int i = 0; i < int(V::SizeAtCompileTime); ++i) {
-      column[i] = v.data()[i];
-    }
-  }
-}
-
-/// The Jacobian of a formula, to be called with values for its symbols.
-template <class F, class Motions, class Frame>
-class jacobian_of;
-template <class F, class... Motions, class Frame>
-class jacobian_of<F, motion_list<Motions...>, Frame>
-    : public called_by_name<jacobian_of<F, motion_list<Motions...>, Frame>, F> {
-  using base = called_by_name<jacobian_of, F>;
-  using typename base::node;
-
-public:
-  using base::base;
-
-  template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
-    using S = typename base::template scalar<Arguments...>;
-    if constexpr (is_pose_chain<node> && std::is_same_v<Frame, spatial_frame> &&
-                  std::is_same_v<S, double>) {
-      return by_factors(arguments...);
+/// The value and the Jacobian.
+template <class Motions, class Frame>
+struct jacobian_of;
+template <class... Motions, class Frame>
+struct jacobian_of<motion_list<Motions...>, Frame> {
+  template <class Node, class Given>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
+    if constexpr (is_pose_chain<Node> && std::is_same_v<Frame, spatial_frame> &&
+                  std::is_same_v<typename Given::scalar, double>) {
+      return by_factors<Node>(g);
     } else {
-      return by_columns<S>(arguments...);
+      return by_columns<Node>(g);
     }
   }
 
@@ -76,20 +55,20 @@ private:
   // The results are made in the caller's memory, which g++ does of variables of a whole function
   // alone: a block of `if constexpr` would copy them.
 
-  template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto by_factors(const Arguments&... arguments) const {
+  template <class Node>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto by_factors(const auto& g) {
     returned<double, dual_quaternion<double>, 6> result;
-    using chain = pose_chain<typename factors<node>::type, motion_list<Motions...>>;
-    result.value = chain::evaluate(result.jacobian.data(), this->f_.held(), arguments...);
+    using chain = pose_chain<typename factors<Node>::type, motion_list<Motions...>>;
+    result.value = chain::evaluate(result.jacobian.data(), g);
     return result;
   }
 
-  template <class S, class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto by_columns(const Arguments&... arguments) const {
-    constexpr kind k = node::kind_of;
+  template <class Node, class Given>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto by_columns(const Given& g) {
+    using S = typename Given::scalar;
+    constexpr kind k = Node::kind_of;
     constexpr int rows = k == kind::pose ? 6 : is_matrix(k) ? rows_of(k) * columns_of(k) : 3;
-    const auto values =
-        called<node, decltype(column_of<node, Motions, Frame>())...>(this->f_.held(), arguments...);
+    auto values = evaluated_nodes<Node, decltype(column_of<Node, Motions, Frame>())...>(g);
     returned<S, std::decay_t<decltype(values.template get<0>())>, rows> result;
     result.value = values.template get<0>();
     S* column = result.jacobian.data();
@@ -108,7 +87,8 @@ template <class F, class Variables, class Frame>
       is_matrix(k) || k == kind::quaternion || k == kind::pose,
       "duet: a Jacobian is that of a vector, a matrix, a rotation or a pose; a scalar formula has "
       "a gradient");
-  return jacobian_of<F, typename Variables::template motions_in<Frame>, Frame>(f);
+  using jacobian = jacobian_of<typename Variables::template motions_in<Frame>, Frame>;
+  return called_by_name<jacobian, F>(f);
 }
 
 } // namespace detail

@@ -3,12 +3,14 @@
 
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/dual_quaternion/twist.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/velocity.hpp>
+
+#include <Eigen/Core>
 
 #include <type_traits>
 
@@ -27,37 +29,22 @@ struct moving_value {
 
 namespace detail {
 
-/// The motion of a formula, to be called with values for its symbols.
-template <class F, class Symbol, class Frame>
-class motion_of : public called_by_name<motion_of<F, Symbol, Frame>, F> {
-  using base = called_by_name<motion_of, F>;
-  using typename base::node;
-
-public:
-  using base::base;
-
-  template <class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const Arguments&... arguments) const {
+/// The value, the velocity and the acceleration.
+template <class Symbol, class Frame>
+struct motion_of {
+  template <class Node, class Given>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
     using by_symbol = movement_of_scalar<Symbol>;
-    using velocity_node = decltype(velocity_of<Frame, node, by_symbol>());
+    using velocity_node = decltype(velocity_of<Frame, Node, by_symbol>());
     using acceleration_node = rate_t<velocity_node, by_symbol>;
-    const auto values =
-        called<node, velocity_node, acceleration_node>(this->f_.held(), arguments...);
-    using S = typename base::template scalar<Arguments...>;
-    const auto velocity = column<S>(values.template get<1>());
-    return moving_value<std::decay_t<decltype(values.template get<0>())>,
-                        std::decay_t<decltype(velocity)>>{values.template get<0>(), velocity,
-                                                          column<S>(values.template get<2>())};
-  }
-
-private:
-  template <class S, class V>
-  DUET_ALWAYS_INLINE static auto column(const V& v) {
-    if constexpr (is_screw_dual<typename V::Scalar>) {
-      return vector6<S>(twist_of(v));
-    } else {
-      return vector3<S>(v[0], v[1], v[2]);
-    }
+    auto values = evaluated_nodes<Node, velocity_node, acceleration_node>(g);
+    using value = std::decay_t<decltype(values.template get<0>())>;
+    constexpr int rows = Node::kind_of == kind::pose ? 6 : 3;
+    moving_value<value, Eigen::Matrix<typename Given::scalar, rows, 1>> result;
+    result.value = values.template get<0>();
+    write_column(result.velocity.data(), values.template get<1>());
+    write_column(result.acceleration.data(), values.template get<2>());
+    return result;
   }
 };
 
@@ -73,7 +60,8 @@ template <Formula F, Symbol U, FrameConstant Frame>
   constexpr kind k = F::node_type::kind_of;
   static_assert((k == kind::quaternion || k == kind::pose) && U::node_type::kind_of == kind::scalar,
                 "duet: motion(f, u, frame) is that of a rotation or pose with a scalar symbol");
-  return detail::motion_of<F, typename U::node_type, Frame>(f);
+  using motion = detail::motion_of<typename U::node_type, Frame>;
+  return detail::called_by_name<motion, F>(f);
 }
 
 } // namespace duet::expression

@@ -3,7 +3,6 @@
 
 #include <duet/expression/matrix/product.hpp>
 #include <duet/expression/tree/formula.hpp>
-#include <duet/expression/tree/function.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>
 #include <duet/expression/velocity.hpp>
@@ -19,16 +18,9 @@ namespace duet::expression {
 namespace op {
 
 /// [v]×, of which [v]× w = v × w.
-struct cross_matrix {
+struct cross_matrix : linear_operation {
+  static constexpr detail::function_name name = {"cross_matrix", "\\left[#\\right]_{\\times}"};
   static constexpr kind kind_of(kind) { return matrix_kind(3, 3); }
-  template <class V>
-  static constexpr auto simplified(V) {
-    if constexpr (is_zero<V>) {
-      return zero_of<matrix_kind(3, 3)>();
-    } else {
-      return applied_node<cross_matrix, V>{};
-    }
-  }
   template <class V>
   static auto value(const V& v) {
     using T = typename V::Scalar;
@@ -36,26 +28,13 @@ struct cross_matrix {
     m << T(0), -v[2], v[1], v[2], T(0), -v[0], -v[1], v[0], T(0);
     return m;
   }
-  template <class V, class DV>
-  static constexpr auto differential(V, DV dv) {
-    return apply<cross_matrix>(dv);
-  }
-  static printed print(notation style, const printed& v) {
-    return style == notation::latex ? printed{"\\left[" + v.text + "\\right]_{\\times}"}
-                                    : printed{"cross_matrix(" + v.text + ")"};
-  }
 };
 
 /// The matrix of q; its derivative is told by velocities.
 struct rotation_matrix {
+  static constexpr detail::function_name name = {"rotation_matrix", "R"};
   static constexpr kind kind_of(kind) { return matrix_kind(3, 3); }
-  template <class Q>
-  static auto value(const Q& q) {
-    return duet::rotation_matrix(q);
-  }
-  static printed print(notation style, const printed& q) {
-    return detail::printed_call(style, {"rotation_matrix", "R"}, q.text);
-  }
+  static auto value(const auto& q) { return duet::rotation_matrix(q); }
 };
 
 } // namespace op
@@ -75,14 +54,12 @@ struct rate<applied_node<op::rotation_matrix, Q>, Motion> {
 } // namespace detail
 
 /// [v]×, the matrix of the cross product: [v]× w = v × w.
-template <VectorTerm V>
-[[nodiscard]] constexpr auto cross_matrix(const V& v) {
+[[nodiscard]] constexpr auto cross_matrix(const VectorTerm auto& v) {
   return apply<op::cross_matrix>(v);
 }
 /// The 3 x 3 matrix R of a rotation, R v = q v q*, with the derivative [ω]× R (N7). q is taken as
 /// unit.
-template <QuaternionTerm Q>
-[[nodiscard]] constexpr auto rotation_matrix(const Q& q) {
+[[nodiscard]] constexpr auto rotation_matrix(const QuaternionTerm auto& q) {
   return apply<op::rotation_matrix>(q);
 }
 

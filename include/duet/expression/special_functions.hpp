@@ -17,131 +17,72 @@ namespace duet::expression {
 
 namespace op {
 
-struct sinh;
 struct cosh;
-struct tanh;
-struct asinh;
-struct acosh;
-struct atanh;
-struct erf;
-struct erfc;
-struct tgamma;
-struct lgamma;
 struct hypot;
 
 struct sinh : detail::function<sinh, duet::rule::sinh> {
   static constexpr detail::function_name name = {"sinh", "\\sinh"};
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<cosh>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return apply<cosh>(x) * dx; }
 };
 struct cosh : detail::function<cosh, duet::rule::cosh> {
   static constexpr detail::function_name name = {"cosh", "\\cosh"};
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<sinh>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return apply<sinh>(x) * dx; }
 };
 struct tanh : detail::function<tanh, duet::rule::tanh> {
   static constexpr detail::function_name name = {"tanh", "\\tanh"};
   static constexpr bool slopes_take_value = true;
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
+  static constexpr auto written_slope(auto x) {
     return whole<1> / apply<whole_power<2>>(apply<cosh>(x));
   }
 };
 struct asinh : detail::function<asinh, duet::rule::asinh> {
   static constexpr detail::function_name name = {"asinh", ""};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
-    return whole<1> / apply<hypot>(whole<1>, x);
-  }
+  static constexpr auto written_slope(auto x) { return whole<1> / apply<hypot>(whole<1>, x); }
 };
 struct acosh : detail::function<acosh, duet::rule::acosh> {
   static constexpr detail::function_name name = {"acosh", ""};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
+  static constexpr auto written_slope(auto x) {
     return whole<1> / (apply<sqrt>(x - whole<1>) * apply<sqrt>(x + whole<1>));
   }
 };
 struct atanh : detail::function<atanh, duet::rule::atanh> {
   static constexpr detail::function_name name = {"atanh", ""};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
+  static constexpr auto written_slope(auto x) {
     return whole<1> / (whole<1> - apply<whole_power<2>>(x));
   }
 };
 struct erf : detail::function<erf, duet::rule::erf> {
   static constexpr detail::function_name name = {"erf", ""};
-  template <int, class X>
-  static constexpr auto written_slope(X x) {
+  static constexpr auto written_slope(auto x) {
     return whole<2> / apply<sqrt>(pi_node{}) * apply<exp>(-apply<whole_power<2>>(x));
   }
 };
 struct erfc : detail::function<erfc, duet::rule::erfc> {
   static constexpr detail::function_name name = {"erfc", ""};
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return -erf::slope_by<0>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return -erf::slope_by<0>(x) * dx; }
 };
 struct tgamma : detail::function<tgamma, duet::rule::tgamma> {
   static constexpr detail::function_name name = {"tgamma", "\\Gamma"};
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<tgamma>(x) * apply<polygamma<0>>(x);
+  static constexpr auto differential(auto x, auto dx) {
+    return apply<tgamma>(x) * apply<polygamma<0>>(x) * dx;
   }
 };
 struct lgamma : detail::function<lgamma, duet::rule::lgamma> {
   static constexpr detail::function_name name = {"lgamma", "\\log\\Gamma"};
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<polygamma<0>>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return apply<polygamma<0>>(x) * dx; }
 };
 
 } // namespace op
 
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto sinh(const X& x) {
-  return apply<op::sinh>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto cosh(const X& x) {
-  return apply<op::cosh>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto tanh(const X& x) {
-  return apply<op::tanh>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto asinh(const X& x) {
-  return apply<op::asinh>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto acosh(const X& x) {
-  return apply<op::acosh>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto atanh(const X& x) {
-  return apply<op::atanh>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto erf(const X& x) {
-  return apply<op::erf>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto erfc(const X& x) {
-  return apply<op::erfc>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto tgamma(const X& x) {
-  return apply<op::tgamma>(x);
-}
-template <ScalarTerm X>
-[[nodiscard]] constexpr auto lgamma(const X& x) {
-  return apply<op::lgamma>(x);
-}
+[[nodiscard]] constexpr auto sinh(const ScalarTerm auto& x) { return apply<op::sinh>(x); }
+[[nodiscard]] constexpr auto cosh(const ScalarTerm auto& x) { return apply<op::cosh>(x); }
+[[nodiscard]] constexpr auto tanh(const ScalarTerm auto& x) { return apply<op::tanh>(x); }
+[[nodiscard]] constexpr auto asinh(const ScalarTerm auto& x) { return apply<op::asinh>(x); }
+[[nodiscard]] constexpr auto acosh(const ScalarTerm auto& x) { return apply<op::acosh>(x); }
+[[nodiscard]] constexpr auto atanh(const ScalarTerm auto& x) { return apply<op::atanh>(x); }
+[[nodiscard]] constexpr auto erf(const ScalarTerm auto& x) { return apply<op::erf>(x); }
+[[nodiscard]] constexpr auto erfc(const ScalarTerm auto& x) { return apply<op::erfc>(x); }
+[[nodiscard]] constexpr auto tgamma(const ScalarTerm auto& x) { return apply<op::tgamma>(x); }
+[[nodiscard]] constexpr auto lgamma(const ScalarTerm auto& x) { return apply<op::lgamma>(x); }
 
 } // namespace duet::expression

@@ -4,6 +4,7 @@
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -16,11 +17,7 @@ namespace duet::expression {
 template <std::size_t Size>
 struct name {
   char letters[Size];
-  constexpr name(const char (&text)[Size]) {
-    for (std::size_t i = 0; i < Size; ++i) {
-      letters[i] = text[i];
-    }
-  }
+  constexpr name(const char (&text)[Size]) { std::copy_n(text, Size, letters); }
 };
 
 namespace detail {

@@ -90,30 +90,29 @@ template <class T>
   }
 }
 
-template <kind K, char... Letters, class Held>
-[[nodiscard]] printed print(notation style, symbol_node<K, Letters...>, const Held&) {
+template <kind K, char... Letters>
+[[nodiscard]] printed print(notation style, symbol_node<K, Letters...>, const auto&) {
   const std::string name = {Letters...};
   return {style == notation::latex ? latex_name(name, K) : name, precedence::atom, style};
 }
-template <kind K, class Tag, class Held>
-[[nodiscard]] printed print(notation style, constant_node<K, Tag>, const Held& h) {
+template <kind K, class Tag>
+[[nodiscard]] printed print(notation style, constant_node<K, Tag>, const auto& h) {
   return printed_constant(style, value_in<constant_node<K, Tag>>(h));
 }
-template <std::uint64_t Bits, class Held>
-[[nodiscard]] printed print(notation style, number_node<Bits> n, const Held&) {
+template <std::uint64_t Bits>
+[[nodiscard]] printed print(notation style, number_node<Bits> n, const auto&) {
   return printed_number(style, duet::to_text(n.value));
 }
-template <class Held>
-[[nodiscard]] printed print(notation style, pi_node, const Held&) {
+[[nodiscard]] inline printed print(notation style, pi_node, const auto&) {
   return {style == notation::latex ? "\\pi" : "pi", precedence::atom, style};
 }
-template <kind K, class Held>
-[[nodiscard]] printed print(notation style, zero_node<K>, const Held&) {
+template <kind K>
+[[nodiscard]] printed print(notation style, zero_node<K>, const auto&) {
   return {"0", precedence::atom, style};
 }
-template <class Operation, class... Operands, class Held>
-[[nodiscard]] printed print(notation style, applied_node<Operation, Operands...>, const Held& h) {
-  printed result = Operation::print(style, print(style, Operands{}, h)...);
+template <class Operation, class... Operands>
+[[nodiscard]] printed print(notation style, applied_node<Operation, Operands...>, const auto& h) {
+  printed result = printed_operation<Operation>(style, print(style, Operands{}, h)...);
   result.style = style;
   return result;
 }

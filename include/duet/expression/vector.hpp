@@ -1,23 +1,21 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/dual/rules/of_many.hpp>
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
-#include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/evaluate/node_values.hpp>
+#include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/tree/formula.hpp>
-#include <duet/expression/tree/function.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
 #include <duet/quaternion/norm.hpp>
-#include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <cmath>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 /// \file
 /// Vectors of three scalars: dot, cross, norm, components. (Sums and scaling are those of
@@ -36,18 +34,16 @@ namespace detail {
 
 template <kind K, int I, class Given>
 struct leaf<unit_vector_node<K, I>, Given> {
-  DUET_ALWAYS_INLINE static auto value(const Given&) {
+  static auto value(const Given&) {
     using real = typename Given::real;
-    const auto component = [](int i) { return real(I % 3 == i ? 1 : 0); };
-    if constexpr (K == kind::vector) {
-      return vector3<real>(component(0), component(1), component(2));
+    using T = std::conditional_t<K == kind::vector, real, screw_dual<real>>;
+    vector3<T> axis = vector3<T>::Zero();
+    if constexpr (I < 3) {
+      axis[I] = T(real(1));
     } else {
-      using D = screw_dual<real>;
-      const auto dual_component = [&](int i) {
-        return I < 3 ? D(component(i), real(0)) : D(real(0), component(i));
-      };
-      return dual_vector<real>(dual_component(0), dual_component(1), dual_component(2));
+      axis[I - 3] = T(real(0), real(1));
     }
+    return axis;
   }
 };
 
@@ -68,19 +64,15 @@ template <int I, int J, int Rows, int Columns>
 struct block;
 
 /// The sum of the products of components, of vectors and quaternions.
-struct dot {
+struct dot : bilinear_operation {
   static constexpr kind kind_of(kind, kind) { return kind::scalar; }
   template <class A, class B>
-  DUET_ALWAYS_INLINE static auto value(const A& a, const B& b) {
+  static auto value(const A& a, const B& b) {
     if constexpr (detail::ThreeComponents<A>) {
       return duet::detail::dot(duet::detail::components(a), duet::detail::components(b));
     } else {
       return duet::dot(a, b);
     }
-  }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A a, B b, DA da, DB db) {
-    return sum_of_products(a, db) + sum_of_products(b, da);
   }
   static printed print(notation style, const printed& a, const printed& b) {
     return style == notation::latex
@@ -88,37 +80,16 @@ struct dot {
                          precedence::product}
                : printed{"dot(" + a.text + ", " + b.text + ")"};
   }
-
-private:
-  template <class A, class B>
-  static constexpr auto sum_of_products(A a, B b) {
-    if constexpr (is_zero<B>) {
-      return whole<0>;
-    } else {
-      return apply<dot>(a, b);
-    }
-  }
 };
 
-struct cross {
+struct cross : bilinear_operation {
   static constexpr kind kind_of(kind a, kind) { return a; }
-  template <class A, class B>
-  static constexpr auto simplified(A, B) {
-    if constexpr (is_zero<A> || is_zero<B>) {
-      return zero_of<A::kind_of>();
-    } else if constexpr (std::is_same_v<A, B>) {
-      return zero_of<A::kind_of>();
-    } else {
-      return applied_node<cross, A, B>{};
-    }
+  template <class A>
+  static constexpr auto simplified(A, A) {
+    return zero_of<A::kind_of>();
   }
-  template <class A, class B>
-  DUET_ALWAYS_INLINE static auto value(const A& a, const B& b) {
+  static auto value(const auto& a, const auto& b) {
     return duet::detail::cross(duet::detail::components(a), duet::detail::components(b)).eigen();
-  }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A a, B b, DA da, DB db) {
-    return apply<cross>(da, b) + apply<cross>(a, db);
   }
   static printed print(notation style, const printed& a, const printed& b) {
     return style == notation::latex
@@ -141,8 +112,7 @@ struct direction {
     return vector3<T>(u[0], u[1], u[2]);
   }
   /// (u × dv) × u/|v|: in dv − u (u · dv) what differs from dv by little would cancel.
-  template <class V, class DV>
-  static constexpr auto differential(V v, DV dv) {
+  static constexpr auto differential(auto v, auto dv) {
     const auto u = apply<direction>(v);
     return apply<cross>(apply<cross>(u, dv) / apply<norm>(v), u);
   }
@@ -150,6 +120,7 @@ struct direction {
 };
 
 struct norm {
+  static constexpr detail::function_name name = {"norm", "\\left|#\\right|"};
   static constexpr kind kind_of(kind) { return kind::scalar; }
   template <class V>
   static auto value(const V& v) {
@@ -160,40 +131,25 @@ struct norm {
       return duet::norm(v);
     }
   }
-  template <class V, class DV>
-  static constexpr auto differential(V v, DV dv) {
+  template <class V>
+  static constexpr auto differential(V v, auto dv) {
     if constexpr (V::kind_of == kind::vector) {
       return apply<dot>(apply<direction>(v), dv);
     } else {
       return apply<dot>(v, dv) / apply<norm>(v);
     }
   }
-  static printed print(notation style, const printed& v) {
-    return style == notation::latex ? printed{"\\left|" + v.text + "\\right|"}
-                                    : printed{"norm(" + v.text + ")"};
-  }
 };
 
 inline printed direction::print(notation style, const printed& v) {
-  return quotient::print(style, v, norm::print(style, v));
+  return quotient::print(style, v, detail::printed_operation<norm>(style, v));
 }
 
 /// The I-th component.
 template <int I>
-struct component {
+struct component : linear_operation {
   static constexpr kind kind_of(kind) { return kind::scalar; }
-  template <class V>
-  DUET_ALWAYS_INLINE static auto value(const V& v) {
-    return v[I];
-  }
-  template <class V, class DV>
-  static constexpr auto differential(V, DV dv) {
-    if constexpr (is_sized_matrix(DV::kind_of)) {
-      return apply<block<I, 0, 1, 1>>(dv);
-    } else {
-      return apply<component>(dv);
-    }
-  }
+  static auto value(const auto& v) { return v[I]; }
   static printed print(notation style, const printed& v) {
     const std::string i = std::to_string(I);
     return style == notation::latex ? detail::with_index(v, std::to_string(I + 1))
@@ -204,22 +160,17 @@ struct component {
     return whole<(I == J ? 1 : 0)>;
   }
   template <class V>
-  static constexpr auto simplified(V) {
-    return applied_node<component, V>{};
-  }
+    requires(is_sized_matrix(V::kind_of))
+  static constexpr auto simplified(V v) { return apply<block<I, 0, 1, 1>>(v); }
 };
 
 /// The vector of three scalars.
-struct column {
+struct column : linear_operation {
   static constexpr kind kind_of(kind, kind, kind) { return kind::vector; }
   template <class X, class Y, class Z>
-  DUET_ALWAYS_INLINE static auto value(const X& x, const Y& y, const Z& z) {
+  static auto value(const X& x, const Y& y, const Z& z) {
     using T = promote_t<promote_t<X, Y>, Z>;
     return vector3<T>(T(x), T(y), T(z));
-  }
-  template <class X, class Y, class Z, class DX, class DY, class DZ>
-  static constexpr auto differential(X, Y, Z, DX dx, DY dy, DZ dz) {
-    return apply<column>(dx, dy, dz);
   }
   static printed print(notation, const printed& x, const printed& y, const printed& z) {
     return {"(" + x.text + ", " + y.text + ", " + z.text + ")"};
@@ -238,22 +189,17 @@ concept VectorOperands =
 } // namespace detail
 
 /// a · b
-template <class A, class B, class Tag = decltype([](op::cross*) {})>
-  requires detail::VectorOperands<A, B>
+template <class A, detail::VectorOperands<A> B, class Tag = decltype([](op::cross*) {})>
 [[nodiscard]] constexpr auto dot(const A& a, const B& b) {
   return apply<op::dot>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 /// a × b
-template <class A, class B, class Tag = decltype([](op::cross*) {})>
-  requires detail::VectorOperands<A, B>
+template <class A, detail::VectorOperands<A> B, class Tag = decltype([](op::cross*) {})>
 [[nodiscard]] constexpr auto cross(const A& a, const B& b) {
   return apply<op::cross>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 /// |v|, without overflow. Not differentiable at 0.
-template <VectorTerm V>
-[[nodiscard]] constexpr auto norm(const V& v) {
-  return apply<op::norm>(v);
-}
+[[nodiscard]] constexpr auto norm(const VectorTerm auto& v) { return apply<op::norm>(v); }
 /// v_I, I = 0, 1, 2.
 template <int I, VectorTerm V>
 [[nodiscard]] constexpr auto component(const V& v) {
@@ -261,11 +207,9 @@ template <int I, VectorTerm V>
   return apply<op::component<I>>(v);
 }
 /// The vector of three scalars.
-template <class X, class Y, class Z, class TagX = decltype([](op::cross*) {}),
-          class TagY = decltype([](op::cross*) {}), class TagZ = decltype([](op::cross*) {})>
-  requires Operands<X, Y, Z>
+template <class X, class Y, Operands<X, Y> Z, class Tag = decltype([](op::cross*) {})>
 [[nodiscard]] constexpr auto column(const X& x, const Y& y, const Z& z) {
-  return apply<op::column>(detail::term<TagX>(x), detail::term<TagY>(y), detail::term<TagZ>(z));
+  return detail::apply_to<op::column, Tag>(std::index_sequence_for<X, Y, Z>{}, x, y, z);
 }
 
 } // namespace duet::expression

@@ -46,27 +46,20 @@ template <class Frame, class Q, class Rate>
   }
 }
 
-template <class Node, class Motion>
+template <class Node, class Motion, class Frame>
 struct velocity {
-  template <class Frame>
-  static constexpr auto in() {
-    return velocity_by_rate<Frame>(Node{}, rate_t<Node, Motion>{});
-  }
+  static constexpr auto make() { return velocity_by_rate<Frame>(Node{}, rate_t<Node, Motion>{}); }
 };
 
-template <class Symbol, class Motion>
+template <class Symbol, class Motion, class Frame>
 struct velocity_of_symbol;
-template <class Symbol, class Rate, class... Rest>
-struct velocity_of_symbol<Symbol, movement<moving<Symbol, Rate>, Rest...>> {
-  template <class Frame>
-  static constexpr auto in() {
-    return velocity_by_rate<Frame>(Symbol{}, Rate{});
-  }
+template <class Symbol, class Rate, class... Rest, class Frame>
+struct velocity_of_symbol<Symbol, movement<moving<Symbol, Rate>, Rest...>, Frame> {
+  static constexpr auto make() { return velocity_by_rate<Frame>(Symbol{}, Rate{}); }
 };
-template <class Symbol, class V, class FrameOfV, class... Rest>
-struct velocity_of_symbol<Symbol, movement<turning<Symbol, V, FrameOfV>, Rest...>> {
-  template <class Frame>
-  static constexpr auto in() {
+template <class Symbol, class V, class FrameOfV, class... Rest, class Frame>
+struct velocity_of_symbol<Symbol, movement<turning<Symbol, V, FrameOfV>, Rest...>, Frame> {
+  static constexpr auto make() {
     if constexpr (std::is_same_v<Frame, FrameOfV>) {
       return V{};
     } else if constexpr (std::is_same_v<Frame, spatial_frame>) {
@@ -76,19 +69,18 @@ struct velocity_of_symbol<Symbol, movement<turning<Symbol, V, FrameOfV>, Rest...
     }
   }
 };
-template <class Symbol, class Other, class... Rest>
-struct velocity_of_symbol<Symbol, movement<Other, Rest...>>
-    : velocity_of_symbol<Symbol, movement<Rest...>> {};
+template <class Symbol, class Other, class... Rest, class Frame>
+struct velocity_of_symbol<Symbol, movement<Other, Rest...>, Frame>
+    : velocity_of_symbol<Symbol, movement<Rest...>, Frame> {};
 
-template <kind K, char... Letters, class Motion>
-struct velocity<symbol_node<K, Letters...>, Motion>
-    : velocity_of_symbol<symbol_node<K, Letters...>, Motion> {};
+template <kind K, char... Letters, class Motion, class Frame>
+struct velocity<symbol_node<K, Letters...>, Motion, Frame>
+    : velocity_of_symbol<symbol_node<K, Letters...>, Motion, Frame> {};
 
-template <class A, class B, class Motion>
+template <class A, class B, class Motion, class Frame>
   requires(A::kind_of != kind::scalar)
-struct velocity<applied_node<op::product, A, B>, Motion> {
-  template <class Frame>
-  static constexpr auto in() {
+struct velocity<applied_node<op::product, A, B>, Motion, Frame> {
+  static constexpr auto make() {
     constexpr auto a = velocity_of<Frame, A, Motion>();
     constexpr auto b = velocity_of<Frame, B, Motion>();
     if constexpr (std::is_same_v<Frame, spatial_frame>) {
@@ -99,53 +91,38 @@ struct velocity<applied_node<op::product, A, B>, Motion> {
   }
 };
 
-template <class A, class Motion>
-struct velocity<applied_node<op::conj, A>, Motion> {
-  template <class Frame>
-  static constexpr auto in() {
+template <class A, class Motion, class Frame>
+struct velocity<applied_node<op::conj, A>, Motion, Frame> {
+  static constexpr auto make() {
     using other =
         std::conditional_t<std::is_same_v<Frame, spatial_frame>, body_frame, spatial_frame>;
     return -velocity_of<other, A, Motion>();
   }
 };
 
-template <class A, class Motion>
-struct velocity<applied_node<op::negative, A>, Motion> {
-  template <class Frame>
-  static constexpr auto in() {
-    return velocity_of<Frame, A, Motion>();
-  }
+template <class A, class Motion, class Frame>
+struct velocity<applied_node<op::negative, A>, Motion, Frame> {
+  static constexpr auto make() { return velocity_of<Frame, A, Motion>(); }
 };
 
-template <class A, class Motion>
-struct velocity<applied_node<op::rotation, A>, Motion> {
-  template <class Frame>
-  static constexpr auto in() {
+template <class A, class Motion, class Frame>
+struct velocity<applied_node<op::rotation, A>, Motion, Frame> {
+  static constexpr auto make() {
     return apply<op::part_of_dual<false>>(velocity_of<Frame, A, Motion>());
   }
 };
 
-template <class N, class Angle, class S, class C, class Motion>
+template <class N, class Angle, class S, class C, class Motion, class Frame>
   requires is_zero<rate_t<N, Motion>>
-struct velocity<applied_node<op::turn, N, Angle, S, C>, Motion> {
-  template <class Frame>
-  static constexpr auto in() {
-    return rate_t<Angle, Motion>{} * N{};
-  }
+struct velocity<applied_node<op::turn, N, Angle, S, C>, Motion, Frame> {
+  static constexpr auto make() { return rate_t<Angle, Motion>{} * N{}; }
 };
 
-template <class V, class Motion>
-struct velocity<applied_node<op::exp_vector, V>, Motion> {
-  template <class Frame>
-  static constexpr auto in() {
-    constexpr direction_t<V> w;
-    constexpr auto rate = factor_of(rate_t<V, Motion>{}, w);
-    if constexpr (is_zero<std::remove_const_t<decltype(rate)>>) {
-      using node = applied_node<op::exp_vector, V>;
-      return velocity_by_rate<Frame>(node{}, rate_t<node, Motion>{});
-    } else {
-      return (whole<2> * rate) * w;
-    }
+template <class V, class Motion, class Frame>
+  requires(!is_zero<rate_along<V, rate_t<V, Motion>>>)
+struct velocity<applied_node<op::exp_vector, V>, Motion, Frame> {
+  static constexpr auto make() {
+    return (whole<2> * rate_along<V, rate_t<V, Motion>>{}) * direction_t<V>{};
   }
 };
 
@@ -154,7 +131,7 @@ template <class Frame, class Q, class Motion>
   if constexpr (is_zero<rate_t<Q, Motion>>) {
     return zero_of<vector_kind(Q::kind_of)>();
   } else {
-    return velocity<Q, Motion>::template in<Frame>();
+    return velocity<Q, Motion, Frame>::make();
   }
 }
 
@@ -181,22 +158,32 @@ struct rate<applied_node<op::translation, A>, Motion> {
   using type = decltype(make());
 };
 
+template <class Symbol, class Frame, kind K, int... I>
+using turning_about_axes = motion_list<movement<turning<Symbol, unit_vector_node<K, I>, Frame>>...>;
+
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::quaternion> {
-  using type = motion_list<movement<turning<Symbol, unit_vector_node<kind::vector, 0>, Frame>>,
-                           movement<turning<Symbol, unit_vector_node<kind::vector, 1>, Frame>>,
-                           movement<turning<Symbol, unit_vector_node<kind::vector, 2>, Frame>>>;
+  using type = turning_about_axes<Symbol, Frame, kind::vector, 0, 1, 2>;
 };
 /// In the order of [v; ω].
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::pose> {
-  using type =
-      motion_list<movement<turning<Symbol, unit_vector_node<kind::dual_vector, 3>, Frame>>,
-                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 4>, Frame>>,
-                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 5>, Frame>>,
-                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 0>, Frame>>,
-                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 1>, Frame>>,
-                  movement<turning<Symbol, unit_vector_node<kind::dual_vector, 2>, Frame>>>;
+  using type = turning_about_axes<Symbol, Frame, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
 };
+
+/// The components of a vector; of a twist ω + εv those of [v; ω].
+template <class T, class V>
+DUET_ALWAYS_INLINE void write_column(T* column, const V& v) {
+  if constexpr (is_screw_dual<typename V::Scalar>) {
+    for (int i = 0; i < 3; ++i) {
+      column[i] = v[i].epsilon();
+      column[3 + i] = v[i].value();
+    }
+  } else {
+    for (int i = 0; i < int(V::SizeAtCompileTime); ++i) {
+      column[i] = v.data()[i];
+    }
+  }
+}
 
 } // namespace duet::expression::detail

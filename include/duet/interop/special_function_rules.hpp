@@ -18,7 +18,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <type_traits>
 
 /// \file
 /// The derivatives of the special functions of special_functions.hpp; see
@@ -34,22 +33,16 @@ using quiet_policy = policies::policy<policies::domain_error<policies::ignore_er
                                       policies::overflow_error<policies::ignore_error>,
                                       policies::evaluation_error<policies::ignore_error>>;
 
-/// A rule applied to an infinitesimal number, or its value of a plain one.
-template <class Rule, class T>
-[[nodiscard]] T by_rule(const Rule& rule, const T& x) {
-  if constexpr (Infinitesimal<T>) {
-    return lift(rule, x);
-  } else {
-    return rule.plain(x);
-  }
-}
-
 /// What the rules below have in common: `plain(x)` is the value of a plain number.
 template <class Rule>
 struct rule_by_boost {
   template <class T>
   T value(const T& x) const {
-    return by_rule(static_cast<const Rule&>(*this), x);
+    if constexpr (Infinitesimal<T>) {
+      return lift(static_cast<const Rule&>(*this), x);
+    } else {
+      return static_cast<const Rule&>(*this).plain(x);
+    }
   }
 };
 

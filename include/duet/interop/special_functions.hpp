@@ -27,67 +27,55 @@ namespace duet {
 template <class D>
 concept SpecialArgument = RealInfinitesimal<D> && !Batched<D>;
 
-template <Arithmetic N, SpecialArgument D>
-[[nodiscard]] D cyl_bessel_j(N nu, const D& x) {
-  return detail::by_rule(detail::cylinder<detail::bessel::j>(double(nu)), x);
+[[nodiscard]] auto cyl_bessel_j(Arithmetic auto nu, const SpecialArgument auto& x) {
+  return detail::cylinder<detail::bessel::j>(double(nu)).value(x);
 }
-template <Arithmetic N, SpecialArgument D>
-[[nodiscard]] D cyl_neumann(N nu, const D& x) {
-  return detail::by_rule(detail::cylinder<detail::bessel::y>(double(nu)), x);
+[[nodiscard]] auto cyl_neumann(Arithmetic auto nu, const SpecialArgument auto& x) {
+  return detail::cylinder<detail::bessel::y>(double(nu)).value(x);
 }
-template <Arithmetic N, SpecialArgument D>
-[[nodiscard]] D cyl_bessel_i(N nu, const D& x) {
-  return detail::by_rule(detail::cylinder<detail::bessel::i>(double(nu)), x);
+[[nodiscard]] auto cyl_bessel_i(Arithmetic auto nu, const SpecialArgument auto& x) {
+  return detail::cylinder<detail::bessel::i>(double(nu)).value(x);
 }
-template <Arithmetic N, SpecialArgument D>
-[[nodiscard]] D cyl_bessel_k(N nu, const D& x) {
-  return detail::by_rule(detail::cylinder<detail::bessel::k>(double(nu)), x);
+[[nodiscard]] auto cyl_bessel_k(Arithmetic auto nu, const SpecialArgument auto& x) {
+  return detail::cylinder<detail::bessel::k>(double(nu)).value(x);
 }
-template <SpecialArgument D>
-[[nodiscard]] D sph_bessel(unsigned n, const D& x) {
-  return detail::by_rule(detail::sphere<false>(n), x);
+[[nodiscard]] auto sph_bessel(unsigned n, const SpecialArgument auto& x) {
+  return detail::sphere<false>(n).value(x);
 }
-template <SpecialArgument D>
-[[nodiscard]] D sph_neumann(unsigned n, const D& x) {
-  return detail::by_rule(detail::sphere<true>(n), x);
+[[nodiscard]] auto sph_neumann(unsigned n, const SpecialArgument auto& x) {
+  return detail::sphere<true>(n).value(x);
 }
 
 /// F(φ, k), by φ.
-template <Arithmetic K, SpecialArgument D>
-[[nodiscard]] D ellint_1(K k, const D& phi) {
-  return detail::by_rule(detail::elliptic<1>(double(k)), phi);
+[[nodiscard]] auto ellint_1(Arithmetic auto k, const SpecialArgument auto& phi) {
+  return detail::elliptic<1>(double(k)).value(phi);
 }
 /// E(φ, k), by φ.
-template <Arithmetic K, SpecialArgument D>
-[[nodiscard]] D ellint_2(K k, const D& phi) {
-  return detail::by_rule(detail::elliptic<2>(double(k)), phi);
+[[nodiscard]] auto ellint_2(Arithmetic auto k, const SpecialArgument auto& phi) {
+  return detail::elliptic<2>(double(k)).value(phi);
 }
 /// Π(ν, φ, k), by φ.
 template <Arithmetic K, Arithmetic N, SpecialArgument D>
 [[nodiscard]] D ellint_3(K k, N nu, const D& phi) {
-  return detail::by_rule(detail::elliptic<3>(double(k), double(nu)), phi);
+  return detail::elliptic<3>(double(k), double(nu)).value(phi);
 }
 /// K(k), by the modulus.
-template <SpecialArgument D>
-[[nodiscard]] D comp_ellint_1(const D& k) {
+[[nodiscard]] auto comp_ellint_1(const SpecialArgument auto& k) {
   const auto value = boost::math::ellint_1(innermost(k), detail::quiet_policy());
   return detail::with_innermost(detail::complete_elliptic(k)[0], value);
 }
 /// E(k), by the modulus.
-template <SpecialArgument D>
-[[nodiscard]] D comp_ellint_2(const D& k) {
+[[nodiscard]] auto comp_ellint_2(const SpecialArgument auto& k) {
   const auto value = boost::math::ellint_2(innermost(k), detail::quiet_policy());
   return detail::with_innermost(detail::complete_elliptic(k)[1], value);
 }
 
 /// Ei(x)
-template <SpecialArgument D>
-[[nodiscard]] D expint(const D& x) {
-  return detail::by_rule(detail::exponential_integral{}, x);
+[[nodiscard]] auto expint(const SpecialArgument auto& x) {
+  return detail::exponential_integral{}.value(x);
 }
 /// ζ(s)
-template <SpecialArgument D>
-[[nodiscard]] D riemann_zeta(const D& s) {
+[[nodiscard]] auto riemann_zeta(const SpecialArgument auto& s) {
   const auto value = boost::math::zeta(innermost(s), detail::quiet_policy());
   return detail::with_innermost(detail::zeta_of(s), value);
 }
@@ -142,8 +130,7 @@ template <SpecialArgument D>
   return p;
 }
 /// L_n(x)
-template <SpecialArgument D>
-[[nodiscard]] D laguerre(unsigned n, const D& x) {
+[[nodiscard]] auto laguerre(unsigned n, const SpecialArgument auto& x) {
   return assoc_laguerre(n, 0, x);
 }
 

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
@@ -9,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include <concepts>
+#include <cstdint>
 #include <type_traits>
 
 /// \file
@@ -20,6 +19,11 @@ namespace duet::expression {
 
 namespace op {
 
+struct negative;
+struct sum;
+struct difference;
+struct product;
+struct quotient;
 template <int Rows, int Columns, int I, int J>
 struct placed;
 
@@ -37,8 +41,7 @@ concept EigenMatrix = requires {
 };
 
 template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr const auto& component_of(const T& x,
-                                                                    [[maybe_unused]] int i) {
+[[nodiscard]] constexpr const auto& component_of(const T& x, [[maybe_unused]] int i) {
   if constexpr (EigenMatrix<T>) {
     return x.data()[i];
   } else {
@@ -46,18 +49,9 @@ template <class T>
   }
 }
 
-/// f(a), by component of a vector.
-template <class F, class A>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr A componentwise(const F& f, const A& a) {
-  if constexpr (ThreeComponents<A>) {
-    return A(f(a[0]), f(a[1]), f(a[2]));
-  } else {
-    return A(f(a));
-  }
-}
 /// f(a, b), by component of vectors and matrices.
 template <class F, class A, class B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto componentwise(const F& f, const A& a, const B& b) {
+[[nodiscard]] constexpr auto componentwise(const F& f, const A& a, const B& b) {
   if constexpr (ThreeComponents<A> || ThreeComponents<B>) {
     using S = promote_t<std::remove_cvref_t<decltype(component_of(a, 0))>,
                         std::remove_cvref_t<decltype(component_of(b, 0))>>;
@@ -91,64 +85,52 @@ template <int Rows, int Columns, int I, int J, class X, class Y>
   return apply<op::placed<Rows, Columns, I, J>>(y);
 }
 
-/// A number below zero, or a product with one.
+/// A number below zero, a product with one, or what has a minus.
 template <class T>
-[[nodiscard]] constexpr bool starts_with_minus();
+inline constexpr bool starts_with_minus = is_applied<T, op::negative>;
+template <std::uint64_t Bits>
+inline constexpr bool starts_with_minus<number_node<Bits>> = number_node<Bits>::value < 0;
+template <class A, class B>
+inline constexpr bool starts_with_minus<applied_node<op::product, A, B>> =
+    is_number<A>&& starts_with_minus<A>;
+
+/// Two numbers whose sum is one without rounding.
+template <class A, class B>
+inline constexpr bool has_exact_sum = false;
+template <std::uint64_t A, std::uint64_t B>
+inline constexpr bool has_exact_sum<number_node<A>, number_node<B>> =
+    is_sum_exact(number_node<A>::value, number_node<B>::value);
 
 } // namespace detail
 
-namespace op {
+[[nodiscard]] constexpr auto operator-(const Term auto& a) { return apply<op::negative>(a); }
+[[nodiscard]] constexpr auto operator+(const Term auto& a) { return a; }
 
-struct negative;
-struct sum;
-struct difference;
-struct product;
-struct quotient;
-
-} // namespace op
-
-template <Term A>
-[[nodiscard]] constexpr auto operator-(const A& a) {
-  return apply<op::negative>(a);
-}
-template <Term A>
-[[nodiscard]] constexpr A operator+(const A& a) {
-  return a;
-}
-
-template <Term A, Term B>
-[[nodiscard]] constexpr auto operator+(const A& a, const B& b) {
+[[nodiscard]] constexpr auto operator+(const Term auto& a, const Term auto& b) {
   return apply<op::sum>(a, b);
 }
-template <class A, class B, class Tag = decltype([] {})>
-  requires TermAndConstant<A, B>
+template <class A, TermAndConstant<A> B, class Tag = decltype([] {})>
 [[nodiscard]] constexpr auto operator+(const A& a, const B& b) {
   return apply<op::sum>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <Term A, Term B>
-[[nodiscard]] constexpr auto operator-(const A& a, const B& b) {
+[[nodiscard]] constexpr auto operator-(const Term auto& a, const Term auto& b) {
   return apply<op::difference>(a, b);
 }
-template <class A, class B, class Tag = decltype([] {})>
-  requires TermAndConstant<A, B>
+template <class A, TermAndConstant<A> B, class Tag = decltype([] {})>
 [[nodiscard]] constexpr auto operator-(const A& a, const B& b) {
   return apply<op::difference>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <Term A, Term B>
-[[nodiscard]] constexpr auto operator*(const A& a, const B& b) {
+[[nodiscard]] constexpr auto operator*(const Term auto& a, const Term auto& b) {
   return apply<op::product>(a, b);
 }
-template <class A, class B, class Tag = decltype([] {})>
-  requires TermAndConstant<A, B>
+template <class A, TermAndConstant<A> B, class Tag = decltype([] {})>
 [[nodiscard]] constexpr auto operator*(const A& a, const B& b) {
   return apply<op::product>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
-template <Term A, Term B>
-[[nodiscard]] constexpr auto operator/(const A& a, const B& b) {
+[[nodiscard]] constexpr auto operator/(const Term auto& a, const Term auto& b) {
   return apply<op::quotient>(a, b);
 }
-template <class A, class B, class Tag = decltype([] {})>
-  requires TermAndConstant<A, B>
+template <class A, TermAndConstant<A> B, class Tag = decltype([] {})>
 [[nodiscard]] constexpr auto operator/(const A& a, const B& b) {
   return apply<op::quotient>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
@@ -159,26 +141,13 @@ inline constexpr bool has_number = false;
 template <class A, class B>
 inline constexpr bool has_number<applied_node<op::product, A, B>> = is_number<A>;
 
-template <class T>
-[[nodiscard]] constexpr bool detail::starts_with_minus() {
-  if constexpr (is_number<T>) {
-    return T::value < 0;
-  } else if constexpr (has_number<T>) {
-    return decltype(operand<0>(T{}))::value < 0;
-  } else {
-    return is_applied<T, op::negative>;
-  }
-}
-
 namespace op {
 
-struct negative {
+struct negative : linear_operation {
   static constexpr kind kind_of(kind a) { return a; }
   template <class A>
   static constexpr auto simplified(A a) {
-    if constexpr (is_zero<A>) {
-      return a;
-    } else if constexpr (is_number<A>) {
+    if constexpr (is_number<A>) {
       return number_node<detail::bits_of(-A::value)>{};
     } else if constexpr (is_applied<A, negative>) {
       return operand<0>(a);
@@ -188,17 +157,11 @@ struct negative {
       return -operand<0>(a) * operand<1>(a);
     } else if constexpr (detail::is_placed<A>) {
       return detail::placed_like(a, -operand<0>(a));
-    } else {
-      return applied_node<negative, A>{};
     }
   }
-  template <class A>
-  DUET_ALWAYS_INLINE static constexpr auto value(const A& a) {
-    return detail::componentwise([](const auto& x) DUET_INLINE_LAMBDA { return -x; }, a);
-  }
-  template <class A, class DA>
-  static constexpr auto differential(A, DA da) {
-    return -da;
+  static constexpr auto value(const auto& a) {
+    const auto minus = [](const auto& x, const auto&) { return -x; };
+    return detail::componentwise(minus, a, a);
   }
   static printed print(notation, const printed& a) {
     return {"-" + a.inside(precedence::product), precedence::sum};
@@ -217,30 +180,19 @@ struct sum {
       return b;
     } else if constexpr (is_zero<B>) {
       return a;
-    } else if constexpr (is_number<A> && is_number<B>) {
-      if constexpr (detail::is_sum_exact(A::value, B::value)) {
-        return number_node<detail::bits_of(A::value + B::value)>{};
-      } else {
-        return applied_node<sum, A, B>{};
-      }
+    } else if constexpr (detail::has_exact_sum<A, B>) {
+      return number_node<detail::bits_of(A::value + B::value)>{};
     } else if constexpr (std::is_same_v<A, B>) {
       return whole<2> * a;
-    } else if constexpr (detail::starts_with_minus<B>()) {
+    } else if constexpr (detail::starts_with_minus<B>) {
       return a - -b;
     } else if constexpr (is_applied<A, negative>) {
       return b - -a;
-    } else {
-      return applied_node<sum, A, B>{};
     }
   }
-  template <class A, class B>
-  DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
-    return detail::componentwise(
-        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x + y; }, a, b);
-  }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A, B, DA da, DB db) {
-    return da + db;
+  static constexpr auto differential(auto, auto, auto da, auto db) { return da + db; }
+  static constexpr auto value(const auto& a, const auto& b) {
+    return detail::componentwise([](const auto& x, const auto& y) { return x + y; }, a, b);
   }
   static printed print(notation, const printed& a, const printed& b) {
     return {a.inside(precedence::sum) + " + " + b.inside(precedence::sum), precedence::sum};
@@ -259,28 +211,17 @@ struct difference {
       return -b;
     } else if constexpr (is_zero<B>) {
       return a;
-    } else if constexpr (is_number<A> && is_number<B>) {
-      if constexpr (detail::is_sum_exact(A::value, -B::value)) {
-        return number_node<detail::bits_of(A::value - B::value)>{};
-      } else {
-        return applied_node<difference, A, B>{};
-      }
+    } else if constexpr (detail::has_exact_sum<A, decltype(-b)>) {
+      return a + -b;
     } else if constexpr (std::is_same_v<A, B>) {
       return zero_of<A::kind_of>();
-    } else if constexpr (detail::starts_with_minus<B>()) {
+    } else if constexpr (detail::starts_with_minus<B>) {
       return a + -b;
-    } else {
-      return applied_node<difference, A, B>{};
     }
   }
-  template <class A, class B>
-  DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
-    return detail::componentwise(
-        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x - y; }, a, b);
-  }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A, B, DA da, DB db) {
-    return da - db;
+  static constexpr auto differential(auto, auto, auto da, auto db) { return da - db; }
+  static constexpr auto value(const auto& a, const auto& b) {
+    return detail::componentwise([](const auto& x, const auto& y) { return x - y; }, a, b);
   }
   static printed print(notation, const printed& a, const printed& b) {
     return {a.inside(precedence::sum) + " - " + b.inside(precedence::product), precedence::sum};

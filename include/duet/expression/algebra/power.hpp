@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/rules/powers.hpp>
 #include <duet/expression/algebra/product.hpp>
@@ -30,15 +29,11 @@ struct whole_power {
   static_assert(Exponent >= 2 || Exponent <= -1);
   static constexpr kind kind_of(kind a) { return a; }
   template <class X>
-  DUET_ALWAYS_INLINE static constexpr X value(const X& x) {
+  static constexpr X value(const X& x) {
     if constexpr (Exponent == -1) {
       return X(1 / x);
     } else if constexpr (Exponent < 0) { // x^n may be out of range where its reciprocal is not
       return X(1 / power_of<-Exponent / 2>(x) / power_of<(1 - Exponent) / 2>(x));
-    } else if constexpr (Exponent == 2) {
-      return X(x * x);
-    } else if constexpr (Exponent == 3) {
-      return X(x * x * x);
     } else {
       const X root = power_of<Exponent / 2>(x);
       if constexpr (Exponent % 2 == 0) {
@@ -48,12 +43,12 @@ struct whole_power {
       }
     }
   }
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
+  template <class X>
+  static constexpr auto differential(X x, auto dx) {
     if constexpr (Exponent == 2) {
-      return whole<Exponent> * x;
+      return whole<Exponent> * x * dx;
     } else {
-      return whole<Exponent> * applied_node<whole_power<Exponent - 1>, X>{};
+      return whole<Exponent> * applied_node<whole_power<Exponent - 1>, X>{} * dx;
     }
   }
   static printed print(notation style, const printed& x) {
@@ -64,7 +59,7 @@ struct whole_power {
 
 private:
   template <int N, class X>
-  DUET_ALWAYS_INLINE static constexpr X power_of(const X& x) {
+  static constexpr X power_of(const X& x) {
     if constexpr (N == 1) {
       return x;
     } else {
@@ -73,6 +68,22 @@ private:
   }
 };
 
+} // namespace op
+
+namespace detail {
+
+template <class P>
+inline constexpr bool is_small_whole = false;
+template <std::uint64_t Bits>
+inline constexpr bool is_small_whole<number_node<Bits>> = number_node<Bits>::value >= -16 &&
+                                                          number_node<Bits>::value <= 16 &&
+                                                          number_node<Bits>::value ==
+                                                              int(number_node<Bits>::value);
+
+} // namespace detail
+
+namespace op {
+
 /// x^p.
 struct power : detail::function<power, duet::rule::pow> {
   static constexpr bool slopes_take_value = true;
@@ -80,17 +91,10 @@ struct power : detail::function<power, duet::rule::pow> {
   static constexpr auto simplified([[maybe_unused]] X x, [[maybe_unused]] P p) {
     if constexpr (is_zero<P> || is_one<X>) {
       return whole<1>;
-    } else if constexpr (is_number<P>) {
-      constexpr double value = P::value;
-      if constexpr (value == 1) {
-        return x;
-      } else if constexpr (value >= -16 && value <= 16 && value == int(value)) {
-        return applied_node<whole_power<int(value)>, X>{};
-      } else {
-        return applied_node<power, X, P>{};
-      }
-    } else {
-      return applied_node<power, X, P>{};
+    } else if constexpr (is_one<P>) {
+      return x;
+    } else if constexpr (detail::is_small_whole<P>) {
+      return applied_node<whole_power<int(P::value)>, X>{};
     }
   }
   template <class X, class P>

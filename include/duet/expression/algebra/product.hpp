@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
@@ -58,6 +57,17 @@ inline constexpr bool is_inverse = false;
 template <class X>
 inline constexpr bool is_inverse<applied_node<op::quotient, number_node<bits_of(1)>, X>> = true;
 
+/// Two numbers whose product is one without rounding.
+template <class A, class B>
+inline constexpr bool has_exact_product = false;
+template <std::uint64_t A, std::uint64_t B>
+inline constexpr bool has_exact_product<number_node<A>, number_node<B>> =
+    is_product_exact(number_node<A>::value, number_node<B>::value);
+/// A number and what a product begins with.
+template <std::uint64_t A, class B, class X>
+inline constexpr bool has_exact_product<number_node<A>, applied_node<op::product, B, X>> =
+    has_exact_product<number_node<A>, B>;
+
 /// a/b is a double without rounding.
 [[nodiscard]] constexpr bool is_quotient_exact(double a, double b) {
   const double ratio = b == 0 ? 0 : a / b;
@@ -68,9 +78,9 @@ inline constexpr bool is_inverse<applied_node<op::quotient, number_node<bits_of(
 /// without rounding.
 template <class T, class Divisor>
 inline constexpr bool is_divided_exactly = false;
-template <std::uint64_t Bits, class Divisor>
-inline constexpr bool is_divided_exactly<number_node<Bits>, Divisor> =
-    is_quotient_exact(number_node<Bits>::value, Divisor::value);
+template <std::uint64_t A, std::uint64_t B>
+inline constexpr bool is_divided_exactly<number_node<A>, number_node<B>> =
+    is_quotient_exact(number_node<A>::value, number_node<B>::value);
 template <std::uint64_t Bits, class B, class Divisor>
 inline constexpr bool is_divided_exactly<applied_node<op::product, number_node<Bits>, B>, Divisor> =
     is_divided_exactly<number_node<Bits>, Divisor>;
@@ -109,16 +119,12 @@ struct product {
       return b;
     } else if constexpr (is_one<B>) {
       return a;
-    } else if constexpr (is_number<A> && is_number<B>) {
-      if constexpr (detail::is_product_exact(A::value, B::value)) {
-        return number_node<detail::bits_of(A::value * B::value)>{};
-      } else {
-        return applied_node<product, A, B>{};
-      }
+    } else if constexpr (is_number<B> && detail::has_exact_product<A, B>) {
+      return number_node<detail::bits_of(A::value * B::value)>{};
     } else if constexpr (B::kind_of == kind::scalar &&
-                         (A::kind_of != kind::scalar || is_number<B>)) {
+                         (A::kind_of != kind::scalar || (is_number<B> && !is_number<A>))) {
       return b * a;
-    } else if constexpr (detail::is_number_equal_to<A>(-1)) {
+    } else if constexpr (is_whole<A, -1>) {
       return -b;
     } else if constexpr (is_applied<A, negative>) {
       return -(operand<0>(a) * b);
@@ -126,17 +132,10 @@ struct product {
       return -(a * operand<0>(b));
     } else if constexpr (detail::is_placed<B>) {
       return detail::placed_like(b, a * operand<0>(b));
+    } else if constexpr (detail::has_exact_product<A, B>) {
+      return (a * operand<0>(b)) * operand<1>(b);
     } else if constexpr (is_number<A>) {
-      if constexpr (has_number<B>) {
-        constexpr double inner = decltype(operand<0>(b))::value;
-        if constexpr (detail::is_product_exact(A::value, inner)) {
-          return number_node<detail::bits_of(A::value * inner)>{} * operand<1>(b);
-        } else {
-          return applied_node<product, A, B>{};
-        }
-      } else {
-        return applied_node<product, A, B>{};
-      }
+      return;
     } else if constexpr (has_number<A>) {
       return operand<0>(a) * (operand<1>(a) * b);
     } else if constexpr (has_number<B>) {
@@ -152,19 +151,12 @@ struct product {
       return applied_node<whole_power<n>, base_of_a>{};
     } else if constexpr (detail::ends_with_power_of<A, base_of_b>) {
       return operand<0>(a) * (operand<1>(a) * b);
-    } else {
-      return applied_node<product, A, B>{};
     }
   }
-  template <class A, class B>
-  DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
-    return detail::componentwise(
-        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x * y; }, a, b);
+  static constexpr auto value(const auto& a, const auto& b) {
+    return detail::componentwise([](const auto& x, const auto& y) { return x * y; }, a, b);
   }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A a, B b, DA da, DB db) {
-    return da * b + a * db;
-  }
+  static constexpr auto differential(auto a, auto b, auto da, auto db) { return da * b + a * db; }
   static printed print(notation style, const printed& a, const printed& b) {
     const std::string right = b.inside(precedence::product);
     const bool is_digit = right[0] >= '0' && right[0] <= '9';
@@ -182,36 +174,30 @@ struct quotient {
                   "duet: formulas are divided by scalars; for rotations and poses there is conj");
     if constexpr (is_zero<A> || is_one<B>) {
       return a;
-    } else if constexpr (is_number<A> && is_number<B>) {
-      if constexpr (detail::is_divided_exactly<A, B>) {
-        return number_node<detail::bits_of(A::value / B::value)>{};
-      } else {
-        return applied_node<quotient, A, B>{};
-      }
+    } else if constexpr (is_number<A> && detail::is_divided_exactly<A, B>) {
+      return number_node<detail::bits_of(A::value / B::value)>{};
     } else if constexpr (detail::is_placed<A>) {
       return detail::placed_like(a, operand<0>(a) / b);
-    } else if constexpr (detail::starts_with_minus<A>()) {
+    } else if constexpr (detail::starts_with_minus<A>) {
       return -(-a / b);
-    } else if constexpr (detail::starts_with_minus<B>()) {
+    } else if constexpr (detail::starts_with_minus<B>) {
       return -(a / -b);
-    } else if constexpr (is_number<B>) {
-      return divided(a, b);
+    } else if constexpr (!detail::is_divided_exactly<A, B>) {
+      return;
+    } else if constexpr (is_applied<A, sum>) {
+      // The polynomials of a derivative lose the divisor of what was differentiated.
+      return operand<0>(a) / b + operand<1>(a) / b;
+    } else if constexpr (is_applied<A, difference>) {
+      return operand<0>(a) / b - operand<1>(a) / b;
     } else {
-      return applied_node<quotient, A, B>{};
+      return (operand<0>(a) / b) * operand<1>(a);
     }
   }
-  template <class A, class B>
-  DUET_ALWAYS_INLINE static constexpr auto value(const A& a, const B& b) {
-    return detail::componentwise(
-        [](const auto& x, const auto& y) DUET_INLINE_LAMBDA { return x / y; }, a, b);
+  static constexpr auto value(const auto& a, const auto& b) {
+    return detail::componentwise([](const auto& x, const auto& y) { return x / y; }, a, b);
   }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A a, B b, DA da, DB db) {
-    if constexpr (is_zero<DB>) {
-      return da / b;
-    } else {
-      return (da - db * (a / b)) / b;
-    }
+  static constexpr auto differential(auto a, auto b, auto da, auto db) {
+    return (da - db * (a / b)) / b;
   }
   static printed print(notation style, const printed& a, const printed& b) {
     if (style == notation::latex) {
@@ -219,21 +205,6 @@ struct quotient {
     }
     return {a.inside(precedence::product) + " / " + b.inside(precedence::power),
             precedence::product};
-  }
-
-private:
-  /// By a number: the polynomials of a derivative lose the divisor of what was differentiated.
-  template <class A, class B>
-  static constexpr auto divided(A a, B b) {
-    if constexpr (!detail::is_divided_exactly<A, B>) {
-      return applied_node<quotient, A, B>{};
-    } else if constexpr (is_applied<A, sum>) {
-      return operand<0>(a) / b + operand<1>(a) / b;
-    } else if constexpr (is_applied<A, difference>) {
-      return operand<0>(a) / b - operand<1>(a) / b;
-    } else {
-      return (operand<0>(a) / b) * operand<1>(a);
-    }
   }
 };
 

@@ -10,8 +10,8 @@
 /// seven joints and its Jacobian take 1054 instructions in lanes, 1161 by displacements (g++ -O2;
 /// clang -O2: 974 and 1066; twenty joints: 2839 and 3063, 2710 and 2991).
 ///
-/// Three and four doubles for kernels: in one vector where the target has vectors of four, in two
-/// of two where it has not.
+/// Vectors of three doubles, the last lane 0, and quaternions for kernels: in one vector where the
+/// target has vectors of four, in two of two where it has not.
 
 namespace duet::expression::detail {
 
@@ -46,8 +46,8 @@ struct four_lanes {
   friend DUET_ALWAYS_INLINE four_lanes operator*(const four_lanes& a, const four_lanes& b) {
     return {a.lower * b.lower, a.upper * b.upper};
   }
-  friend DUET_ALWAYS_INLINE four_lanes operator*(const four_lanes& a, double b) {
-    return {a.lower * b, a.upper * b};
+  friend DUET_ALWAYS_INLINE four_lanes operator*(double a, const four_lanes& b) {
+    return {b.lower * a, b.upper * a};
   }
 };
 
@@ -69,68 +69,29 @@ template <int I, int J, int K, int L>
 
 #endif
 
-struct four_doubles {
-  four_lanes v;
-  DUET_ALWAYS_INLINE double operator[](int i) const { return v[i]; }
-};
-
-struct vector_in_lanes : four_doubles {
-  DUET_ALWAYS_INLINE vector_in_lanes(double x, double y, double z)
-      : four_doubles{lanes_of(x, y, z, 0)} {}
-  DUET_ALWAYS_INLINE explicit vector_in_lanes(const four_lanes& a) : four_doubles{a} {}
-
-  friend DUET_ALWAYS_INLINE vector_in_lanes operator*(double x, const vector_in_lanes& a) {
-    return vector_in_lanes(a.v * x);
-  }
-  friend DUET_ALWAYS_INLINE vector_in_lanes operator+(const vector_in_lanes& a,
-                                                      const vector_in_lanes& b) {
-    return vector_in_lanes(a.v + b.v);
-  }
-  friend DUET_ALWAYS_INLINE vector_in_lanes operator-(const vector_in_lanes& a,
-                                                      const vector_in_lanes& b) {
-    return vector_in_lanes(a.v - b.v);
-  }
-};
-
-[[nodiscard]] DUET_ALWAYS_INLINE vector_in_lanes cross(const vector_in_lanes& a,
-                                                       const vector_in_lanes& b) {
-  const four_lanes c = a.v * shuffled<1, 2, 0, 3>(b.v, b.v) - shuffled<1, 2, 0, 3>(a.v, a.v) * b.v;
-  return vector_in_lanes(shuffled<1, 2, 0, 3>(c, c));
+/// a × b of vectors in three lanes.
+[[nodiscard]] DUET_ALWAYS_INLINE four_lanes cross(const four_lanes& a, const four_lanes& b) {
+  const four_lanes c = a * shuffled<1, 2, 0, 3>(b, b) - shuffled<1, 2, 0, 3>(a, a) * b;
+  return shuffled<1, 2, 0, 3>(c, c);
 }
 
-/// A quaternion, scalar first.
-struct quaternion_in_lanes : four_doubles {
-  DUET_ALWAYS_INLINE quaternion_in_lanes(double w, double x, double y, double z)
-      : four_doubles{lanes_of(w, x, y, z)} {}
-  DUET_ALWAYS_INLINE explicit quaternion_in_lanes(const four_lanes& a) : four_doubles{a} {}
-
-  /// Times s times the I-th unit vector.
-  template <int I>
-  [[nodiscard]] DUET_ALWAYS_INLINE quaternion_in_lanes times_unit(double s) const {
-    if constexpr (I == 0) {
-      return quaternion_in_lanes(shuffled<1, 0, 3, 2>(v, v) * lanes_of(-s, s, s, -s));
-    } else if constexpr (I == 1) {
-      return quaternion_in_lanes(shuffled<2, 3, 0, 1>(v, v) * lanes_of(-s, -s, s, s));
-    } else {
-      return quaternion_in_lanes(shuffled<3, 2, 1, 0>(v, v) * lanes_of(-s, s, -s, s));
-    }
+/// A quaternion, scalar first, times s times the I-th unit vector.
+template <int I>
+[[nodiscard]] DUET_ALWAYS_INLINE four_lanes times_unit(const four_lanes& q, double s) {
+  if constexpr (I == 0) {
+    return shuffled<1, 0, 3, 2>(q, q) * lanes_of(-s, s, s, -s);
+  } else if constexpr (I == 1) {
+    return shuffled<2, 3, 0, 1>(q, q) * lanes_of(-s, -s, s, s);
+  } else {
+    return shuffled<3, 2, 1, 0>(q, q) * lanes_of(-s, s, -s, s);
   }
-
-  friend DUET_ALWAYS_INLINE quaternion_in_lanes operator*(double x, const quaternion_in_lanes& a) {
-    return quaternion_in_lanes(a.v * x);
-  }
-  friend DUET_ALWAYS_INLINE quaternion_in_lanes operator+(const quaternion_in_lanes& a,
-                                                          const quaternion_in_lanes& b) {
-    return quaternion_in_lanes(a.v + b.v);
-  }
-};
+}
 
 /// A column [v; ω] of a Jacobian, set or added to.
 template <bool IsSet>
-DUET_ALWAYS_INLINE void write_twist(double* column, const vector_in_lanes& v,
-                                    const vector_in_lanes& omega) {
-  four_lanes upper = shuffled<0, 1, 2, 4>(v.v, omega.v);
-  const four_lanes rest = shuffled<1, 2, 1, 2>(omega.v, omega.v);
+DUET_ALWAYS_INLINE void write_twist(double* column, const four_lanes& v, const four_lanes& omega) {
+  four_lanes upper = shuffled<0, 1, 2, 4>(v, omega);
+  const four_lanes rest = shuffled<1, 2, 1, 2>(omega, omega);
   if constexpr (IsSet) {
     std::memcpy(column, &upper, sizeof upper);
     std::memcpy(column + 4, &rest, 2 * sizeof(double));

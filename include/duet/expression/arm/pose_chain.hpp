@@ -5,9 +5,8 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/arm/moving_frame.hpp>
-#include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
-#include <duet/expression/rotation.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/vector.hpp>
@@ -19,7 +18,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <type_traits>
 #include <utility>
 
 /// \file
@@ -47,50 +45,10 @@ inline constexpr bool is_pose_chain = false;
 template <class A, class B>
 inline constexpr bool is_pose_chain<applied_node<op::product, A, B>> = A::kind_of == kind::pose;
 
-/// Any factor, by its value and its twists.
-struct any_link {
-  static constexpr bool turns = true;
-  template <bool IsFirst>
-  DUET_ALWAYS_INLINE static void append(moving_frame& f, const dual_quaternion<double>& a) {
-    f.append(a);
-  }
-  template <bool IsSet>
-  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column,
-                                       const dual_vector<double>& twist) {
-    f.write_twist_of<IsSet>(column, twist);
-  }
-};
-/// A turn about a coordinate axis, by sine and cosine of half the angle.
-template <int I>
-struct turning_link {
-  static constexpr bool turns = true;
-  template <bool IsFirst>
-  DUET_ALWAYS_INLINE static void append(moving_frame& f, double s, double c) {
-    f.turn<I, IsFirst>(s, c);
-  }
-  template <bool IsSet>
-  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column, double rate) {
-    f.write_turn<IsSet, I>(column, rate);
-  }
-};
-/// A translation along a coordinate axis.
-template <int I>
-struct sliding_link {
-  static constexpr bool turns = false;
-  template <bool IsFirst>
-  DUET_ALWAYS_INLINE static void append(moving_frame& f, double d) {
-    f.slide<I>(d);
-  }
-  template <bool IsSet>
-  DUET_ALWAYS_INLINE static void write(const moving_frame& f, double* column, double rate) {
-    f.write_slide<IsSet, I>(column, rate);
-  }
-};
-
 /// How a factor is appended, and the nodes that this and its twists need.
 template <class Factor>
 struct link_of {
-  using link = any_link;
+  using link = any_motion;
   using nodes = mp11::mp_list<Factor>;
   template <class Motion>
   using twist = decltype(velocity_of<spatial_frame, Factor, Motion>());
@@ -98,14 +56,14 @@ struct link_of {
 template <int I, class Angle, class S, class C>
   requires(I < 3)
 struct link_of<applied_node<op::turn, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
-  using link = turning_link<I>;
+  using link = about_axis<I>;
   using nodes = mp11::mp_list<S, C>;
   template <class Motion>
   using twist = rate_t<Angle, Motion>;
 };
 template <int I, class D>
 struct link_of<applied_node<op::slide, unit_vector_node<kind::vector, I>, D>> {
-  using link = sliding_link<I>;
+  using link = along_axis<I>;
   using nodes = mp11::mp_list<D>;
   template <class Motion>
   using twist = rate_t<D, Motion>;
@@ -141,10 +99,9 @@ template <class Link, bool IsFirst, int... Values, int... Column, bool... IsSet,
 struct factor_step<Link, IsFirst, std::integer_sequence<int, Values...>,
                    mp11::mp_list<column_write<Column, IsSet, Twist>...>> {
   template <class Slots>
-  DUET_ALWAYS_INLINE static void run(moving_frame& f, [[maybe_unused]] double* jacobian,
-                                     const Slots& s) {
-    (Link::template write<IsSet>(f, jacobian + 6 * Column, value_at<Twist>(s)), ...);
-    Link::template append<IsFirst>(f, value_at<Values>(s)...);
+  DUET_ALWAYS_INLINE static void run(moving_frame& f, [[maybe_unused]] double* jacobian, Slots& s) {
+    (f.write<IsSet>(Link{}, jacobian + 6 * Column, value_at<Twist>(s)), ...);
+    f.append<IsFirst>(Link{}, value_at<Values>(s)...);
   }
 };
 
@@ -154,10 +111,9 @@ struct pose_chain;
 template <class... Factors, class... Motions, std::size_t... K>
 struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index_sequence<K...>> {
   /// The pose; its Jacobian is written into 6 × n doubles, column by column.
-  template <class Held, class... Arguments>
-  [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double>
-  evaluate(double* jacobian, const Held& held, const Arguments&... arguments) {
-    const auto values = evaluated(nodes{}, given<Held, Arguments...>{held, arguments...});
+  [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double> evaluate(double* jacobian,
+                                                                           const auto& g) {
+    auto values = evaluated(nodes{}, g);
     moving_frame f;
     run(f, jacobian, values,
         typename step<K, Factors, typename link_of<Factors>::nodes,
@@ -193,11 +149,11 @@ private:
     (note(first, K, typename moved_factor<Factors, motions>::motions{}), ...);
     return first;
   }();
-  static constexpr std::size_t first_turn = [] {
-    std::size_t first = count;
-    ((first = link_of<Factors>::link::turns ? std::min(first, K) : first), ...);
-    return first;
-  }();
+
+  template <class Factor>
+  using turns = mp11::mp_bool<link_of<Factor>::link::turns>;
+  static constexpr std::size_t first_turn =
+      mp11::mp_find_if<mp11::mp_list<Factors...>, turns>::value;
 
   template <std::size_t At, class Factor, class Values, class Moved>
   struct step;
@@ -214,7 +170,7 @@ private:
   };
 
   template <class... Steps, class Slots>
-  DUET_ALWAYS_INLINE static void run(moving_frame& f, double* jacobian, const Slots& s, Steps...) {
+  DUET_ALWAYS_INLINE static void run(moving_frame& f, double* jacobian, Slots& s, Steps...) {
     (Steps::run(f, jacobian, s), ...);
   }
 };

@@ -3,7 +3,6 @@
 
 #include <duet/core/config.hpp>
 #include <duet/expression/evaluate/given.hpp>
-#include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
 
@@ -65,34 +64,23 @@ struct call_of<held<Items...>> {
   }
 };
 
-/// The values of some nodes of formulas that hold `held`.
-template <class... Roots, class Held, class... Arguments>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto called(const Held& held,
-                                                       const Arguments&... arguments) {
-  return evaluated_nodes<Roots...>(given<Held, Arguments...>{held, arguments...});
-}
-
-/// What is made of a formula and called by name as the formula is: `Derived::evaluate` of values
-/// that are complete.
-template <class Derived, class F>
+/// What is made of a formula and called by name as the formula is: `Made::of` of its node where
+/// `given` holds values that are complete.
+template <class Made, class F>
 class called_by_name {
 public:
   constexpr explicit called_by_name(const F& f) : f_(f) {}
 
   template <class... Arguments>
   [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
+    using held = typename F::held_type;
     if constexpr (call_of<held>::template is_complete<Arguments...>()) {
-      return static_cast<const Derived&>(*this).evaluate(arguments...);
+      using node = typename F::node_type;
+      return Made::template of<node>(given<held, Arguments...>{f_.held(), arguments...});
     }
   }
 
-protected:
-  using node = typename F::node_type;
-  using held = typename F::held_type;
-
-  template <class... Arguments>
-  using scalar = typename given<held, Arguments...>::scalar;
-
+private:
   F f_;
 };
 

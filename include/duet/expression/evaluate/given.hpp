@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual/number/promotion.hpp>
@@ -48,37 +47,27 @@ struct scalar_of<Eigen::Matrix<T, Rows, Columns, Options>> : scalar_of<T> {};
 template <class T>
 struct scalar_of<quaternion<T>> : scalar_of<T> {};
 
-/// The real type in which numbers of a formula meet its arguments.
+template <class T>
+using scalar_of_t = typename scalar_of<T>::type;
+
+/// The scalar that holds some; of none a double.
 template <class... T>
-struct common_real {
+struct common_scalar {
   using type = double;
 };
 template <class T>
-struct common_real<T> {
-  using type = real_type_t<typename scalar_of<T>::type>;
+struct common_scalar<T> {
+  using type = T;
 };
 template <class A, class B, class... Rest>
-struct common_real<A, B, Rest...> {
-  using type =
-      typename common_real<promote_t<typename common_real<A>::type, typename common_real<B>::type>,
-                           Rest...>::type;
-};
-
-/// The scalar that holds all arguments.
-template <class Real, class... T>
-struct common_scalar {
-  using type = Real;
-};
-template <class Real, class T, class... Rest>
-struct common_scalar<Real, T, Rest...> {
-  using type = typename common_scalar<promote_t<Real, typename scalar_of<T>::type>, Rest...>::type;
-};
+struct common_scalar<A, B, Rest...> : common_scalar<promote_t<A, B>, Rest...> {};
+template <class... T>
+using common_scalar_t = typename common_scalar<T...>::type;
 
 /// A constant as arguments of some precision meet it.
 template <class Real, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto constant_over(const T& x) {
-  const auto of_part = [](const auto& part)
-                           DUET_INLINE_LAMBDA { return constant_over<Real>(part); };
+[[nodiscard]] constexpr auto constant_over(const T& x) {
+  const auto of_part = [](const auto& part) { return constant_over<Real>(part); };
   if constexpr (std::floating_point<T>) {
     return static_cast<Real>(x);
   } else if constexpr (Infinitesimal<T> && duet::detail::contains_tag<T, screw_tag>()) {
@@ -97,17 +86,17 @@ struct library_sines {};
 template <class Held, class... Arguments>
 struct given : Held, Arguments... {
   static constexpr bool has_library_sines = std::is_base_of_v<holding<library_sines>, Held>;
-  using real = typename common_real<typename Arguments::value_type...>::type;
-  using scalar = typename common_scalar<real, typename Arguments::value_type...>::type;
+  /// In which numbers of the formula meet its arguments.
+  using real = common_scalar_t<real_type_t<scalar_of_t<typename Arguments::value_type>>...>;
+  using scalar = common_scalar_t<real, scalar_of_t<typename Arguments::value_type>...>;
 };
 
 template <class Symbol, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& value_in(const argument<Symbol, T>& x) {
+[[nodiscard]] constexpr const T& value_in(const argument<Symbol, T>& x) {
   return x.value;
 }
 template <class Node, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T&
-value_in(const holding<held_constant<Node, T>>& x) {
+[[nodiscard]] constexpr const T& value_in(const holding<held_constant<Node, T>>& x) {
   return x.value;
 }
 
@@ -123,7 +112,7 @@ struct leaf;
 
 template <std::uint64_t Bits, class Given>
 struct leaf<number_node<Bits>, Given> {
-  DUET_ALWAYS_INLINE static constexpr auto value(const Given&) {
+  static constexpr auto value(const Given&) {
     return static_cast<typename Given::real>(number_node<Bits>::value);
   }
 };
@@ -131,16 +120,13 @@ template <kind K, class Given>
 struct leaf<zero_node<K>, Given> {
   static constexpr auto value(const Given&) {
     using real = typename Given::real;
-    if constexpr (is_matrix(K)) {
-      using matrix = Eigen::Matrix<real, rows_of(K), columns_of(K)>;
-      return matrix(matrix::Zero());
-    } else if constexpr (K == kind::dual_vector) {
-      using D = screw_dual<real>;
-      return dual_vector<real>(D(real(0)), D(real(0)), D(real(0)));
-    } else if constexpr (K == kind::quaternion) {
-      return quaternion<real>();
+    constexpr bool is_of_motion = K == kind::dual_vector || K == kind::pose;
+    using T = std::conditional_t<is_of_motion, screw_dual<real>, real>;
+    if constexpr (K == kind::quaternion || K == kind::pose) {
+      return quaternion<T>();
     } else {
-      return dual_quaternion<real>();
+      using matrix = Eigen::Matrix<T, K == kind::dual_vector ? 3 : rows_of(K), columns_of(K)>;
+      return matrix(matrix::Zero());
     }
   }
 };

@@ -5,7 +5,6 @@
 #include <duet/dual/rules/sine_cosine.hpp>
 #include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/evaluate/sines.hpp>
-#include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/node_list.hpp>
 
@@ -64,16 +63,8 @@ template <int I, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr T& value_at(slot<I, T>& s) {
   return s.value;
 }
-template <int I, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& value_at(const slot<I, T>& s) {
-  return s.value;
-}
 template <int I, class T, int Count>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr T& value_at(equal_slots<T, Count>& s) {
-  return s.values[I];
-}
-template <int I, class T, int Count>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr const T& value_at(const equal_slots<T, Count>& s) {
   return s.values[I];
 }
 
@@ -81,13 +72,13 @@ template <int I, class T, int Count>
 template <class Slots, int... I>
 struct chosen_values : Slots {
   template <int K>
-  [[nodiscard]] DUET_ALWAYS_INLINE constexpr const auto& get() const {
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto& get() {
     constexpr int places[] = {I...};
-    return value_at<places[K]>(static_cast<const Slots&>(*this));
+    return value_at<places[K]>(static_cast<Slots&>(*this));
   }
   /// f of Count of them, from the First-th on.
   template <int First, int Count, class F>
-  DUET_ALWAYS_INLINE constexpr void each(const F& f) const {
+  DUET_ALWAYS_INLINE constexpr void each(const F& f) {
     [&]<int... K>(std::integer_sequence<int, K...>) DUET_INLINE_LAMBDA {
       (f(get<First + K>()), ...);
     }
@@ -120,14 +111,13 @@ template <int I, int Sine, int Cosine>
 struct sine_instruction {
   template <class Slots>
   DUET_ALWAYS_INLINE static constexpr void run(Slots& s) {
-    using duet::detail::sine_and_cosine_of;
     const auto& x = value_at<I>(s);
     if constexpr (Cosine < 0) {
       value_at<Sine>(s) = duet::rule::sin{}.value(x);
     } else if constexpr (Sine < 0) {
       value_at<Cosine>(s) = duet::rule::cos{}.value(x);
     } else {
-      const duet::detail::sine_cosine<std::remove_cvref_t<decltype(x)>> y = sine_and_cosine_of(x);
+      const auto y = duet::detail::sine_and_cosine_of(x);
       set(s, y.sine, y.cosine);
     }
   }

@@ -8,10 +8,6 @@
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>
-#include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/tangent.hpp>
-
-#include <Eigen/Core>
 
 #include <cstddef>
 #include <string>
@@ -19,8 +15,7 @@
 #include <utility>
 
 /// \file
-/// The derivative of an operation that has no closed one worth a formula: by dual numbers, to any
-/// order.
+/// The derivative of an operation that says none of its own: by dual numbers, to any order.
 
 namespace duet::expression {
 
@@ -53,27 +48,19 @@ template <class Function, std::size_t... I>
 struct pushforward<Function, std::index_sequence<I...>> {
   static constexpr std::size_t count = sizeof...(I);
 
-  template <class... Kinds>
-  static constexpr kind kind_of(Kinds... kinds) {
+  static constexpr kind kind_of(auto... kinds) {
     const kind all[] = {kinds...};
     return Function::kind_of(all[I]...);
   }
-  template <class... X>
-  static auto value(const X&... x) {
+  static auto value(const auto&... x) {
     using tag = derivative_tag<pushforward>;
     const auto all = std::tie(x...);
     return duet::detail::parts<tag>(
         Function::value(detail::with_rate<tag>(std::get<I>(all), std::get<I + count>(all))...), 1);
   }
-  template <class... X>
-  static constexpr auto differential(X... x) {
-    static_assert(sizeof...(X) == 4 * count);
-    return apply<pushforward<pushforward, std::make_index_sequence<2 * count>>>(x...);
-  }
-  template <class... P>
-  static printed print(notation style, const P&... p) {
+  static printed print(notation style, const auto&... p) {
     const printed all[] = {p...};
-    const printed f = Function::print(style, all[I]...);
+    const printed f = detail::printed_operation<Function>(style, all[I]...);
     std::string rates;
     ((rates += (I > 0 ? ", " : "") + all[I + count].text), ...);
     return {(style == notation::latex ? "\\mathrm{D}" : "D ") + f.inside(precedence::atom) + "[" +

@@ -3,12 +3,9 @@
 
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/tree/number.hpp>
 #include <duet/expression/vector.hpp>
 
 #include <boost/mp11/list.hpp>
-
-#include <type_traits>
 
 /// \file
 /// By which symbols a formula is differentiated, and in which directions each of them moves.
@@ -29,22 +26,17 @@ struct directions<Symbol, Frame, kind::scalar> {
   using type = motion_list<movement_of_scalar<Symbol>>;
 };
 
+template <class Symbol, kind K, int... I>
+using moving_along_axes = motion_list<movement<moving<Symbol, unit_vector_node<K, I>>>...>;
+
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::vector> {
-  using type = motion_list<movement<moving<Symbol, unit_vector_node<kind::vector, 0>>>,
-                           movement<moving<Symbol, unit_vector_node<kind::vector, 1>>>,
-                           movement<moving<Symbol, unit_vector_node<kind::vector, 2>>>>;
+  using type = moving_along_axes<Symbol, kind::vector, 0, 1, 2>;
 };
-
 /// In the order of [m; n], that of twists.
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::dual_vector> {
-  using type = motion_list<movement<moving<Symbol, unit_vector_node<kind::dual_vector, 3>>>,
-                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 4>>>,
-                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 5>>>,
-                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 0>>>,
-                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 1>>>,
-                           movement<moving<Symbol, unit_vector_node<kind::dual_vector, 2>>>>;
+  using type = moving_along_axes<Symbol, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
 };
 
 } // namespace detail

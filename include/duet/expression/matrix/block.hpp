@@ -3,7 +3,7 @@
 
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/algebra/scalar_factor.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <string>
 #include <tuple>
+#include <type_traits>
 
 /// \file
 /// Blocks of matrices, transposed matrices, and a block among zeros, which is how derivatives by
@@ -31,36 +32,26 @@ struct entries;
 /// Zeros but for the block X that begins at (I, J). Only derivatives by entries
 /// have it, which are not printed.
 template <int Rows, int Columns, int I, int J>
-struct placed {
+struct placed : linear_operation {
   static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
   template <class X>
   static constexpr auto simplified(X x) {
-    if constexpr (is_zero<X>) {
-      return zero_of<kind_of(X::kind_of)>();
-    } else if constexpr (rows_of(X::kind_of) == Rows && columns_of(X::kind_of) == Columns) {
+    if constexpr (rows_of(X::kind_of) == Rows && columns_of(X::kind_of) == Columns) {
       return x;
     } else if constexpr (Rows == 3 && Columns == 1 && X::kind_of == kind::scalar) {
       return x * unit_vector_node<kind::vector, I>{};
-    } else {
-      return applied_node<placed, X>{};
     }
   }
   template <class X>
   static auto value(const X& x) {
+    using T = std::remove_cvref_t<decltype(detail::component_of(x, 0))>;
+    Eigen::Matrix<T, Rows, Columns> m = Eigen::Matrix<T, Rows, Columns>::Zero();
     if constexpr (detail::EigenMatrix<X>) {
-      using T = typename X::Scalar;
-      Eigen::Matrix<T, Rows, Columns> m = Eigen::Matrix<T, Rows, Columns>::Zero();
       m.template block<X::RowsAtCompileTime, X::ColsAtCompileTime>(I, J) = x;
-      return m;
     } else {
-      Eigen::Matrix<X, Rows, Columns> m = Eigen::Matrix<X, Rows, Columns>::Zero();
       m(I, J) = x;
-      return m;
     }
-  }
-  template <class X, class DX>
-  static constexpr auto differential(X, DX dx) {
-    return apply<placed>(dx);
+    return m;
   }
 };
 
@@ -102,20 +93,14 @@ namespace op {
 
 /// The Rows x Columns entries that begin at (I, J).
 template <int I, int J, int Rows, int Columns>
-struct block {
+struct block : linear_operation {
   static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
   template <class M>
   static constexpr auto simplified(M m) {
     if constexpr (Rows == rows_of(M::kind_of) && Columns == columns_of(M::kind_of)) {
       return m;
-    } else if constexpr (is_zero<M>) {
-      return zero_of<kind_of(M::kind_of)>();
-    } else if constexpr (is_applied<M, negative>) {
-      return -apply<block>(operand<0>(m));
-    } else if constexpr (is_applied<M, product>) { // of a scalar
-      return operand<0>(m) * apply<block>(operand<1>(m));
-    } else if constexpr (is_applied<M, quotient>) {
-      return apply<block>(operand<0>(m)) / operand<1>(m);
+    } else if constexpr (detail::is_scaled<M>) {
+      return detail::scaled_outside(m, [](auto x) { return apply<block>(x); });
     } else if constexpr (is_applied<M, transpose>) {
       return apply<transpose>(apply<op::block<J, I, Columns, Rows>>(operand<0>(m)));
     } else if constexpr (detail::sparsity<M>::is_sparse) {
@@ -133,10 +118,6 @@ struct block {
           m.template block<Rows, Columns>(I, J));
     }
   }
-  template <class M, class DM>
-  static constexpr auto differential(M, DM dm) {
-    return apply<block>(dm);
-  }
   static printed print(notation style, const printed& m) {
     const std::string i = detail::printed_range(style, I, Rows);
     const std::string j = detail::printed_range(style, J, Columns);
@@ -147,11 +128,9 @@ struct block {
 
 private:
   template <class M>
-  static constexpr auto of(M m) {
+  static constexpr auto of(M) {
     if constexpr (Rows == 1 && Columns == 1 && columns_of(M::kind_of) == 1) {
-      return apply<component<I>>(m);
-    } else {
-      return applied_node<block, M>{};
+      return applied_node<component<I>, M>{};
     }
   }
   template <int Row, int Column, int R, int C, class M>
@@ -159,12 +138,9 @@ private:
     return apply<op::block<I + Row, J + Column, Rows, Columns>>(M{});
   }
   template <int R, int C, class... X>
-  static constexpr auto of(applied_node<entries<R, C>, X...> m) {
-    if constexpr (Rows == 1 && Columns == 1) {
-      return std::tuple_element_t<I * C + J, std::tuple<X...>>{};
-    } else {
-      return applied_node<block, decltype(m)>{};
-    }
+    requires(Rows == 1 && Columns == 1)
+  static constexpr auto of(applied_node<entries<R, C>, X...>) {
+    return std::tuple_element_t<I * C + J, std::tuple<X...>>{};
   }
   /// What of the block that is not 0 is in this one.
   template <class S>
@@ -183,29 +159,24 @@ private:
 };
 
 /// Aᵀ
-struct transpose {
+struct transpose : linear_operation {
+  static constexpr detail::function_name name = {"transpose", "#^{\\top}"};
   static constexpr kind kind_of(kind m) { return matrix_kind(columns_of(m), rows_of(m)); }
+  template <class M>
+  static constexpr auto simplified(applied_node<transpose, M>) {
+    return M{};
+  }
   template <class M>
   static constexpr auto simplified(M m) {
     if constexpr (M::kind_of == kind::scalar) {
       return m;
-    } else if constexpr (is_zero<M>) {
-      return zero_of<kind_of(M::kind_of)>();
-    } else if constexpr (is_applied<M, transpose>) {
-      return operand<0>(m);
-    } else if constexpr (is_applied<M, negative>) {
-      return -apply<transpose>(operand<0>(m));
-    } else if constexpr (is_applied<M, product>) { // of a scalar
-      return operand<0>(m) * apply<transpose>(operand<1>(m));
-    } else if constexpr (is_applied<M, quotient>) {
-      return apply<transpose>(operand<0>(m)) / operand<1>(m);
+    } else if constexpr (detail::is_scaled<M>) {
+      return detail::scaled_outside(m, [](auto x) { return apply<transpose>(x); });
     } else if constexpr (detail::sparsity<M>::is_sparse) {
       using sparse = detail::sparsity<M>;
       return apply<
           placed<columns_of(M::kind_of), rows_of(M::kind_of), sparse::column, sparse::row>>(
           apply<transpose>(typename sparse::block{}));
-    } else {
-      return applied_node<transpose, M>{};
     }
   }
   template <class M>
@@ -213,24 +184,12 @@ struct transpose {
     return Eigen::Matrix<typename M::Scalar, M::ColsAtCompileTime, M::RowsAtCompileTime>(
         m.transpose());
   }
-  template <class M, class DM>
-  static constexpr auto differential(M, DM dm) {
-    return apply<transpose>(dm);
-  }
-  static printed print(notation style, const printed& m) {
-    return style == notation::latex
-               ? printed{m.inside(precedence::atom) + "^{\\top}", precedence::power}
-               : printed{"transpose(" + m.text + ")"};
-  }
 };
 
 } // namespace op
 
 /// Aᵀ.
-template <MatrixTerm M>
-[[nodiscard]] constexpr auto transpose(const M& m) {
-  return apply<op::transpose>(m);
-}
+[[nodiscard]] constexpr auto transpose(const MatrixTerm auto& m) { return apply<op::transpose>(m); }
 
 /// The Rows x Columns block that begins at (I, J), from 0.
 template <int I, int J, int Rows, int Columns, MatrixTerm M>

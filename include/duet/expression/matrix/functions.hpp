@@ -5,20 +5,15 @@
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
 #include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/evaluate/pushforward.hpp>
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/matrix/product.hpp>
 #include <duet/expression/tree/formula.hpp>
-#include <duet/expression/tree/function.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
-
-#include <type_traits>
-#include <utility>
 
 /// \file
 /// Of matrices: dot products and norms, trace, determinant, adjugate and inverse, and solutions of
@@ -64,16 +59,15 @@ namespace op {
 
 /// adj A, of which A adj A = det A.
 struct adjugate {
+  static constexpr detail::function_name name = {"adjugate", "\\operatorname{adj}"};
   static constexpr kind kind_of(kind m) { return m; }
+  template <ScalarTerm M>
+  static constexpr auto simplified(M) {
+    return whole<1>;
+  }
   template <class M>
-  static constexpr auto simplified(M m) {
-    if constexpr (M::kind_of == kind::scalar) {
-      return whole<1>;
-    } else if constexpr (is_applied<M, transpose>) {
-      return apply<transpose>(apply<adjugate>(operand<0>(m)));
-    } else {
-      return applied_node<adjugate, M>{};
-    }
+  static constexpr auto simplified(applied_node<transpose, M>) {
+    return apply<transpose>(apply<adjugate>(M{}));
   }
   template <class M>
   static auto value(const M& m) {
@@ -88,21 +82,15 @@ struct adjugate {
     }
     return result;
   }
-  template <class M, class DM>
-  static constexpr auto differential(M m, DM dm) {
-    if constexpr (rows_of(M::kind_of) == 2) { // linear in its entries
-      return apply<adjugate>(dm);
-    } else {
-      return apply<pushforward<adjugate, std::index_sequence<0>>>(m, dm);
-    }
-  }
-  static printed print(notation style, const printed& m) {
-    return detail::printed_call(style, {"adjugate", "\\operatorname{adj}"}, m.text);
-  }
+  /// Of two rows, where it is linear in its entries.
+  template <class M>
+    requires(rows_of(M::kind_of) == 2)
+  static constexpr auto differential(M, auto dm) { return apply<adjugate>(dm); }
 };
 
 /// det A
 struct determinant {
+  static constexpr detail::function_name name = {"determinant", "\\det"};
   static constexpr kind kind_of(kind) { return kind::scalar; }
   template <class M>
   static constexpr auto simplified(M m) {
@@ -112,46 +100,28 @@ struct determinant {
       return whole<0>;
     } else if constexpr (is_applied<M, transpose>) {
       return apply<determinant>(operand<0>(m));
-    } else {
-      return applied_node<determinant, M>{};
     }
   }
-  template <class M>
-  static auto value(const M& m) {
-    return detail::determinant_of(m);
-  }
-  template <class M, class DM>
-  static constexpr auto differential(M m, DM dm) {
+  static auto value(const auto& m) { return detail::determinant_of(m); }
+  static constexpr auto differential(auto m, auto dm) {
     return apply<trace_of_product>(apply<adjugate>(m), dm);
-  }
-  static printed print(notation style, const printed& m) {
-    return detail::printed_call(style, {"determinant", "\\det"}, m.text);
   }
 };
 
 /// A⁻¹
 struct inverse {
+  static constexpr detail::function_name name = {"inverse", "#^{-1}"};
   static constexpr kind kind_of(kind m) { return m; }
-  template <class M>
+  template <ScalarTerm M>
   static constexpr auto simplified(M m) {
-    if constexpr (M::kind_of == kind::scalar) {
-      return whole<1> / m;
-    } else {
-      return applied_node<inverse, M>{};
-    }
+    return whole<1> / m;
   }
   template <class M>
   static auto value(const M& m) {
     return M(duet::solve(m, M(M::Identity())));
   }
-  template <class M, class DM>
-  static constexpr auto differential(M m, DM dm) {
+  static constexpr auto differential(auto m, auto dm) {
     return -(apply<inverse>(m) * dm * apply<inverse>(m));
-  }
-  static printed print(notation style, const printed& m) {
-    return style == notation::latex
-               ? printed{m.inside(precedence::atom) + "^{-1}", precedence::power}
-               : printed{"inverse(" + m.text + ")"};
   }
 };
 
@@ -164,8 +134,6 @@ struct solution {
       return b / a;
     } else if constexpr (is_zero<B>) {
       return b;
-    } else {
-      return applied_node<solution, A, B>{};
     }
   }
   template <class A, class B>
@@ -173,13 +141,13 @@ struct solution {
     using S = promote_t<typename A::Scalar, typename B::Scalar>;
     return Eigen::Matrix<S, B::RowsAtCompileTime, B::ColsAtCompileTime>(duet::solve(a, b));
   }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A a, B, DA da, DB db) {
-    return apply<inverse>(a) * (db - da * applied_node<solution, A, B>{});
+  static constexpr auto differential(auto a, auto b, auto da, auto db) {
+    return apply<inverse>(a) * (db - da * apply<solution>(a, b));
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    return style == notation::latex ? matrix_product::print(style, inverse::print(style, a), b)
-                                    : printed{"solve(" + a.text + ", " + b.text + ")"};
+    return style == notation::latex
+               ? matrix_product::print(style, detail::printed_operation<inverse>(style, a), b)
+               : printed{"solve(" + a.text + ", " + b.text + ")"};
   }
 };
 
@@ -192,21 +160,25 @@ concept ScalarOrMatrix = ScalarTerm<T> || MatrixTerm<T>;
 
 template <class M>
 constexpr void require_square_matrix() {
-  constexpr kind k = kind_of_term<M>();
+  constexpr kind k = kind_of_operand<M>();
   static_assert(rows_of(k) == columns_of(k),
                 "duet: trace, determinant, adjugate, inverse and solve take a square matrix");
+}
+
+template <class Operation, class M>
+[[nodiscard]] constexpr auto apply_to_square(const M& m) {
+  require_square_matrix<M>();
+  return apply<Operation>(m);
 }
 
 } // namespace detail
 
 /// Σ A_ij B_ij of two matrices of one size: xᵀ y of columns, tr(Aᵀ B) of others.
-template <class A, class B, class TagA = decltype([](op::inverse*) {}),
-          class TagB = decltype([](op::inverse*) {})>
-  requires detail::SizedOperands<A, B>
+template <class A, detail::SizedOperands<A> B, class Tag = decltype([](op::inverse*) {})>
 [[nodiscard]] constexpr auto dot(const A& a, const B& b) {
   static_assert(detail::kind_of_operand<A>() == detail::kind_of_operand<B>(),
                 "duet: dot(A, B) takes two vectors or matrices of one size");
-  return apply<op::trace>(apply<op::transpose>(detail::term<TagA>(a)) * detail::term<TagB>(b));
+  return apply<op::trace>(apply<op::transpose>(detail::term<Tag>(a)) * detail::term<Tag>(b));
 }
 /// √(Σ A_ij²), the Euclidean norm of a column and the Frobenius norm of a matrix, whose squares
 /// must not overflow. Not differentiable at 0.
@@ -215,47 +187,32 @@ template <Term M>
 [[nodiscard]] constexpr auto norm(const M& m) { return sqrt(dot(m, m)); }
 
 /// tr A, the sum of the diagonal of a square matrix.
-template <detail::ScalarOrMatrix M>
-[[nodiscard]] constexpr auto trace(const M& m) {
-  detail::require_square_matrix<M>();
-  return apply<op::trace>(m);
+[[nodiscard]] constexpr auto trace(const detail::ScalarOrMatrix auto& m) {
+  return detail::apply_to_square<op::trace>(m);
 }
 /// det A of a square matrix, a polynomial of its entries with the derivative tr(adj(A) dA), of
 /// every matrix, singular ones included.
-template <detail::ScalarOrMatrix M>
-[[nodiscard]] constexpr auto determinant(const M& m) {
-  detail::require_square_matrix<M>();
-  return apply<op::determinant>(m);
+[[nodiscard]] constexpr auto determinant(const detail::ScalarOrMatrix auto& m) {
+  return detail::apply_to_square<op::determinant>(m);
 }
 /// adj A, the transposed cofactors of a square matrix: A adj A = det A, of every matrix.
-template <detail::ScalarOrMatrix M>
-[[nodiscard]] constexpr auto adjugate(const M& m) {
-  detail::require_square_matrix<M>();
-  return apply<op::adjugate>(m);
+[[nodiscard]] constexpr auto adjugate(const detail::ScalarOrMatrix auto& m) {
+  return detail::apply_to_square<op::adjugate>(m);
 }
 /// A⁻¹ of a square matrix, with the derivative −A⁻¹ dA A⁻¹. Its evaluation throws `invalid_input`
 /// where A is singular or not finite, as `duet::solve` does.
-template <detail::ScalarOrMatrix M>
-[[nodiscard]] constexpr auto inverse(const M& m) {
-  detail::require_square_matrix<M>();
-  return apply<op::inverse>(m);
+[[nodiscard]] constexpr auto inverse(const detail::ScalarOrMatrix auto& m) {
+  return detail::apply_to_square<op::inverse>(m);
 }
 /// The x with A x = b, of a square matrix and a vector or matrix b of as many rows, with the
 /// derivative A⁻¹(db − dA x). Its evaluation throws `invalid_input` where A is singular or not
 /// finite, as `duet::solve` does.
-template <class A, class B, class TagA = decltype([](op::inverse*) {}),
-          class TagB = decltype([](op::inverse*) {})>
-  requires Operands<A, B>
+template <class A, Operands<A> B, class Tag = decltype([](op::inverse*) {})>
 [[nodiscard]] constexpr auto solve(const A& a, const B& b) {
-  const auto matrix = detail::term<TagA>(a);
-  const auto right = detail::term<TagB>(b);
-  using matrix_type = std::remove_const_t<decltype(matrix)>;
-  using right_type = std::remove_const_t<decltype(right)>;
-  detail::require_square_matrix<matrix_type>();
-  static_assert(rows_of(detail::kind_of_term<matrix_type>()) ==
-                    rows_of(detail::kind_of_term<right_type>()),
+  detail::require_square_matrix<A>();
+  static_assert(rows_of(detail::kind_of_operand<A>()) == rows_of(detail::kind_of_operand<B>()),
                 "duet: solve(A, b): b must have as many rows as A");
-  return apply<op::solution>(matrix, right);
+  return apply<op::solution>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 
 } // namespace duet::expression

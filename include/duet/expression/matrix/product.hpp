@@ -5,6 +5,7 @@
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
+#include <duet/expression/algebra/scalar_factor.hpp>
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
@@ -47,14 +48,10 @@ struct matrix_product {
     constexpr int rows = rows_of(A::kind_of), columns = columns_of(B::kind_of);
     if constexpr (is_zero<A> || is_zero<B>) {
       return zero_of<matrix_kind(rows, columns)>();
-    } else if constexpr (is_applied<A, negative>) {
-      return -(operand<0>(a) * b);
-    } else if constexpr (is_applied<B, negative>) {
-      return -(a * operand<0>(b));
-    } else if constexpr (is_applied<A, product>) { // of a scalar
-      return operand<0>(a) * (operand<1>(a) * b);
-    } else if constexpr (is_applied<B, product>) {
-      return operand<0>(b) * (a * operand<1>(b));
+    } else if constexpr (detail::is_scaled<A>) {
+      return detail::scaled_outside(a, [](auto x) { return x * B{}; });
+    } else if constexpr (detail::is_scaled<B>) {
+      return detail::scaled_outside(b, [](auto x) { return A{} * x; });
     } else if constexpr (detail::sparsity<A>::is_sparse) {
       using s = detail::sparsity<A>;
       return apply<placed<rows, columns, s::row, 0>>(
@@ -63,8 +60,6 @@ struct matrix_product {
       using s = detail::sparsity<B>;
       return apply<placed<rows, columns, 0, s::column>>(apply<block<0, s::row, rows, s::rows>>(a) *
                                                         typename s::block{});
-    } else {
-      return applied_node<matrix_product, A, B>{};
     }
   }
   template <class A, class B>
@@ -79,17 +74,14 @@ struct matrix_product {
       return result;
     }
   }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A a, B b, DA da, DB db) {
-    return da * b + a * db;
-  }
+  static constexpr auto differential(auto a, auto b, auto da, auto db) { return da * b + a * db; }
   static printed print(notation style, const printed& a, const printed& b) {
     return product::print(style, a, b);
   }
 };
 
 /// tr(A B), without the product.
-struct trace_of_product {
+struct trace_of_product : bilinear_operation {
   static constexpr kind kind_of(kind, kind) { return kind::scalar; }
   template <class A, class B>
   static constexpr auto simplified(A a, B b);
@@ -98,46 +90,30 @@ struct trace_of_product {
     using S = promote_t<typename A::Scalar, typename B::Scalar>;
     return S(detail::factor_over<S>(a).cwiseProduct(detail::factor_over<S>(b).transpose()).sum());
   }
-  template <class A, class B, class DA, class DB>
-  static constexpr auto differential(A a, B b, DA da, DB db) {
-    return apply<trace_of_product>(da, b) + apply<trace_of_product>(a, db);
-  }
   static printed print(notation style, const printed& a, const printed& b);
 };
 
 /// tr A
-struct trace {
+struct trace : linear_operation {
+  static constexpr detail::function_name name = {"trace", "\\operatorname{tr}"};
   static constexpr kind kind_of(kind) { return kind::scalar; }
   template <class M>
   static constexpr auto simplified(M m) {
     if constexpr (M::kind_of == kind::scalar) {
       return m;
-    } else if constexpr (is_zero<M>) {
-      return whole<0>;
-    } else if constexpr (is_applied<M, negative>) {
-      return -apply<trace>(operand<0>(m));
-    } else if constexpr (is_applied<M, product>) { // of a scalar
-      return operand<0>(m) * apply<trace>(operand<1>(m));
+    } else if constexpr (detail::is_scaled<M>) {
+      return detail::scaled_outside(m, [](auto x) { return apply<trace>(x); });
     } else if constexpr (is_applied<M, transpose>) {
       return apply<trace>(operand<0>(m));
     } else if constexpr (is_applied<M, matrix_product>) {
       return apply<trace_of_product>(operand<0>(m), operand<1>(m));
     } else if constexpr (detail::is_placed<M>) {
       return of_sparse<detail::sparsity<M>>();
-    } else {
-      return applied_node<trace, M>{};
     }
   }
   template <class M>
   static auto value(const M& m) {
     return typename M::Scalar(m.trace());
-  }
-  template <class M, class DM>
-  static constexpr auto differential(M, DM dm) {
-    return apply<trace>(dm);
-  }
-  static printed print(notation style, const printed& m) {
-    return detail::printed_call(style, {"trace", "\\operatorname{tr}"}, m.text);
   }
 
 private:
@@ -157,21 +133,15 @@ private:
 
 template <class A, class B>
 constexpr auto trace_of_product::simplified(A a, B b) {
-  if constexpr (is_zero<A> || is_zero<B>) {
-    return whole<0>;
-  } else if constexpr (is_applied<A, negative> || is_applied<A, product> ||
-                       is_applied<B, negative> || is_applied<B, product> ||
-                       detail::sparsity<A>::is_sparse) {
+  if constexpr (detail::is_scaled<A> || detail::is_scaled<B> || detail::sparsity<A>::is_sparse) {
     return apply<trace>(a * b);
   } else if constexpr (detail::sparsity<B>::is_sparse) {
     return apply<trace>(b * a);
-  } else {
-    return applied_node<trace_of_product, A, B>{};
   }
 }
 
 inline printed trace_of_product::print(notation style, const printed& a, const printed& b) {
-  return trace::print(style, matrix_product::print(style, a, b));
+  return detail::printed_operation<trace>(style, matrix_product::print(style, a, b));
 }
 
 } // namespace op

@@ -12,7 +12,9 @@
 #include <Eigen/Core>
 
 #include <concepts>
+#include <cstddef>
 #include <type_traits>
+#include <utility>
 
 /// \file
 /// A formula: a node and the constants in it, and how operations are applied.
@@ -44,12 +46,19 @@ concept Term = Node<T> || Formula<T>;
 namespace detail {
 
 template <class T>
+struct node_of {
+  using type = T;
+};
+template <class N, class Held>
+struct node_of<formula<N, Held>> {
+  using type = N;
+};
+template <class T>
+using node_t = typename node_of<std::remove_cv_t<T>>::type;
+
+template <class T>
 [[nodiscard]] constexpr kind kind_of_term() {
-  if constexpr (Node<T>) {
-    return T::kind_of;
-  } else {
-    return T::node_type::kind_of;
-  }
+  return node_t<T>::kind_of;
 }
 
 } // namespace detail
@@ -85,13 +94,10 @@ concept ThreeComponents = std::derived_from<T, Eigen::MatrixBase<T>> && T::RowsA
 
 /// Which kind of constant an ordinary value is, and what it is held in.
 template <class T>
-struct constant_traits {
-  static constexpr bool is_constant = false;
-};
+struct constant_traits {};
 template <class T>
   requires(Scalar<T> || Arithmetic<T>)
 struct constant_traits<T> {
-  static constexpr bool is_constant = true;
   static constexpr kind kind_of = kind::scalar;
   using held_type = std::conditional_t<std::integral<T>, double, T>;
 };
@@ -104,14 +110,12 @@ struct constant_traits<T> {
       1 <= rows && rows <= 6 && 1 <= columns && columns <= 6 && rows * columns > 1,
       "duet: a matrix in a formula has 1 to 6 rows and columns, known to the compiler; of "
       "1 x 1 it is a scalar");
-  static constexpr bool is_constant = true;
   static constexpr kind kind_of =
       is_screw_dual<typename T::Scalar> ? kind::dual_vector : matrix_kind(rows, columns);
   using held_type = Eigen::Matrix<typename T::Scalar, rows, columns>;
 };
 template <class T>
 struct constant_traits<quaternion<T>> {
-  static constexpr bool is_constant = true;
   static constexpr kind kind_of = is_screw_dual<T> ? kind::pose : kind::quaternion;
   using held_type = quaternion<T>;
 };
@@ -120,7 +124,9 @@ struct constant_traits<quaternion<T>> {
 
 /// A number, vector, matrix, quaternion, dual vector or dual quaternion.
 template <class T>
-concept Constant = !std::is_array_v<T> && detail::constant_traits<T>::is_constant;
+concept Constant = !std::is_array_v<T> && requires {
+  detail::constant_traits<T>::kind_of;
+};
 
 /// What an operation takes: at least one formula, the others formulas or constants.
 template <class... T>
@@ -141,6 +147,9 @@ template <class T>
     return constant_traits<T>::kind_of;
   }
 }
+/// An ordinary value of that kind.
+template <class T, kind K>
+concept ConstantOf = Constant<T> && constant_traits<T>::kind_of == K;
 /// Operands of which one at least is a matrix that is neither scalar nor vector.
 template <class... T>
 concept SizedOperands = Operands<T...> &&(is_sized_matrix(kind_of_operand<T>()) || ...);
@@ -165,7 +174,8 @@ public:
   template <class... Arguments>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator()(const Arguments&... arguments) const {
     if constexpr (detail::call_of<Held>::template is_complete<Arguments...>()) {
-      return detail::called<NodeType>(held_, arguments...).template get<0>();
+      using values = detail::given<Held, Arguments...>;
+      return detail::evaluated_nodes<NodeType>(values{held_, arguments...}).template get<0>();
     }
   }
 
@@ -173,13 +183,7 @@ public:
   template <class T>
     requires is_symbol<NodeType>
   [[nodiscard]] constexpr auto operator=(const T& value) const {
-    constexpr bool is_right_kind = [] {
-      if constexpr (Constant<T>) {
-        return detail::constant_traits<T>::kind_of == NodeType::kind_of;
-      } else {
-        return false;
-      }
-    }();
+    constexpr bool is_right_kind = detail::ConstantOf<T, NodeType::kind_of>;
     static_assert(
         is_right_kind || is_sized_matrix(NodeType::kind_of),
         "duet: a symbol is given a value of another kind; scalar, vector, quaternion, dual "
@@ -221,29 +225,17 @@ template <class Tag, Constant T>
   return make_formula(node{}, held<held_constant<node, value>>{{static_cast<value>(x)}});
 }
 
-template <class T>
-struct node_of {
-  using type = T;
-};
-template <class N, class Held>
-struct node_of<formula<N, Held>> {
-  using type = N;
-};
-template <class T>
-using node_t = typename node_of<T>::type;
+[[nodiscard]] constexpr held<> held_of(const Node auto&) { return {}; }
+[[nodiscard]] constexpr const auto& held_of(const Formula auto& x) { return x.held(); }
 
-template <Node T>
-[[nodiscard]] constexpr held<> held_of(const T&) {
-  return {};
-}
-template <Formula T>
-[[nodiscard]] constexpr const auto& held_of(const T& x) {
-  return x.held();
-}
-
+/// An operation says by `simplified` what is simpler; where that fits nothing or returns nothing,
+/// the operation stays.
 template <class Operation, Node... N>
 [[nodiscard]] constexpr auto simplified() {
-  if constexpr (requires { Operation::simplified(N{}...); }) {
+  if constexpr ((std::derived_from<Operation, linear_operation> && (is_zero<N> && ...)) ||
+                (std::derived_from<Operation, bilinear_operation> && (is_zero<N> || ...))) {
+    return zero_of<Operation::kind_of(N::kind_of...)>();
+  } else if constexpr (requires { Operation::simplified(N{}...).kind_of; }) {
     return Operation::simplified(N{}...);
   } else {
     return applied_node<Operation, N...>{};
@@ -264,5 +256,18 @@ template <class Operation, Term... T>
   using node = decltype(detail::simplified<Operation, detail::node_t<T>...>());
   return formula<node, held>(merged(detail::held_of(x)...));
 }
+
+namespace detail {
+
+template <class Tag, std::size_t I>
+struct numbered_tag {};
+
+/// The operation applied to terms and constants of one place in the code.
+template <class Operation, class Tag, std::size_t... I, class... X>
+[[nodiscard]] constexpr auto apply_to(std::index_sequence<I...>, const X&... x) {
+  return apply<Operation>(term<numbered_tag<Tag, I>>(x)...);
+}
+
+} // namespace detail
 
 } // namespace duet::expression

@@ -1,13 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/core/constants.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/dual/number/promotion.hpp>
 #include <duet/dual/rules/elementary.hpp>
 #include <duet/dual/rules/special.hpp>
-#include <duet/expression/evaluate/node_values.hpp>
+#include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
@@ -22,56 +20,28 @@
 
 namespace duet::expression {
 
-namespace detail {
-
-template <class... T>
-struct common_scalar_of;
-template <class T>
-struct common_scalar_of<T> {
-  using type = T;
-};
-template <class A, class B, class... Rest>
-struct common_scalar_of<A, B, Rest...> : common_scalar_of<promote_t<A, B>, Rest...> {};
-/// The scalar that holds the arguments of a function.
-template <class... T>
-using common_scalar_t = typename common_scalar_of<T...>::type;
-
-} // namespace detail
-
 namespace op {
 
 /// The derivative of a function, of order `Orders` by each of its arguments, by the rule of the
-/// dual numbers. Its operands are the arguments, behind the value where the rule looks at that.
+/// dual numbers. Its operands are the arguments, behind the value, or 0 where the rule does not
+/// look at that.
 template <class Function, int... Orders>
 struct partial {
-  template <class... Kinds>
-  static constexpr kind kind_of(Kinds...) {
-    return kind::scalar;
-  }
-  template <class First, class... Rest>
-  DUET_ALWAYS_INLINE static auto value(const First& first, const Rest&... rest) {
-    if constexpr (Function::slopes_take_value) {
-      return at(first, rest...);
-    } else {
-      return at(first, first, rest...);
-    }
-  }
+  static constexpr kind kind_of(auto...) { return kind::scalar; }
   template <int I, class... X>
   static constexpr auto slope_by(X... x) {
-    constexpr int argument = Function::slopes_take_value ? I - 1 : I;
-    if constexpr (argument < 0) {
+    if constexpr (I == 0) {
       return whole<0>; // the value moves as the arguments do
     } else {
       return [&]<int... K>(std::integer_sequence<int, K...>) {
-        return apply<partial<Function, (Orders + int(K == argument))...>>(x...);
+        return apply<partial<Function, (Orders + int(K == I - 1))...>>(x...);
       }
       (std::make_integer_sequence<int, int(sizeof...(Orders))>{});
     }
   }
 
-  /// Where the value is y.
   template <class Y, class... X>
-  DUET_ALWAYS_INLINE static auto at(const Y& y, const X&... x) {
+  static auto value(const Y& y, const X&... x) {
     using R = detail::common_scalar_t<X...>;
     if constexpr ((0 + ... + Orders) == 1) {
       return R(Function::template slope_at<last_argument>(R(y), x...));
@@ -93,7 +63,7 @@ struct partial {
           }
         }();
         using lower = partial<Function, (Orders - int(K == last_argument))...>;
-        return lower::at(moving_value, moved(std::bool_constant<K == last_argument>{}, x)...)
+        return lower::value(moving_value, moved(std::bool_constant<K == last_argument>{}, x)...)
             .epsilon();
       }
       (std::make_integer_sequence<int, int(sizeof...(Orders))>{});
@@ -122,51 +92,27 @@ template <class Function, int I, int... K, class... X>
   if constexpr (Function::slopes_take_value) {
     return apply<operation>(apply<Function>(x...), x...);
   } else {
-    return apply<operation>(x...);
+    return apply<operation>(whole<0>, x...);
   }
-}
-
-struct function_name {
-  const char* text;
-  const char* latex; ///< a command, or empty
-};
-
-[[nodiscard]] inline printed printed_call(notation style, const function_name& name,
-                                          const std::string& arguments) {
-  if (style == notation::text) {
-    return {std::string(name.text) + "(" + arguments + ")"};
-  }
-  const std::string command = name.latex;
-  if (command == "\\sqrt") {
-    return {"\\sqrt{" + arguments + "}"};
-  }
-  if (command == "\\exp") {
-    return {"e^{" + arguments + "}", precedence::power};
-  }
-  const bool is_high = arguments.find_first_of("^{") != std::string::npos;
-  return {(command.empty() ? "\\operatorname{" + std::string(name.text) + "}" : command) +
-          (is_high ? "\\left(" : "(") + arguments + (is_high ? "\\right)" : ")")};
 }
 
 /// What one function of scalars and another have in common. What derives from this has `name` and,
-/// unless its derivative is a function too, `written_slope<I>(x…)`, the derivative by the I-th
-/// argument as it is printed. Numbers come from `Rule`, the rule of the dual numbers.
+/// unless its derivative is written by `differential`, what that is printed as: `written_slope(x)`,
+/// of more arguments `written_slope<I>(x…)` by the I-th. Numbers come from `Rule`, the rule of the
+/// dual numbers.
 template <class Function, class Rule>
 struct function {
   /// Do the rule's slopes look at the value?
   static constexpr bool slopes_take_value = false;
 
-  template <class... Kinds>
-  static constexpr kind kind_of(Kinds...) {
-    return kind::scalar;
-  }
+  static constexpr kind kind_of(auto...) { return kind::scalar; }
   template <class... X>
-  DUET_ALWAYS_INLINE static common_scalar_t<X...> value(const X&... x) {
+  static common_scalar_t<X...> value(const X&... x) {
     return Rule{}.value(common_scalar_t<X...>(x)...);
   }
   /// The derivative by the I-th argument where the value is y.
   template <int I, class Y, class... X>
-  DUET_ALWAYS_INLINE static Y slope_at(const Y& y, const X&... x) {
+  static Y slope_at(const Y& y, const X&... x) {
     if constexpr (sizeof...(X) == 1) {
       return Rule{}.slope(Y(x)..., y);
     } else {
@@ -176,10 +122,6 @@ struct function {
   template <int I, class... X>
   static constexpr auto slope_by(X... x) {
     return partial_by<Function, I>(std::make_integer_sequence<int, int(sizeof...(X))>{}, x...);
-  }
-  template <class... P>
-  static printed print(notation style, const printed& first, const P&... rest) {
-    return printed_call(style, Function::name, (first.text + ... + (", " + rest.text)));
   }
 };
 
@@ -217,16 +159,12 @@ struct polygamma {
       return polygamma<N - 1>::value(D::variable(x)).epsilon();
     }
   }
-  template <int, class X>
-  static constexpr auto slope_by(X x) {
-    return apply<polygamma<N + 1>>(x);
-  }
+  static constexpr auto differential(auto x, auto dx) { return apply<polygamma<N + 1>>(x) * dx; }
   static printed print(notation style, const printed& x) {
     const std::string n = std::to_string(N);
-    const std::string text = "polygamma(" + n + ", " + x.text + ")";
     return {style == notation::latex
                 ? "\\psi^{(" + n + ")}" + printed{x.text, {}, style}.in_parentheses()
-                : text};
+                : "polygamma(" + n + ", " + x.text + ")"};
   }
 };
 

@@ -84,22 +84,15 @@ merged_with(const held<InA...>& a, const held<InB...>& b, boost::mp11::mp_list<N
 /// called twice, made constants of different values
 template <class... InA, class... InB>
 [[nodiscard]] constexpr auto merged(const held<InA...>& a, const held<InB...>& b) {
-  if constexpr (sizeof...(InB) == 0) {
-    return a;
-  } else {
-    using added =
-        boost::mp11::mp_append<boost::mp11::mp_list<>, detail::if_new<held<InA...>, InB>...>;
-    return detail::merged_with(a, b, added{});
-  }
+  using added =
+      boost::mp11::mp_append<boost::mp11::mp_list<>, detail::if_new<held<InA...>, InB>...>;
+  return detail::merged_with(a, b, added{});
 }
 
-template <class A, class B, class C, class... Rest>
-[[nodiscard]] constexpr auto merged(const A& a, const B& b, const C& c, const Rest&... rest) {
+[[nodiscard]] constexpr auto merged(const auto& a, const auto& b, const auto& c,
+                                    const auto&... rest) {
   return merged(merged(a, b), c, rest...);
 }
-template <class A>
-[[nodiscard]] constexpr A merged(const A& a) {
-  return a;
-}
+[[nodiscard]] constexpr auto merged(const auto& a) { return a; }
 
 } // namespace duet::expression

@@ -72,6 +72,13 @@ struct applied_node {
   static constexpr kind kind_of = Operation::kind_of(Operands::kind_of...);
 };
 
+/// What operations derive from whose value is linear in all operands together: it is 0 where they
+/// are, and its derivative is that operation of their rates.
+struct linear_operation {};
+/// What operations of two operands derive from whose value is linear in each: it is 0 where one is,
+/// and its derivative follows the rule of products.
+struct bilinear_operation {};
+
 /// A formula's type: empty, and of a `kind`.
 template <class T>
 concept Node = requires {
@@ -104,35 +111,23 @@ inline constexpr bool is_operation = false;
 template <class Operation, class... Operands>
 inline constexpr bool is_operation<applied_node<Operation, Operands...>> = true;
 
-namespace detail {
-
+/// The whole number N, known to the compiler?
+template <class T, int N>
+inline constexpr bool is_whole = false;
+template <std::uint64_t Bits, int N>
+inline constexpr bool is_whole<number_node<Bits>, N> = number_node<Bits>::value == N;
 template <class T>
-[[nodiscard]] constexpr bool is_number_equal_to(double x) {
-  if constexpr (is_number<T>) {
-    return T::value == x;
-  } else {
-    return false;
-  }
-}
-
-} // namespace detail
-
+inline constexpr bool is_one = is_whole<T, 1>;
 /// 0 of any kind?
 template <class T>
-inline constexpr bool is_zero = detail::is_number_equal_to<T>(0);
+inline constexpr bool is_zero = is_whole<T, 0>;
 template <kind K>
 inline constexpr bool is_zero<zero_node<K>> = true;
-template <class T>
-inline constexpr bool is_one = detail::is_number_equal_to<T>(1);
 
 /// 0 of a kind.
 template <kind K>
 [[nodiscard]] constexpr auto zero_of() {
-  if constexpr (K == kind::scalar) {
-    return number_node<0>{};
-  } else {
-    return zero_node<K>{};
-  }
+  return std::conditional_t<K == kind::scalar, number_node<0>, zero_node<K>>{};
 }
 
 /// The I-th operand.

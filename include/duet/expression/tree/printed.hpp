@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,45 @@ struct printed {
 };
 
 namespace detail {
+
+/// How an operation with a name is written.
+struct function_name {
+  const char* text;
+  /// A command, or what is written with the argument for #, in parentheses if # comes first and it
+  /// would fall apart; if empty, the name.
+  const char* latex;
+};
+
+/// The operation of that name and its operands.
+[[nodiscard]] inline printed printed_call(notation style, const function_name& name,
+                                          std::initializer_list<printed> operands) {
+  std::string arguments;
+  for (const printed& x : operands) {
+    arguments += (arguments.empty() ? "" : ", ") + x.text;
+  }
+  if (style == notation::text) {
+    return {std::string(name.text) + "(" + arguments + ")"};
+  }
+  std::string form = name.latex;
+  if (const std::size_t at = form.find('#'); at != std::string::npos) {
+    const bool is_power = form.find('^') != std::string::npos;
+    form.replace(at, 1, at == 0 ? operands.begin()->inside(precedence::atom) : arguments);
+    return {form, is_power ? precedence::power : precedence::atom};
+  }
+  const bool is_high = arguments.find_first_of("^{") != std::string::npos;
+  return {(form.empty() ? "\\operatorname{" + std::string(name.text) + "}" : form) +
+          (is_high ? "\\left(" : "(") + arguments + (is_high ? "\\right)" : ")")};
+}
+
+/// An operation as it prints itself, or by its name.
+template <class Operation, class... P>
+[[nodiscard]] printed printed_operation(notation style, const P&... operands) {
+  if constexpr (requires { Operation::name; }) {
+    return printed_call(style, Operation::name, {operands...});
+  } else {
+    return Operation::print(style, operands...);
+  }
+}
 
 /// With an index, in braces behind another one: LaTeX takes no two.
 [[nodiscard]] inline printed with_index(const printed& x, const std::string& index) {

@@ -64,7 +64,9 @@ struct written_partial<Function, std::integer_sequence<int, K...>, Orders...> {
 
   template <class... X>
   static constexpr auto of(X... x) {
-    if constexpr ((0 + ... + Orders) == 1) {
+    if constexpr ((0 + ... + Orders) == 1 && sizeof...(X) == 1) {
+      return Function::written_slope(x...);
+    } else if constexpr ((0 + ... + Orders) == 1) {
       return Function::template written_slope<argument>(x...);
     } else {
       using lower = written_partial<Function, std::integer_sequence<int, K...>,
@@ -76,17 +78,13 @@ struct written_partial<Function, std::integer_sequence<int, K...>, Orders...> {
     }
   }
 };
-template <class Function, int... Orders, class First, class... Rest>
-struct written<applied_node<op::partial<Function, Orders...>, First, Rest...>, true> {
+template <class Function, int... Orders, class Value, class... X>
+struct written<applied_node<op::partial<Function, Orders...>, Value, X...>, true> {
   static constexpr auto make() {
     using partial =
         written_partial<Function, std::make_integer_sequence<int, int(sizeof...(Orders))>,
                         Orders...>;
-    if constexpr (Function::slopes_take_value) {
-      return partial::of(written_t<Rest>{}...);
-    } else {
-      return partial::of(written_t<First>{}, written_t<Rest>{}...);
-    }
+    return partial::of(written_t<X>{}...);
   }
   using type = decltype(make());
 };
