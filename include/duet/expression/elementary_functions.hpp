@@ -32,6 +32,10 @@ struct exp : detail::function<exp, duet::rule::exp> {
   static constexpr detail::function_name name = {"exp", "e^{#}"};
   static constexpr auto differential(auto x, auto dx) { return apply<exp>(x) * dx; }
 };
+struct log : detail::function<log, duet::rule::log> {
+  static constexpr detail::function_name name = {"log", "\\log"};
+  static constexpr auto written_slope(auto x) { return whole<1> / x; }
+};
 struct exp2 : detail::function<exp2, duet::rule::exp2> {
   static constexpr detail::function_name name = {"exp2", ""};
   static constexpr bool slopes_take_value = true;
@@ -40,10 +44,6 @@ struct exp2 : detail::function<exp2, duet::rule::exp2> {
 struct expm1 : detail::function<expm1, duet::rule::expm1> {
   static constexpr detail::function_name name = {"expm1", ""};
   static constexpr auto differential(auto x, auto dx) { return apply<exp>(x) * dx; }
-};
-struct log : detail::function<log, duet::rule::log> {
-  static constexpr detail::function_name name = {"log", "\\log"};
-  static constexpr auto written_slope(auto x) { return whole<1> / x; }
 };
 struct log2 : detail::function<log2, duet::rule::log2> {
   static constexpr detail::function_name name = {"log2", ""};
