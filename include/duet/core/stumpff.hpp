@@ -123,8 +123,9 @@ template <int N, Real T>
 template <int N, Real T>
 [[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_real(const T& s) {
   return select(
-      N < 2 ? s <= T(1) : !is_beyond_series(s), [&] { return stumpff_of_small<N>(s); },
-      [&] { return stumpff_of_large<N>(s); });
+      N < 2 ? s <= T(1) : !is_beyond_series(s),
+      [&]() DUET_INLINE_LAMBDA { return stumpff_of_small<N>(s); },
+      [&]() DUET_INLINE_LAMBDA { return stumpff_of_large<N>(s); });
 }
 
 } // namespace duet::detail

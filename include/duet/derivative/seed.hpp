@@ -95,8 +95,9 @@ template <class D, class X>
 [[nodiscard]] auto seeded(const X& x) {
   using argument = vector_argument<X>;
   auto result = argument::template make<D>(x);
-  unrolled<argument::size_at_compile_time>(
-      [&](int i) { result[std::size_t(i)] = D::variable(argument::get(x, i), i); });
+  unrolled<argument::size_at_compile_time>([&](int i) DUET_INLINE_LAMBDA {
+    result[std::size_t(i)] = D::variable(argument::get(x, i), i);
+  });
   return result;
 }
 

@@ -36,9 +36,10 @@ namespace detail {
 
 /// The tangent coordinates of x as variables, `N` of them from `first` on.
 template <class D, int N, class X>
-[[nodiscard]] Eigen::Matrix<D, manifold<X>::dimension, 1> tangent_seeds(int first) {
+[[nodiscard]] DUET_ALWAYS_INLINE Eigen::Matrix<D, manifold<X>::dimension, 1>
+tangent_seeds(int first) {
   Eigen::Matrix<D, manifold<X>::dimension, 1> delta;
-  unrolled<manifold<X>::dimension>([&](int i) {
+  unrolled<manifold<X>::dimension>([&](int i) DUET_INLINE_LAMBDA {
     const bool is_variable = i >= first && i < first + N;
     delta[i] = is_variable ? D::variable(typename D::value_type(0), i - first) : D(0);
   });

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/core/select.hpp>
 #include <duet/core/stumpff.hpp>
 #include <duet/dual/math.hpp>
@@ -94,10 +95,10 @@ template <class T>
   if constexpr (lane_traits<T>::is_batch) {
     return select(
         s <= 1,
-        [&] {
+        [&]() DUET_INLINE_LAMBDA {
           return std::array{stumpff_of_small<0>(s), stumpff_of_small<1>(s)};
         },
-        [&] { return first_stumpff_pair_of_large(s); });
+        [&]() DUET_INLINE_LAMBDA { return first_stumpff_pair_of_large(s); });
   } else {
     return {stumpff<0>(s), stumpff<1>(s)};
   }

@@ -19,9 +19,9 @@ namespace duet::detail {
 /// f(0), f(1) … f(Count−1): unrolled for plain numbers, so that indices are constants; unrolled,
 /// dual numbers would take the compiler too long.
 template <class T, std::size_t Count, class F>
-void each_index(F&& f) {
+DUET_ALWAYS_INLINE void each_index(F&& f) {
   if constexpr (Real<T>) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (f(I), ...); }
+    [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA { (f(I), ...); }
     (std::make_index_sequence<Count>{});
   } else {
     for (std::size_t i = 0; i < Count; ++i) {
@@ -38,15 +38,15 @@ struct jacobian_coefficients {
   std::array<T, Count> a, b, c;
 
   /// From (cₙ)′ = (n c_{n+2} − c_{n+1})/2, so that no more is needed than one sequence of them.
-  explicit jacobian_coefficients(const T& s) {
+  DUET_ALWAYS_INLINE explicit jacobian_coefficients(const T& s) {
     using R = real_type_t<T>;
     auto e = stumpff_sequence<2 * int(Count) + 1>(T(4 * s));
-    each_index<T, Count>([&](std::size_t k) {
+    each_index<T, Count>([&](std::size_t k) DUET_INLINE_LAMBDA {
       a[k] = e[1];
       b[k] = 2 * e[2];
       c[k] = 4 * e[3];
       const R factor = R(2) / R(k + 1);
-      each_index<T, 2 * Count>([&](std::size_t n) {
+      each_index<T, 2 * Count>([&](std::size_t n) DUET_INLINE_LAMBDA {
         if (n > 0 && n + 2 * k + 1 <= 2 * Count) {
           e[n] = (R(n) * e[n + 2] - e[n + 1]) * factor;
         }
@@ -58,17 +58,17 @@ struct jacobian_coefficients {
 /// f(s(t)), truncated, from f's Taylor coefficients at s(0) and s's for t, of which the first is
 /// not looked at.
 template <std::size_t Count, class T, std::size_t Given, class S>
-[[nodiscard]] std::array<S, Count> composed(const std::array<T, Given>& f,
-                                            const std::array<S, Count>& s) {
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<S, Count> composed(const std::array<T, Given>& f,
+                                                               const std::array<S, Count>& s) {
   std::array<S, Count> result;
   result[0] = S(f[Count - 1]);
-  each_index<S, Count - 1>([&](std::size_t done) {
+  each_index<S, Count - 1>([&](std::size_t done) DUET_INLINE_LAMBDA {
     const std::size_t i = Count - 2 - done; // result ← f_i + (s − s_0) result, from its end
-    each_index<S, Count - 1>([&](std::size_t before) {
+    each_index<S, Count - 1>([&](std::size_t before) DUET_INLINE_LAMBDA {
       if (before <= done) {
         const std::size_t m = done + 1 - before;
         S sum = s[m] * result[0];
-        each_index<S, Count>([&](std::size_t j) {
+        each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
           if (j > 0 && j < m) {
             sum = sum + s[m - j] * result[j];
           }
@@ -87,7 +87,7 @@ template <std::size_t Count, class T, std::size_t Given, class S>
 ///
 /// \tparam S  scalar of the rates: T or above
 template <std::size_t Count, std::size_t Given, class T, class S>
-[[nodiscard]] std::array<vector3<S>, Count>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<vector3<S>, Count>
 half_body_rates(const jacobian_coefficients<Given, T>& jacobian, const vector3<T>& x,
                 const std::array<vector3<S>, Count>& rates) {
   static_assert(Count <= Given);
@@ -96,12 +96,12 @@ half_body_rates(const jacobian_coefficients<Given, T>& jacobian, const vector3<T
   const three_vector<T> at = components(x);
   std::array<three_vector<S>, Count> of, dx, y;
   std::array<S, Count> p, s;
-  each_index<S, Count>([&](std::size_t m) {
+  each_index<S, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
     of[m] = components(rates[m]);
     dx[m] = m == 0 ? of[0] : S(R(m + 1)) * of[m];
     p[m] = dot(at, dx[m]);
     y[m] = cross(at, dx[m]);
-    each_index<S, Count>([&](std::size_t j) {
+    each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
       if (j < m) {
         const std::size_t k = m - 1 - j; // x_{j+1} and ẋ_k = (k+1) x_{k+1}
         p[m] = p[m] + dot(of[j], dx[k]);
@@ -119,10 +119,10 @@ half_body_rates(const jacobian_coefficients<Given, T>& jacobian, const vector3<T
   const auto c = composed(jacobian.c, s);
   std::array<S, Count> k; // c p
   std::array<vector3<S>, Count> result;
-  each_index<S, Count>([&](std::size_t m) {
+  each_index<S, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
     k[m] = c[0] * p[m];
     three_vector<S> w = a[0] * dx[m] + S(-b[0]) * y[m];
-    each_index<S, Count>([&](std::size_t j) {
+    each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
       if (j > 0 && j <= m) {
         k[m] = k[m] + c[j] * p[m - j];
         w = w + a[j] * dx[m - j] + S(-b[j]) * y[m - j] + k[m - j] * of[j - 1];

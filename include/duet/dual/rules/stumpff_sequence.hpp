@@ -37,10 +37,10 @@ stumpff_sequence(const T& s) {
   using R = real_type_t<T>;
   constexpr auto n = std::size_t(Highest);
   using sequence = std::array<T, n + 1>;
-  const auto run = [&](const auto& inverse_factorial) {
+  const auto run = [&](const auto& inverse_factorial) DUET_INLINE_LAMBDA {
     return select(
         !detail::is_beyond_series(innermost(s)),
-        [&] {
+        [&]() DUET_INLINE_LAMBDA {
           sequence c;
           c[n] = stumpff<Highest>(s);
           c[n - 1] = stumpff<Highest - 1>(s);
@@ -49,7 +49,7 @@ stumpff_sequence(const T& s) {
           }
           return c;
         },
-        [&] {
+        [&]() DUET_INLINE_LAMBDA {
           sequence c;
           c[0] = stumpff<0>(s);
           c[1] = stumpff<1>(s);

@@ -42,12 +42,12 @@ template <Real R>
 [[nodiscard]] DUET_ALWAYS_INLINE std::array<R, 3> first_stumpff_functions(const R& z) {
   return select(
       z <= R(1),
-      [&] {
+      [&]() DUET_INLINE_LAMBDA {
         const R c2 = stumpff_of_small<2, 1>(z);
         const R c3 = stumpff_of_small<3, 1>(z);
         return std::array<R, 3>{R(1 - z * c2), R(1 - z * c3), R((c3 - c2) / 2)};
       },
-      [&] { return first_stumpff_functions_of_large(z); });
+      [&]() DUET_INLINE_LAMBDA { return first_stumpff_functions_of_large(z); });
 }
 
 template <std::size_t Count, class B, class A>
@@ -81,10 +81,10 @@ template <std::size_t Count, class T, int K, class Tag, class V, class A>
     u[i].set_coefficient(0, below[i]);
   }
   // k u_k = Σ j b_j f_{k−j}, where f is the slope
-  unrolled<K>([&](int i) {
+  unrolled<K>([&](int i) DUET_INLINE_LAMBDA {
     const int k = i + 1;
     V d0(0), d1(0), d2(0);
-    unrolled<K>([&](int m) {
+    unrolled<K>([&](int m) DUET_INLINE_LAMBDA {
       const int j = m + 1;
       if (j <= k) {
         const T db = b.coefficient(j) * integer<T>(j);
@@ -92,7 +92,7 @@ template <std::size_t Count, class T, int K, class Tag, class V, class A>
         d1 = j == 1 ? V(u[0].coefficient(k - j) * db) : V(d1 + u[0].coefficient(k - j) * db);
         if constexpr (Count == 3) {
           V moment = u[1].coefficient(k - j) * b.coefficient(0);
-          unrolled<K>([&](int n) {
+          unrolled<K>([&](int n) DUET_INLINE_LAMBDA {
             if (n < k - j) {
               moment = moment + u[1].coefficient(k - j - 1 - n) * b.coefficient(n + 1);
             }

@@ -6,6 +6,7 @@
 #include <duet/core/select.hpp>
 
 #include <concepts>
+#include <limits>
 #include <type_traits>
 
 /// \file
@@ -99,6 +100,29 @@ template <class T>
   }
 }
 
+/// A row of more packets than this is masked only where a slope turns out not to be finite. Masks
+/// of 512-bit packets cost more than those of others, and those of 128 bits take copies of their
+/// operands; clang does without that branch better where packets are larger.
+inline constexpr int branch_limit = DUET_VECTOR_BYTES < 32 ? 0 : DUET_VECTOR_BYTES < 64 ? 2 : 1;
+#ifdef __clang__
+inline constexpr int mask_limit = DUET_VECTOR_BYTES > 16 ? std::numeric_limits<int>::max() : 0;
+#else
+inline constexpr int mask_limit = branch_limit;
+#endif
+
+/// Up to this many packets that is done in place: a call would cost the registers of what lives on
+/// after it, though it is never made.
+inline constexpr int in_place_limit = 32;
+
+template <class Row>
+[[nodiscard]] constexpr bool is_masked_in_place() {
+  if constexpr (requires { Row::packet_count; }) {
+    return Row::packet_count <= in_place_limit;
+  } else {
+    return false;
+  }
+}
+
 // How partials are combined: `kernel(product, p…)` for each of them, where product(slope, p) is
 // slope · p with surviving zeros.
 
@@ -106,6 +130,7 @@ template <class T>
 template <class T>
 struct chain_of_one {
   static constexpr bool masks_numbers = true;
+  static constexpr int masked_packets = mask_limit;
   T slope;
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_finite() const { return is_all_finite(slope); }
@@ -119,6 +144,7 @@ struct chain_of_one {
 template <class T>
 struct chain_of_two {
   static constexpr bool masks_numbers = true;
+  static constexpr int masked_packets = mask_limit;
   T slope_a, slope_b;
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_finite() const {
@@ -135,7 +161,9 @@ struct chain_of_two {
 /// `inverse` is not.
 template <class T>
 struct chain_of_quotient {
-  static constexpr bool masks_numbers = false; // two masks cost more than a branch
+  // Two masks cost more than a branch.
+  static constexpr bool masks_numbers = false;
+  static constexpr int masked_packets = branch_limit;
   T ratio, inverse;
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_finite() const {
@@ -147,6 +175,15 @@ struct chain_of_quotient {
     return product(inverse, P(p - product(ratio, q)));
   }
 };
+
+template <class Kernel, class Row, class T>
+[[nodiscard]] constexpr bool is_always_masked() {
+  if constexpr (requires { Row::packet_count; }) {
+    return Row::packet_count <= Kernel::masked_packets;
+  } else {
+    return (std::floating_point<T> && Kernel::masks_numbers) || lane_traits<T>::is_batch;
+  }
+}
 
 /// Element by element. Out of line and by value: were the rows passed by reference, they would live
 /// in memory also where all slopes are finite.
@@ -167,17 +204,14 @@ combined(const Kernel<T>& kernel, const Mask& is_finite, const Row& row, const R
   };
   const auto masked = [](const T& slope, const auto& p)
                           DUET_INLINE_LAMBDA { return masked_product(slope, p); };
-  constexpr bool is_packed = requires { Row::packet_count; };
-  if constexpr (lane_traits<T>::is_batch ||
-                (std::floating_point<T> && Kernel<T>::masks_numbers && !is_packed)) {
+  if constexpr (is_always_masked<Kernel<T>, Row, T>()) {
     return with(masked);
   } else {
     if (all(is_finite)) [[likely]] {
       return with([](const T& slope, const auto& p)
                       DUET_INLINE_LAMBDA { return std::remove_cvref_t<decltype(p)>(p * slope); });
     }
-    if constexpr (is_packed) { // in place: a call would cost the registers of what lives on after
-                               // it
+    if constexpr (is_masked_in_place<Row>()) {
       return with(masked);
     } else {
       return guarded_chain(kernel, row, rows...);
