@@ -81,41 +81,34 @@ template <class T, int K, class Tag, class S>
   });
 }
 
-/// f(x…) from the value and the slopes of the rule over the shorter series.
-template <class Rule, class T, int K, class Tag, class... Rest>
-[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag>
-lift_in_place(const Rule& rule, const taylor<T, K, Tag>& x, const Rest&... rest) {
-  const auto on_shorter = [&](const auto& f) DUET_INLINE_LAMBDA {
-    return f(truncated<K - 1>(x), truncated<K - 1>(rest)...);
-  };
-  const auto y = on_shorter([&](const auto&... shorter) DUET_INLINE_LAMBDA {
-    if constexpr (K == 1) {
-      return rule.value(shorter...);
-    } else {
-      return lift(rule, shorter...);
-    }
-  });
-  const auto slopes = on_shorter([&](const auto&... shorter) DUET_INLINE_LAMBDA {
-    if constexpr (sizeof...(rest) == 0) {
-      return std::array{rule.slope(shorter..., y)};
-    } else {
-      return rule.slopes(y, shorter...);
-    }
-  });
-  T last = chain_coefficient(x, slopes[0]);
-  std::size_t i = 0;
-  ((last = last + chain_coefficient(rest, slopes[++i])), ...);
-  taylor<T, K, Tag> result;
-  unrolled<K>([&](int k)
-                  DUET_INLINE_LAMBDA { result.set_coefficient(k, coefficient_of<T>(y, k)); });
-  result.set_coefficient(K, divided_by_order(last, K));
+/// `shorter`, the series to order K−1, extended by the coefficient of ε^K.
+template <class D, class S, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr D extended(const S& shorter, const T& last, int order) {
+  D result;
+  unrolled<scalar_traits<D>::order - scalar_traits<T>::order>(
+      [&](int k) DUET_INLINE_LAMBDA { result.set_coefficient(k, coefficient_of<T>(shorter, k)); });
+  result.set_coefficient(order, last);
   return result;
 }
 
+template <class Rule, class T, int K, class Tag>
+[[nodiscard]] DUET_ALWAYS_INLINE taylor<T, K, Tag> lift_in_place(const Rule& rule,
+                                                                 const taylor<T, K, Tag>& x) {
+  const auto shorter_x = truncated<K - 1>(x);
+  if constexpr (K == 1) {
+    const T y = rule.value(shorter_x);
+    return extended<taylor<T, K, Tag>>(y, chain_coefficient(x, rule.slope(shorter_x, y)), K);
+  } else {
+    const auto y = lift(rule, shorter_x);
+    const T last = divided_by_order(chain_coefficient(x, rule.slope(shorter_x, y)), K);
+    return extended<taylor<T, K, Tag>>(y, last, K);
+  }
+}
+
 /// Where the compiler may call it.
-template <class Rule, class... Series>
-[[nodiscard]] inline auto lift_by_call(const Rule& rule, const Series&... x) {
-  return lift_in_place(rule, x...);
+template <class Rule, class T, int K, class Tag>
+[[nodiscard]] inline taylor<T, K, Tag> lift_by_call(const Rule& rule, const taylor<T, K, Tag>& x) {
+  return lift_in_place(rule, x);
 }
 
 /// Up to this order of built-in numbers a call, with all coefficients through memory, costs more
@@ -142,6 +135,28 @@ inline void extend_pair(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s, taylor
       c.set_coefficient(k, divided_by_order(T(dc * integer<T>(Sign)), k));
     });
   });
+}
+
+/// Of several arguments.
+template <class Rule, class T, int K, class Tag, class... Rest>
+[[nodiscard]] inline taylor<T, K, Tag> lift_by_call(const Rule& rule, const taylor<T, K, Tag>& x,
+                                                    const taylor<T, K, Tag>& y,
+                                                    const Rest&... rest) {
+  const auto z = [&] {
+    if constexpr (K == 1) {
+      return rule.value(x.value(), y.value(), rest.value()...);
+    } else {
+      return lift(rule, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
+    }
+  }();
+  const auto slopes =
+      rule.slopes(z, truncated<K - 1>(x), truncated<K - 1>(y), truncated<K - 1>(rest)...);
+  T last = chain_coefficient(x, slopes[0]) + chain_coefficient(y, slopes[1]);
+  if constexpr (sizeof...(rest) > 0) {
+    static_assert(sizeof...(rest) == 1);
+    last = last + (chain_coefficient(rest, slopes[2]) + ...);
+  }
+  return extended<taylor<T, K, Tag>>(z, divided_by_order(last, K), K);
 }
 
 } // namespace detail

@@ -19,9 +19,8 @@ inline constexpr int triangle_unroll_limit = 32;
 /// last packet of a row holds beyond the diagonal is of no account.
 template <class T, int N>
 class lower_triangle {
-  using packed = packing<T, N>;
-  static constexpr int width = packed::width;
-  using packet = typename packed::packet;
+  static constexpr int width = packing<T, N>::width;
+  using packet = typename packing<T, N>::packet;
   using row_type = partials<T, N>;
 
   static constexpr int packets_before(int row) {
@@ -44,11 +43,15 @@ public:
     return *this;
   }
 
-  [[nodiscard]] T get(int i, int j) const {
-    return i < j ? get(j, i) : T(packed::get(packets_ + packets_before(i), j));
-  }
+  [[nodiscard]] T get(int i, int j) const { return i < j ? get(j, i) : element(i, j); }
   /// j ≤ i
-  void set(int i, int j, const T& x) { packed::set(packets_ + packets_before(i), j, x); }
+  void set(int i, int j, const T& x) {
+    if constexpr (width > 1) {
+      packets_[packets_before(i) + j / width][j % width] = x;
+    } else {
+      packets_[packets_before(i) + j] = x;
+    }
+  }
   [[nodiscard]] const packet& packet_at(int k) const { return packets_[k]; }
 
   /// result = f(triangles…), packet by packet.
@@ -107,6 +110,13 @@ private:
     }
   }
 
+  [[nodiscard]] T element(int i, int j) const {
+    if constexpr (width > 1) {
+      return packets_[packets_before(i) + j / width][j % width];
+    } else {
+      return packets_[packets_before(i) + j];
+    }
+  }
   DUET_ALWAYS_INLINE void assign(const lower_triangle& other) {
     unrolled<packet_count>([&](int k) DUET_INLINE_LAMBDA { packets_[k] = other.packets_[k]; });
   }
