@@ -23,12 +23,10 @@ class lower_triangle {
   using packet = typename packing<T, N>::packet;
   using row_type = partials<T, N>;
 
+  /// Row i has ⌊i / width⌋ + 1 packets; so many have all rows before one.
   static constexpr int packets_before(int row) {
-    int count = 0;
-    for (int i = 0; i < row; ++i) {
-      count += i / width + 1;
-    }
-    return count;
+    const int full = row / width, rest = row % width;
+    return (full + 1) * (width * full + 2 * rest) / 2;
   }
 
 public:
