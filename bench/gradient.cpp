@@ -8,7 +8,7 @@
 #include "support/contest.hpp"
 #include "workloads.hpp"
 
-#include <duet/derivative/chunked.hpp>
+#include <duet/derivative/gradient.hpp>
 
 #if DUET_BENCH_ADOLC
 #include <adolc/adolc.h>

@@ -6,8 +6,8 @@
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/mechanism/closed_loop.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <Eigen/Core>
 

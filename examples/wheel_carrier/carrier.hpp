@@ -3,9 +3,9 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/mechanism/closed_loop.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <array>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "table.hpp"
 
 #include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/spline/hermite.hpp>
 
 #include <memory>

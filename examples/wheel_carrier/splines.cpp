@@ -3,7 +3,7 @@
 #include "splines.hpp"
 
 #include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/spline/interpolate.hpp>
 
 #include <memory>

@@ -15,7 +15,6 @@
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/version.hpp>
-#include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/implicit_function.hpp>
@@ -36,7 +35,6 @@
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
-#include <duet/dual_quaternion/wrench.hpp>
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/functions_of_many.hpp>
@@ -71,7 +69,6 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 #include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>

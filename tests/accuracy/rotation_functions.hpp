@@ -10,7 +10,6 @@
 #include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -5,7 +5,6 @@
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <Eigen/Core>
 #include <doctest/doctest.h>

@@ -7,9 +7,9 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/interop/multiprecision.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

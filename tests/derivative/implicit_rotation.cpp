@@ -6,7 +6,6 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

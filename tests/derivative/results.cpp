@@ -3,7 +3,6 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

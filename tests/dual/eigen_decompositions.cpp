@@ -13,7 +13,7 @@
 
 // Eigen's iterative decompositions over dual numbers, on dense matrices, against the closed forms
 // of their derivatives. (Where off-diagonal entries vanish they lose derivatives, see
-// dual/eigen/solvers.hpp; duet::symmetric_eigen does not.)
+// dual/eigen_solvers.hpp; duet::symmetric_eigen does not.)
 
 namespace test_dual_eigen_decompositions {
 

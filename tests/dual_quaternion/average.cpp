@@ -7,7 +7,7 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/average.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/exponential.hpp>
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,6 @@
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
-#include <duet/dual_quaternion/wrench.hpp>
 
 #include "support/lanes.hpp"
 #include "support/random.hpp"

@@ -6,7 +6,7 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/curves.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/exponential.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
-#include <duet/dual_quaternion/wrench.hpp>
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/exponential.hpp>
 

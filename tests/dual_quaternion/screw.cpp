@@ -8,7 +8,7 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/interop/multiprecision.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/exponential.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 
 // Batches of vectors of 512 bits, compiled for machines that have them.
 
-#include <duet/core/batch/functions.hpp>
+#include <duet/core/batch/math.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/exponential.hpp>
 

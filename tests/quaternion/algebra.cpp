@@ -4,9 +4,9 @@
 #include "support/random.hpp"
 
 #include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

@@ -8,7 +8,6 @@
 #include <duet/quaternion/printed_euler_rate.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include "support/lanes.hpp"
 #include "support/random.hpp"

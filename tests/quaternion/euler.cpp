@@ -8,10 +8,10 @@
 #include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

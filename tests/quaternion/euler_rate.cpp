@@ -6,10 +6,10 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/printed_euler_rate.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,6 @@
 #include <duet/dual/taylor.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include "support/lanes.hpp"
 

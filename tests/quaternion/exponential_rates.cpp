@@ -2,7 +2,7 @@
 
 #include "support/multiprecision.hpp"
 
-#include <duet/dual/rules/stumpff_sequence.hpp>
+#include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_rates.hpp>
 

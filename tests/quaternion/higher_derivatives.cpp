@@ -5,7 +5,6 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,6 @@
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

@@ -8,7 +8,6 @@
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

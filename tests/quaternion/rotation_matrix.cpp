@@ -4,8 +4,8 @@
 #include "support/random.hpp"
 
 #include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/printed.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>

@@ -4,8 +4,8 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
-#include <duet/quaternion/tangent.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/printed.hpp>
 

@@ -3,8 +3,8 @@
 #include "spline/curves.hpp"
 
 #include <duet/derivative/derivative.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
-#include <duet/quaternion/tangent.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 
 #include <doctest/doctest.h>

@@ -3,7 +3,7 @@
 #include "spline/curves.hpp"
 
 #include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/spline/interpolate.hpp>
 
 #include <doctest/doctest.h>

@@ -4,7 +4,7 @@
 #include "support/multiprecision.hpp"
 
 #include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/tangent.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 
 #include <doctest/doctest.h>

@@ -5,8 +5,8 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 #include <duet/spline/interpolate.hpp>
 
 #include <doctest/doctest.h>

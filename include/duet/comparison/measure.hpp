@@ -2,10 +2,10 @@
 #pragma once
 
 #include <duet/comparison/domain.hpp>
-#include <duet/core/require.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
-#include <duet/derivative/result.hpp>
+#include <duet/derivative/function.hpp>
 
 #include <algorithm>
 #include <cmath>

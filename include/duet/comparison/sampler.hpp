@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/comparison/domain.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
-#include <duet/core/require.hpp>
 
 #include <algorithm>
 #include <cstddef>

@@ -7,9 +7,15 @@
 #include <limits>
 
 /// \file
-/// What rounding takes beyond the end of a range.
+/// Comparisons that allow for rounding, and for NaN.
 
 namespace duet::detail {
+
+/// max(a, b); NaN where either is NaN, which `std::max` may pass over.
+template <Real R>
+[[nodiscard]] R larger_or_nan(const R& a, const R& b) {
+  return b <= a || a != a ? a : b;
+}
 
 /// u; the end of [low, high] that it is beyond by 8 ulp at most, of the end of larger magnitude.
 template <Real R>

@@ -1,8 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/derivative/argument.hpp>
-#include <duet/derivative/result.hpp>
+#include <duet/derivative/function.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/parts.hpp>
 

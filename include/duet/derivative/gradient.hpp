@@ -1,11 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/require.hpp>
-#include <duet/derivative/argument.hpp>
-#include <duet/derivative/chunked.hpp>
-#include <duet/derivative/result.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/derivative/function.hpp>
+#include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/seed.hpp>
+#include <duet/dual/parts.hpp>
 #include <duet/dual/second_dual.hpp>
 
 #include <Eigen/Core>
@@ -14,7 +14,8 @@
 #include <utility>
 
 /// \file
-/// Gradients and Hessians of scalar functions of a vector.
+/// Gradients and Hessians of scalar functions of a vector; gradients by thousands of components in
+/// passes of a chosen size, into memory of the caller.
 
 namespace duet {
 
@@ -32,6 +33,37 @@ struct value_gradient_and_hessian {
   G gradient;
   H hessian;
 };
+
+/// f(x); writes ∇f into `gradient`, any writable Eigen vector of as many components as x.
+///
+/// \tparam Chunk  components differentiated per evaluation of f; 0 takes what was measured to be
+///                best, see docs/benchmarks.md. More partials per pass evaluate f less often, but
+///                every number of f holds them all.
+///
+/// One vector of seeds is allocated per call where x has its size at run time, none otherwise; f
+/// takes it by reference.
+/// \throws invalid_input where the sizes do not match or x is empty
+///
+/// Example: `Eigen::VectorXd g(n); const double y = gradient_into<16>(f, x, g);`
+template <int Chunk = 0, class Tag = void, class F, VectorLike X, class G>
+[[nodiscard]] auto gradient_into(F&& f, const X& x, G&& gradient) {
+  static_assert(Chunk >= 0, "duet: gradient_into<Chunk> needs a number of partials");
+  using tag = detail::tag_for<Tag, F>;
+  using output = detail::result_of_pass<tag, Chunk, F, X>;
+  static_assert(Scalar<output>, "duet: gradient_into needs a function that returns a scalar");
+  const Eigen::Index size = detail::vector_argument<X>::size(x);
+  detail::require(size > 0, "duet: gradient_into of a function of no variables");
+  detail::require_size("gradient_into", gradient, size, 1);
+  decltype(detail::part<tag>(std::declval<const output&>(), 0)) value(0);
+  detail::for_each_pass<tag, Chunk>(f, x,
+                                    [&](const auto& y, Eigen::Index first, Eigen::Index count) {
+                                      value = detail::part<tag>(y, 0);
+                                      for (Eigen::Index i = 0; i < count; ++i) {
+                                        gradient[first + i] = detail::part<tag>(y, int(i) + 1);
+                                      }
+                                    });
+  return value;
+}
 
 /// f(x) and ∇f(x): x an Eigen vector or a `std::array` of n components, f scalar; the gradient is a
 /// column of n. Up to 32 components known at compile time take one evaluation of f.

@@ -1,10 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/require.hpp>
-#include <duet/derivative/argument.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
-#include <duet/derivative/result.hpp>
+#include <duet/derivative/function.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/dual/parts.hpp>
 
@@ -14,7 +13,8 @@
 #include <utility>
 
 /// \file
-/// Jacobians and directional derivatives of functions of a vector.
+/// Jacobians and directional derivatives of functions of a vector; Jacobians by thousands of
+/// components in passes of a chosen size, into memory of the caller.
 
 namespace duet {
 
@@ -54,6 +54,18 @@ template <class Tag, int Chunk, class F, class X, class J, class Prepare>
   return value;
 }
 
+/// Rows times columns of what the caller gave for a result.
+template <class Out>
+void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::Index columns) {
+  const auto text = [](Eigen::Index r, Eigen::Index c) {
+    return c == 1 ? message(r) : message(r, " x ", c);
+  };
+  if (out.rows() != rows || out.cols() != columns) {
+    throw invalid_input(message("duet: ", driver, ": the result needs size ", text(rows, columns),
+                                ", but has ", text(out.rows(), out.cols())));
+  }
+}
+
 } // namespace detail
 
 /// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors or `std::array`s.
@@ -76,6 +88,21 @@ template <class Tag = void, class F, VectorLike X>
     result.jacobian.resize(rows, argument::size(x));
   });
   return result;
+}
+
+/// f(x); writes ∂f_i/∂x_j into `jacobian`, any writable Eigen matrix of as many rows as f(x) has
+/// components and as many columns as x. Everything else as `gradient_into`.
+template <int Chunk = 0, class Tag = void, class F, VectorLike X, class J>
+[[nodiscard]] auto jacobian_into(F&& f, const X& x, J&& jacobian) {
+  static_assert(Chunk >= 0, "duet: jacobian_into<Chunk> needs a number of partials");
+  using tag = detail::tag_for<Tag, F>;
+  using output = detail::result_of_pass<tag, Chunk, F, X>;
+  static_assert(VectorLike<output>, "duet: jacobian_into needs a function that returns a vector");
+  const Eigen::Index size = detail::vector_argument<X>::size(x);
+  detail::require(size > 0, "duet: jacobian_into of a function of no variables");
+  return detail::write_jacobian<tag, Chunk>(f, x, jacobian, [&](Eigen::Index rows) {
+    detail::require_size("jacobian_into", jacobian, rows, size);
+  });
 }
 
 /// f(x) and d/dt f(x + t v) at t = 0: x and v scalars or vectors of one size, f(x) of any shape.

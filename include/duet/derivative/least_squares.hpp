@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/require.hpp>
-#include <duet/derivative/argument.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/derivative/function.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
 #include <Eigen/Core>

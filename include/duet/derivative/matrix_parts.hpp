@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/require.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
-#include <duet/derivative/argument.hpp>
+#include <duet/derivative/function.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/dual/storage/structural_zero.hpp>

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/require.hpp>
-#include <duet/derivative/argument.hpp>
-#include <duet/derivative/result.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/derivative/function.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/storage/partials.hpp>

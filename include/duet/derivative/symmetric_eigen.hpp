@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/require.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
 #include <Eigen/Core>

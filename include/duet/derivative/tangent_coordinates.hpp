@@ -3,12 +3,11 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/structure.hpp>
-#include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
+#include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/derivative/result.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/dual/storage/partials.hpp>
@@ -159,7 +158,7 @@ template <class Tag = void, class F, class X, FrameConstant Frame>
   requires(!HasOwnJacobian<F> && !ManifoldPoint<X> && requires { sizeof(structure<X>); })
 void jacobian(F&&, const X&, Frame) {
   static_assert(ManifoldPoint<X>, "duet: no tangent coordinates are known of this type; those of "
-                                  "rotations are in <duet/quaternion/tangent.hpp>, of poses in "
+                                  "rotations are in <duet/quaternion/exponential.hpp>, of poses in "
                                   "<duet/dual_quaternion/twist.hpp>");
 }
 

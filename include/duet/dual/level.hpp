@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/promotion.hpp>
 
 #include <concepts>
 
@@ -15,7 +15,7 @@
 namespace duet {
 namespace detail {
 
-/// Sine and cosine of one argument, see rules/sine_cosine.hpp.
+/// Sine and cosine of one argument, see rules/lift.hpp.
 template <class T>
 struct sine_cosine;
 

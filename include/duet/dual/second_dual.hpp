@@ -3,10 +3,9 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/algebra.hpp>
 #include <duet/dual/level.hpp>
-#include <duet/dual/number/algebra.hpp>
-#include <duet/dual/number/promotion.hpp>
-#include <duet/dual/number/tag.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual/rules/second_dual_lift.hpp>
 #include <duet/dual/storage/lower_triangle.hpp>
 #include <duet/dual/storage/partials.hpp>

@@ -3,13 +3,11 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/algebra.hpp>
 #include <duet/dual/level.hpp>
-#include <duet/dual/number/algebra.hpp>
-#include <duet/dual/number/promotion.hpp>
-#include <duet/dual/number/tag.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual/rules/taylor_lift.hpp>
 #include <duet/dual/storage/partials.hpp>
-#include <duet/dual/storage/series_product.hpp>
 #include <duet/dual/storage/structural_zero.hpp>
 
 #include <array>

@@ -3,7 +3,6 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/require.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>

@@ -15,7 +15,8 @@
 #include <type_traits>
 
 /// \file
-/// Velocities of rigid motion (N18), as columns [v; ω] and as dual vectors ω + εv.
+/// Velocities of rigid motion (N18), as columns [v; ω] and as dual vectors ω + εv; and what is dual
+/// to them, forces and moments [f; m] with the power f·v + m·ω, which no choice of frame changes.
 
 namespace duet {
 
@@ -129,5 +130,23 @@ struct manifold<quaternion<dual<T, 1, screw_tag>>> {
     return twist(a, rate, frame);
   }
 };
+
+/// The coadjoint [R 0; t̂R R] = Ad(A)⁻ᵀ: carries wrenches [f; m], m about the origin, as Ad(A)
+/// carries twists: F^s = coAd(A) F^b, and (coAd(A) F)·(Ad(A) V) = F·V.
+template <class T>
+[[nodiscard]] matrix6<T> coAd(const dual_quaternion<T>& a) {
+  const matrix6<T> m = Ad(a);
+  matrix6<T> result = matrix6<T>::Zero();
+  result.template topLeftCorner<3, 3>() = m.template topLeftCorner<3, 3>();
+  result.template bottomRightCorner<3, 3>() = m.template topLeftCorner<3, 3>();
+  result.template bottomLeftCorner<3, 3>() = m.template topRightCorner<3, 3>();
+  return result;
+}
+
+/// −ad(V)ᵀ: the rate of coAd(exp(½ V t)) F at t = 0 is coad(V) F.
+template <class T>
+[[nodiscard]] matrix6<T> coad(const vector6<T>& twist) {
+  return -ad(twist).transpose();
+}
 
 } // namespace duet

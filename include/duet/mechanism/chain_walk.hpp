@@ -5,7 +5,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/known_constant.hpp>
 #include <duet/derivative/seed.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/mechanism/half_turns.hpp>
 #include <duet/mechanism/joint.hpp>

@@ -5,7 +5,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/derivative/argument.hpp>
+#include <duet/derivative/function.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual/dual.hpp>

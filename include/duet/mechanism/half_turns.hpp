@@ -6,7 +6,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/seed.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/rules/sine_cosine.hpp>
+#include <duet/dual/rules/lift.hpp>
 #include <duet/dual/storage/partials.hpp>
 
 #include <array>

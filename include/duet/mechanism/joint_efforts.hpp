@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual_quaternion/wrench.hpp>
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/mechanism/jacobian.hpp>
 
 /// \file

@@ -6,7 +6,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/derivative/gradient.hpp>
-#include <duet/dual/eigen/structure.hpp>
+#include <duet/dual/eigen_structure.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
 

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch/functions.hpp>
 #include <duet/core/batch/lanes.hpp>
+#include <duet/core/batch/math.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/parallel_for.hpp>
 #include <duet/derivative/jacobian.hpp>

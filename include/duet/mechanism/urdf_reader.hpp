@@ -2,9 +2,9 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/text/input_file.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
+#include <duet/core/text/text_rows.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/mechanism/table_arithmetic.hpp>

@@ -3,7 +3,7 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/planning/nearest_on_segment.hpp>
 #include <duet/planning/shapes.hpp>

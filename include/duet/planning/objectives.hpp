@@ -1,9 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/derivative/argument.hpp>
+#include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
-#include <duet/derivative/result.hpp>
 #include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/require.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>

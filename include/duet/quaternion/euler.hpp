@@ -4,7 +4,6 @@
 #include <duet/core/batch/lanes.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
-#include <duet/core/sum_of_products.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -21,6 +20,32 @@
 /// Euler angles in all twelve sequences. `zyx` means R = R_z(first) R_y(second) R_x(third): the
 /// letters are the axes of the moving body, turned about one after the other; read from the right,
 /// fixed axes.
+
+namespace duet::detail {
+
+/// a b + c d to two units in the last place of itself, where nothing overflows or underflows.
+template <Real R>
+[[nodiscard]] R sum_of_products(const R& a, const R& b, const R& c, const R& d) {
+  if constexpr (std::floating_point<R>) { // Kahan's
+    const R cd = c * d;
+    const R error = std::fma(c, d, -cd);
+    return std::fma(a, b, cd) + error;
+  } else { // Dekker's: Boost.Multiprecision's fma rounds twice
+    const auto upper_half = [](const R& x) {
+      const R raised = ldexp(x, (std::numeric_limits<R>::digits + 1) / 2) + x;
+      return R(raised - R(raised - x));
+    };
+    const auto error_of = [&](const R& p, const R& q, const R& pq) {
+      const R p1 = upper_half(p), q1 = upper_half(q);
+      const R p2 = p - p1, q2 = q - q1;
+      return R(R(R(R(p1 * q1 - pq) + p1 * q2) + p2 * q1) + p2 * q2);
+    };
+    const R ab = a * b, cd = c * d;
+    return R(R(ab + cd) + error_of(a, b, ab)) + error_of(c, d, cd);
+  }
+}
+
+} // namespace duet::detail
 
 namespace duet {
 

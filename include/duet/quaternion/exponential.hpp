@@ -7,8 +7,7 @@
 #include <duet/core/select.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/dual/number/promotion.hpp>
-#include <duet/dual/number/tag.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual/rules/universal_functions.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/norm.hpp>

@@ -6,7 +6,7 @@
 #include <duet/core/structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/promotion.hpp>
 
 #include <Eigen/Core>
 

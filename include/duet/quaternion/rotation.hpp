@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
-#include <duet/core/require.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>

@@ -3,7 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/number/tag.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/distance.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/end_conditions.hpp>

@@ -5,7 +5,6 @@
 #include <duet/core/errors.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
-#include <duet/quaternion/tangent.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/orientations.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/text/all_digits.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>

@@ -4,12 +4,11 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>

@@ -3,7 +3,6 @@
 
 // Every driver refuses functions that return expressions: they refer to variables that are gone.
 
-#include <duet/derivative/chunked.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/second_order.hpp>

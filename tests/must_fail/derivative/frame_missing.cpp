@@ -2,8 +2,8 @@
 // expect: duet: to differentiate by rotations, poses or tuples say the frame
 
 #include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 
 int main() {
   const auto f = [](const auto& q) { return duet::rotation_vector(q); };

@@ -1,15 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/scalar_traits.hpp>
+
 #include <charconv>
 #include <concepts>
+#include <limits>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
 
 /// \file
-/// Numbers as text in files, the same under every locale.
+/// Numbers as text, the same under every locale.
 
 namespace duet {
 
@@ -57,3 +61,20 @@ namespace detail {
 }
 
 } // namespace duet
+
+namespace duet::detail {
+
+/// A number for messages, told apart from its neighbours.
+template <Real R>
+[[nodiscard]] std::string all_digits(const R& x) {
+  if constexpr (std::floating_point<R>) {
+    return to_text(x);
+  } else {
+    std::ostringstream text;
+    text.precision(std::numeric_limits<R>::max_digits10);
+    text << x;
+    return text.str();
+  }
+}
+
+} // namespace duet::detail

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <duet/core/text/file.hpp>
-#include <duet/core/text/input_file.hpp>
 #include <duet/core/text/number_text.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <ios>
 #include <string>
@@ -18,6 +18,17 @@
 /// Text files, line by line and cell by cell.
 
 namespace duet::detail {
+
+/// Opens a file to be read, byte by byte as it is.
+/// \return what is wrong with it, empty if nothing
+[[nodiscard]] inline std::string open_input(const std::string& path, std::ifstream& in) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) { // opens, and fails when it is read
+    return "is a folder, not a file";
+  }
+  in.open(path, std::ios::binary);
+  return in ? "" : "cannot be read";
+}
 
 /// Calls f(number, text) for every line, counted from 1, without its end and without a byte order
 /// mark.

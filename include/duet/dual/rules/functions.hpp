@@ -3,10 +3,9 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/number/algebra.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/algebra.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual/rules/elementary.hpp>
-#include <duet/dual/rules/hyperbolic.hpp>
 #include <duet/dual/rules/lift.hpp>
 #include <duet/dual/rules/of_many.hpp>
 #include <duet/dual/rules/powers.hpp>

@@ -4,22 +4,49 @@
 #include <duet/core/batch/math.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/rules/sine_cosine.hpp>
+#include <duet/dual/rules/elementary.hpp>
+
+#include <cmath>
 
 /// \file
-/// From the rule of a function to the function over infinitesimal numbers.
+/// From the rule of a function to the function over infinitesimal numbers; and sin x with cos x, of
+/// which a derivative always needs both.
 
-namespace duet {
-namespace rule {
+namespace duet::rule {
 
-struct sin;
-struct cos;
 struct sinh;
 struct cosh;
 
-} // namespace rule
+} // namespace duet::rule
 
-namespace detail {
+namespace duet::detail {
+
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<T> sine_and_cosine_of(const T& x) {
+  if constexpr (lane_traits<T>::is_batch) {
+    return sine_cosine_of_batch(x);
+  } else {
+    return {pure_sin(x), pure_cos(x)};
+  }
+}
+
+template <class T>
+[[nodiscard]] sine_cosine<T> hyperbolic_sine_and_cosine_of(const T& x) {
+  using std::cosh;
+  using std::sinh;
+  return {sinh(x), cosh(x)};
+}
+
+/// Sine and cosine of an x whose innermost value has the sine and the cosine y already.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<T>
+sine_and_cosine_from(const sine_cosine<real_type_t<T>>& y, const T& x) {
+  if constexpr (Infinitesimal<T>) {
+    return T::template lift_pair<-1>(sine_and_cosine_from(y, x.value()), x);
+  } else {
+    return y;
+  }
+}
 
 template <class Rule, Infinitesimal D, class... Rest>
 [[nodiscard]] DUET_ALWAYS_INLINE D lift(const Rule& rule, const D& x, const Rest&... rest) {
@@ -50,5 +77,4 @@ template <Infinitesimal D>
   return D::template lift_pair<1>(hyperbolic_sine_and_cosine_of(x.value()), x).cosine;
 }
 
-} // namespace detail
-} // namespace duet
+} // namespace duet::detail

@@ -4,8 +4,9 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
-#include <duet/dual/number/algebra.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/algebra.hpp>
+#include <duet/dual/parts.hpp>
+#include <duet/dual/promotion.hpp>
 
 #include <cmath>
 #include <concepts>
@@ -13,7 +14,8 @@
 
 /// \file
 /// The functions of `<cmath>` that are linear, constant or chosen piece by piece, over dual and
-/// Taylor numbers; and classification. All decide by the innermost value.
+/// Taylor numbers; those that take numbers apart; and classification. All decide by the innermost
+/// value.
 ///
 /// By value where Boost.Math declares f(T): with const D& neither would be more specialised.
 
@@ -173,6 +175,66 @@ template <RealInfinitesimal D>
 [[nodiscard]] long long llrint(const RealInfinitesimal auto& x) {
   using std::llrint;
   return llrint(innermost(x));
+}
+
+/// x = integer + fraction; the fraction keeps the derivatives.
+template <RealInfinitesimal D>
+[[nodiscard]] D modf(const D& x, D* integer) {
+  using std::modf;
+  real_type_t<D> whole;
+  const real_type_t<D> fraction = modf(innermost(x), &whole);
+  *integer = D(whole);
+  return detail::with_innermost(x, fraction);
+}
+
+template <RealInfinitesimal D>
+[[nodiscard]] int ilogb(const D& x) {
+  using std::ilogb;
+  return ilogb(innermost(x));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D logb(const D& x) {
+  using std::logb;
+  return D(real_type_t<D>(logb(innermost(x))));
+}
+
+/// x · 2^exponent, each part rounded once.
+template <RealInfinitesimal D>
+[[nodiscard]] D ldexp(const D& x, int exponent) {
+  return detail::map_reals(x, [&](const real_type_t<D>& part) {
+    using std::ldexp;
+    return real_type_t<D>(ldexp(part, exponent));
+  });
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D scalbn(const D& x, int exponent) {
+  return ldexp(x, exponent);
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D scalbln(const D& x, long exponent) {
+  return detail::map_reals(x, [&](const real_type_t<D>& part) {
+    using std::scalbln;
+    return real_type_t<D>(scalbln(part, exponent));
+  });
+}
+/// x = m · 2^exponent with |m| in [½, 1).
+template <RealInfinitesimal D>
+[[nodiscard]] D frexp(const D& x, int* exponent) {
+  using std::frexp;
+  const real_type_t<D> significand = frexp(innermost(x), exponent);
+  return detail::with_innermost(ldexp(x, -*exponent), significand);
+}
+
+/// The neighbour of x towards `target`, with the derivatives of x.
+template <RealInfinitesimal D>
+[[nodiscard]] D nextafter(const D& x, const D& target) {
+  using std::nextafter;
+  return detail::with_innermost(x, real_type_t<D>(nextafter(innermost(x), innermost(target))));
+}
+template <RealInfinitesimal D>
+[[nodiscard]] D nexttoward(const D& x, long double target) {
+  using std::nexttoward;
+  return detail::with_innermost(x, nexttoward(innermost(x), target));
 }
 
 } // namespace duet

@@ -3,9 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/dual/rules/lift.hpp>
-#include <duet/dual/rules/sine_cosine.hpp>
 #include <duet/dual/storage/partials.hpp>
-#include <duet/dual/storage/series_product.hpp>
 #include <duet/dual/storage/structural_zero.hpp>
 
 #include <array>

@@ -6,7 +6,7 @@
 #include <duet/core/select.hpp>
 #include <duet/core/stumpff.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual/storage/partials.hpp>
 #include <duet/dual/storage/structural_zero.hpp>
 #include <duet/dual/stumpff.hpp>

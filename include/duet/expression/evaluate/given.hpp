@@ -3,7 +3,7 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>

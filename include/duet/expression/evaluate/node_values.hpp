@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/dual/rules/sine_cosine.hpp>
+#include <duet/dual/rules/lift.hpp>
 #include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/evaluate/sines.hpp>
 #include <duet/expression/tree/node.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/larger.hpp>
+#include <duet/core/rounding.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/larger.hpp>
+#include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/blocks/tridiagonal.hpp>

@@ -6,7 +6,6 @@
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
-#include <duet/quaternion/tangent.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/blocks/cholesky.hpp>
 #include <duet/spline/cumulative_bspline.hpp>

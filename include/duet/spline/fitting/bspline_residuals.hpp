@@ -9,7 +9,6 @@
 #include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/quaternion/tangent.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
 

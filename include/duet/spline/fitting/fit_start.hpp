@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/number/tag.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>

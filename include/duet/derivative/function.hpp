@@ -1,15 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual/number/tag.hpp>
+#include <duet/core/own_numbers.hpp>
+#include <duet/core/structure.hpp>
+#include <duet/dual/eigen_structure.hpp>
+#include <duet/dual/promotion.hpp>
 
 #include <Eigen/Core>
 
 #include <concepts>
 #include <type_traits>
+#include <utility>
 
 /// \file
-/// What drivers make of their arguments' types, and the tag of their infinitesimals.
+/// What drivers make of a function: of the types of its arguments, of its own for a tag of their
+/// infinitesimals, and of what it returns.
 
 namespace duet::detail {
 
@@ -34,5 +39,18 @@ using differentiable_t = std::conditional_t<std::integral<X>, double, X>;
 template <class Given, class F>
 using tag_for = std::conditional_t<std::is_void_v<Given>, derivative_tag<std::decay_t<F>>,
                                    derivative_tag<Given>>;
+
+/// What a function of the caller's returned, as an object of its own. (Its type is deduced, so that
+/// compilers say first of all what is wrong, also where only the type is asked for.)
+template <class X>
+[[nodiscard]] constexpr auto result_of_call(X&& x) {
+  using result = std::remove_cvref_t<X>;
+  require_own_numbers<result>();
+  static_assert(
+      refers_elsewhere<result> || requires { sizeof(structure<result>); },
+      "duet: a function must return a scalar, an Eigen vector or matrix, a rotation, a "
+      "pose, or a std::array, std::tuple or std::pair of these");
+  return std::forward<X>(x);
+}
 
 } // namespace duet::detail

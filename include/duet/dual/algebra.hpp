@@ -3,7 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/number/promotion.hpp>
+#include <duet/dual/promotion.hpp>
 
 #include <concepts>
 #include <type_traits>
