@@ -9,7 +9,7 @@
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/jacobian.hpp>
-#include <duet/expression/matrix/entries.hpp>
+#include <duet/expression/matrix.hpp>
 #include <duet/expression/motion.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/screw.hpp>

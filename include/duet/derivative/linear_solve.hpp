@@ -20,7 +20,8 @@
 /// Systems of linear equations, differentiated by their own equation instead of through
 /// elimination.
 
-namespace duet::detail {
+namespace duet {
+namespace detail {
 
 /// What `Eigen::PartialPivLU` is to one matrix. Rows are exchanged by blending, so each lane has
 /// the pivots that it would have alone.
@@ -97,11 +98,6 @@ private:
   M factors_;
   Eigen::Matrix<Scalar, M::RowsAtCompileTime, 1> pivot_rows_;
 };
-
-} // namespace duet::detail
-
-namespace duet {
-namespace detail {
 
 /// \throws invalid_input where a pivot is nothing but rounding.
 ///

@@ -5,7 +5,7 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/expression/arm/pose_chain.hpp>
-#include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/tree/formula.hpp>

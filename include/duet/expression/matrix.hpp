@@ -1,21 +1,66 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/matrix/block.hpp>
-#include <duet/expression/matrix/entries.hpp>
 #include <duet/expression/matrix/functions.hpp>
 #include <duet/expression/matrix/product.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/printed.hpp>
+#include <duet/expression/vector.hpp>
+
+#include <Eigen/Core>
 
 #include <cstddef>
 #include <utility>
 
 /// \file
-/// Matrices as variables of formulas.
+/// Matrices as variables of formulas, and put together from scalars.
 
 namespace duet::expression {
+
+namespace op {
+
+/// The matrix of scalars, row by row.
+template <int Rows, int Columns>
+struct entries : linear_operation {
+  static constexpr kind kind_of(auto...) { return matrix_kind(Rows, Columns); }
+  static constexpr auto simplified(auto... x) requires(Rows == 3 && Columns == 1) {
+    return apply<column>(x...);
+  }
+  template <class... X>
+  static auto value(const X&... x) {
+    using T = detail::common_scalar_t<X...>;
+    const T all[] = {T(x)...};
+    Eigen::Matrix<T, Rows, Columns> m;
+    for (int i = 0; i < Rows; ++i) {
+      for (int j = 0; j < Columns; ++j) {
+        m(i, j) = all[i * Columns + j];
+      }
+    }
+    return m;
+  }
+  static printed print(notation style, const auto&... x) {
+    return detail::printed_matrix(style, Columns, {x.text...});
+  }
+};
+
+} // namespace op
+
+/// The Rows x Columns matrix of scalars, written row by row: `matrix<2, 2>(a, b, c, d)` has a and b
+/// in its first row. 1 to 6 rows and columns.
+template <int Rows, int Columns, class... X, class Tag = decltype([](op::entries<1, 2>*) {})>
+  requires Operands<X...>
+[[nodiscard]] constexpr auto matrix(const X&... x) {
+  static_assert(1 <= Rows && Rows <= 6 && 1 <= Columns && Columns <= 6 && Rows * Columns > 1,
+                "duet: a matrix in a formula has 1 to 6 rows and columns; of 1 x 1 it is a scalar");
+  static_assert(sizeof...(X) == Rows * Columns,
+                "duet: matrix<2, 4>(...) takes its 8 entries, row by row");
+  return detail::apply_to<op::entries<Rows, Columns>, Tag>(std::index_sequence_for<X...>{}, x...);
+}
 
 namespace detail {
 

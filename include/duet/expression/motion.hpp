@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/evaluate/call.hpp>
+#include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>

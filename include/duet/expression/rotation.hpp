@@ -4,7 +4,6 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/algebra/power.hpp>
 #include <duet/expression/algebra/product.hpp>
-#include <duet/expression/algebra/scalar_factor.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>

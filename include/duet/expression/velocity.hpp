@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/derivative/frame.hpp>
-#include <duet/expression/algebra/scalar_factor.hpp>
+#include <duet/expression/algebra/product.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/rotation.hpp>

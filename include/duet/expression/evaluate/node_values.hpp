@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/dual/rules/lift.hpp>
 #include <duet/expression/evaluate/given.hpp>
-#include <duet/expression/evaluate/sines.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/node_list.hpp>
 
@@ -172,9 +172,10 @@ DUET_ALWAYS_INLINE constexpr void run(Slots& s, mp11::mp_list<Instructions...>) 
 template <bool AtOnce, class Slots, int... I, int... Sine, int... Cosine>
 DUET_ALWAYS_INLINE constexpr void take_sines(Slots& s,
                                              mp11::mp_list<sine_instruction<I, Sine, Cosine>...>) {
-  if constexpr (AtOnce && takes_sines_at_once<std::remove_cvref_t<decltype(value_at<I>(s))>...>) {
+  if constexpr (AtOnce && duet::detail::takes_sines_at_once<
+                              std::remove_cvref_t<decltype(value_at<I>(s))>...>) {
     if (!std::is_constant_evaluated()) {
-      const sines_at_once<sizeof...(I)> y(value_at<I>(s)...);
+      const duet::detail::sines_at_once<sizeof...(I)> y(value_at<I>(s)...);
       int i = 0;
       ((sine_instruction<I, Sine, Cosine>::set(s, y.sine(i), y.cosine(i)), ++i), ...);
       return;

@@ -3,7 +3,6 @@
 
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
-#include <duet/expression/algebra/scalar_factor.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>

@@ -5,7 +5,6 @@
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
-#include <duet/expression/algebra/scalar_factor.hpp>
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>

@@ -3,7 +3,6 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/expression/evaluate/call.hpp>
 #include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/tree/held.hpp>
