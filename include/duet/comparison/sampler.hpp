@@ -6,7 +6,10 @@
 #include <duet/core/random_source.hpp>
 
 #include <algorithm>
+#include <array>
+#include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <tuple>

@@ -8,7 +8,9 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <concepts>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 
 /// \file

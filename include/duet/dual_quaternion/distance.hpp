@@ -7,6 +7,7 @@
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -17,6 +17,7 @@
 #include <limits>
 #include <span>
 #include <sstream>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <limits>
 
 /// \file
 /// Unit quaternions as active rotations v ↦ q v q*: vectors, axis and angle, rotation vectors,

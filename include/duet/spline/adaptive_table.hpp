@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <sstream>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 /// \file

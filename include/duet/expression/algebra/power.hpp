@@ -11,6 +11,7 @@
 #include <duet/expression/tree/printed.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <type_traits>
 
