@@ -2,8 +2,9 @@
 
 #include "support/random.hpp"
 
-#include <duet/planning/cholesky.hpp>
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/planning/constrained_step.hpp>
+#include <duet/planning/small_vector.hpp>
 
 #include <doctest/doctest.h>
 

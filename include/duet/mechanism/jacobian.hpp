@@ -37,6 +37,11 @@ struct twist_column {
   three_vector<S> v, omega;
 };
 
+template <class S>
+[[nodiscard]] DUET_ALWAYS_INLINE twist_column<S> no_twist() {
+  return {{S(0), S(0), S(0)}, {S(0), S(0), S(0)}};
+}
+
 template <class J>
 [[nodiscard]] DUET_ALWAYS_INLINE auto column_of(const J& m, Eigen::Index i) {
   using vector = three_vector<typename J::Scalar>;
@@ -62,8 +67,7 @@ spatial_columns(const C& chain, const X& theta, int link, J& m) {
   const auto at_link = walk<WithRotation, S>(
       chain, theta, link,
       [&](std::size_t i, const auto& step, const auto& axis, const auto& point) DUET_INLINE_LAMBDA {
-        const three_vector<S> zero{S(0), S(0), S(0)};
-        twist_column<S> screw{zero, zero};
+        auto screw = no_twist<S>();
         if (step.turns()) {
           screw = {cross(point, axis), axis};
         }
@@ -73,7 +77,7 @@ spatial_columns(const C& chain, const X& theta, int link, J& m) {
         set_column(m, screw, Eigen::Index(i));
       });
   for (Eigen::Index i = link; i < chain.size(); ++i) { // these joints move other links only
-    m.col(i).setZero();
+    set_column(m, no_twist<S>(), i);
   }
   return at_link;
 }

@@ -1,10 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual_quaternion/twist.hpp>
-#include <duet/planning/cholesky.hpp>
-
-#include <Eigen/Core>
+#include <duet/planning/small_vector.hpp>
 
 #include <algorithm>
 #include <array>
@@ -20,36 +17,60 @@ namespace duet::detail {
 /// Below this singular value steps are damped.
 inline constexpr double damping_threshold = 1e-3;
 
-/// m + x xᵀ, in place.
-template <class M>
-void add_square(M& m, const vector6<double>& x) {
-  for (Eigen::Index j = 0; j < 6; ++j) {
-    for (Eigen::Index i = j; i < 6; ++i) {
-      m(i, j) += x[i] * x[j];
+/// A twist [v; ω].
+using small_twist = small_vector<6>;
+using gram_matrix = small_matrix<6, 6>;
+
+/// The lower half of m + x xᵀ for the column j of a matrix of 6 rows.
+template <class J>
+void add_square(gram_matrix& m, const J& jacobian, std::ptrdiff_t column) {
+  for (std::ptrdiff_t j = 0; j < 6; ++j) {
+    for (std::ptrdiff_t i = j; i < 6; ++i) {
+      m(i, j) += jacobian(i, column) * jacobian(j, column);
     }
   }
 }
 
-/// J Jᵀ of a matrix J of 6 rows.
+/// The lower half of J Jᵀ.
 template <class J>
-[[nodiscard]] auto gram_matrix(const J& jacobian) {
-  matrix6<double> result = matrix6<double>::Zero();
-  for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
-    add_square(result, jacobian.col(i));
+[[nodiscard]] gram_matrix gram_of(const J& jacobian) {
+  gram_matrix result;
+  for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
+    add_square(result, jacobian, i);
   }
   return result;
 }
 
+/// The product of a column of J with a force.
+template <class J, class V>
+[[nodiscard]] double column_dot(const J& jacobian, std::ptrdiff_t column, const V& force) {
+  double sum = 0;
+  for (std::ptrdiff_t i = 0; i < 6; ++i) {
+    sum += jacobian(i, column) * force[i];
+  }
+  return sum;
+}
+
+/// e − Σ x_i column_i, over all columns of J.
+template <class J, class V>
+[[nodiscard]] small_twist what_is_left(small_twist e, const J& jacobian, const V& x) {
+  for (std::ptrdiff_t j = 0; j < jacobian.cols(); ++j) {
+    for (std::ptrdiff_t i = 0; i < 6; ++i) {
+      e[i] -= x[j] * jacobian(i, j);
+    }
+  }
+  return e;
+}
+
 /// J Jᵀ with as much damping as a small singular value of J asks for.
-template <class Gram>
 class damped_gram {
 public:
-  explicit damped_gram(const Gram& gram) : factors_(gram) {
+  explicit damped_gram(const gram_matrix& gram) : factors_(gram) {
     // The smallest eigenvalue from above: Rayleigh's quotient after two inverse iterations.
     if (factors_.is_positive()) {
-      const vector6<double> once = factors_.solve(vector6<double>(vector6<double>::Ones()));
-      const vector6<double> twice = factors_.solve(once);
-      smallest_ = std::sqrt(std::max(0.0, once.dot(twice) / twice.squaredNorm()));
+      const auto once = factors_.solve(small_twist{{1, 1, 1, 1, 1, 1}});
+      const auto twice = factors_.solve(once);
+      smallest_ = std::sqrt(std::max(0.0, dot(once, twice) / dot(twice, twice)));
     }
     if (smallest_ < damping_threshold) {
       const double missing = 1 - smallest_ / damping_threshold;
@@ -58,21 +79,24 @@ public:
     }
   }
   /// J Jᵀ + λ.
-  damped_gram(const Gram& gram, double lambda) : factors_(damped(gram, lambda)) {}
+  damped_gram(const gram_matrix& gram, double lambda) : factors_(damped(gram, lambda)) {}
 
-  [[nodiscard]] vector6<double> solve(const vector6<double>& e) const { return factors_.solve(e); }
+  template <class V>
+  [[nodiscard]] V solve(const V& e) const {
+    return factors_.solve(e);
+  }
   /// The smallest singular value of J, from above; 0 where it was not asked for.
   [[nodiscard]] double smallest() const { return smallest_; }
 
 private:
-  [[nodiscard]] static cholesky<Gram> damped(Gram gram, double lambda) {
-    for (Eigen::Index i = 0; i < 6; ++i) {
+  [[nodiscard]] static cholesky<gram_matrix> damped(gram_matrix gram, double lambda) {
+    for (std::ptrdiff_t i = 0; i < 6; ++i) {
       gram(i, i) += lambda;
     }
-    return cholesky<Gram>(gram);
+    return cholesky<gram_matrix>(gram);
   }
 
-  cholesky<Gram> factors_;
+  cholesky<gram_matrix> factors_;
   double smallest_ = 0;
 };
 
@@ -86,35 +110,34 @@ struct bounded_step_result {
 /// The least Δ with J Δ = e and lower ≤ Δ ≤ upper. Joints that would go beyond a bound are put onto
 /// it, the worst one first, and the others make up for them as far as they can.
 /// \param lambda  the damping, Δ = Jᵀ(J Jᵀ + λ)⁻¹ e; without, as much as near singularities
-template <class J, class V>
-[[nodiscard]] bounded_step_result<V> bounded_step(const J& jacobian, const vector6<double>& e,
-                                                  const V& lower, const V& upper,
-                                                  const std::optional<double>& lambda = {}) {
-  const Eigen::Index n = jacobian.cols();
-  std::array<bool, std::size_t(J::MaxColsAtCompileTime)> is_fixed{};
-  bounded_step_result<V> result{V::Zero(n), 0, false};
-  for (Eigen::Index round = 0; round <= n; ++round) {
-    matrix6<double> gram = matrix6<double>::Zero();
-    vector6<double> rest = e;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const vector6<double> column = jacobian.col(i);
+template <int N>
+[[nodiscard]] bounded_step_result<small_vector<N>>
+bounded_step(const small_matrix<6, N>& jacobian, const small_twist& e, const small_vector<N>& lower,
+             const small_vector<N>& upper, const std::optional<double>& lambda = {}) {
+  const std::ptrdiff_t n = jacobian.cols();
+  std::array<bool, std::size_t(N)> is_fixed{};
+  bounded_step_result<small_vector<N>> result{{}, 0, false};
+  for (std::ptrdiff_t round = 0; round <= n; ++round) {
+    gram_matrix gram;
+    small_twist rest = e;
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
       if (is_fixed[std::size_t(i)]) {
-        rest -= result.step[i] * column;
+        rest -= result.step[i] * jacobian.columns[std::size_t(i)];
       } else {
-        add_square(gram, column);
+        add_square(gram, jacobian, i);
       }
     }
     const auto factors = lambda ? damped_gram(gram, *lambda) : damped_gram(gram);
     if (round == 0) {
       result.smallest_singular_value = factors.smallest();
     }
-    const vector6<double> force = factors.solve(rest);
-    Eigen::Index worst = -1;
+    const small_twist force = factors.solve(rest);
+    std::ptrdiff_t worst = -1;
     double excess = 0;
-    for (Eigen::Index i = 0; i < n; ++i) {
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
       if (!is_fixed[std::size_t(i)]) {
         double& step = result.step[i];
-        step = jacobian.col(i).dot(force);
+        step = column_dot(jacobian, i, force);
         const double beyond = std::max(step - upper[i], lower[i] - step);
         if (beyond > excess) {
           excess = beyond;

@@ -1,21 +1,136 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/dual_quaternion/twist.hpp>
 #include <duet/planning/bounded_step.hpp>
-#include <duet/planning/least_distance.hpp>
+#include <duet/planning/small_vector.hpp>
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 /// \file
-/// The step of the joints for a small twist of the tip under linear inequalities.
+/// The step of the joints for a small twist of the tip under linear inequalities: the point nearest
+/// to the origin that keeps them.
 
 namespace duet::detail {
+
+/// normal·x ≥ bound.
+template <class V>
+struct inequality {
+  V normal;
+  double bound;
+};
+
+/// f − Σ z_i column_i and the z for which that is least. The second round takes care of the first
+/// one's rounding: a Gram matrix has the squared condition.
+template <class V>
+[[nodiscard]] std::pair<V, V> least_squares_on(const std::vector<V>& columns, const V& f) {
+  const auto count = Eigen::Index(columns.size());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, V::MaxRowsAtCompileTime,
+                V::MaxRowsAtCompileTime>
+      gram(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      gram(i, j) = columns[std::size_t(i)].dot(columns[std::size_t(j)]);
+    }
+  }
+  const cholesky factors(gram);
+  V z = V::Zero(count), left(count), residual = f;
+  for (int twice = 0; twice < 2; ++twice) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      left[i] = columns[std::size_t(i)].dot(residual);
+    }
+    z += factors.solve(left);
+    residual = f;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      residual -= z[i] * columns[std::size_t(i)];
+    }
+  }
+  return {residual, z};
+}
+
+/// The least f − Σ u_i column_i with all u_i ≥ 0, by Lawson and Hanson's active sets.
+template <class V>
+[[nodiscard]] V nonnegative_residual(const std::vector<V>& columns, const V& f) {
+  struct share {
+    std::size_t column;
+    double u;
+  };
+  std::vector<share> active;
+  V residual = f;
+  for (std::size_t round = 0; round < 3 * columns.size(); ++round) {
+    const auto gain = [&](const V& column) { return column.dot(residual); };
+    const auto best = std::max_element(columns.begin(), columns.end(),
+                                       [&](const V& a, const V& b) { return gain(a) < gain(b); });
+    if (!(gain(*best) > 1e-12)) {
+      break;
+    }
+    active.push_back({std::size_t(best - columns.begin()), 0});
+    for (bool is_settled = false; !is_settled && !active.empty();) {
+      std::vector<V> chosen;
+      for (const share& each : active) {
+        chosen.push_back(columns[each.column]);
+      }
+      const auto [rest, z] = least_squares_on(chosen, f);
+      // Towards z as far as all stay positive; who gets to zero first leaves.
+      double way = 1;
+      std::size_t first = active.size();
+      for (std::size_t i = 0; i < active.size(); ++i) {
+        const double u = active[i].u, goal = z[Eigen::Index(i)];
+        if (goal <= 0 && u <= way * (u - goal)) {
+          way = u / (u - goal);
+          first = i;
+        }
+      }
+      for (std::size_t i = 0; i < active.size(); ++i) {
+        active[i].u += way * (z[Eigen::Index(i)] - active[i].u);
+      }
+      is_settled = first == active.size();
+      if (is_settled) {
+        residual = rest;
+      } else {
+        active.erase(active.begin() + std::ptrdiff_t(first));
+      }
+    }
+  }
+  return residual;
+}
+
+/// The least x that keeps all inequalities; nothing where no x does. With normals and bounds below
+/// each other as columns, and f = (0, …, 0, 1), x is a multiple of the residual of the nonnegative
+/// least squares (Lawson and Hanson, Solving Least Squares Problems, chapter 23).
+template <class V>
+[[nodiscard]] std::optional<V> least_distance(const std::vector<inequality<V>>& inequalities,
+                                              Eigen::Index n) {
+  constexpr int capacity = V::MaxRowsAtCompileTime;
+  using column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, capacity + 1, 1>;
+  std::vector<column> columns;
+  columns.reserve(inequalities.size());
+  for (const inequality<V>& each : inequalities) {
+    const double length = each.normal.norm();
+    if (length > 1e-12) {
+      columns.emplace_back(n + 1);
+      columns.back().head(n) = each.normal / length;
+      columns.back()[n] = each.bound / length;
+    } else if (each.bound > 1e-9) {
+      return std::nullopt; // no x has a say in it
+    }
+  }
+  if (columns.empty()) {
+    return V(V::Zero(n));
+  }
+  const column residual = nonnegative_residual(columns, column(column::Unit(n + 1, n)));
+  // It is 1 / (1 + |x|²).
+  if (!(residual[n] > 1e-8)) {
+    return std::nullopt;
+  }
+  return V(-residual.head(n) / residual[n]);
+}
 
 /// Takes from steps of the joints what moves the tip.
 template <class V>
@@ -24,7 +139,10 @@ public:
   template <class J>
   explicit self_motion(const J& jacobian) {
     for (Eigen::Index i = 0; i < 6; ++i) {
-      const V row = jacobian.row(i).transpose();
+      V row = V::Zero(jacobian.cols());
+      for (Eigen::Index k = 0; k < row.size(); ++k) {
+        row[k] = jacobian(i, k);
+      }
       const V rest = (*this)(row);
       const double length = rest.norm();
       if (length > 1e-9 * row.norm()) {
@@ -55,17 +173,17 @@ struct constrained_step_result {
 
 /// The Δ nearest to `preferred` with lower ≤ Δ ≤ upper and the inequalities, and with J Δ = e, or
 /// what damping near singularities leaves of that.
-template <class J, class V>
+template <class J, class E, class V>
 [[nodiscard]] constrained_step_result<V>
-constrained_step(const J& jacobian, const vector6<double>& e, const V& preferred, const V& lower,
-                 const V& upper, const std::vector<inequality<V>>& inequalities) {
+constrained_step(const J& jacobian, const E& e, const V& preferred, const V& lower, const V& upper,
+                 const std::vector<inequality<V>>& inequalities) {
   const Eigen::Index n = jacobian.cols();
-  const damped_gram gram(gram_matrix(jacobian));
-  const vector6<double> force = gram.solve(e);
+  const damped_gram gram(gram_of(jacobian));
+  const E force = gram.solve(e);
   const self_motion<V> without_tip(jacobian);
   V wanted = without_tip(preferred);
   for (Eigen::Index i = 0; i < n; ++i) {
-    wanted[i] += jacobian.col(i).dot(force);
+    wanted[i] += column_dot(jacobian, i, force);
   }
   std::vector<inequality<V>> left;
   left.reserve(inequalities.size() + 2 * std::size_t(n));

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <sstream>
@@ -49,23 +50,38 @@ template <class C, class Start, class Objective, class Scene>
 [[nodiscard]] motion_plan<C::joints> follow(const C& chain, const Start& start,
                                             const path_function& target, std::vector<double> stops,
                                             const plan_options& options, const Objective& objective,
-                                            const Scene& around, bool is_out_of_reach = false) {
-  using follower_type = path_follower<joint_room(C::joints)>;
-  using vector = typename follower_type::vector;
+                                            const Scene& around, bool may_be_out_of_reach = false) {
+  constexpr int room = joint_room(C::joints);
+  using vector = small_vector<room>;
   require_options(options);
-  const auto theta = joint_vector_of<joint_room(C::joints)>(start, chain.size());
+  const auto theta = planned_joints<room>(start, chain.size());
   const auto model = model_of(chain, around);
-  require_beginning(deviation_between(model.pose(theta), target(stops.front())), options.tolerance);
+  require_beginning(deviation_between(model.at(theta).tip, place_of(target(stops.front()))),
+                    options.tolerance);
   model.require_clearance(theta, options.tolerance);
-  typename follower_type::slope_function slope;
+  std::function<vector(const vector&)> slope;
   if constexpr (!std::same_as<Objective, no_objective>) {
-    slope = [&objective](const vector& x) -> vector {
-      return objective_gradient(objective, joint_vector<double, C::joints>(x));
+    slope = [&](const vector& x) {
+      return planned_joints<room>(objective_gradient(objective, own_joints(chain, x)),
+                                  chain.size());
     };
   }
-  follower_type follower(model, target, std::move(stops), options, slope);
-  return follower.template summary<C::joints>(
-      is_out_of_reach ? follower.stay(theta, stop_reason::out_of_reach) : follower.plan(theta));
+  const bool is_out_of_reach =
+      may_be_out_of_reach &&
+      model.reach.is_beyond(place_of(target(stops.back())), options.tolerance);
+  path_follower<room> follower(model, target, std::move(stops), options, slope);
+  const auto route =
+      is_out_of_reach ? follower.stay(theta, stop_reason::out_of_reach) : follower.plan(theta);
+  motion_plan<C::joints> plan;
+  for (const auto& w : route.waypoints) {
+    add_waypoint(plan, chain, own_joints(chain, w.state.theta), pose_at(w.state.tip), w.u, w.left);
+    plan.smallest_clearance = std::min(plan.smallest_clearance, model.clearance(w.state.theta));
+    plan.smallest_singular_value =
+        std::min(plan.smallest_singular_value, w.smallest_singular_value);
+  }
+  plan.iterations = follower.iterations();
+  plan.reason = follower.reason(route);
+  return plan;
 }
 
 /// Along screw motions from pose to pose, pose i at i.

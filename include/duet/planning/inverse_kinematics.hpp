@@ -22,22 +22,28 @@ namespace duet {
 
 namespace detail {
 
-/// \throws invalid_input for another number of coordinates than of joints
-template <class C, class Start>
-[[nodiscard]] auto search_on(const C& chain, const Start& start,
-                             const inverse_kinematics_options& options) {
-  constexpr int room = joint_room(C::joints);
-  require_size(chain, start);
-  return inverse_kinematics_search<room>(chain, joint_vector_of<room>(start, chain.size()),
-                                         options);
-}
+/// A search on a chain, which gives results in the chain's own type.
+template <class C>
+class search_on_chain {
+public:
+  /// \throws invalid_input for another number of coordinates than of joints
+  template <class Start>
+  search_on_chain(const C& chain, const Start& start, const inverse_kinematics_options& options)
+      : model_((require_size(chain, start), chain)),
+        search_(model_, planned_joints<joint_room(C::joints)>(start, chain.size()), options) {}
+  search_on_chain(const search_on_chain&) = delete;
 
-/// What a search has found, in the chain's own type.
-template <class C, int N>
-[[nodiscard]] inverse_kinematics_result<C::joints>
-found_for(const inverse_kinematics_result<N>& x) {
-  return {x.joints, x.deviation, x.iterations, x.restarts, x.reason};
-}
+  /// \param goal  a pose
+  [[nodiscard]] inverse_kinematics_result<C::joints>
+  operator()(const dual_quaternion<double>& goal) const {
+    const auto x = search_(place_of(normalized(goal)));
+    return {own_joints(model_.chain(), x.joints), x.left, x.iterations, x.restarts, x.reason};
+  }
+
+private:
+  chain_model<C> model_;
+  inverse_kinematics_search<joint_room(C::joints)> search_;
+};
 
 } // namespace detail
 
@@ -59,9 +65,9 @@ template <SerialChain C, VectorLike Start>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options = {}) {
-  const auto search = detail::search_on(chain, start, options);
+  const detail::search_on_chain<C> search(chain, start, options);
   detail::require_pose(goal, "inverse_kinematics", "the goal");
-  return detail::found_for<C>(search(normalized(goal)));
+  return search(goal);
 }
 
 /// out[i] = inverse_kinematics(chain, goals[i], start, options), with the same results on any
@@ -76,13 +82,12 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
     throw invalid_input("duet: inverse_kinematics: " + std::to_string(goals.size()) +
                         " goals, but room for " + std::to_string(out.size()) + " results");
   }
-  const auto search = detail::search_on(chain, start, options);
+  const detail::search_on_chain<C> search(chain, start, options);
   for (std::size_t i = 0; i < goals.size(); ++i) {
     detail::require_pose(goals[i], "inverse_kinematics", "goal " + std::to_string(i));
   }
   parallel_for(
-      goals.size(),
-      [&](std::size_t i) { out[i] = detail::found_for<C>(search(normalized(goals[i]))); }, how);
+      goals.size(), [&](std::size_t i) { out[i] = search(goals[i]); }, how);
 }
 
 } // namespace duet

@@ -2,27 +2,19 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/random_source.hpp>
-#include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/twist.hpp>
+#include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/bounded_step.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/plan_options.hpp>
 #include <duet/planning/planning_model.hpp>
-#include <duet/planning/reach.hpp>
-
-#include <Eigen/Core>
+#include <duet/planning/small_vector.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <numbers>
-#include <optional>
-#include <sstream>
 
 /// \file
 /// The search for joint coordinates that take the tip of a chain to a pose.
@@ -63,150 +55,154 @@ inline void require_options(const inverse_kinematics_options& options) {
   require_option(options.restarts >= 0, caller, "restarts", options.restarts, "a number from 0 up");
 }
 
-inline void require_finite_start(Eigen::Index joint, double x) {
-  if (!(x - x == 0)) {
-    std::ostringstream message;
-    message << "duet: inverse_kinematics: the start has " << x << " for joint " << joint;
-    throw invalid_input(message.str());
+/// Numbers from 0 to 1, the same on every machine: SplitMix64 (Steele, Lea, Flood, Fast splittable
+/// pseudorandom number generators, 2014). <random> would cost the compiler more than the search.
+class split_mix {
+public:
+  explicit split_mix(std::uint64_t seed) : state_(seed) {}
+
+  [[nodiscard]] double operator()() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
+    z = (z ^ z >> 30U) * 0xbf58476d1ce4e5b9;
+    z = (z ^ z >> 27U) * 0x94d049bb133111eb;
+    return double((z ^ z >> 31U) >> 11U) * 0x1p-53;
   }
-}
+
+private:
+  std::uint64_t state_;
+};
 
 /// What all searches for configurations of a chain have in common.
-template <int N>
+template <int Room>
 class inverse_kinematics_search {
-  using vector = joint_vector<double, N>;
-  using result_type = inverse_kinematics_result<N>;
+  using vector = small_vector<Room>;
 
 public:
-  template <class C>
-  inverse_kinematics_search(const C& chain, const vector& start,
+  struct attempt {
+    vector joints;
+    pose_deviation left;
+    double error; ///< |e|²
+    int iterations = 0;
+    int restarts = 0;
+    stop_reason reason = stop_reason::no_progress;
+  };
+
+  inverse_kinematics_search(const planning_model<Room>& model, const vector& start,
                             const inverse_kinematics_options& options)
-      : set_([&chain](chain_state<N>& state, const vector& theta) {
-          set_state(state, chain, theta);
-        }),
-        options_(options), reach_(chain), lower_(lower_limits(chain)), upper_(upper_limits(chain)),
-        turn_(start), beyond_(start), spread_(start), start_(start) {
+      : model_(model), options_(options), start_(start) {
     require_options(options);
-    for (Eigen::Index i = 0; i < start.size(); ++i) {
-      require_finite_start(i, start[i]);
-      const auto& step = chain.steps()[std::size_t(i)];
+    for (int i = 0; i < model.size; ++i) {
+      if (!(start[i] - start[i] == 0)) {
+        throw invalid_input(
+            message("duet: inverse_kinematics: the start has ", start[i], " for joint ", i));
+      }
+      const bool turns = model.turns[std::size_t(i)];
       constexpr double turn = 2 * std::numbers::pi;
-      const bool has_turn = step.turns && !step.slides && upper_[i] - lower_[i] >= turn;
+      const bool has_turn =
+          turns && !model.slides[std::size_t(i)] && model.upper[i] - model.lower[i] >= turn;
       turn_[i] = has_turn ? turn : 0;
       beyond_[i] = has_turn ? std::numeric_limits<double>::infinity() : 0;
-      spread_[i] = step.turns ? std::numbers::pi : reach_.scale();
+      spread_[i] = turns ? std::numbers::pi : model.reach.scale();
     }
     start_ = within_limits(start_);
   }
 
-  /// \param goal  a unit dual quaternion
-  [[nodiscard]] result_type operator()(const dual_quaternion<double>& goal) const {
-    if (reach_.is_beyond(goal, options_.tolerance)) {
-      result_type result{start_, equations_at(start_, goal).left};
-      result.reason = stop_reason::out_of_reach;
-      return result;
+  [[nodiscard]] attempt operator()(const tip_place& goal) const {
+    if (model_.reach.is_beyond(goal, options_.tolerance)) {
+      return {start_, equations_at(start_, goal).left, 0, 0, 0, stop_reason::out_of_reach};
     }
     attempt best = approach(start_, goal);
-    int iterations = best.found.iterations, restarts = 0;
-    std::optional<random_source> random; // its seeding takes as long as an iteration
-    while (best.found.reason != stop_reason::reached && restarts < options_.restarts) {
-      if (!random) {
-        random.emplace(options_.seed);
-      }
-      const attempt next = approach(configuration(*random), goal);
-      iterations += next.found.iterations;
+    int iterations = best.iterations, restarts = 0;
+    split_mix random(options_.seed);
+    while (best.reason != stop_reason::reached && restarts < options_.restarts) {
+      const attempt next = approach(configuration(random), goal);
+      iterations += next.iterations;
       ++restarts;
       if (!(best.error <= next.error)) { // nor is it a number if coordinates overflow
         best = next;
       }
     }
-    if (best.found.reason == stop_reason::no_progress) {
-      best.found.reason = obstacle(best.found.joints, goal);
+    if (best.reason == stop_reason::no_progress) {
+      best.reason = obstacle(best.joints, goal);
     }
-    best.found.iterations = iterations;
-    best.found.restarts = restarts;
-    return best.found;
+    best.iterations = iterations;
+    best.restarts = restarts;
+    return best;
   }
 
 private:
-  struct attempt {
-    result_type found;
-    double error; ///< |e|²
-  };
   /// What is left to do at some θ: J Δ = e. Lengths count as parts of the chain's.
   struct equations {
-    chain_state<N> at;
-    vector6<double> e;
+    chain_state<Room> at;
+    small_twist e;
     pose_deviation left;
   };
 
-  [[nodiscard]] equations equations_at(const vector& theta,
-                                       const dual_quaternion<double>& goal) const {
-    equations result;
-    set_(result.at, theta);
-    const dual_quaternion<double>& a = result.at.pose;
-    result.e = error_twist(a, goal);
-    result.left = {(translation(goal) - translation(a)).norm(), result.e.template tail<3>().norm()};
-    const double per_length = 1 / reach_.scale();
-    for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      result.at.jacobian.col(i).template head<3>() *= per_length;
+  [[nodiscard]] equations equations_at(const vector& theta, const tip_place& goal) const {
+    equations result{model_.at(theta), {}, {}};
+    const tip_place& tip = result.at.tip;
+    result.e = error_twist(tip, goal);
+    result.left = {length_of(goal.translation - tip.translation), deviation_of(result.e).angle};
+    const double per_length = 1 / model_.reach.scale();
+    for (std::ptrdiff_t k = 0; k < 3; ++k) {
+      result.e[k] *= per_length;
+      for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+        result.at.jacobian(k, i) *= per_length;
+      }
     }
-    result.e.template head<3>() *= per_length;
     return result;
   }
 
   /// Levenberg and Marquardt's step.
   [[nodiscard]] bounded_step_result<vector> step(const equations& x) const {
     const vector& theta = x.at.theta;
-    return bounded_step(x.at.jacobian, x.e, vector(lower_ - theta - beyond_),
-                        vector(upper_ - theta + beyond_),
-                        std::min(.02 * x.e.squaredNorm(), .08) + 1e-9);
+    return bounded_step(x.at.jacobian, x.e, model_.lower - theta - beyond_,
+                        model_.upper - theta + beyond_, std::min(.02 * dot(x.e, x.e), .08) + 1e-9);
   }
 
-  [[nodiscard]] attempt approach(vector theta, const dual_quaternion<double>& goal) const {
-    attempt best{{theta, {}}, std::numeric_limits<double>::infinity()};
+  [[nodiscard]] attempt approach(vector theta, const tip_place& goal) const {
+    attempt best{theta, {}, std::numeric_limits<double>::infinity()};
     double before = best.error;
     int since = 0; // the error last fell by a tenth
     for (int iteration = 0;; ++iteration) {
       const equations now = equations_at(theta, goal);
-      const double error = now.e.squaredNorm();
+      const double error = dot(now.e, now.e);
       const bool is_reached =
           now.left.length <= options_.tolerance && now.left.angle <= options_.tolerance;
       if (iteration == 0 || error < best.error || is_reached) {
-        best = {{theta, now.left}, error};
+        best = {theta, now.left, error};
       }
       if (error < .9 * before) {
         before = error;
         since = 0;
       }
-      best.found.iterations = iteration;
+      best.iterations = iteration;
       if (is_reached || since == 4 || iteration == options_.iterations) {
-        best.found.reason = is_reached   ? stop_reason::reached
-                            : since == 4 ? stop_reason::no_progress
-                                         : stop_reason::iteration_limit;
+        best.reason = is_reached   ? stop_reason::reached
+                      : since == 4 ? stop_reason::no_progress
+                                   : stop_reason::iteration_limit;
         return best;
       }
       ++since;
-      theta = within_limits(vector(theta + step(now).step));
+      theta = within_limits(theta + step(now).step);
     }
   }
 
   /// Why there is no way on from a configuration.
-  [[nodiscard]] stop_reason obstacle(const vector& theta,
-                                     const dual_quaternion<double>& goal) const {
+  [[nodiscard]] stop_reason obstacle(const vector& theta, const tip_place& goal) const {
     const equations here = equations_at(theta, goal);
     if (step(here).is_bounded) {
       return stop_reason::joint_limit;
     }
-    const damped_gram gram(gram_matrix(here.at.jacobian));
-    return theta.size() >= 6 && gram.smallest() < 10 * damping_threshold ? stop_reason::singular
-                                                                         : stop_reason::no_progress;
+    const damped_gram gram(gram_of(here.at.jacobian));
+    return model_.size >= 6 && gram.smallest() < 10 * damping_threshold ? stop_reason::singular
+                                                                        : stop_reason::no_progress;
   }
 
   /// Turning joints whose range holds a whole turn are turned back into it, others stop at limits.
   [[nodiscard]] vector within_limits(vector theta) const {
-    for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      const double lower = lower_[i], upper = upper_[i];
+    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+      const double lower = model_.lower[i], upper = model_.upper[i];
       if (turn_[i] > 0 && theta[i] > upper) {
         theta[i] -= turn_[i] * std::ceil((theta[i] - upper) / turn_[i]);
       } else if (turn_[i] > 0 && theta[i] < lower) {
@@ -218,23 +214,21 @@ private:
   }
 
   /// Uniform within the limits; without them, about the start.
-  [[nodiscard]] vector configuration(random_source& random) const {
-    vector theta = start_;
-    for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      double lower = lower_[i], upper = upper_[i];
+  [[nodiscard]] vector configuration(split_mix& random) const {
+    vector theta;
+    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+      double lower = model_.lower[i], upper = model_.upper[i];
       if (!(upper - lower < std::numeric_limits<double>::infinity())) {
         lower = std::max(lower, start_[i] - spread_[i]);
         upper = std::min(upper, start_[i] + spread_[i]);
       }
-      theta[i] = random.uniform(lower, upper);
+      theta[i] = lower + (upper - lower) * random();
     }
     return theta;
   }
 
-  std::function<void(chain_state<N>&, const vector&)> set_; ///< a state to that at some θ
+  const planning_model<Room>& model_;
   inverse_kinematics_options options_;
-  chain_reach reach_;
-  vector lower_, upper_;
   vector turn_;   ///< a whole turn where it leads to the same pose within limits, else 0
   vector beyond_; ///< how far steps may go beyond limits: any way if they are turned back
   vector spread_; ///< how far from the start random coordinates are that have no limits

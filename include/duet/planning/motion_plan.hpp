@@ -65,22 +65,6 @@ template <std::floating_point T>
           rotation_vector(quaternion<T>(conj(rotation(a)) * rotation(b))).norm()};
 }
 
-namespace detail {
-
-/// The twist, in `frame::hybrid`, of the shorter screw motion from one pose to another in unit
-/// time.
-template <class T>
-[[nodiscard]] vector6<T> error_twist(const dual_quaternion<T>& from, const dual_quaternion<T>& to) {
-  dual_quaternion<T> difference = to * conj(from);
-  if (innermost(difference.w()) < 0) {
-    difference = -difference;
-  }
-  const auto spatial = twist_of(dual_vector<T>(log(difference).vec()));
-  return hybrid_twist(from, vector6<T>(2 * spatial));
-}
-
-} // namespace detail
-
 /// A path of joint coordinates from the start on, waypoint by waypoint, joints moving straight on
 /// between them. Where the goal is not reached, the path ends as far as the planner came.
 ///
@@ -105,16 +89,19 @@ struct motion_plan {
 
 namespace detail {
 
-/// \param lower, upper  the limits of the joints
-template <int N, class V>
-void add_waypoint(motion_plan<N>& plan, const V& theta, const dual_quaternion<double>& pose,
-                  double tau, const pose_deviation& deviation, const V& lower, const V& upper) {
+template <int N, class C, class V>
+void add_waypoint(motion_plan<N>& plan, const C& chain, const V& theta,
+                  const dual_quaternion<double>& pose, double tau,
+                  const pose_deviation& deviation) {
   plan.joints.push_back(theta);
   plan.poses.push_back(pose);
   plan.tau.push_back(tau);
   plan.deviations.push_back(deviation);
-  const double margin = std::min((theta - lower).minCoeff(), (upper - theta).minCoeff());
-  plan.smallest_limit_margin = std::min(plan.smallest_limit_margin, margin);
+  for (int i = 0; i < chain.size(); ++i) {
+    const auto& limits = chain.limits(i);
+    plan.smallest_limit_margin =
+        std::min({plan.smallest_limit_margin, theta[i] - limits.lower, limits.upper - theta[i]});
+  }
 }
 
 [[noreturn]] inline void refuse_start(int joint, double x, double lower, double upper) {
@@ -125,12 +112,11 @@ void add_waypoint(motion_plan<N>& plan, const V& theta, const dual_quaternion<do
 }
 
 /// Coordinates of a chain's joints, as a vector of their own.
-/// \tparam N  as of `serial_chain`
-template <int N, class X>
-[[nodiscard]] joint_vector<double, N> joint_vector_of(const X& x, int size) {
-  joint_vector<double, N> theta(size);
-  for (int i = 0; i < size; ++i) {
-    theta[i] = vector_argument<X>::get(x, i);
+template <class C, class X>
+[[nodiscard]] joint_vector<double, C::joints> own_joints(const C& chain, const X& x) {
+  joint_vector<double, C::joints> theta(chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    theta[i] = x[i];
   }
   return theta;
 }
@@ -164,13 +150,6 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
     message << " is not finite: " << a;
   }
   throw invalid_input(message.str());
-}
-
-/// \throws invalid_input for a start outside the limits, and for a goal that is no pose
-template <class C, class Start>
-void require_problem(const C& chain, const Start& start, const dual_quaternion<double>& goal) {
-  require_start(chain, start);
-  require_pose(goal, "plan", "the goal");
 }
 
 } // namespace detail

@@ -9,7 +9,8 @@
 #include <duet/planning/constrained_step.hpp>
 #include <duet/planning/planning_model.hpp>
 
-#include <Eigen/Geometry>
+#include <duet/planning/small_vector.hpp>
+#include <duet/quaternion/three_vector.hpp>
 
 #include <algorithm>
 #include <sstream>
@@ -39,7 +40,8 @@ template <class C, class V>
           std::visit([&](const auto& o) { return closest_points(here, o); }, each);
       if (nearest.distance - around.margin < around.horizon) {
         const auto j = jacobian(chain, theta, frame::spatial, body.link);
-        const vector3<double> moment = nearest.on_body.cross(nearest.normal);
+        const vector3<double> moment =
+            cross(components(nearest.on_body), components(nearest.normal));
         V slope(theta.size());
         for (Eigen::Index i = 0; i < theta.size(); ++i) {
           const vector6<double> column = j.col(i);
@@ -56,8 +58,8 @@ template <class C, class V>
 template <class C>
 class chain_among_obstacles final : public chain_model<C> {
 public:
+  using typename chain_model<C>::state;
   using typename chain_model<C>::vector;
-  static constexpr int room = joint_room(C::joints);
 
   chain_among_obstacles(const C& chain, const scene& around)
       : chain_model<C>(chain), around_(around) {}
@@ -68,19 +70,25 @@ public:
   [[nodiscard]] double shortfall(const vector& theta) const override {
     return std::max(0.0, around_.margin - clearance(theta));
   }
-  [[nodiscard]] step_beside_obstacles<room> step_beside(const chain_state<room>& from,
-                                                        const vector6<double>& e,
-                                                        const vector& wish) const override {
-    const auto inequalities = margin_inequalities(this->chain(), from.theta, around_);
+  [[nodiscard]] step_beside_obstacles<int(vector::size())>
+  step_beside(const state& from, const small_twist& e, const vector& wish) const override {
+    using joints = joint_vector<double, C::joints>;
+    const auto own = [&](const vector& x) { return own_joints(this->chain(), x); };
+    const auto inequalities = margin_inequalities(this->chain(), own(from.theta), around_);
     if (inequalities.empty()) {
       return {};
     }
-    const vector down = this->lower() - from.theta, up = this->upper() - from.theta;
-    const auto result = constrained_step(from.jacobian, e, wish, down, up, inequalities);
+    const joints down = own(this->lower - from.theta), up = own(this->upper - from.theta);
+    const auto step = [&](const std::vector<inequality<joints>>& kept) {
+      return constrained_step(from.jacobian, e, own(wish), down, up, kept);
+    };
+    const auto result = step(inequalities);
+    if (result.step) {
+      return {planned_joints<int(vector::size())>(*result.step, this->size),
+              result.smallest_singular_value};
+    }
     // What cannot be done without obstacles either is not for them to answer for.
-    const bool is_free =
-        !result.step && !constrained_step(from.jacobian, e, wish, down, up, {}).step;
-    return {result.step, result.smallest_singular_value, is_free};
+    return {std::nullopt, result.smallest_singular_value, !step({}).step};
   }
   void require_clearance(const vector& theta, double tolerance) const override {
     const auto least = nearest(theta);
@@ -95,7 +103,7 @@ public:
 
 private:
   [[nodiscard]] chain_clearance<double> nearest(const vector& theta) const {
-    return duet::clearance(this->chain(), theta, around_);
+    return duet::clearance(this->chain(), own_joints(this->chain(), theta), around_);
   }
 
   const scene& around_;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -20,19 +21,17 @@
 namespace duet::detail {
 
 /// Plans along a path, first without stopping; where that comes to an end, with motions in place.
-///
-/// \tparam N  as of `serial_chain`
-template <int N>
+template <int Room>
 class path_follower {
 public:
-  using vector = joint_vector<double, N>;
+  using vector = small_vector<Room>;
   /// The gradient of what the joints are to lower.
   using slope_function = std::function<vector(const vector&)>;
   struct waypoint {
-    chain_state<N> state;
+    chain_state<Room> state;
     double u;
-    pose_deviation left;
-    double smallest_singular_value;
+    pose_deviation left = {};
+    double smallest_singular_value = std::numeric_limits<double>::infinity();
   };
   struct route {
     std::vector<waypoint> waypoints;
@@ -47,9 +46,9 @@ public:
   /// \param stops   parameters that become waypoints, increasing; the first and the last are the
   ///                ends of the path
   /// \param slope   or nothing
-  path_follower(const planning_model<N>& model, const path_function& target,
+  path_follower(const planning_model<Room>& model, const path_function& target,
                 std::vector<double> stops, const plan_options& options, const slope_function& slope)
-      : solver_(model, options.tolerance), target_(target), stops_(std::move(stops)),
+      : solver_{model, options.tolerance}, target_(target), stops_(std::move(stops)),
         options_(options), slope_(slope), length_(stops_.back() - stops_.front()),
         iterations_left_(options.iterations) {}
 
@@ -71,37 +70,18 @@ public:
 
   /// Nothing but the start.
   [[nodiscard]] route stay(const vector& start, stop_reason why) const {
-    waypoint first{{}, stops_.front(), {}, 0};
-    solver_.model().set(first.state, start);
-    route x(first);
+    route x({solver_.model.at(start), stops_.front()});
     x.reason = why;
     return x;
   }
 
-  template <int M>
-  [[nodiscard]] motion_plan<M> summary(const route& x) const {
-    const planning_model<N>& model = solver_.model();
-    motion_plan<M> result;
-    const std::size_t count = x.waypoints.size();
-    result.joints.reserve(count);
-    result.poses.reserve(count);
-    result.tau.reserve(count);
-    result.deviations.reserve(count);
-    for (const waypoint& w : x.waypoints) {
-      add_waypoint(result, w.state.theta, w.state.pose, w.u, w.left, model.lower(), model.upper());
-      result.smallest_clearance =
-          std::min(result.smallest_clearance, model.clearance(w.state.theta));
-      if (&w != &x.waypoints.front()) {
-        result.smallest_singular_value =
-            std::min(result.smallest_singular_value, w.smallest_singular_value);
-      }
-    }
-    result.iterations = options_.iterations - iterations_left_;
-    result.reason = is_at_end(x)            ? stop_reason::reached
-                    : iterations_left_ <= 0 ? stop_reason::iteration_limit
-                                            : x.reason;
-    return result;
+  /// Why it ends.
+  [[nodiscard]] stop_reason reason(const route& x) const {
+    return is_at_end(x)            ? stop_reason::reached
+           : iterations_left_ <= 0 ? stop_reason::iteration_limit
+                                   : x.reason;
   }
+  [[nodiscard]] int iterations() const { return options_.iterations - iterations_left_; }
 
 private:
   [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops_.back(); }
@@ -119,12 +99,9 @@ private:
 
   /// What lowers the objectives.
   [[nodiscard]] vector downhill(const vector& theta, double step) const {
-    const planning_model<N>& model = solver_.model();
-    vector wish = towards_middle(theta, model.lower(), model.upper(), options_.centring * step);
-    if (slope_) {
-      wish -= step * slope_(theta);
-    }
-    return wish;
+    const vector centre =
+        towards_middle(theta, solver_.model.lower, solver_.model.upper, options_.centring * step);
+    return slope_ ? centre - step * slope_(theta) : centre;
   }
 
   /// A route with motions in place, from a waypoint of another one.
@@ -175,17 +152,17 @@ private:
       const double next = way + x.step / part > 1 - 1e-9 ? 1 : way + x.step / part;
       const double u = next == 1 ? end : begin + (end - begin) * next;
       const vector& theta = here.state.theta;
-      const vector wish = aim != nullptr ? vector((next - way) / (1 - way) * (*aim - theta))
+      const vector wish = aim != nullptr ? (next - way) / (1 - way) * (*aim - theta)
                                          : downhill(theta, (next - way) * part);
-      const auto there = solver_.approach(here.state, target_(u), wish);
+      const auto there = solver_.approach(here.state, place_of(target_(u)), wish);
       iterations_left_ -= there.iterations;
       double change = .25;
       if (there.is_within(options_.tolerance)) {
-        const vector middle = (theta + there.state.theta) / 2;
+        const vector middle = .5 * (theta + there.state.theta);
         const pose_deviation half_way =
-            deviation_between(solver_.model().pose(middle), target_((here.u + u) / 2));
+            deviation_between(solver_.model.at(middle).tip, place_of(target_((here.u + u) / 2)));
         const double excess =
-            std::max({half_way.length, half_way.angle, solver_.model().shortfall(middle)}) /
+            std::max({half_way.length, half_way.angle, solver_.model.shortfall(middle)}) /
             options_.deviation;
         // Between waypoints the deviation grows with the square of the step.
         change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
@@ -208,7 +185,7 @@ private:
     return true;
   }
 
-  pose_solver<N> solver_;
+  pose_solver<Room> solver_;
   const path_function& target_;
   std::vector<double> stops_;
   plan_options options_;

@@ -3,7 +3,6 @@
 
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/planning/follow_path.hpp>
-#include <duet/planning/reach.hpp>
 
 /// \file
 /// Joint paths along the screw motion between two poses.
@@ -44,11 +43,13 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
 plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<double>& goal,
                   const plan_options& options = {}, const Objective& objective = {},
                   const Scene& around = {}) {
-  detail::require_problem(chain, start, goal);
-  const auto theta = detail::joint_vector_of<detail::joint_room(C::joints)>(start, chain.size());
-  const auto target = detail::screw_path<double>(detail::chain_model<C>(chain).pose(theta), goal);
-  const bool is_out_of_reach = detail::chain_reach(chain).is_beyond(target(1), options.tolerance);
-  return detail::follow(chain, start, target, {0, 1}, options, objective, around, is_out_of_reach);
+  detail::require_start(chain, start);
+  detail::require_pose(goal, "plan", "the goal");
+  const detail::chain_model<C> model(chain);
+  const auto first =
+      model.at(detail::planned_joints<detail::joint_room(C::joints)>(start, chain.size()));
+  const auto target = detail::screw_path(detail::pose_at(first.tip), goal);
+  return detail::follow(chain, start, target, {0, 1}, options, objective, around, true);
 }
 
 } // namespace duet

@@ -2,12 +2,18 @@
 #pragma once
 
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/dual_quaternion/twist.hpp>
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/bounded_step.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/small_vector.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 
@@ -17,51 +23,118 @@
 
 namespace duet::detail {
 
-/// What stands for the number N of joints of a chain in planners: up to 8, 16, 32 … of them.
-[[nodiscard]] constexpr int joint_room(int n) {
-  return -int(std::bit_ceil(unsigned(std::max({8, n, -n}))));
+/// Where the tip stands.
+using tip_place = link_displacement<double>;
+
+[[nodiscard]] inline tip_place place_of(const dual_quaternion<double>& a) {
+  return {rotation(a), components(translation(a))};
+}
+[[nodiscard]] inline dual_quaternion<double> pose_at(const tip_place& a) {
+  return pose_of_unit(a.rotation, a.translation.eigen());
+}
+[[nodiscard]] inline double length_of(const three_vector<double>& x) {
+  return std::sqrt(dot(x, x));
 }
 
-/// A configuration of a chain, with its tip's pose and Jacobian in `frame::hybrid`.
-template <int N>
+/// The twist [v; ω], in `frame::hybrid`, of the shorter screw motion from one place to another in
+/// unit time: ω = 2 log r of the rotation r between them, the way between origins
+/// ∫₀¹ exp(sω) v ds, solved for v.
+[[nodiscard]] inline small_twist error_twist(const tip_place& from, const tip_place& to) {
+  quaternion<double> r = to.rotation * conj(from.rotation);
+  if (r.w() < 0) {
+    r = -r;
+  }
+  const three_vector<double> way = to.translation - from.translation;
+  const three_vector<double> sines{r.x(), r.y(), r.z()};
+  const double sine = length_of(sines);
+  if (!(sine > 0)) {
+    return {{way.x, way.y, way.z, 0, 0, 0}};
+  }
+  const double half = std::atan2(sine, r.w()); // of the angle
+  const three_vector<double> axis = 1 / sine * sines, across = cross(axis, way);
+  const auto v = way - half * across + (1 - half * r.w() / sine) * cross(axis, across);
+  const auto omega = 2 * half * axis;
+  return {{v.x, v.y, v.z, omega.x, omega.y, omega.z}};
+}
+
+/// The lengths of v and ω. That of v is that of the way where the two places are near.
+[[nodiscard]] inline pose_deviation deviation_of(const small_twist& e) {
+  return {length_of(three_vector{e[0], e[1], e[2]}), length_of(three_vector{e[3], e[4], e[5]})};
+}
+[[nodiscard]] inline pose_deviation deviation_between(const tip_place& a, const tip_place& b) {
+  return {length_of(b.translation - a.translation), deviation_of(error_twist(a, b)).angle};
+}
+
+/// What stands for the number N of joints of a chain in planners: 8, 16, 32 … are room enough.
+[[nodiscard]] constexpr int joint_room(int n) {
+  return int(std::bit_ceil(unsigned(std::max({8, n, -n}))));
+}
+
+/// Coordinates as the planner's own. Those of joints that the chain has not got are 0 and stay it.
+template <int Room, class X>
+[[nodiscard]] small_vector<Room> planned_joints(const X& theta, int size) {
+  small_vector<Room> result;
+  for (int i = 0; i < size; ++i) {
+    result[i] = theta[i];
+  }
+  return result;
+}
+
+/// A configuration of a chain, with its tip's place and Jacobian in `frame::hybrid`.
+template <int Room>
 struct chain_state {
-  joint_vector<double, N> theta;
-  dual_quaternion<double> pose;
-  joint_columns<double, 6, N> jacobian;
+  small_vector<Room> theta;
+  tip_place tip;
+  small_matrix<6, Room> jacobian;
 };
 
-/// Makes a state that of a chain at θ.
-template <class C, int N>
-void set_state(chain_state<N>& state, const C& chain, const joint_vector<double, N>& theta) {
-  const auto tip = pose_and_jacobian(chain, joint_vector<double, C::joints>(theta), frame::hybrid);
-  state.theta = theta;
-  state.pose = tip.value;
-  state.jacobian = tip.jacobian;
-}
+/// How far a chain can stretch: the origin of the first joint stands still in the base, that of the
+/// last in the tip's frame, and between the two are links and sliding joints.
+struct chain_reach {
+  three_vector<double> first; ///< the origin of the first joint
+  three_vector<double> back;  ///< of the last one, in the tip's frame
+  double links = 0, tool = 0; ///< lengths
+  double travel = 0;          ///< of sliding joints
+  bool has_joints = false;
+
+  /// Is it certain that no pose of the tip is as near to the goal as that, in length and radians?
+  [[nodiscard]] bool is_beyond(const tip_place& goal, double tolerance) const {
+    const double distance = length_of(goal.point(back) - first);
+    return has_joints && distance > (links + travel) * (1 + 1e-12) + tolerance * (1 + tool);
+  }
+  /// A length typical of the chain, 1 where there is none in its table.
+  [[nodiscard]] double scale() const { return links + tool > 0 ? links + tool : 1; }
+};
 
 /// A step in the presence of obstacles.
-template <int N>
+template <int Room>
 struct step_beside_obstacles {
-  std::optional<joint_vector<double, N>> step; ///< nothing where they leave none
+  std::optional<small_vector<Room>> step; ///< nothing where they leave none
   /// Of the Jacobian, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
   bool is_free = true; ///< is there nothing near, or nothing that obstacles could help with?
 };
 
-/// A chain of which N is as of `serial_chain`, and nothing around it.
-template <int N>
+/// A chain and nothing around it.
+template <int Room>
 class planning_model {
 public:
-  using vector = joint_vector<double, N>;
+  using vector = small_vector<Room>;
+  using state = chain_state<Room>;
 
-  planning_model(const vector& lower, const vector& upper) : lower_(lower), upper_(upper) {}
   virtual ~planning_model() = default;
 
-  /// Of the joints.
-  [[nodiscard]] const vector& lower() const { return lower_; }
-  [[nodiscard]] const vector& upper() const { return upper_; }
-  [[nodiscard]] virtual dual_quaternion<double> pose(const vector& theta) const = 0;
-  virtual void set(chain_state<N>& state, const vector& theta) const = 0;
+  int size = 0; ///< number of joints
+  vector lower, upper;
+  std::array<bool, std::size_t(Room)> turns{}, slides{};
+  chain_reach reach;
+
+  virtual void set(state& of, const vector& theta) const = 0;
+  [[nodiscard]] state at(const vector& theta) const {
+    state result;
+    set(result, theta);
+    return result;
+  }
 
   /// The distance of the bodies of the chain from obstacles.
   [[nodiscard]] virtual double clearance(const vector&) const {
@@ -72,33 +145,55 @@ public:
   /// How much of that margin is missing.
   [[nodiscard]] virtual double shortfall(const vector&) const { return 0; }
   /// The step nearest to `wish` that moves the tip by `e` to first order and keeps the margin.
-  [[nodiscard]] virtual step_beside_obstacles<N> step_beside(const chain_state<N>& /*from*/,
-                                                             const vector6<double>& /*e*/,
-                                                             const vector& /*wish*/) const {
+  [[nodiscard]] virtual step_beside_obstacles<Room>
+  step_beside(const state& /*from*/, const small_twist& /*e*/, const vector& /*wish*/) const {
     return {};
   }
-
-private:
-  vector lower_, upper_;
 };
 
 /// A chain of the type C.
 template <class C>
 class chain_model : public planning_model<joint_room(C::joints)> {
-  using base = planning_model<joint_room(C::joints)>;
-
 public:
+  using base = planning_model<joint_room(C::joints)>;
+  using typename base::state;
   using typename base::vector;
 
-  explicit chain_model(const C& chain)
-      : base(vector(lower_limits(chain)), vector(upper_limits(chain))), chain_(chain) {}
+  explicit chain_model(const C& chain) : chain_(chain) {
+    this->size = chain.size();
+    chain_reach& reach = this->reach;
+    for (int i = 0; i < chain.size(); ++i) {
+      const auto k = std::size_t(i);
+      const auto& step = chain.steps()[k];
+      const double lower = chain.limits(i).lower, upper = chain.limits(i).upper;
+      this->lower[i] = lower;
+      this->upper[i] = upper;
+      this->turns[k] = step.turns;
+      this->slides[k] = step.slides;
+      const three_vector<double> offset = step.offset;
+      if (i == 0) {
+        reach.first = offset;
+      } else {
+        reach.links += length_of(offset);
+      }
+      if (step.slides) {
+        reach.travel += std::abs(step.pitch) * std::max(std::abs(lower), std::abs(upper));
+      }
+    }
+    const auto& offset = chain.tip().offset;
+    const three_vector<double> tool = components(offset.translation);
+    reach.back = -1 * rotated(conj(offset.rotation), tool);
+    reach.tool = length_of(tool);
+    reach.has_joints = chain.size() > 0;
+  }
 
   [[nodiscard]] const C& chain() const { return chain_; }
-  [[nodiscard]] dual_quaternion<double> pose(const vector& theta) const override {
-    return chain_.pose(joint_vector<double, C::joints>(theta));
-  }
-  void set(chain_state<joint_room(C::joints)>& state, const vector& theta) const override {
-    set_state(state, chain_, theta);
+  void set(state& of, const vector& theta) const override {
+    of.theta = theta;
+    const auto link =
+        spatial_columns<true, double>(chain_, own_joints(chain_, theta), this->size, of.jacobian);
+    of.tip = attached(link, chain_.tip().offset);
+    move_to_point(of.jacobian, of.tip.translation);
   }
 
 private:

@@ -77,9 +77,10 @@ template <SerialChain C, VectorLike Start>
 [[nodiscard]] auto printed_screw_plan(const C& chain, const Start& start,
                                       const dual_quaternion<double>& goal,
                                       const printed_plan_options& options = {}) {
-  detail::require_problem(chain, start, goal);
+  detail::require_start(chain, start);
+  detail::require_pose(goal, "plan", "the goal");
   motion_plan<C::joints> plan;
-  const auto theta = detail::joint_vector_of<C::joints>(start, chain.size());
+  const auto theta = detail::own_joints(chain, start);
   const dual_quaternion<double> first = chain.pose(theta);
   const auto motion = screw_parameters(conj(first) * goal);
   plan.reason = detail::printed_steps(
@@ -87,8 +88,8 @@ template <SerialChain C, VectorLike Start>
       [&](int, const dual_quaternion<double>& here) { return sclerp(here, goal, options.tau); },
       [&](int k, const auto& joints, const dual_quaternion<double>& here) {
         const auto nearest = nearest_on_screw(first, motion, here, 1);
-        detail::add_waypoint(plan, joints, here, nearest.tau, deviation_between(nearest.pose, here),
-                             lower_limits(chain), upper_limits(chain));
+        detail::add_waypoint(plan, chain, joints, here, nearest.tau,
+                             deviation_between(nearest.pose, here));
         plan.iterations = k;
       });
   return plan;
@@ -117,12 +118,11 @@ template <SerialChain C, VectorLike Start>
   motion_plan<C::joints> plan;
   const auto target = [&](int k) { return std::min(std::size_t(std::max(k, 1)), path.size()) - 1; };
   plan.reason = detail::printed_steps(
-      chain, detail::joint_vector_of<C::joints>(start, chain.size()), path.back(), int(path.size()),
-      options, [&](int k, const dual_quaternion<double>&) { return path[target(k)]; },
+      chain, detail::own_joints(chain, start), path.back(), int(path.size()), options,
+      [&](int k, const dual_quaternion<double>&) { return path[target(k)]; },
       [&](int k, const auto& joints, const dual_quaternion<double>& here) {
-        detail::add_waypoint(plan, joints, here, k == 0 ? 0. : double(target(k) + 1),
-                             deviation_between(path[target(k)], here), lower_limits(chain),
-                             upper_limits(chain));
+        detail::add_waypoint(plan, chain, joints, here, k == 0 ? 0. : double(target(k) + 1),
+                             deviation_between(path[target(k)], here));
         plan.iterations = k;
       });
   return plan;
