@@ -101,31 +101,14 @@ namespace detail {
   return failures == differences.size() && !shrinks ? verdict::disagrees : verdict::loses_digits;
 }
 
-/// Two functions and where they are compared: everything that a point's verdict depends on.
-template <class F, class G, class Inputs, class... T>
-struct contest {
-  std::string label;
-  const F& automatic;
-  const G& closed_form;
-  const Inputs& inputs;
-  double tolerance;
-
-  using differences = std::array<difference, sizeof...(T)>;
-
-  [[nodiscard]] differences at(std::span<const double> point) const {
-    return {measure<T>(label, automatic, closed_form, inputs, point, tolerance)...};
-  }
-  [[nodiscard]] verdict verdict_at(std::span<const double> point) const {
-    return judged(at(point), tolerance);
-  }
-};
-
 template <class... T, class F, class G, class Inputs>
 [[nodiscard]] comparison compared(const std::string& label, const F& automatic,
                                   const G& closed_form, const Inputs& inputs,
                                   const comparison_options& options) {
-  const contest<F, G, Inputs, T...> contest{label, automatic, closed_form, inputs,
-                                            options.tolerance};
+  const auto differences_at = [&](std::span<const double> point) {
+    return std::array{
+        measure<T>(label, automatic, closed_form, inputs, point, options.tolerance)...};
+  };
   const std::vector<coordinates> points = inputs.points(options.samples, options.seed);
   comparison result;
   result.label = label;
@@ -135,7 +118,7 @@ template <class... T, class F, class G, class Inputs>
   coordinates worst_point;
   double worst_ulps = -1;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto differences = contest.at(points[i]);
+    const auto differences = differences_at(points[i]);
     const verdict found = judged(differences, options.tolerance);
     double ulps = 0;
     for (std::size_t k = 0; k < differences.size(); ++k) {
@@ -165,7 +148,9 @@ template <class... T, class F, class G, class Inputs>
   if (result.outcome != verdict::agrees) {
     const coordinates simplest = simplified(
         worst_point, [&](const coordinates& point) { return inputs.contains(point); },
-        [&](const coordinates& point) { return contest.verdict_at(point) == result.outcome; });
+        [&](const coordinates& point) {
+          return judged(differences_at(point), options.tolerance) == result.outcome;
+        });
     result.simplest =
         counterexample{inputs.describe(simplest), evaluate_at<double>(automatic, inputs, simplest),
                        evaluate_at<double>(closed_form, inputs, simplest)};

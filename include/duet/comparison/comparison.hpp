@@ -29,16 +29,8 @@ enum class verdict {
 
 /// In words, as reports have it.
 [[nodiscard]] inline std::string_view to_text(verdict v) {
-  switch (v) {
-  case verdict::agrees:
-    return "agrees";
-  case verdict::loses_digits:
-    return "loses digits";
-  case verdict::not_finite:
-    return "not finite";
-  default:
-    return "disagrees";
-  }
+  constexpr std::array words = {"agrees", "loses digits", "not finite", "disagrees"};
+  return words[std::size_t(v)];
 }
 
 /// The largest differences of two results in one precision. The norm is the largest component;

@@ -118,14 +118,16 @@ struct infinitesimal_operators {
   }
 };
 
+// Concepts of two types are those of the second beside the first, for `template <class A, …<A> B>`.
+
 /// At least one of the two is infinitesimal, and they can meet.
-template <class A, class B>
+template <class B, class A>
 concept MixedScalars = (Infinitesimal<A> || Infinitesimal<B>)&&(Scalar<A> || Arithmetic<A>)&&(
-    Scalar<B> || Arithmetic<B>)&&Promotable<A, B>;
+    Scalar<B> || Arithmetic<B>)&&Promotable<B, A>;
 
 /// They meet in numbers that have an order, which complex numbers do not.
-template <class A, class B>
-concept OrderedScalars = MixedScalars<A, B> && requires(const real_type_t<promote_t<A, B>>& x) {
+template <class B, class A>
+concept OrderedScalars = MixedScalars<B, A> && requires(const real_type_t<promote_t<A, B>>& x) {
   x < x;
 };
 
@@ -139,18 +141,18 @@ template <class T>
 concept LiftedReal = Lifted<T> && Real<real_type_t<T>>;
 
 /// At least one of the two is lifted, and they meet in numbers over the reals.
-template <class A, class B>
-concept MixedReals = (Lifted<A> || Lifted<B>)&&Promotable<A, B>&& LiftedReal<promote_t<A, B>>;
+template <class B, class A>
+concept MixedReals = (Lifted<A> || Lifted<B>)&&Promotable<B, A>&& LiftedReal<promote_t<A, B>>;
 
 /// Neither is a constant for the other: both must be brought to their common nesting first.
-template <class A, class B>
+template <class B, class A>
 concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& Scalar<B> &&
-                            !std::is_same_v<A, B> && Promotable<A, B> && !ConstantOf<A, B> &&
+                            !std::is_same_v<A, B> && Promotable<B, A> && !ConstantOf<A, B> &&
                             !ConstantOf<B, A>;
 
 /// Of one differentiation, but of different numbers of partials or different orders.
-template <class A, class B>
-concept DifferentSizes = Infinitesimal<A> && Infinitesimal<B> && !Promotable<A, B> &&
+template <class B, class A>
+concept DifferentSizes = Infinitesimal<A> && Infinitesimal<B> && !Promotable<B, A> &&
                          Promotable<real_type_t<A>, real_type_t<B>>;
 
 /// Stands in the declaration of deleted operators, for compilers to quote.
@@ -175,84 +177,69 @@ template <class A, class B, class X>
 
 namespace duet {
 // Comparisons look at values only, as an `if` in the differentiated function should.
-template <class A, class B>
-  requires detail::MixedScalars<A, B>
+template <class A, detail::MixedScalars<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator==(const A& a, const B& b) {
   return detail::comparable<A, B>(a) == detail::comparable<A, B>(b);
 }
-template <class A, class B>
-  requires detail::MixedScalars<A, B>
+template <class A, detail::MixedScalars<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator!=(const A& a, const B& b) {
   return detail::comparable<A, B>(a) != detail::comparable<A, B>(b);
 }
-template <class A, class B>
-  requires detail::OrderedScalars<A, B>
+template <class A, detail::OrderedScalars<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<(const A& a, const B& b) {
   return detail::comparable<A, B>(a) < detail::comparable<A, B>(b);
 }
-template <class A, class B>
-  requires detail::OrderedScalars<A, B>
+template <class A, detail::OrderedScalars<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<=(const A& a, const B& b) {
   return detail::comparable<A, B>(a) <= detail::comparable<A, B>(b);
 }
-template <class A, class B>
-  requires detail::OrderedScalars<A, B>
+template <class A, detail::OrderedScalars<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>(const A& a, const B& b) {
   return detail::comparable<A, B>(a) > detail::comparable<A, B>(b);
 }
-template <class A, class B>
-  requires detail::OrderedScalars<A, B>
+template <class A, detail::OrderedScalars<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>=(const A& a, const B& b) {
   return detail::comparable<A, B>(a) >= detail::comparable<A, B>(b);
 }
 
-template <class A, class B>
-  requires detail::DifferentNestings<A, B>
+template <class A, detail::DifferentNestings<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return static_cast<common>(a) + static_cast<common>(b);
 }
-template <class A, class B>
-  requires detail::DifferentNestings<A, B>
+template <class A, detail::DifferentNestings<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return static_cast<common>(a) - static_cast<common>(b);
 }
-template <class A, class B>
-  requires detail::DifferentNestings<A, B>
+template <class A, detail::DifferentNestings<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return static_cast<common>(a) * static_cast<common>(b);
 }
-template <class A, class B>
-  requires detail::DifferentNestings<A, B>
+template <class A, detail::DifferentNestings<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator/(const A& a, const B& b) {
   using common = promote_t<A, B>;
   return static_cast<common>(a) / static_cast<common>(b);
 }
 
-template <class A, class B>
-  requires detail::DifferentSizes<A, B>
+template <class A, detail::DifferentSizes<A> B>
 auto operator+(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
-template <class A, class B>
-  requires detail::DifferentSizes<A, B>
+template <class A, detail::DifferentSizes<A> B>
 auto operator-(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
-template <class A, class B>
-  requires detail::DifferentSizes<A, B>
+template <class A, detail::DifferentSizes<A> B>
 auto operator*(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
-template <class A, class B>
-  requires detail::DifferentSizes<A, B>
+template <class A, detail::DifferentSizes<A> B>
 auto operator/(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
 
 } // namespace duet
 
 namespace std {
 
-template <class A, class B>
-  requires duet::detail::MixedScalars<A, B>
+template <class A, duet::detail::MixedScalars<A> B>
 struct common_type<A, B> {
   using type = duet::promote_t<A, B>;
 };

@@ -63,11 +63,7 @@ public:
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
       dual(const dual<U, N, Tag>& other)
-      : value_(static_cast<T>(other.value())) {
-    for (int i = 0; i < other.size(); ++i) {
-      partials_.set(i, static_cast<T>(other.partial(i)));
-    }
-  }
+      : dual(other.zip([](const U& x) { return static_cast<T>(x); })) {}
 
   /// The i-th variable of a function of N: value + εᵢ.
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual variable(const T& value,
@@ -273,14 +269,9 @@ private:
 DUET_ABI_END
 
 template <class T, int N, class Tag>
-struct scalar_traits<dual<T, N, Tag>> {
-  using value_type = T;
-  using real_type = typename scalar_traits<T>::real_type;
-  using tag = Tag;
+struct scalar_traits<dual<T, N, Tag>> : detail::level_traits<T, Tag, 1> {
   template <class U>
   using over = dual<U, N, Tag>;
-  static constexpr bool is_infinitesimal = true;
-  static constexpr int order = scalar_traits<T>::order + 1;
 };
 
 } // namespace duet

@@ -15,6 +15,16 @@
 namespace duet {
 namespace detail {
 
+/// What `scalar_traits` of a level over T have in common.
+template <class T, class Tag, int Order>
+struct level_traits {
+  using value_type = T;
+  using real_type = typename scalar_traits<T>::real_type;
+  using tag = Tag;
+  static constexpr bool is_infinitesimal = true;
+  static constexpr int order = scalar_traits<T>::order + Order;
+};
+
 /// Sine and cosine of one argument, see rules/lift.hpp.
 template <class T>
 struct sine_cosine;

@@ -181,8 +181,8 @@ template <class A, class B>
 template <class A, class B>
 using promote_t = detail::promotion_t<A, B>;
 
-/// A and B can meet in one expression.
-template <class A, class B>
+/// A and B can meet in one expression. (In this order for `template <class A, Promotable<A> B>`.)
+template <class B, class A>
 concept Promotable = !std::same_as<promote_t<A, B>, detail::no_promotion>;
 
 /// U is a constant for the level of D: an arithmetic type or a scalar of what is below.

@@ -4,9 +4,9 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/algebra.hpp>
+#include <duet/dual/dual.hpp>
 #include <duet/dual/level.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/dual/rules/second_dual_lift.hpp>
 #include <duet/dual/storage/lower_triangle.hpp>
 #include <duet/dual/storage/partials.hpp>
 #include <duet/dual/storage/structural_zero.hpp>
@@ -14,12 +14,20 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <tuple>
 #include <type_traits>
 
 /// \file
 /// Numbers that carry a gradient and a symmetric matrix of second derivatives.
 
 namespace duet {
+namespace detail {
+
+/// Marks the ε by which slopes are differentiated.
+struct curvature_tag {};
+
+} // namespace detail
+
 DUET_ABI_BEGIN
 
 /// x₀ + gᵀε + ½ εᵀHε, where products of three ε vanish: a value, its gradient and its Hessian by N
@@ -38,7 +46,6 @@ class second_dual : public detail::infinitesimal_operators<second_dual<T, N, Tag
 
 public:
   using value_type = T;
-  static constexpr int variables = N;
   using gradient_type = detail::partials<T, N>;
   using hessian_type = detail::lower_triangle<T, N>;
 
@@ -55,14 +62,7 @@ public:
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
       second_dual(const second_dual<U, N, Tag>& other)
-      : value_(static_cast<T>(other.value())) {
-    for (int i = 0; i < N; ++i) {
-      gradient_.set(i, static_cast<T>(other.partial(i)));
-      for (int j = 0; j <= i; ++j) {
-        hessian_.set(i, j, static_cast<T>(other.second_partial(i, j)));
-      }
-    }
-  }
+      : second_dual(other.zip([](const U& x) { return static_cast<T>(x); })) {}
 
   /// The i-th variable of a function of N: value + εᵢ.
   [[nodiscard]] static second_dual variable(const T& value, int i = 0) {
@@ -74,8 +74,6 @@ public:
   [[nodiscard]] const T& value() const { return value_; }
   [[nodiscard]] T partial(int i) const { return gradient_.get(i); }
   [[nodiscard]] T second_partial(int i, int j) const { return hessian_.get(i, j); }
-  [[nodiscard]] const gradient_type& gradient() const { return gradient_; }
-  [[nodiscard]] const hessian_type& hessian() const { return hessian_; }
 
   // What a `Level` says of itself.
 
@@ -110,11 +108,39 @@ public:
                                                      const second_dual& x) {
     return product(slope, x);
   }
-  /// The function of a rule, see rules/elementary.hpp and rules/second_dual_lift.hpp.
+  /// The function of a rule, see rules/elementary.hpp. Its second derivatives are those of the
+  /// rule's slopes, by dual numbers.
+  template <class Rule>
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual lift(const Rule& rule, const second_dual& x) {
+    using D = dual<T, 1, detail::curvature_tag>;
+    const T y = rule.value(x.value_);
+    const T slope = rule.slope(x.value_, y);
+    const D moving_slope = rule.slope(D::variable(x.value_), D(y, slope));
+    return x.composed(y, slope, moving_slope.epsilon());
+  }
   template <class Rule, class... Rest>
   [[nodiscard]] DUET_ALWAYS_INLINE static second_dual lift(const Rule& rule, const second_dual& x,
                                                            const Rest&... rest) {
-    return detail::lift_by_slopes(rule, x, rest...);
+    constexpr std::size_t count = 1 + sizeof...(rest);
+    using D = dual<T, int(count), detail::curvature_tag>;
+    const T value = rule.value(x.value_, rest.value_...);
+    const std::array<T, count> slopes = rule.slopes(value, x.value_, rest.value_...);
+    const std::array<const second_dual*, count> arguments = {&x, &rest...};
+    D moving_value(value);
+    std::array<D, count> moving;
+    for (std::size_t a = 0; a < count; ++a) {
+      moving_value.set_partial(int(a), slopes[a]);
+      moving[a] = D::variable(arguments[a]->value_, int(a));
+    }
+    const auto moving_slopes = std::apply(
+        [&](const auto&... argument) { return rule.slopes(moving_value, argument...); }, moving);
+    std::array<std::array<T, count>, count> curvatures;
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = 0; b < count; ++b) {
+        curvatures[a][b] = moving_slopes[a].partial(int(b));
+      }
+    }
+    return composed<count>(value, arguments, slopes, curvatures);
   }
   /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1).
   template <int Sign>
@@ -154,15 +180,13 @@ public:
   // The kernels behind the operators of detail::infinitesimal_operators.
 
   [[nodiscard]] DUET_ALWAYS_INLINE second_dual negated() const {
-    const auto f = [](const auto& p) DUET_INLINE_LAMBDA { return -p; };
-    return {T(-value_), gradient_type::map(f, gradient_), hessian_type::map(f, hessian_)};
+    return each([](const auto& p) DUET_INLINE_LAMBDA { return -p; }, *this);
   }
   [[nodiscard]] DUET_ALWAYS_INLINE second_dual plus(const T& c) const {
     return {T(value_ + c), gradient_, hessian_};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE second_dual times(const T& c) const {
-    const auto f = [&](const auto& p) DUET_INLINE_LAMBDA { return p * c; };
-    return {T(value_ * c), gradient_type::map(f, gradient_), hessian_type::map(f, hessian_)};
+    return each([&](const auto& p) DUET_INLINE_LAMBDA { return p * c; }, *this);
   }
   [[nodiscard]] DUET_ALWAYS_INLINE second_dual divided_by(const T& c) const {
     return composed(T(value_ / c), T(T(1) / c), T(0));
@@ -175,15 +199,11 @@ public:
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static second_dual sum(const second_dual& a,
                                                           const second_dual& b) {
-    const auto f = [](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p + q; };
-    return {T(a.value_ + b.value_), gradient_type::map(f, a.gradient_, b.gradient_),
-            hessian_type::map(f, a.hessian_, b.hessian_)};
+    return each([](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p + q; }, a, b);
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static second_dual difference(const second_dual& a,
                                                                  const second_dual& b) {
-    const auto f = [](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p - q; };
-    return {T(a.value_ - b.value_), gradient_type::map(f, a.gradient_, b.gradient_),
-            hessian_type::map(f, a.hessian_, b.hessian_)};
+    return each([](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p - q; }, a, b);
   }
   /// H = a H_b + b H_a + g_a g_bᵀ + g_b g_aᵀ
   [[nodiscard]] static second_dual product(const second_dual& a, const second_dual& b) {
@@ -258,6 +278,12 @@ public:
   }
 
 private:
+  template <class F, class... X>
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual each(const F& f, const X&... x) {
+    return {T(f(x.value_...)), gradient_type::map(f, x.gradient_...),
+            hessian_type::map(f, x.hessian_...)};
+  }
+
   T value_;
   gradient_type gradient_;
   hessian_type hessian_;
@@ -266,14 +292,9 @@ private:
 DUET_ABI_END
 
 template <class T, int N, class Tag>
-struct scalar_traits<second_dual<T, N, Tag>> {
-  using value_type = T;
-  using real_type = typename scalar_traits<T>::real_type;
-  using tag = Tag;
+struct scalar_traits<second_dual<T, N, Tag>> : detail::level_traits<T, Tag, 2> {
   template <class U>
   using over = second_dual<U, N, Tag>;
-  static constexpr bool is_infinitesimal = true;
-  static constexpr int order = scalar_traits<T>::order + 2;
 };
 
 } // namespace duet

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
-#include <duet/core/stumpff.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/rules/lift.hpp>
 
@@ -11,10 +11,129 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 
 /// \file
 /// The functions that exp and log of quaternions are made of, over every scalar: regular where
 /// sine, cosine and arctangent forms are not, with exact derivatives of every order.
+///
+/// Stumpff functions c_n(s) = Σ_k (−s)^k / (2k+n)! of s ≥ 0 are what is left of sine and cosine
+/// when the removable singularities of exp and log at the identity are taken out: c₀ = cos √s, c₁ =
+/// sin √s / √s, c₂ = (1 − c₀)/s, c₃ = (1 − c₁)/s, …
+
+namespace duet::detail {
+
+/// 1/(2k+n)!, k = 0, 1, …
+template <class T, int N, int Terms>
+[[nodiscard]] constexpr std::array<T, Terms> stumpff_coefficients() {
+  std::array<T, Terms> result{};
+  long double factorial = 1;
+  for (int i = 2; i <= N; ++i) {
+    factorial *= i;
+  }
+  for (int k = 0; k < Terms; ++k) {
+    result[std::size_t(k)] = static_cast<T>(1 / factorial);
+    factorial *= (2.0L * k + N + 1) * (2.0L * k + N + 2);
+  }
+  return result;
+}
+
+/// Every other term from the K-th on by Horner's rule, unrolled.
+template <int N, int Terms, int K, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_half_polynomial(const T& square) {
+  constexpr auto coefficient = stumpff_coefficients<lane_type_t<T>, N, Terms>()[K];
+  if constexpr (K + 2 >= Terms) {
+    return coefficient;
+  } else {
+    return coefficient + square * stumpff_half_polynomial<N, Terms, K + 2>(square);
+  }
+}
+
+/// The first terms of the series. Even and odd ones apart take half as long, as neither sum waits
+/// for the other.
+template <int N, int Terms, class T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_polynomial(const T& s) {
+  const T square = s * s;
+  return stumpff_half_polynomial<N, Terms, 0>(square) -
+         s * stumpff_half_polynomial<N, Terms, 1>(square);
+}
+
+/// The series, summed until its terms vanish, for types without a fixed number of digits.
+template <int N, class T>
+[[nodiscard]] T stumpff_series(const T& s) {
+  T term(1);
+  for (int i = 2; i <= N; ++i) {
+    term /= i;
+  }
+  T sum = term;
+  for (int k = 0; abs(term) > std::numeric_limits<T>::epsilon() * abs(sum) / 8; ++k) {
+    term *= -s / ((2 * k + N + 1) * (2 * k + N + 2));
+    sum += term;
+  }
+  return sum;
+}
+
+/// 1/(n−2)!, the value that the recurrence c_n = (1/(n−2)! − c_{n−2})/s starts from.
+template <class T>
+[[nodiscard]] constexpr T inverse_factorial(int n) {
+  T factorial(1);
+  for (int i = 2; i <= n; ++i) {
+    factorial = factorial * T(i);
+  }
+  return T(1) / factorial;
+}
+
+/// Where the closed forms of c₂, c₃ … and of derivatives take over from the series: below, they
+/// cancel; above, the series does.
+template <Real T>
+[[nodiscard]] constexpr auto is_beyond_series(const T& s) {
+  return s > T(4);
+}
+
+/// c_n(s) of small s: up to 4, and up to 1 of c₀ and c₁ or where no more is asked for.
+template <int N, int Limit = (N < 2 ? 1 : 4), Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_small(const T& s) {
+  if constexpr (std::floating_point<lane_type_t<T>>) {
+    // The first term left out is 4e-19 at s = 1 and 2e-22 at s = 4, with more digits 3e-27 and
+    // 4e-27.
+    constexpr int terms = Limit > 1 ? 13 : N < 2 ? 10 : 9;
+    constexpr int more_terms = Limit > 1 ? 15 : N < 2 ? 13 : 12;
+    constexpr int count = std::numeric_limits<T>::digits <= 53 ? terms : more_terms;
+    return stumpff_polynomial<N, count>(s);
+  } else {
+    return stumpff_series<N>(s);
+  }
+}
+
+template <int N, Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_real(const T& s);
+
+/// c_n(s) of large s, by sine or cosine.
+template <int N, Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_large(const T& s) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  if constexpr (N == 0) {
+    return cos(T(sqrt(s)));
+  } else if constexpr (N == 1) {
+    const T root = sqrt(s);
+    return sin(root) / root;
+  } else {
+    return (inverse_factorial<lane_type_t<T>>(N - 2) - stumpff_of_real<N - 2>(s)) / s;
+  }
+}
+
+/// c_n(s) of a real number.
+template <int N, Real T>
+[[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_real(const T& s) {
+  return select(
+      N < 2 ? s <= T(1) : !is_beyond_series(s),
+      [&]() DUET_INLINE_LAMBDA { return stumpff_of_small<N>(s); },
+      [&]() DUET_INLINE_LAMBDA { return stumpff_of_large<N>(s); });
+}
+
+} // namespace duet::detail
 
 namespace duet {
 namespace rule {
@@ -24,8 +143,8 @@ struct stumpff;
 
 } // namespace rule
 
-/// Stumpff function c_n(s) = Σ_k (−s)^k/(2k+n)!, s ≥ 0: c₀ = cos √s, c₁ = sin √s/√s, c₂ = (1 −
-/// c₀)/s … Its derivative is c_n′ = (n c_{n+2} − c_{n+1})/2 = (c_{n−1} − n c_n)/(2s).
+/// Stumpff function c_n(s) = Σ_k (−s)^k/(2k+n)!, s ≥ 0. Its derivative is c_n′ = (n c_{n+2} −
+/// c_{n+1})/2 = (c_{n−1} − n c_n)/(2s).
 template <int N, Scalar T>
 [[nodiscard]] inline T stumpff(const T& s) {
   if constexpr (Infinitesimal<T>) {
@@ -129,61 +248,6 @@ template <Scalar T>
 template <class T>
 T rule::arc_ratio::value(const T& s, const T& w) const {
   return duet::arc_ratio(s, w);
-}
-
-namespace detail {
-
-/// 1/0!, 1/1! … 1/(Count−1)!
-template <Real R, std::size_t Count>
-[[nodiscard]] constexpr std::array<R, Count> inverse_factorials() {
-  std::array<R, Count> result{};
-  for (std::size_t n = 0; n < Count; ++n) {
-    result[n] = inverse_factorial<R>(int(n));
-  }
-  return result;
-}
-
-} // namespace detail
-
-/// c_0(s) … c_Highest(s), s ≥ 0, by c_n = 1/n! − s c_{n+2}: downwards from the two highest where
-/// their series converge fast, upwards from cosine and sine elsewhere. Errors are relative to 1/n!
-/// below s = 4, to the larger of c_n and √s^−n above.
-template <int Highest, Scalar T>
-[[nodiscard]] DUET_ALWAYS_INLINE std::array<T, std::size_t(Highest) + 1>
-stumpff_sequence(const T& s) {
-  static_assert(Highest >= 2, "duet: for one or two Stumpff functions use stumpff<N>");
-  using R = real_type_t<T>;
-  constexpr auto n = std::size_t(Highest);
-  using sequence = std::array<T, n + 1>;
-  const auto run = [&](const auto& inverse_factorial) DUET_INLINE_LAMBDA {
-    return select(
-        !detail::is_beyond_series(innermost(s)),
-        [&]() DUET_INLINE_LAMBDA {
-          sequence c;
-          c[n] = stumpff<Highest>(s);
-          c[n - 1] = stumpff<Highest - 1>(s);
-          for (std::size_t i = n - 1; i-- > 0;) {
-            c[i] = inverse_factorial[i] - s * c[i + 2];
-          }
-          return c;
-        },
-        [&]() DUET_INLINE_LAMBDA {
-          sequence c;
-          c[0] = stumpff<0>(s);
-          c[1] = stumpff<1>(s);
-          const T reciprocal = 1 / s;
-          for (std::size_t i = 2; i <= n; ++i) {
-            c[i] = (inverse_factorial[i - 2] - c[i - 2]) * reciprocal;
-          }
-          return c;
-        });
-  };
-  if constexpr (std::floating_point<lane_type_t<R>>) {
-    constexpr auto table = detail::inverse_factorials<lane_type_t<R>, n + 1>();
-    return run(table);
-  } else {
-    return run(detail::inverse_factorials<R, n + 1>());
-  }
 }
 
 } // namespace duet

@@ -56,11 +56,8 @@ public:
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
-      taylor(const taylor<U, K, Tag>& other) {
-    for (int k = 0; k <= K; ++k) {
-      set_coefficient(k, static_cast<T>(other.coefficient(k)));
-    }
-  }
+      taylor(const taylor<U, K, Tag>& other)
+      : taylor(other.zip([](const U& x) { return static_cast<T>(x); })) {}
 
   /// value + ε, the variable of differentiation.
   [[nodiscard]] static constexpr taylor variable(const T& value) {
@@ -254,14 +251,9 @@ private:
 DUET_ABI_END
 
 template <class T, int K, class Tag>
-struct scalar_traits<taylor<T, K, Tag>> {
-  using value_type = T;
-  using real_type = typename scalar_traits<T>::real_type;
-  using tag = Tag;
+struct scalar_traits<taylor<T, K, Tag>> : detail::level_traits<T, Tag, K> {
   template <class U>
   using over = taylor<U, K, Tag>;
-  static constexpr bool is_infinitesimal = true;
-  static constexpr int order = scalar_traits<T>::order + K;
 };
 
 } // namespace duet

@@ -44,8 +44,7 @@ template <class Q>
 /// N17: α + εβ with β = ½ t α: first the rotation, a unit quaternion, then the translation.
 /// \throws invalid_input where |α|² is not 1 within 1e-6 (1e-3 in single precision): points would
 /// be scaled by it; NaN passes
-template <class A, class B>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE dual_quaternion<promote_t<A, B>>
 pose(const quaternion<A>& rotation, const vector3<B>& translation) {
   using std::abs;
@@ -59,8 +58,7 @@ pose(const quaternion<A>& rotation, const vector3<B>& translation) {
 }
 
 /// R x + t.
-template <class T, class U>
-  requires Promotable<T, U>
+template <class T, Promotable<T> U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_point(const dual_quaternion<T>& a,
                                                        const vector3<U>& x) {
   const auto turned = rotate(rotation(a), x);
@@ -68,8 +66,7 @@ template <class T, class U>
   return {turned[0] + t[0], turned[1] + t[1], turned[2] + t[2]}; // no packets to be put together
 }
 /// R n: what has no place, as a velocity of translation or a normal.
-template <class T, class U>
-  requires Promotable<T, U>
+template <class T, Promotable<T> U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_direction(const dual_quaternion<T>& a,
                                                            const vector3<U>& n) {
   return rotate(rotation(a), n);
@@ -77,8 +74,7 @@ template <class T, class U>
 
 /// A line l + εm in Plücker coordinates, direction l and moment m = point × l, carried along:
 /// A (l + εm) A*. Also any screw and twist.
-template <class T, class U>
-  requires Promotable<T, U>
+template <class T, Promotable<T> U>
 [[nodiscard]] dual_vector<promote_t<T, U>> transform_line(const dual_quaternion<T>& a,
                                                           const dual_vector<U>& line) {
   return rotate(a, line);
@@ -92,8 +88,7 @@ struct plane {
 };
 
 /// The plane carried along: n ↦ R n, offset ↦ offset + R n·t.
-template <class T, class U>
-  requires Promotable<T, U>
+template <class T, Promotable<T> U>
 [[nodiscard]] plane<promote_t<T, U>> transform_plane(const dual_quaternion<T>& a,
                                                      const plane<U>& p) {
   using R = promote_t<T, U>;

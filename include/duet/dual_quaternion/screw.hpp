@@ -15,8 +15,7 @@ namespace duet {
 
 /// N19: C(τ) = A (A* B)^τ, the screw motion from A to B along the shorter rotation unless
 /// another way is asked for: SLERP over dual numbers. Both are unit.
-template <class A, class B, class S>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B, class S>
 [[nodiscard]] auto sclerp(const dual_quaternion<A>& a, const dual_quaternion<B>& b, const S& tau,
                           way round = way::shortest) {
   return slerp(a, b, tau, round);

@@ -60,8 +60,7 @@ template <class A, class T>
 ///
 /// `frame::spatial`: fixed axes, v the velocity of the body point at the fixed origin,
 /// v^s = ṫ + t × ω^s. `frame::body`: moving axes, v^b = Rᵀṫ. `frame::hybrid`: fixed axes, v = ṫ.
-template <class A, class B, FrameConstant Frame>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B, FrameConstant Frame>
 [[nodiscard]] vector6<promote_t<A, B>> twist(const dual_quaternion<A>& a,
                                              const dual_quaternion<B>& a_dot, Frame frame) {
   using T = promote_t<A, B>;
@@ -73,8 +72,7 @@ template <class A, class B, FrameConstant Frame>
 }
 
 /// N18: the rate Ȧ of a pose that moves with a twist [v; ω].
-template <class A, class B, FrameConstant Frame>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B, FrameConstant Frame>
 [[nodiscard]] dual_quaternion<promote_t<A, B>> pose_rate(const dual_quaternion<A>& a,
                                                          const vector6<B>& twist, Frame frame) {
   return quaternion_rate(a, dual_vector_of(twist), frame);

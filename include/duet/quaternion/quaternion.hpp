@@ -111,22 +111,19 @@ inline constexpr bool is_quaternion<quaternion<T>> = true;
 template <class S, class T>
 concept ScalarFor = (Scalar<S> || Arithmetic<S>)&&Promotable<S, T>;
 
-template <class A, class B>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
 operator+(const quaternion<A>& p, const quaternion<B>& q) {
   return {p.w() + q.w(), p.x() + q.x(), p.y() + q.y(), p.z() + q.z()};
 }
-template <class A, class B>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
 operator-(const quaternion<A>& p, const quaternion<B>& q) {
   return {p.w() - q.w(), p.x() - q.x(), p.y() - q.y(), p.z() - q.z()};
 }
 
 /// N1: pq = (p₀q₀ − p⃗·q⃗, p₀q⃗ + q₀p⃗ + p⃗×q⃗)
-template <class A, class B>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
 operator*(const quaternion<A>& p, const quaternion<B>& q) {
   // All four sums grow by one component of p at a time: fewer numbers wait in registers than where
@@ -170,8 +167,7 @@ operator/(const quaternion<T>& q, const S& a) {
 }
 
 /// Componentwise, by value. q and −q are the same rotation but not the same quaternion.
-template <class A, class B>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B>
 [[nodiscard]] constexpr auto operator==(const quaternion<A>& p, const quaternion<B>& q) {
   return p.w() == q.w() && p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
 }
@@ -183,8 +179,7 @@ template <class T>
 }
 
 /// The scalar product of p and q as vectors of R⁴.
-template <class A, class B>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr promote_t<A, B> dot(const quaternion<A>& p,
                                                                const quaternion<B>& q) {
   return p.w() * q.w() + p.x() * q.x() + p.y() * q.y() + p.z() * q.z();

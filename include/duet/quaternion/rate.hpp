@@ -29,8 +29,7 @@ template <class Frame, class M, class Q>
 } // namespace detail
 
 /// N7: ω^s = vec(2 q̇ q*) in spatial axes, ω^b = vec(2 q* q̇) in body axes; q of unit norm.
-template <class A, class B, class Frame>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>>
 angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame_of_result) {
   const auto half = detail::composed_in(frame_of_result, q_dot, conj(q));
@@ -45,8 +44,7 @@ void angular_velocity(const quaternion<A>&, const quaternion<B>&) {
 }
 
 /// N7: q̇ = ½ ω^s q = ½ q ω^b
-template <class A, class B, class Frame>
-  requires Promotable<A, B>
+template <class A, Promotable<A> B, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<A, B>>
 quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_omega) {
   const quaternion<B> half(B(0), vector3<B>(omega[0] / 2, omega[1] / 2, omega[2] / 2));

@@ -21,8 +21,7 @@
 namespace duet {
 
 /// q v q* for a unit quaternion: v turned by the rotation.
-template <class T, class U>
-  requires Promotable<T, U>
+template <class T, Promotable<T> U>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<T, U>> rotate(const quaternion<T>& q,
                                                                  const vector3<U>& v) {
   return detail::rotated(q, detail::three_vector<const U&>{v[0], v[1], v[2]});
@@ -30,8 +29,7 @@ template <class T, class U>
 
 /// Rotation by the angle a about the direction n of any length.
 /// \throws invalid_input where n is zero
-template <class T, class S>
-  requires Promotable<T, S>
+template <class T, Promotable<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> from_axis_angle(const vector3<T>& n, const S& a) {
   using std::cos;
   using std::sin;

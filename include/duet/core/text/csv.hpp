@@ -6,8 +6,6 @@
 #include <duet/core/text/printable.hpp>
 #include <duet/core/text/text_rows.hpp>
 
-#include <array>
-#include <charconv>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -114,9 +112,7 @@ inline std::string csv_line(const std::vector<double>& numbers) {
     if (!line.empty()) {
       line += ',';
     }
-    std::array<char, 32> text; // of a double at most 24
-    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
-    line.append(text.data(), end);
+    line += to_text(x);
   }
   line += '\n';
   return line;

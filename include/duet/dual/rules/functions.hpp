@@ -104,8 +104,7 @@ template <class A, class B>
 }
 
 /// The angle of the point (x, y), in (−π, π].
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto atan2(const A& y, const B& x) {
   return detail::lift_promoted(rule::atan2{}, y, x);
 }
@@ -127,21 +126,18 @@ template <class A, class B, class C>
   return detail::lift_promoted(rule::fma{}, x, y, z);
 }
 
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmod(const A& x, const B& y) {
   return detail::lift_promoted(rule::fmod{}, x, y);
 }
 
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto remainder(const A& x, const B& y) {
   return detail::lift_promoted(rule::remainder{}, x, y);
 }
 
 /// remainder(x, y), and the low bits of the quotient.
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto remquo(const A& x, const B& y, int* quotient) {
   using std::remquo;
   using real = real_type_t<promote_t<A, B>>;
@@ -157,8 +153,7 @@ template <class A, class B, class C>
 }
 
 /// (a + b)/2 without overflow, as that of `<numeric>`.
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto midpoint(const A& a, const B& b) {
   return detail::lift_promoted(rule::midpoint{}, a, b);
 }

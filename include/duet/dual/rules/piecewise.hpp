@@ -53,8 +53,7 @@ namespace duet {
 
 // The quiet comparisons of <cmath>: false, and no exception, where either is NaN.
 
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto isunordered(const A& a, const B& b) {
   using std::isnan;
   return isnan(innermost(a)) || isnan(innermost(b));
@@ -84,8 +83,7 @@ template <RealInfinitesimal D>
 [[nodiscard]] auto fabs(const RealInfinitesimal auto& x) { return abs(x); }
 
 /// |magnitude| with the sign of `sign`, which only its sign bit enters.
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto copysign(const A& magnitude, const B& sign) {
   using std::signbit;
   using common = promote_t<A, B>;
@@ -96,8 +94,7 @@ template <class A, class B>
 }
 
 /// The larger; where one is NaN the other, as in `<cmath>`.
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmax(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
@@ -106,8 +103,7 @@ template <class A, class B>
       isnan(innermost(a)) || detail::quiet_less(real(innermost(a)), real(innermost(b))),
       [&] { return common(b); }, [&] { return common(a); });
 }
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmin(const A& a, const B& b) {
   using std::isnan;
   using common = promote_t<A, B>;
@@ -118,8 +114,7 @@ template <class A, class B>
 }
 
 /// max(a − b, 0); NaN where either is.
-template <class A, class B>
-  requires detail::MixedReals<A, B>
+template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fdim(const A& a, const B& b) {
   using common = promote_t<A, B>;
   using real = real_type_t<common>;

@@ -4,7 +4,6 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
-#include <duet/core/stumpff.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/storage/partials.hpp>
