@@ -8,11 +8,11 @@
 #include <duet/planning/closest_points.hpp>
 #include <duet/planning/constrained_step.hpp>
 #include <duet/planning/planning_model.hpp>
-
 #include <duet/planning/small_vector.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 #include <variant>
 #include <vector>
