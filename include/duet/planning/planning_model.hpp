@@ -122,9 +122,34 @@ public:
   using vector = small_vector<Room>;
   using state = chain_state<Room>;
 
+  template <class C>
+  explicit planning_model(const C& chain) : size(chain.size()) {
+    for (int i = 0; i < size; ++i) {
+      const auto k = std::size_t(i);
+      const auto& step = chain.steps()[k];
+      const three_vector<double> offset = step.offset;
+      lower[i] = chain.limits(i).lower;
+      upper[i] = chain.limits(i).upper;
+      turns[k] = step.turns;
+      slides[k] = step.slides;
+      if (i == 0) {
+        reach.first = offset;
+      } else {
+        reach.links += length_of(offset);
+      }
+      if (step.slides) {
+        reach.travel += std::abs(step.pitch) * std::max(std::abs(lower[i]), std::abs(upper[i]));
+      }
+    }
+    const auto& offset = chain.tip().offset;
+    const three_vector<double> tool = components(offset.translation);
+    reach.back = -1 * rotated(conj(offset.rotation), tool);
+    reach.tool = length_of(tool);
+    reach.has_joints = size > 0;
+  }
   virtual ~planning_model() = default;
 
-  int size = 0; ///< number of joints
+  int size; ///< number of joints
   vector lower, upper;
   std::array<bool, std::size_t(Room)> turns{}, slides{};
   chain_reach reach;
@@ -159,33 +184,7 @@ public:
   using typename base::state;
   using typename base::vector;
 
-  explicit chain_model(const C& chain) : chain_(chain) {
-    this->size = chain.size();
-    chain_reach& reach = this->reach;
-    for (int i = 0; i < chain.size(); ++i) {
-      const auto k = std::size_t(i);
-      const auto& step = chain.steps()[k];
-      const double lower = chain.limits(i).lower, upper = chain.limits(i).upper;
-      this->lower[i] = lower;
-      this->upper[i] = upper;
-      this->turns[k] = step.turns;
-      this->slides[k] = step.slides;
-      const three_vector<double> offset = step.offset;
-      if (i == 0) {
-        reach.first = offset;
-      } else {
-        reach.links += length_of(offset);
-      }
-      if (step.slides) {
-        reach.travel += std::abs(step.pitch) * std::max(std::abs(lower), std::abs(upper));
-      }
-    }
-    const auto& offset = chain.tip().offset;
-    const three_vector<double> tool = components(offset.translation);
-    reach.back = -1 * rotated(conj(offset.rotation), tool);
-    reach.tool = length_of(tool);
-    reach.has_joints = chain.size() > 0;
-  }
+  explicit chain_model(const C& chain) : base(chain), chain_(chain) {}
 
   [[nodiscard]] const C& chain() const { return chain_; }
   void set(state& of, const vector& theta) const override {
