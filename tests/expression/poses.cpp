@@ -6,7 +6,6 @@
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/dual_parts.hpp>
 #include <duet/expression/jacobian.hpp>
 #include <duet/expression/motion.hpp>
 #include <duet/expression/screw.hpp>

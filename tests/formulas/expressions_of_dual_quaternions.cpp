@@ -5,7 +5,6 @@
 
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/dual_parts.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/symbol.hpp>

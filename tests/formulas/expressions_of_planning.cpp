@@ -8,7 +8,6 @@
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/dual_parts.hpp>
 #include <duet/expression/gradient.hpp>
 #include <duet/expression/jacobian.hpp>
 #include <duet/expression/rotation.hpp>

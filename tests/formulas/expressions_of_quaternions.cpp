@@ -5,8 +5,8 @@
 
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/dual_parts.hpp>
 #include <duet/expression/rotation.hpp>
+#include <duet/expression/screw.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/vector.hpp>
 

@@ -5,7 +5,6 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/norm.hpp>
-#include <duet/quaternion/printed_euler_rate.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 

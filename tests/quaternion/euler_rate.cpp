@@ -7,7 +7,6 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/printed_euler_rate.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/exponential_rates.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
 
 #include <doctest/doctest.h>
 

@@ -92,7 +92,8 @@ template <euler_sequence Sequence, class T>
 /// q times a power of 2 that brings it near 1: products of its components stay in range.
 template <class T>
 [[nodiscard]] quaternion<T> of_moderate_norm(const quaternion<T>& q) {
-  return by_lane([](const auto& p) { return scaled(p).near_one; }, q);
+  const auto near_one = [](const auto& p, int) { return p; };
+  return by_lane([&](const auto& p) { return of_scaled(near_one, p); }, q);
 }
 
 /// Numbers in proportion to cos β cos(α+γ), cos β sin(α+γ), sin β cos(α−γ), sin β sin(α−γ), which
@@ -225,6 +226,27 @@ template <euler_sequence Sequence, class T>
   m(j, 2) = -sign * sine * across;
   m(other, 2) = cosine * across;
   return m;
+}
+
+/// P5 as the copy at hand has it: the matrix A_K with ω = A_K [φ′, θ′, ψ′]ᵀ in spatial axes, for
+/// R = R_z(ψ) R_y(θ) R_x(φ), **with a slip, of the copy or of the print**: its element (3, 1) reads
+/// −sin ψ. Columns are axes of rotation, of length 1; with −sin ψ the first is not, so that no
+/// sequence of Euler angles has this matrix.
+///
+/// The true one, −sin θ, is in `euler_rate_matrix<zyx>(psi, theta)`, whose columns are in the
+/// order of the letters: ψ′, θ′, φ′. The two agree where sin ψ = sin θ.
+/// Source: Houdek, Verlinden, Hajžman, "Derivatives of quaternion spline interpolation function for
+/// multibody dynamics", equation (5).
+template <class T>
+[[nodiscard]] matrix3<T> printed_euler_rate_matrix(const T& psi, const T& theta) {
+  using std::cos;
+  using std::sin;
+  const T zero(0);
+  matrix3<T> a;
+  a << cos(psi) * cos(theta), -sin(psi), zero, //
+      sin(psi) * cos(theta), cos(psi), zero,   //
+      -sin(psi), zero, T(1);
+  return a;
 }
 
 } // namespace duet

@@ -1,18 +1,200 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <utility>
 
 /// \file
 /// What a rate of the rotation vector r does to the rotation exp(½r): the Jacobians of the
-/// exponential and their inverses in closed form.
+/// exponential and their inverses in closed form; and rates of exp(x(t)) along a curve x(t) of
+/// half-angle vectors to any order, by many Stumpff functions of one argument at little more than
+/// the price of two.
 ///
 /// Over dual numbers the same functions are those of rigid motion, see dual_quaternion/.
 
 namespace duet {
+namespace detail {
+
+/// 1/0!, 1/1! … 1/(Count−1)!
+template <Real R, std::size_t Count>
+[[nodiscard]] constexpr std::array<R, Count> inverse_factorials() {
+  std::array<R, Count> result{};
+  for (std::size_t n = 0; n < Count; ++n) {
+    result[n] = inverse_factorial<R>(int(n));
+  }
+  return result;
+}
+
+} // namespace detail
+
+/// c_0(s) … c_Highest(s), s ≥ 0, by c_n = 1/n! − s c_{n+2}: downwards from the two highest where
+/// their series converge fast, upwards from cosine and sine elsewhere. Errors are relative to 1/n!
+/// below s = 4, to the larger of c_n and √s^−n above.
+template <int Highest, Scalar T>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<T, std::size_t(Highest) + 1>
+stumpff_sequence(const T& s) {
+  static_assert(Highest >= 2, "duet: for one or two Stumpff functions use stumpff<N>");
+  using R = real_type_t<T>;
+  constexpr auto n = std::size_t(Highest);
+  using sequence = std::array<T, n + 1>;
+  const auto run = [&](const auto& inverse_factorial) DUET_INLINE_LAMBDA {
+    return select(
+        !detail::is_beyond_series(innermost(s)),
+        [&]() DUET_INLINE_LAMBDA {
+          sequence c;
+          c[n] = stumpff<Highest>(s);
+          c[n - 1] = stumpff<Highest - 1>(s);
+          for (std::size_t i = n - 1; i-- > 0;) {
+            c[i] = inverse_factorial[i] - s * c[i + 2];
+          }
+          return c;
+        },
+        [&]() DUET_INLINE_LAMBDA {
+          sequence c;
+          c[0] = stumpff<0>(s);
+          c[1] = stumpff<1>(s);
+          const T reciprocal = 1 / s;
+          for (std::size_t i = 2; i <= n; ++i) {
+            c[i] = (inverse_factorial[i - 2] - c[i - 2]) * reciprocal;
+          }
+          return c;
+        });
+  };
+  if constexpr (std::floating_point<lane_type_t<R>>) {
+    constexpr auto table = detail::inverse_factorials<lane_type_t<R>, n + 1>();
+    return run(table);
+  } else {
+    return run(detail::inverse_factorials<R, n + 1>());
+  }
+}
 
 namespace detail {
+
+/// f(0), f(1) … f(Count−1): unrolled for plain numbers, so that indices are constants; unrolled,
+/// dual numbers would take the compiler too long.
+template <class T, std::size_t Count, class F>
+DUET_ALWAYS_INLINE void each_index(F&& f) {
+  if constexpr (Real<T>) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA { (f(I), ...); }
+    (std::make_index_sequence<Count>{});
+  } else {
+    for (std::size_t i = 0; i < Count; ++i) {
+      f(i);
+    }
+  }
+}
+
+/// In half angles the right Jacobian of the exponential is J(x) = a I − b x̂ + c x xᵀ with functions
+/// of s = x·x: a = c₁(4s), b = 2c₂(4s), c = 4c₃(4s). Here are their Taylor coefficients at one s,
+/// element k the k-th derivative by s, divided by k!.
+template <std::size_t Count, class T>
+struct jacobian_coefficients {
+  std::array<T, Count> a, b, c;
+
+  /// From (cₙ)′ = (n c_{n+2} − c_{n+1})/2, so that no more is needed than one sequence of them.
+  DUET_ALWAYS_INLINE explicit jacobian_coefficients(const T& s) {
+    using R = real_type_t<T>;
+    auto e = stumpff_sequence<2 * int(Count) + 1>(T(4 * s));
+    each_index<T, Count>([&](std::size_t k) DUET_INLINE_LAMBDA {
+      a[k] = e[1];
+      b[k] = 2 * e[2];
+      c[k] = 4 * e[3];
+      const R factor = R(2) / R(k + 1);
+      each_index<T, 2 * Count>([&](std::size_t n) DUET_INLINE_LAMBDA {
+        if (n > 0 && n + 2 * k + 1 <= 2 * Count) {
+          e[n] = (R(n) * e[n + 2] - e[n + 1]) * factor;
+        }
+      });
+    });
+  }
+};
+
+/// f(s(t)), truncated, from f's Taylor coefficients at s(0) and s's for t, of which the first is
+/// not looked at.
+template <std::size_t Count, class T, std::size_t Given, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<S, Count> composed(const std::array<T, Given>& f,
+                                                               const std::array<S, Count>& s) {
+  std::array<S, Count> result;
+  result[0] = S(f[Count - 1]);
+  each_index<S, Count - 1>([&](std::size_t done) DUET_INLINE_LAMBDA {
+    const std::size_t i = Count - 2 - done; // result ← f_i + (s − s_0) result, from its end
+    each_index<S, Count - 1>([&](std::size_t before) DUET_INLINE_LAMBDA {
+      if (before <= done) {
+        const std::size_t m = done + 1 - before;
+        S sum = s[m] * result[0];
+        each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
+          if (j > 0 && j < m) {
+            sum = sum + s[m - j] * result[j];
+          }
+        });
+        result[m] = sum;
+      }
+    });
+    result[0] = S(f[i]);
+  });
+  return result;
+}
+
+/// w with Q′ = Q w, the halved angular velocity in body axes, of Q = exp(x(t)): w = J(x) ẋ. In and
+/// out go Taylor coefficients for t: x_1 … x_Count in, w_0 … w_{Count−1} out; x = x_0 is what the
+/// coefficients of the Jacobian were made for.
+///
+/// \tparam S  scalar of the rates: T or above
+template <std::size_t Count, std::size_t Given, class T, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<vector3<S>, Count>
+half_body_rates(const jacobian_coefficients<Given, T>& jacobian, const vector3<T>& x,
+                const std::array<vector3<S>, Count>& rates) {
+  static_assert(Count <= Given);
+  using R = real_type_t<S>;
+  // With dx = ẋ: p = x·ẋ; s = x·x, ṡ = 2p; y = x × ẋ.
+  const three_vector<T> at = components(x);
+  std::array<three_vector<S>, Count> of, dx, y;
+  std::array<S, Count> p, s;
+  each_index<S, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
+    of[m] = components(rates[m]);
+    dx[m] = m == 0 ? of[0] : S(R(m + 1)) * of[m];
+    p[m] = dot(at, dx[m]);
+    y[m] = cross(at, dx[m]);
+    each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
+      if (j < m) {
+        const std::size_t k = m - 1 - j; // x_{j+1} and ẋ_k = (k+1) x_{k+1}
+        p[m] = p[m] + dot(of[j], dx[k]);
+        if (j != k) {
+          y[m] = y[m] + cross(of[j], dx[k]);
+        }
+      }
+    });
+    if (m + 1 < Count) {
+      s[m + 1] = p[m] * (R(2) / R(m + 1));
+    }
+  });
+  const auto a = composed(jacobian.a, s);
+  const auto b = composed(jacobian.b, s);
+  const auto c = composed(jacobian.c, s);
+  std::array<S, Count> k; // c p
+  std::array<vector3<S>, Count> result;
+  each_index<S, Count>([&](std::size_t m) DUET_INLINE_LAMBDA {
+    k[m] = c[0] * p[m];
+    three_vector<S> w = a[0] * dx[m] + S(-b[0]) * y[m];
+    each_index<S, Count>([&](std::size_t j) DUET_INLINE_LAMBDA {
+      if (j > 0 && j <= m) {
+        k[m] = k[m] + c[j] * p[m - j];
+        w = w + a[j] * dx[m - j] + S(-b[j]) * y[m - j] + k[m - j] * of[j - 1];
+      }
+    });
+    result[m] = w + k[m] * at;
+  });
+  return result;
+}
 
 /// a I + b r̂ + c r rᵀ
 template <class T>

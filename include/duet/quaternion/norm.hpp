@@ -85,22 +85,11 @@ void require_not_zero(const quaternion<T>& q, const char* function) {
   }
 }
 
-/// A quaternion out of range and the power of two that brings it near 1: near_one · 2^exponent.
-template <class T>
-struct scaled_quaternion {
-  quaternion<T> near_one;
-  int exponent;
-};
-template <class T>
-[[nodiscard]] scaled_quaternion<T> scaled(const quaternion<T>& q) {
-  const int e = binary_exponent(largest_component(innermost_of(q)));
-  return {scaled_down(q, e), e};
-}
-
+/// f(near_one, e) of q = near_one · 2^e.
 template <class F, class T>
 [[nodiscard, gnu::cold, gnu::noinline]] auto of_scaled(F f, const quaternion<T>& q) {
-  const auto [near_one, exponent] = scaled(q);
-  return f(near_one, exponent);
+  const int e = binary_exponent(largest_component(innermost_of(q)));
+  return f(scaled_down(q, e), e);
 }
 
 /// usual(), of q in range; lane by lane, where it is not, extreme(near_one, e) of near_one · 2^e =

@@ -3,7 +3,6 @@
 
 #include <duet/core/config.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
-#include <duet/quaternion/exponential_rates.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 

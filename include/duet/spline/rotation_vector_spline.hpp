@@ -5,7 +5,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/exponential_rates.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/knots.hpp>
