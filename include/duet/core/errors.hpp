@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -31,7 +30,7 @@ namespace duet::detail {
 template <class... Parts>
 [[nodiscard, gnu::cold, gnu::noinline]] std::string message(const Parts&... parts) {
   std::ostringstream text;
-  text.imbue(std::locale::classic());
+  text.imbue(std::locale::classic()); // known by <ios>
   (text << ... << parts);
   return text.str();
 }

@@ -6,7 +6,6 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/core/text/number_text.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/location.hpp>
 

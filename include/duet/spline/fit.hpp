@@ -2,13 +2,13 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/text/number_text.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/fit_options.hpp>
 #include <duet/spline/fitting/bspline_fit.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/knots.hpp>
 #include <duet/spline/orientations.hpp>
 
 #include <algorithm>
