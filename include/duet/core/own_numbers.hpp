@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <concepts>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -12,12 +13,6 @@ namespace Eigen {
 
 template <class Derived>
 struct EigenBase;
-template <class Derived>
-class PlainObjectBase;
-template <class Scalar, int Size, int MaxSize>
-class DiagonalMatrix;
-template <class Scalar, int Options, class Index>
-class SparseMatrix;
 template <class Scalar, int Options, class Index>
 class SparseVector;
 
@@ -27,12 +22,9 @@ namespace duet::detail {
 
 template <class Derived>
 void as_eigen(const Eigen::EigenBase<Derived>&);
-template <class Derived>
-void as_plain(const Eigen::PlainObjectBase<Derived>&);
-template <class Scalar, int Size, int MaxSize>
-void as_plain(const Eigen::DiagonalMatrix<Scalar, Size, MaxSize>&);
-template <class Scalar, int Options, class Index>
-void as_plain(const Eigen::SparseMatrix<Scalar, Options, Index>&);
+template <class X>
+  requires std::derived_from<X, typename X::PlainObject>
+void as_plain(const X&);
 template <class Scalar, int Options, class Index>
 void as_plain(const Eigen::SparseVector<Scalar, Options, Index>&);
 

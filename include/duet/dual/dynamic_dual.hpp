@@ -44,11 +44,6 @@ public:
     grow(i + 1);
     row::set(packets_, i, x);
   }
-  void copy_to(T* out) const {
-    for (int i = 0; i < size_; ++i) {
-      out[i] = row::get(packets_, i);
-    }
-  }
 
   /// Partials of the i-th of n variables.
   /// \throws invalid_input beyond the capacity

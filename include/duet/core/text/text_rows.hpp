@@ -81,13 +81,10 @@ void for_each_line(const std::string& path, const F& f) {
 struct split_line {
   std::string_view text, comment;
 
-  explicit split_line(std::string_view line) : text(line) {
-    if (const auto hash = line.find('#'); hash != std::string_view::npos) {
-      text = trimmed(line.substr(0, hash));
-      comment = trimmed(line.substr(hash + 1));
-    } else {
-      text = trimmed(line);
-    }
+  explicit split_line(std::string_view line) {
+    const std::size_t hash = std::min(line.find('#'), line.size());
+    text = trimmed(line.substr(0, hash));
+    comment = trimmed(line.substr(std::min(hash + 1, line.size())));
   }
 };
 

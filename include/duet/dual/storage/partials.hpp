@@ -4,11 +4,9 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 
-#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <cstring>
 #include <type_traits>
 #include <utility>
 
@@ -84,8 +82,6 @@ public:
   [[nodiscard]] constexpr const T& get(int i) const { return elements_[std::size_t(i)]; }
   constexpr void set(int i, const T& x) { elements_[std::size_t(i)] = x; }
   [[nodiscard]] constexpr const T& packet_at(int p) const { return elements_[std::size_t(p)]; }
-  /// Writes N elements.
-  constexpr void copy_to(T* out) const { std::copy(elements_.begin(), elements_.end(), out); }
 
   /// result[i] = f(rows[i]...)
   template <class F, class... Rows>
@@ -149,14 +145,6 @@ public:
     }
   }
   [[nodiscard]] const packet& packet_at(int p) const { return packets_[p]; }
-  /// Writes N elements, packet by packet where that is possible.
-  constexpr void copy_to(T* out) const {
-    if (std::is_constant_evaluated()) {
-      std::copy_n(elements_.begin(), N, out);
-    } else {
-      std::memcpy(out, packets_, N * sizeof(T));
-    }
-  }
 
   /// Partials of the i-th variable: 1 at i, else 0. Whole packets are stored, because a zero fill
   /// followed by a scalar store stalls the load of the packet.

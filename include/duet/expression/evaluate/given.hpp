@@ -54,15 +54,11 @@ using scalar_of_t = typename scalar_of<T>::type;
 
 /// The scalar that holds some; of none a double.
 template <class... T>
-struct common_scalar {
+struct common_scalar : std::common_type<T...> {};
+template <>
+struct common_scalar<> {
   using type = double;
 };
-template <class T>
-struct common_scalar<T> {
-  using type = T;
-};
-template <class A, class B, class... Rest>
-struct common_scalar<A, B, Rest...> : common_scalar<promote_t<A, B>, Rest...> {};
 template <class... T>
 using common_scalar_t = typename common_scalar<T...>::type;
 
