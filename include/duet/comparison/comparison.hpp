@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <iomanip>
-#include <locale>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -70,8 +68,8 @@ namespace detail {
 /// A stream of its own, so that neither the locale nor the caller's format matters.
 [[nodiscard]] inline std::ostringstream plain_stream(int digits) {
   std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << std::setprecision(digits);
+  stream.imbue(std::locale::classic()); // known by <ios>
+  stream.precision(digits);
   return stream;
 }
 
