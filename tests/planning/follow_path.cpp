@@ -2,6 +2,7 @@
 
 #include "planning/paths.hpp"
 
+#include <duet/mechanism/manipulability.hpp>
 #include <duet/planning/follow_path.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/spline/cumulative_bspline.hpp>

@@ -1,18 +1,23 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/known_constant.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/seed.hpp>
+#include <duet/dual/math.hpp>
 #include <duet/dual/promotion.hpp>
+#include <duet/dual/rules/lift.hpp>
+#include <duet/dual/storage/partials.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
-#include <duet/mechanism/half_turns.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/joint_step.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <string>
@@ -53,32 +58,91 @@ void require_size(const C& chain, const X& theta) {
   }
 }
 
+/// sin(θ/2) and cos(θ/2) of the joints of a chain: those of doubles, and of the values of duals
+/// over doubles, in vectors, a quarter of the time that the C library takes for one after the
+/// other.
+///
+/// \tparam S  scalar of the results
+/// \tparam N  number of joints; negative: up to −N
+/// \tparam X  of the coordinates θ
+template <class S, int N, class X>
+class half_turns {
+  static constexpr int most = N > 0 ? N : -N;
+  static constexpr bool at_once = most > 1 && std::same_as<real_type_t<S>, double>;
+  // Eight lanes would not make it faster.
+  static constexpr int lanes = DUET_VECTOR_BYTES < 32 ? 2 : 4;
+  static constexpr int vectors = at_once ? (most + lanes - 1) / lanes : 0;
+  typedef double packet __attribute__((vector_size(lanes * sizeof(double))));
+
+public:
+  /// \param size   how many joints there are
+  /// \param count  of how many of the first the sines are wanted
+  DUET_ALWAYS_INLINE half_turns(const X& theta, int size, int count) : theta_(theta) {
+    if constexpr (at_once) {
+      const auto take = [&](int v) DUET_INLINE_LAMBDA {
+        const auto at = [&](int k) DUET_INLINE_LAMBDA {
+          const int i = v * lanes + k;
+          return i < (N > 0 ? N : size) ? innermost(half(i)) : 0.;
+        };
+        if (v * lanes < count) {
+          if constexpr (lanes == 2) {
+            values_[std::size_t(v)] = vector_sine_and_cosine(packet{at(0), at(1)});
+          } else {
+            values_[std::size_t(v)] = vector_sine_and_cosine(packet{at(0), at(1), at(2), at(3)});
+          }
+        }
+      };
+      if constexpr (N > 0) { // indices that the compiler knows leave coordinates in registers
+        unrolled<vectors>(take);
+      } else {
+        for (int v = 0; v * lanes < count; ++v) {
+          take(v);
+        }
+      }
+    }
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<S> operator[](int i) const {
+    if constexpr (at_once) {
+      const auto& both = values_[std::size_t(i / lanes)];
+      return sine_and_cosine_from(sine_cosine<double>{both.sine[i % lanes], both.cosine[i % lanes]},
+                                  half(i));
+    } else {
+      return sine_and_cosine_of(half(i));
+    }
+  }
+
+private:
+  [[nodiscard]] DUET_ALWAYS_INLINE S half(int i) const {
+    return S(S(vector_argument<X>::get(theta_, i)) / 2);
+  }
+
+  const X& theta_;
+  std::array<sine_cosine<packet>, std::size_t(vectors)> values_;
+};
+
 /// Where a link stands in the base.
 template <class S>
 using link_displacement = displacement<quaternion<S>, three_vector<S>>;
 
 /// From the I-th joint on, the table being known.
-template <bool WithRotation, class C, std::size_t I, class S, class Link, class X, class Turns,
-          class Visit>
+template <bool WithRotation, class C, int I, class S, class Link, class X, class Turns, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
-walk_known(const Link& link, const X& theta, const Turns& turns, std::size_t links, Visit&& visit) {
-  if constexpr (I == std::size_t(C::joints)) {
+walk_known(const Link& link, const X& theta, const Turns& turns_of, int links, const Visit& visit) {
+  if constexpr (I == C::joints) {
     return link;
   } else {
     if (I == links) {
       return link;
     }
-    using step = known_step<typename C::arm, I>;
-    const S x(vector_argument<X>::get(theta, Eigen::Index(I)));
-    const auto seen = [&](const auto&... a) DUET_INLINE_LAMBDA { visit(I, a...); };
-    const auto turn = [&]() DUET_INLINE_LAMBDA { return turns[int(I)]; };
+    const known_step<typename C::arm, std::size_t(I)> step;
+    const S x(vector_argument<X>::get(theta, I));
     if constexpr (!WithRotation) {
       if (I + 1 == links) {
-        return after_joint<false>(link, step{}, x, turn, seen);
+        return after_joint<false>(link, step, I, x, turns_of, visit);
       }
     }
-    return walk_known<WithRotation, C, I + 1, S>(after_joint<true>(link, step{}, x, turn, seen),
-                                                 theta, turns, links, visit);
+    return walk_known<WithRotation, C, I + 1, S>(
+        after_joint<true>(link, step, I, x, turns_of, visit), theta, turns_of, links, visit);
   }
 }
 
@@ -86,28 +150,26 @@ walk_known(const Link& link, const X& theta, const Turns& turns, std::size_t lin
 /// the last of them stands, its rotation only if asked for.
 template <bool WithRotation, class S, class C, class X, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> walk(const C& chain, const X& theta,
-                                                           int links, Visit&& visit) {
+                                                           int links, const Visit& visit) {
   require_size(chain, theta);
+  const half_turns<S, C::joints, X> turns_of(theta, chain.size(), links);
   if constexpr (requires { typename C::arm; }) {
     const known_one one;
     const known_zero zero;
     return walk_known<WithRotation, C, 0, S>(
         displacement{partly_known_quaternion{one, zero, zero, zero},
                      three_vector{zero, zero, zero}},
-        theta, half_turns<S, C::joints, X>(theta, C::joints, links), std::size_t(links), visit);
+        theta, turns_of, links, visit);
   } else {
     link_displacement<S> link{quaternion<S>(S(1)), {S(0), S(0), S(0)}};
     const auto count = std::size_t(links);
-    const half_turns<S, C::joints, X> turns(theta, chain.size(), links);
     for (std::size_t i = 0; i < count; ++i) {
       const step_in_memory<typename C::scalar_type> step{chain.steps()[i]};
-      const S x(vector_argument<X>::get(theta, Eigen::Index(i)));
-      const auto seen = [&](const auto&... a) DUET_INLINE_LAMBDA { visit(i, a...); };
-      const auto turn = [&]() DUET_INLINE_LAMBDA { return turns[int(i)]; };
+      const S x(vector_argument<X>::get(theta, i));
       if (!WithRotation && i + 1 == count) {
-        return after_joint<false>(link, step, x, turn, seen);
+        return after_joint<false>(link, step, i, x, turns_of, visit);
       }
-      link = after_joint<true>(link, step, x, turn, seen);
+      link = after_joint<true>(link, step, i, x, turns_of, visit);
     }
     return link;
   }

@@ -3,7 +3,6 @@
 
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
-#include <duet/mechanism/table_arithmetic.hpp>
 
 #include <array>
 #include <concepts>

@@ -64,18 +64,18 @@ template <bool WithRotation, class S, class C, class X, class J>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
 spatial_columns(const C& chain, const X& theta, int link, J& m) {
   m.resize(6, chain.size());
-  const auto at_link = walk<WithRotation, S>(
-      chain, theta, link,
-      [&](std::size_t i, const auto& step, const auto& axis, const auto& point) DUET_INLINE_LAMBDA {
-        auto screw = no_twist<S>();
-        if (step.turns()) {
-          screw = {cross(point, axis), axis};
-        }
-        if (step.slides()) {
-          screw.v = screw.v + step.pitch() * axis;
-        }
-        set_column(m, screw, Eigen::Index(i));
-      });
+  const auto at_link = walk<WithRotation, S>(chain, theta, link,
+                                             [&](Eigen::Index i, const auto& step, const auto& axis,
+                                                 const auto& point) DUET_INLINE_LAMBDA {
+                                               auto screw = no_twist<S>();
+                                               if (step.turns()) {
+                                                 screw = {cross(point, axis), axis};
+                                               }
+                                               if (step.slides()) {
+                                                 screw.v = screw.v + step.pitch() * axis;
+                                               }
+                                               set_column(m, screw, i);
+                                             });
   for (Eigen::Index i = link; i < chain.size(); ++i) { // these joints move other links only
     set_column(m, no_twist<S>(), i);
   }

@@ -1,16 +1,18 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/constants.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/mechanism/table_arithmetic.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <array>
+#include <concepts>
 #include <limits>
-#include <sstream>
+#include <numbers>
 
 /// \file
 /// What a mechanism is built from: constant displacements and joints, as tables that the compiler
@@ -20,11 +22,89 @@ namespace duet {
 
 namespace detail {
 
+// Arithmetic of the constants in a table, which the compiler can do: the functions of the standard
+// library are not `constexpr`.
+
+/// How far from 1 the squared norm of an axis or of a constant rotation may be, as they are written
+/// with few digits.
 template <class T>
-[[noreturn]] void refuse_placement(const quaternion<T>& q) {
-  std::ostringstream message;
-  message << "duet: placement: its rotation " << q << " is no unit quaternion: normalized(q)";
-  throw invalid_input(message.str());
+[[nodiscard]] constexpr bool is_nearly_one(const T& square) {
+  return square - 1 <= 2e-3 && 1 - square <= 2e-3;
+}
+
+/// 1/√s for s near 1, by Newton's method.
+template <class T>
+[[nodiscard]] constexpr T inverse_root_near_one(const T& s) {
+  T x(1);
+  for (int i = 0; i < 8; ++i) {
+    x = x * (3 - s * x * x) / 2;
+  }
+  return x;
+}
+
+/// A unit vector of which what is 0 or ±1 but for rounding is so: the products of its components
+/// are then left out where the table is known to the compiler.
+template <class T>
+[[nodiscard]] constexpr three_vector<T> cleaned_direction(three_vector<T> n) {
+  const T tolerance = 8 * std::numeric_limits<T>::epsilon();
+  for (T* x : {&n.x, &n.y, &n.z}) {
+    for (const int value : {-1, 0, 1}) {
+      if (*x - value <= tolerance && value - *x <= tolerance) {
+        *x = T(value);
+      }
+    }
+  }
+  return n;
+}
+
+template <class T>
+struct table_angle {
+  T sine, cosine;
+};
+
+/// sin and cos of a constant angle. Multiples of a quarter turn are exact, although π/2 of the
+/// table is a rounded number: it means a right angle.
+template <class T>
+[[nodiscard]] constexpr table_angle<T> sine_and_cosine_of_constant(const T& angle) {
+  T quarter{};
+  if constexpr (std::floating_point<T>) {
+    quarter = std::numbers::pi_v<T> / 2;
+  } else {
+    quarter = constant::pi<T>() / 2;
+  }
+  const T turns = angle / quarter;
+  const auto quarters = static_cast<long long>(turns + (turns < 0 ? T(-0.5) : T(0.5)));
+  const T rest = angle - T(quarters) * quarter;
+  T cosine(1), sine(rest), term(rest);
+  T even(1);
+  for (int k = 1; k < 60; ++k) {
+    even = even * -rest * rest / ((2 * k - 1) * (2 * k));
+    term = term * -rest * rest / ((2 * k) * (2 * k + 1));
+    if (cosine + even == cosine && sine + term == sine) {
+      break;
+    }
+    cosine = cosine + even;
+    sine = sine + term;
+  }
+  switch ((quarters % 4 + 4) % 4) {
+  case 0:
+    return {sine, cosine};
+  case 1:
+    return {cosine, -sine};
+  case 2:
+    return {-sine, -cosine};
+  default:
+    return {-cosine, sine};
+  }
+}
+
+/// Rotation about the axis 0 = x, 1 = y, 2 = z.
+template <class T>
+[[nodiscard]] constexpr quaternion<T> turn_about(int axis, const T& angle) {
+  const table_angle<T> half = sine_and_cosine_of_constant(T(angle / 2));
+  const T zero(0);
+  return {half.cosine, axis == 0 ? half.sine : zero, axis == 1 ? half.sine : zero,
+          axis == 2 ? half.sine : zero};
 }
 
 /// The unit quaternion that one of few digits stands for.
@@ -33,7 +113,8 @@ template <class T>
 [[nodiscard]] constexpr quaternion<T> unit_rotation(const quaternion<T>& q) {
   const T square = norm2(q);
   if (!is_nearly_one(square)) {
-    refuse_placement(q);
+    throw invalid_input(
+        message("duet: placement: its rotation ", q, " is no unit quaternion: normalized(q)"));
   }
   // A rotation that is a unit but for rounding stays what it is to the last bit.
   const T rounding = 8 * std::numeric_limits<T>::epsilon();

@@ -37,12 +37,13 @@ struct step_in_memory {
 
   [[nodiscard]] bool turns() const { return s.turns; }
   [[nodiscard]] bool slides() const { return s.slides; }
-  template <class S, class HalfTurn>
-  [[nodiscard]] DUET_ALWAYS_INLINE quaternion<S> rotation(const HalfTurn& half_turn) const {
+  template <class S, class Turns>
+  [[nodiscard]] DUET_ALWAYS_INLINE quaternion<S> rotation(const Turns& turns_of,
+                                                          Eigen::Index i) const {
     if (!s.turns) {
       return quaternion<S>(s.a);
     }
-    const sine_cosine<S> half = half_turn();
+    const sine_cosine<S> half = turns_of[int(i)];
     const S &c = half.cosine, &sine = half.sine; // no quaternions of duals on the way
     return {c * s.a.w() + sine * s.an.w(), c * s.a.x() + sine * s.an.x(),
             c * s.a.y() + sine * s.an.y(), c * s.a.z() + sine * s.an.z()};
@@ -59,13 +60,13 @@ struct known_step {
 
   [[nodiscard]] static constexpr bool turns() { return s().turns; }
   [[nodiscard]] static constexpr bool slides() { return s().slides; }
-  template <class S, class HalfTurn>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const HalfTurn& half_turn) {
+  template <class S, class Turns>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const Turns& turns_of, Eigen::Index i) {
     constexpr auto a = known_quaternion([] { return s().a; });
     if constexpr (!turns()) {
       return a;
     } else {
-      const sine_cosine<S> half = half_turn();
+      const sine_cosine<S> half = turns_of[int(i)];
       return half.cosine * a + half.sine * known_quaternion([] { return s().an; });
     }
   }
@@ -78,20 +79,20 @@ struct known_step {
   [[nodiscard]] static constexpr auto pitch() { return s().pitch; }
 };
 
-/// The link after one more joint. `visit(step, axis, position)` is called with the joint's axis in
+/// The link after the joint i. `visit(i, step, axis, position)` is called with the joint's axis in
 /// space and a point on it. `WithRotation`: is the rotation after the joint asked for?
-template <bool WithRotation, class Link, class Step, class S, class HalfTurn, class Visit>
+template <bool WithRotation, class Link, class Step, class S, class Turns, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE auto after_joint(const Link& link, const Step& step,
-                                                  const S& theta, const HalfTurn& half_turn,
-                                                  Visit&& visit) {
+                                                  Eigen::Index i, const S& theta,
+                                                  const Turns& turns_of, const Visit& visit) {
   three_vector<S> p = link.point(step.offset());
   const three_vector<S> axis = rotated(link.rotation, step.axis());
   if (step.slides()) {
     p = p + theta * step.pitch() * axis;
   }
-  visit(step, axis, p);
+  visit(i, step, axis, p);
   if constexpr (WithRotation) {
-    return displacement{link.rotation * step.template rotation<S>(half_turn), p};
+    return displacement{link.rotation * step.template rotation<S>(turns_of, i), p};
   } else {
     return displacement{link.rotation, p};
   }

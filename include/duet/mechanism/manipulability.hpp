@@ -111,4 +111,25 @@ template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
   return result;
 }
 
+/// −w log √det(J Jᵀ), which planners lower: away from singularities, with weight w.
+template <class C>
+struct high_manipulability {
+  C chain;
+  double weight = 1;
+
+  template <class X>
+  [[nodiscard]] auto operator()(const X& theta) const {
+    using std::log;
+    return -weight * log(manipulability(chain, theta));
+  }
+  template <class X>
+  [[nodiscard]] auto gradient(const X& theta) const {
+    auto [w, slope] = manipulability_gradient(chain, theta);
+    slope *= -weight / w;
+    return slope;
+  }
+};
+template <class C, class... W>
+high_manipulability(C, W...) -> high_manipulability<C>;
+
 } // namespace duet

@@ -10,10 +10,10 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
-#include <sstream>
 #include <string>
 #include <type_traits>
 
@@ -34,30 +34,18 @@ using joint_vector =
 }
 
 template <class T>
-[[noreturn]] void bad_axis(std::size_t i, const std::array<T, 3>& n) {
-  std::ostringstream reason;
-  reason << "the axis (" << n[0] << ", " << n[1] << ", " << n[2] << ") is no unit vector";
-  bad_joint(i, reason.str());
-}
-
-template <class T>
-[[noreturn]] void bad_rotation(std::size_t i, const quaternion<T>& q) {
-  std::ostringstream reason;
-  reason << "the rotation " << q << " of its origin is no unit quaternion: normalized(q)";
-  bad_joint(i, reason.str());
-}
-
-template <class T>
 constexpr void require_joint(const joint<T>& given, std::size_t i) {
-  if (!is_finite(given.origin.translation)) {
+  const auto& t = given.origin.translation;
+  if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
     bad_joint(i, "its origin is not finite");
   }
   if (!is_nearly_one(norm2(given.origin.rotation))) {
-    bad_rotation(i, given.origin.rotation);
+    bad_joint(i, message("the rotation ", given.origin.rotation,
+                         " of its origin is no unit quaternion: normalized(q)"));
   }
-  const auto& n = given.axis;
-  if (given.kind != joint_kind::fixed && !is_nearly_one(squared_norm(n))) {
-    bad_axis(i, n);
+  const auto n = components(given.axis);
+  if (given.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
+    bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is no unit vector"));
   }
   if (!(given.pitch - given.pitch == 0)) {
     bad_joint(i, "its pitch is not finite");
@@ -175,8 +163,8 @@ private:
     const auto i = std::size_t(size_);
     const T to_unit = detail::inverse_root_near_one(norm2(origin.rotation));
     const quaternion<T> a = origin.rotation * to_unit;
-    const auto n = detail::inverse_root_near_one(detail::squared_norm(given.axis)) *
-                   detail::components(given.axis);
+    const auto axis = detail::components(given.axis);
+    const auto n = detail::inverse_root_near_one(dot(axis, axis)) * axis;
     detail::joint_step<T>& s = steps_[i];
     s.a = a;
     s.an = a * quaternion<T>(T(0), n.x, n.y, n.z);

@@ -16,7 +16,6 @@
 #include <iterator>
 #include <ranges>
 #include <span>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 
@@ -52,10 +51,8 @@ void require_matrices(const char* function, Out& out, Eigen::Index n, const Matr
   for (std::size_t i = 0; i < std::size(out); ++i) {
     const auto& m = matrix_of(out[i]);
     if (m.rows() != 6 || m.cols() != n) {
-      std::ostringstream message;
-      message << "duet: " << function << ": result " << i << " is a " << m.rows() << " × "
-              << m.cols() << " matrix, not 6 × " << n;
-      throw invalid_input(message.str());
+      throw invalid_input(message("duet: ", function, ": result ", i, " is a ", m.rows(), " × ",
+                                  m.cols(), " matrix, not 6 × ", n));
     }
   }
 }
@@ -68,19 +65,13 @@ void sweep(const char* function, const C& chain, std::span<const X> configuratio
   using argument = vector_argument<X>;
   using B = batch<typename argument::scalar>;
   using lanes = joint_vector<B, C::joints>;
-  if (configurations.size() != std::size(out)) {
-    std::ostringstream message;
-    message << "duet: " << function << ": " << configurations.size()
-            << " configurations, but room for " << std::size(out) << " results";
-    throw invalid_input(message.str());
-  }
+  require(configurations.size() == std::size(out), "duet: ", function, ": ", configurations.size(),
+          " configurations, but room for ", std::size(out), " results");
   for (std::size_t i = 0; i < configurations.size(); ++i) {
     if (argument::size(configurations[i]) != chain.size()) {
-      std::ostringstream message;
-      message << "duet: " << function << ": configuration " << i << " has "
-              << argument::size(configurations[i]) << " coordinates, but " << chain.size()
-              << " joints move";
-      throw invalid_input(message.str());
+      throw invalid_input(message("duet: ", function, ": configuration ", i, " has ",
+                                  argument::size(configurations[i]), " coordinates, but ",
+                                  chain.size(), " joints move"));
     }
   }
   parallel_for_blocks(

@@ -7,7 +7,6 @@
 #include <duet/core/text/text_rows.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
-#include <duet/mechanism/table_arithmetic.hpp>
 #include <duet/mechanism/xml_check.hpp>
 
 #include <boost/property_tree/ptree.hpp>
@@ -93,17 +92,15 @@ public:
     }
     joint<double> result;
     const std::string type = attribute(element, here, "type");
-    if (type == "revolute") {
-      result.kind = joint_kind::revolute;
-    } else if (type == "continuous") {
-      result.kind = joint_kind::continuous;
-    } else if (type == "prismatic") {
-      result.kind = joint_kind::prismatic;
-    } else if (type == "fixed") {
-      result.kind = joint_kind::fixed;
-    } else {
+    static const std::map<std::string, joint_kind> kinds{{"revolute", joint_kind::revolute},
+                                                         {"continuous", joint_kind::continuous},
+                                                         {"prismatic", joint_kind::prismatic},
+                                                         {"fixed", joint_kind::fixed}};
+    const auto kind = kinds.find(type);
+    if (kind == kinds.end()) {
       fail(here, "type \"" + type + "\" is none of revolute, continuous, prismatic and fixed");
     }
+    result.kind = kind->second;
     if (const auto origin = element.get_child_optional("origin")) {
       const auto rpy = numbers(*origin, here + " <origin>", "rpy", {0, 0, 0});
       result.origin = {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]),
@@ -114,7 +111,7 @@ public:
       if (const auto axis = element.get_child_optional("axis")) {
         result.axis = numbers(*axis, here + " <axis>", "xyz", result.axis);
       }
-      const double length = std::sqrt(squared_norm(result.axis));
+      const double length = std::hypot(result.axis[0], result.axis[1], result.axis[2]);
       if (!is_nearly_one(length * length)) {
         fail(here + " <axis>", "length " + to_text(length) + ", not 1");
       }

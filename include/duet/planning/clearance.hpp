@@ -5,6 +5,7 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/closest_points.hpp>
+#include <duet/planning/motion_plan.hpp> // `stop_reason::obstacle` before `obstacle`: g++ -Wshadow
 #include <duet/planning/shapes.hpp>
 
 #include <cstddef>

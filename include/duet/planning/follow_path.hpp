@@ -2,14 +2,16 @@
 #pragma once
 
 #include <duet/core/text/number_text.hpp>
+#include <duet/derivative/function.hpp>
+#include <duet/derivative/gradient.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/planning/motion_plan.hpp>
-#include <duet/planning/objectives.hpp>
 #include <duet/planning/obstacle_steps.hpp>
 #include <duet/planning/path_follower.hpp>
-#include <duet/planning/plan_options.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/norm.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <concepts>
@@ -17,7 +19,6 @@
 #include <functional>
 #include <limits>
 #include <span>
-#include <sstream>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -32,16 +33,44 @@ namespace duet {
 template <class P>
 concept PosePath = std::invocable<const P&, double>;
 
+/// No wish.
+struct no_objective {};
+
+/// w/2 Σ (θᵢ − θ̂ᵢ)²: a preferred posture θ̂, of weight w.
+template <class V>
+struct preferred_posture {
+  V posture;
+  double weight = 1;
+
+  template <class X>
+  [[nodiscard]] auto operator()(const X& theta) const {
+    auto sum = (theta[0] - posture[0]) * (theta[0] - posture[0]);
+    for (Eigen::Index i = 1; i < posture.size(); ++i) {
+      sum += (theta[i] - posture[i]) * (theta[i] - posture[i]);
+    }
+    return sum * (weight / 2);
+  }
+  template <class X>
+  [[nodiscard]] V gradient(const X& theta) const {
+    return weight * (theta - posture);
+  }
+};
+template <class V, class... W>
+preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
+
 namespace detail {
 
-/// \throws invalid_input for a path that does not begin at the tip
-inline void require_beginning(const pose_deviation& gap, double tolerance) {
-  if (!(gap.length <= tolerance && gap.angle <= tolerance)) {
-    std::ostringstream message;
-    message << "duet: follow_path: the path begins " << gap.length << " units of length and "
-            << gap.angle << " rad away from the tip at the start";
-    throw invalid_input(message.str());
-  }
+/// \throws invalid_input
+inline void require_options(const plan_options& o) {
+  require_positive("plan", "tolerance", o.tolerance);
+  require_positive("plan", "deviation", o.deviation);
+  require_positive("plan", "largest_step", o.largest_step);
+  require_positive("plan", "smallest_step", o.smallest_step);
+  require_positive("plan", "self_motion_step", o.self_motion_step);
+  require_option("plan", "centring", o.centring, o.centring >= 0, "a number from 0 up");
+  require_option("plan", "search_step", o.search_step,
+                 o.search_step == 0 || (o.search_step >= 1e-6 && o.search_step <= 1),
+                 "0 or from 1e-6 to 1");
 }
 
 /// A plan along a path that is known to hold unit poses; none where its end is known to be out of
@@ -55,15 +84,22 @@ template <class C, class Start, class Objective, class Scene>
   using vector = small_vector<room>;
   require_options(options);
   const auto theta = planned_joints<room>(start, chain.size());
-  const auto model = model_of(chain, around);
-  require_beginning(deviation_between(model.at(theta).tip, place_of(target(stops.front()))),
-                    options.tolerance);
+  const std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>
+      model(chain, around);
+  const auto gap = deviation_between(model.at(theta).tip, place_of(target(stops.front())));
+  require(gap.length <= options.tolerance && gap.angle <= options.tolerance,
+          "duet: follow_path: the path begins ", gap.length, " units of length and ", gap.angle,
+          " rad away from the tip at the start");
   model.require_clearance(theta, options.tolerance);
   std::function<vector(const vector&)> slope;
   if constexpr (!std::same_as<Objective, no_objective>) {
     slope = [&](const vector& x) {
-      return planned_joints<room>(objective_gradient(objective, own_joints(chain, x)),
-                                  chain.size());
+      const auto joints = own_joints(chain, x);
+      if constexpr (requires { objective.gradient(joints); }) {
+        return planned_joints<room>(result_of_call(objective.gradient(joints)), chain.size());
+      } else {
+        return planned_joints<room>(duet::gradient(objective, joints).gradient, chain.size());
+      }
     };
   }
   const bool is_out_of_reach =
@@ -137,11 +173,8 @@ follow_path(const C& chain, const Start& start, const Path& path, double first, 
       "duet: follow_path: the path must return a dual_quaternion<double>: pose(q, t), or "
       "from_eigen(...) of an Eigen::Isometry3d");
   detail::require_start(chain, start);
-  if (!(first < last && last - first < std::numeric_limits<double>::infinity())) {
-    std::ostringstream message;
-    message << "duet: follow_path: the path's parameter goes from " << first << " to " << last;
-    throw invalid_input(message.str());
-  }
+  detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
+                  "duet: follow_path: the path's parameter goes from ", first, " to ", last);
   return detail::follow(chain, start, detail::checked(path), {first, last}, options, objective,
                         around);
 }
@@ -170,9 +203,7 @@ follow_path(const C& chain, const Start& start, std::span<const dual_quaternion<
             const plan_options& options = {}, const Objective& objective = {},
             const Scene& around = {}) {
   detail::require_start(chain, start);
-  if (poses.empty()) {
-    throw invalid_input("duet: follow_path: the list of poses is empty");
-  }
+  detail::require(!poses.empty(), "duet: follow_path: the list of poses is empty");
   detail::path_through<double> target;
   std::vector<double> stops;
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -78,10 +78,8 @@ template <SerialChain C, VectorLike Start>
 void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
                         const Start& start, std::span<inverse_kinematics_result<C::joints>> out,
                         const inverse_kinematics_options& options = {}, execution how = one_core) {
-  if (goals.size() != out.size()) {
-    throw invalid_input("duet: inverse_kinematics: " + std::to_string(goals.size()) +
-                        " goals, but room for " + std::to_string(out.size()) + " results");
-  }
+  detail::require(goals.size() == out.size(), "duet: inverse_kinematics: ", goals.size(),
+                  " goals, but room for ", out.size(), " results");
   const detail::search_on_chain<C> search(chain, start, options);
   for (std::size_t i = 0; i < goals.size(); ++i) {
     detail::require_pose(goals[i], "inverse_kinematics", "goal " + std::to_string(i));

@@ -5,7 +5,6 @@
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/bounded_step.hpp>
 #include <duet/planning/motion_plan.hpp>
-#include <duet/planning/plan_options.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/small_vector.hpp>
 
@@ -50,9 +49,9 @@ namespace detail {
 /// \throws invalid_input
 inline void require_options(const inverse_kinematics_options& options) {
   constexpr const char* caller = "inverse_kinematics";
-  require_positive_option(caller, "tolerance", options.tolerance);
-  require_positive_option(caller, "iterations", options.iterations);
-  require_option(options.restarts >= 0, caller, "restarts", options.restarts, "a number from 0 up");
+  require_positive(caller, "tolerance", options.tolerance);
+  require_positive(caller, "iterations", options.iterations);
+  require_option(caller, "restarts", options.restarts, options.restarts >= 0, "a number from 0 up");
 }
 
 /// Numbers from 0 to 1, the same on every machine: SplitMix64 (Steele, Lea, Flood, Fast splittable
@@ -92,10 +91,8 @@ public:
       : model_(model), options_(options), start_(start) {
     require_options(options);
     for (int i = 0; i < model.size; ++i) {
-      if (!(start[i] - start[i] == 0)) {
-        throw invalid_input(
-            message("duet: inverse_kinematics: the start has ", start[i], " for joint ", i));
-      }
+      require(start[i] - start[i] == 0, "duet: inverse_kinematics: the start has ", start[i],
+              " for joint ", i);
       const bool turns = model.turns[std::size_t(i)];
       constexpr double turn = 2 * std::numbers::pi;
       const bool has_turn =

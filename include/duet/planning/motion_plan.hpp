@@ -12,14 +12,34 @@
 #include <algorithm>
 #include <concepts>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <vector>
 
 /// \file
-/// What a planner returns.
+/// What a planner is told, and what it returns.
 
 namespace duet {
+
+/// Settings of `follow_path` and `plan_screw_motion`. Steps along the path are fractions of it.
+struct plan_options {
+  /// How close waypoints come to the path, in units of length and radians.
+  double tolerance = 1e-6;
+  /// How far the tip may be from it where joints move straight on between waypoints.
+  double deviation = 1e-5;
+  /// From one waypoint to the next.
+  double largest_step = .1;
+  /// Below it there is no going on without moving in place.
+  double smallest_step = 1e-6;
+  /// How fast joints move away from their limits where that leaves the tip in place, in coordinates
+  /// per path.
+  double centring = 1;
+  /// Between the places where the tip may stop for the joints to move in place; 0: nowhere.
+  double search_step = .02;
+  /// How far the joints then move from one configuration to the next, in coordinates.
+  double self_motion_step = .1;
+  /// Of Newton's method, in all.
+  int iterations = 1000000;
+};
 
 /// Why a planner stopped.
 enum class stop_reason {
@@ -104,13 +124,6 @@ void add_waypoint(motion_plan<N>& plan, const C& chain, const V& theta,
   }
 }
 
-[[noreturn]] inline void refuse_start(int joint, double x, double lower, double upper) {
-  std::ostringstream message;
-  message << "duet: plan: the start has " << x << " for joint " << joint << ", whose limits are "
-          << lower << " and " << upper;
-  throw invalid_input(message.str());
-}
-
 /// Coordinates of a chain's joints, as a vector of their own.
 template <class C, class X>
 [[nodiscard]] joint_vector<double, C::joints> own_joints(const C& chain, const X& x) {
@@ -128,9 +141,8 @@ void require_start(const C& chain, const Start& start) {
   for (int i = 0; i < chain.size(); ++i) {
     const double x = vector_argument<Start>::get(start, i);
     const auto& limits = chain.limits(i);
-    if (!(x >= limits.lower && x <= limits.upper && x - x == 0)) {
-      refuse_start(i, x, limits.lower, limits.upper);
-    }
+    require(x >= limits.lower && x <= limits.upper && x - x == 0, "duet: plan: the start has ", x,
+            " for joint ", i, ", whose limits are ", limits.lower, " and ", limits.upper);
   }
 }
 
@@ -141,15 +153,21 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
     return;
   }
   const auto square = norm2(a);
-  std::ostringstream message;
-  message << "duet: " << caller << ": " << name;
-  if (is_all_finite(square)) {
-    message << " is no unit dual quaternion: |p|^2 = " << square.value()
-            << ", p.q = " << square.epsilon() / 2;
-  } else {
-    message << " is not finite: " << a;
-  }
-  throw invalid_input(message.str());
+  throw invalid_input(is_all_finite(square)
+                          ? message("duet: ", caller, ": ", name,
+                                    " is no unit dual quaternion: |p|^2 = ", square.value(),
+                                    ", p.q = ", square.epsilon() / 2)
+                          : message("duet: ", caller, ": ", name, " is not finite: ", a));
+}
+
+/// \throws invalid_input for what is no number above 0, if it is one that is asked for
+inline void require_option(const char* caller, const char* name, double value, bool is_good,
+                           const char* range) {
+  require(is_good && value - value == 0, "duet: ", caller, ": ", name, " is ", value, ", not ",
+          range);
+}
+inline void require_positive(const char* caller, const char* name, double value) {
+  require_option(caller, name, value, value > 0, "a number above 0");
 }
 
 } // namespace detail

@@ -13,19 +13,13 @@
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
 #include <variant>
 #include <vector>
 
 /// \file
 /// How planners keep away from obstacles.
 
-namespace duet {
-
-/// No obstacles.
-struct no_scene {};
-
-namespace detail {
+namespace duet::detail {
 
 /// What keeps a step from θ at the margin of a scene: ∇d·Δ ≥ margin − d for each distance d within
 /// the horizon, with ∇d = Jᵀ [n; p × n] of the closest point p and the normal n there.
@@ -61,14 +55,15 @@ public:
   using typename chain_model<C>::state;
   using typename chain_model<C>::vector;
 
+  /// \throws invalid_input for a scene that is none
   chain_among_obstacles(const C& chain, const scene& around)
-      : chain_model<C>(chain), around_(around) {}
+      : chain_model<C>(chain), around_(around) {
+    require_scene(chain, around);
+    this->margin = around.margin;
+  }
 
   [[nodiscard]] double clearance(const vector& theta) const override {
     return nearest(theta).distance;
-  }
-  [[nodiscard]] double shortfall(const vector& theta) const override {
-    return std::max(0.0, around_.margin - clearance(theta));
   }
   [[nodiscard]] step_beside_obstacles<int(vector::size())>
   step_beside(const state& from, const small_twist& e, const vector& wish) const override {
@@ -92,13 +87,9 @@ public:
   }
   void require_clearance(const vector& theta, double tolerance) const override {
     const auto least = nearest(theta);
-    if (!(least.distance >= around_.margin - tolerance)) {
-      std::ostringstream message;
-      message << "duet: plan: at the start body " << least.body << " is " << least.distance
-              << " from obstacle " << least.obstacle << ", closer than the margin of "
-              << around_.margin;
-      throw invalid_input(message.str());
-    }
+    require(least.distance >= around_.margin - tolerance, "duet: plan: at the start body ",
+            least.body, " is ", least.distance, " from obstacle ", least.obstacle,
+            ", closer than the margin of ", around_.margin);
   }
 
 private:
@@ -109,16 +100,4 @@ private:
   const scene& around_;
 };
 
-template <class C>
-[[nodiscard]] chain_model<C> model_of(const C& chain, const no_scene&) {
-  return chain_model<C>(chain);
-}
-/// \throws invalid_input for a scene that is none
-template <class C>
-[[nodiscard]] chain_among_obstacles<C> model_of(const C& chain, const scene& around) {
-  require_scene(chain, around);
-  return chain_among_obstacles<C>(chain, around);
-}
-
-} // namespace detail
-} // namespace duet
+} // namespace duet::detail

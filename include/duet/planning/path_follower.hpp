@@ -3,7 +3,6 @@
 
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/path_step.hpp>
-#include <duet/planning/plan_options.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/self_motion_search.hpp>
 
@@ -89,10 +88,8 @@ private:
   /// As far as possible without stopping.
   void go_on(route& x) {
     for (const double stop : stops_) {
-      if (stop > x.back().u) {
-        if (!travel(x, stop, (stop - x.back().u) / length_, nullptr)) {
-          return;
-        }
+      if (stop > x.back().u && !travel(x, stop, (stop - x.back().u) / length_, nullptr)) {
+        return;
       }
     }
   }

@@ -21,6 +21,13 @@
 /// What planners see of a chain and of what is around it. Nothing in a planner depends on the type
 /// of the chain but the few functions here, so that compilers make it once for all chains.
 
+namespace duet {
+
+/// No obstacles.
+struct no_scene {};
+
+} // namespace duet
+
 namespace duet::detail {
 
 /// Where the tip stands.
@@ -153,6 +160,7 @@ public:
   vector lower, upper;
   std::array<bool, std::size_t(Room)> turns{}, slides{};
   chain_reach reach;
+  double margin = 0; ///< to obstacles
 
   virtual void set(state& of, const vector& theta) const = 0;
   [[nodiscard]] state at(const vector& theta) const {
@@ -168,7 +176,9 @@ public:
   /// \throws invalid_input where obstacles are closer than their margin
   virtual void require_clearance(const vector&, double /*tolerance*/) const {}
   /// How much of that margin is missing.
-  [[nodiscard]] virtual double shortfall(const vector&) const { return 0; }
+  [[nodiscard]] double shortfall(const vector& theta) const {
+    return std::max(0.0, margin - clearance(theta));
+  }
   /// The step nearest to `wish` that moves the tip by `e` to first order and keeps the margin.
   [[nodiscard]] virtual step_beside_obstacles<Room>
   step_beside(const state& /*from*/, const small_twist& /*e*/, const vector& /*wish*/) const {
@@ -184,7 +194,7 @@ public:
   using typename base::state;
   using typename base::vector;
 
-  explicit chain_model(const C& chain) : base(chain), chain_(chain) {}
+  explicit chain_model(const C& chain, const no_scene& = {}) : base(chain), chain_(chain) {}
 
   [[nodiscard]] const C& chain() const { return chain_; }
   void set(state& of, const vector& theta) const override {

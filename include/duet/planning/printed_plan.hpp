@@ -109,9 +109,7 @@ template <SerialChain C, VectorLike Start>
                                      std::span<const dual_quaternion<double>> path,
                                      const printed_plan_options& options = {}) {
   detail::require_start(chain, start);
-  if (path.empty()) {
-    throw invalid_input("duet: plan: the path has no poses");
-  }
+  detail::require(!path.empty(), "duet: plan: the path has no poses");
   for (std::size_t i = 0; i < path.size(); ++i) {
     detail::require_pose(path[i], "plan", "pose " + std::to_string(i) + " of the path");
   }

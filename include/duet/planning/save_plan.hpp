@@ -45,9 +45,7 @@ void append_components(std::vector<double>& row, const V& values) {
 /// \throws invalid_input for a plan without waypoints, file_error
 template <int N>
 void save_plan(const std::string& path, const motion_plan<N>& plan) {
-  if (plan.joints.empty()) {
-    throw invalid_input("duet: save_plan: the plan has no waypoints");
-  }
+  detail::require(!plan.joints.empty(), "duet: save_plan: the plan has no waypoints");
   std::string text = "tau" +
                      detail::numbered_columns("theta", "rad or m", plan.joints.front().size()) +
                      ",x [m],y [m],z [m],qw,qx,qy,qz,deviation [m],deviation [rad]\n";
@@ -66,9 +64,7 @@ void save_plan(const std::string& path, const motion_plan<N>& plan) {
 /// \throws invalid_input for a step that is not positive, file_error
 template <int N>
 void save_trajectory(const std::string& path, const joint_trajectory<N>& trajectory, double step) {
-  if (!(step > 0)) {
-    throw invalid_input("duet: save_trajectory: the step is " + to_text(step));
-  }
+  detail::require(step > 0, "duet: save_trajectory: the step is ", to_text(step));
   const Eigen::Index n = trajectory(0).value.size();
   std::string text = "t [s]" + detail::numbered_columns("theta", "rad or m", n) +
                      detail::numbered_columns("rate", "rad/s or m/s", n) +

@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 
-#include <sstream>
 #include <string>
 
 /// \file
@@ -67,17 +66,8 @@ template <class T>
 /// \throws invalid_input unless 0 ≤ x < ∞
 template <class T>
 void require_extent(const std::string& of, const T& x) {
-  if (!(innermost(x) >= 0 && innermost(x - x) == 0)) {
-    std::ostringstream message;
-    message << "duet: " << of << " is " << innermost(x) << ", not a number from 0 up";
-    throw invalid_input(message.str());
-  }
-}
-
-inline void require_finite_point(const std::string& of, bool is_finite) {
-  if (!is_finite) {
-    throw invalid_input("duet: " + of + " is not finite");
-  }
+  require(innermost(x) >= 0 && innermost(x - x) == 0, "duet: ", of, " is ", innermost(x),
+          ", not a number from 0 up");
 }
 
 } // namespace detail
@@ -87,31 +77,30 @@ inline void require_finite_point(const std::string& of, bool is_finite) {
 /// \throws invalid_input
 template <class T>
 void require_shape(const sphere<T>& s, const std::string& name) {
-  detail::require_finite_point("the centre of " + name, detail::all_finite(s.centre));
+  detail::require(detail::all_finite(s.centre), "duet: the centre of ", name, " is not finite");
   detail::require_extent("the radius of " + name, s.radius);
 }
 template <class T>
 void require_shape(const capsule<T>& c, const std::string& name) {
-  detail::require_finite_point("an end of " + name,
-                               detail::all_finite(c.from) && detail::all_finite(c.to));
+  detail::require(detail::all_finite(c.from) && detail::all_finite(c.to), "duet: an end of ", name,
+                  " is not finite");
   detail::require_extent("the radius of " + name, c.radius);
 }
 template <class T>
 void require_shape(const box<T>& b, const std::string& name) {
-  if (!is_unit(b.placed, 1e-6)) {
-    throw invalid_input("duet: the pose of " + name + " is no unit dual quaternion");
-  }
+  detail::require(is_unit(b.placed, 1e-6), "duet: the pose of ", name,
+                  " is no unit dual quaternion");
   for (Eigen::Index i = 0; i < 3; ++i) {
     detail::require_extent("half size " + std::to_string(i) + " of " + name, b.half_sizes[i]);
   }
 }
 template <class T>
 void require_shape(const half_space<T>& h, const std::string& name) {
-  detail::require_finite_point("the offset of " + name, innermost(h.offset - h.offset) == 0);
+  detail::require(innermost(h.offset - h.offset) == 0, "duet: the offset of ", name,
+                  " is not finite");
   const auto square = innermost(h.normal.squaredNorm());
-  if (!(square - 1 <= 1e-6 && 1 - square <= 1e-6)) {
-    throw invalid_input("duet: the normal of " + name + " is no unit vector");
-  }
+  detail::require(square - 1 <= 1e-6 && 1 - square <= 1e-6, "duet: the normal of ", name,
+                  " is no unit vector");
 }
 
 } // namespace duet
