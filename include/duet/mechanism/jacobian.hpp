@@ -59,46 +59,45 @@ DUET_ALWAYS_INLINE void set_column(J& m, const twist_column<S>& twist, At... at)
   m(5, at...) = twist.omega.z;
 }
 
-/// The screws of the joints up to a link, as columns [v; ω]: in space, v at the fixed origin.
-template <bool WithRotation, class S, class C, class X, class J>
-[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
-spatial_columns(const C& chain, const X& theta, int link, J& m) {
+/// Makes m the Jacobian of a frame on a chain; returns where that stands, its rotation only if m
+/// needs it or it is asked for.
+template <class Frame, bool WithRotation, class S, class C, class X, class At, class J>
+[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> fill_jacobian(J& m, const C& chain,
+                                                                    const X& theta, const At& at) {
+  constexpr bool is_spatial = std::same_as<Frame, spatial_frame>;
+  const auto& on = frame_on(chain, at);
   m.resize(6, chain.size());
-  const auto at_link = walk<WithRotation, S>(chain, theta, link,
-                                             [&](Eigen::Index i, const auto& step, const auto& axis,
-                                                 const auto& point) DUET_INLINE_LAMBDA {
-                                               auto screw = no_twist<S>();
-                                               if (step.turns()) {
-                                                 screw = {cross(point, axis), axis};
-                                               }
-                                               if (step.slides()) {
-                                                 screw.v = screw.v + step.pitch() * axis;
-                                               }
-                                               set_column(m, screw, i);
-                                             });
-  for (Eigen::Index i = link; i < chain.size(); ++i) { // these joints move other links only
+  const auto put_screw = [&](Eigen::Index i, const auto& step, const auto& axis, const auto& point)
+                             DUET_INLINE_LAMBDA {
+                               auto screw = no_twist<S>(); // in space, v at the fixed origin
+                               if (step.turns()) {
+                                 screw = {cross(point, axis), axis};
+                               }
+                               if (step.slides()) {
+                                 screw.v = screw.v + step.pitch() * axis;
+                               }
+                               set_column(m, screw, i);
+                             };
+  const auto link = walk < WithRotation || !is_spatial, S > (chain, theta, on.link, put_screw);
+  for (Eigen::Index i = on.link; i < chain.size(); ++i) { // these joints move other links only
     set_column(m, no_twist<S>(), i);
   }
-  return at_link;
-}
-
-/// Spatial columns [v; ω] with v taken at a point in space instead: v + ω × p (N20).
-template <class S, class J>
-DUET_ALWAYS_INLINE void move_to_point(J& m, const three_vector<S>& p) {
-  for (Eigen::Index i = 0; i < m.cols(); ++i) {
-    const auto twist = column_of(m, i);
-    set_column(m, twist_column<S>{twist.v + cross(twist.omega, p), twist.omega}, i);
+  const auto at_frame = attached(link, on.offset);
+  if constexpr (!is_spatial) { // v taken at the frame's origin instead: v + ω × p (N20)
+    for (Eigen::Index i = 0; i < m.cols(); ++i) {
+      const auto twist = column_of(m, i);
+      set_column(
+          m, twist_column<S>{twist.v + cross(twist.omega, at_frame.translation), twist.omega}, i);
+    }
   }
-}
-
-/// Columns in fixed axes turned into those of a body: Rᵀv, Rᵀω.
-template <class S, class J>
-DUET_ALWAYS_INLINE void turn_to_body(J& m, const quaternion<S>& rotation) {
-  const rotation_of_many turn(conj(rotation));
-  for (Eigen::Index i = 0; i < m.cols(); ++i) {
-    const auto twist = column_of(m, i);
-    set_column(m, twist_column<S>{turn(twist.v), turn(twist.omega)}, i);
+  if constexpr (std::same_as<Frame, body_frame>) { // in its axes: Rᵀv, Rᵀω
+    const rotation_of_many turn(conj(at_frame.rotation));
+    for (Eigen::Index i = 0; i < m.cols(); ++i) {
+      const auto twist = column_of(m, i);
+      set_column(m, twist_column<S>{turn(twist.v), turn(twist.omega)}, i);
+    }
   }
+  return at_frame;
 }
 
 } // namespace detail
@@ -111,16 +110,8 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At =
 [[nodiscard]] DUET_ALWAYS_INLINE auto pose_and_jacobian(const C& chain, const X& theta, Frame,
                                                         const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
-  const auto& on = detail::frame_on(chain, at);
   value_and_jacobian<dual_quaternion<S>, detail::chain_jacobian<C, X>> result;
-  const auto link = detail::spatial_columns<true, S>(chain, theta, on.link, result.jacobian);
-  const auto at_frame = detail::attached(link, on.offset);
-  if constexpr (!std::same_as<Frame, spatial_frame>) {
-    detail::move_to_point(result.jacobian, at_frame.translation);
-  }
-  if constexpr (std::same_as<Frame, body_frame>) {
-    detail::turn_to_body(result.jacobian, at_frame.rotation);
-  }
+  const auto at_frame = detail::fill_jacobian<Frame, true, S>(result.jacobian, chain, theta, at);
   result.value = detail::pose_of_unit(at_frame.rotation, at_frame.translation.eigen());
   return result;
 }
@@ -142,14 +133,9 @@ template <class C, VectorLike X, FrameConstant Frame,
                                                const At& at = {}) {
   using chain_type = std::remove_cvref_t<C>;
   using S = detail::chain_scalar<chain_type, X>;
-  if constexpr (std::same_as<Frame, spatial_frame>) {
-    detail::chain_jacobian<chain_type, X> result;
-    const auto& on = detail::frame_on(chain, at);
-    static_cast<void>(detail::spatial_columns<false, S>(chain, theta, on.link, result));
-    return result;
-  } else {
-    return pose_and_jacobian(chain, theta, Frame{}, at).jacobian;
-  }
+  detail::chain_jacobian<chain_type, X> result;
+  static_cast<void>(detail::fill_jacobian<Frame, false, S>(result, chain, theta, at));
+  return result;
 }
 
 template <class C, VectorLike X>

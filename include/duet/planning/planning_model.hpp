@@ -199,10 +199,8 @@ public:
   [[nodiscard]] const C& chain() const { return chain_; }
   void set(state& of, const vector& theta) const override {
     of.theta = theta;
-    const auto link =
-        spatial_columns<true, double>(chain_, own_joints(chain_, theta), this->size, of.jacobian);
-    of.tip = attached(link, chain_.tip().offset);
-    move_to_point(of.jacobian, of.tip.translation);
+    of.tip = fill_jacobian<hybrid_frame, true, double>(of.jacobian, chain_,
+                                                       own_joints(chain_, theta), tip_of_chain{});
   }
 
 private:
