@@ -122,7 +122,7 @@ bounded_step(const small_matrix<6, N>& jacobian, const small_twist& e, const sma
     small_twist rest = e;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       if (is_fixed[std::size_t(i)]) {
-        rest -= result.step[i] * jacobian.columns[std::size_t(i)];
+        rest = rest - result.step[i] * jacobian.columns[std::size_t(i)];
       } else {
         add_square(gram, jacobian, i);
       }

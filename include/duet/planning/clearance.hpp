@@ -82,6 +82,23 @@ struct chain_clearance {
   proximity<S> points = {};
 };
 
+namespace detail {
+
+/// Calls visit(i, k, points) with where body i of a chain is nearest to obstacle k, for all of
+/// them.
+template <class C, class X, class Visit>
+void for_each_proximity(const C& chain, const X& theta, const scene& s, const Visit& visit) {
+  for (std::size_t i = 0; i < s.bodies.size(); ++i) {
+    const auto body = transformed(chain.pose(theta, s.bodies[i].link), s.bodies[i].shape);
+    for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
+      visit(i, k,
+            std::visit([&](const auto& o) { return closest_points(body, o); }, s.obstacles[k]));
+    }
+  }
+}
+
+} // namespace detail
+
 /// How far the chain is from all obstacles at coordinates θ of any scalar, in units of length;
 /// negative where it overlaps one of them, infinite where there are none.
 /// \throws invalid_input as `chain.pose`
@@ -89,16 +106,12 @@ template <SerialChain C, VectorLike X>
 [[nodiscard]] auto clearance(const C& chain, const X& theta, const scene& s) {
   using S = detail::chain_scalar<C, X>;
   chain_clearance<S> result;
-  for (std::size_t i = 0; i < s.bodies.size(); ++i) {
-    const auto body = transformed(chain.pose(theta, s.bodies[i].link), s.bodies[i].shape);
-    for (std::size_t k = 0; k < s.obstacles.size(); ++k) {
-      const auto points =
-          std::visit([&](const auto& o) { return closest_points(body, o); }, s.obstacles[k]);
-      if (innermost(points.distance) < innermost(result.distance)) {
-        result = {points.distance, i, k, points};
-      }
-    }
-  }
+  detail::for_each_proximity(chain, theta, s,
+                             [&](std::size_t i, std::size_t k, const auto& points) {
+                               if (innermost(points.distance) < innermost(result.distance)) {
+                                 result = {points.distance, i, k, points};
+                               }
+                             });
   return result;
 }
 

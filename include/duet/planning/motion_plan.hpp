@@ -10,7 +10,9 @@
 #include <duet/quaternion/rotation.hpp>
 
 #include <algorithm>
+#include <array>
 #include <concepts>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -54,22 +56,9 @@ enum class stop_reason {
 
 /// Its name.
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
-  switch (reason) {
-  case stop_reason::reached:
-    return "reached";
-  case stop_reason::joint_limit:
-    return "joint_limit";
-  case stop_reason::singular:
-    return "singular";
-  case stop_reason::obstacle:
-    return "obstacle";
-  case stop_reason::no_progress:
-    return "no_progress";
-  case stop_reason::iteration_limit:
-    return "iteration_limit";
-  default:
-    return "out_of_reach";
-  }
+  constexpr std::array names{"reached",     "joint_limit",     "singular",    "obstacle",
+                             "no_progress", "iteration_limit", "out_of_reach"};
+  return names[std::size_t(reason)];
 }
 
 /// How far one pose is from another: its origin in units of length, its axes in radians.

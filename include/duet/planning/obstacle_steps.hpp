@@ -5,15 +5,13 @@
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/planning/clearance.hpp>
-#include <duet/planning/closest_points.hpp>
 #include <duet/planning/constrained_step.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/small_vector.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
-#include <algorithm>
+#include <cstddef>
 #include <optional>
-#include <variant>
 #include <vector>
 
 /// \file
@@ -27,24 +25,18 @@ template <class C, class V>
 [[nodiscard]] std::vector<inequality<V>> margin_inequalities(const C& chain, const V& theta,
                                                              const scene& around) {
   std::vector<inequality<V>> result;
-  for (const link_body& body : around.bodies) {
-    const auto here = transformed(chain.pose(theta, body.link), body.shape);
-    for (const obstacle& each : around.obstacles) {
-      const proximity<double> nearest =
-          std::visit([&](const auto& o) { return closest_points(here, o); }, each);
-      if (nearest.distance - around.margin < around.horizon) {
-        const auto j = jacobian(chain, theta, frame::spatial, body.link);
-        const vector3<double> moment =
-            cross(components(nearest.on_body), components(nearest.normal));
-        V slope(theta.size());
-        for (Eigen::Index i = 0; i < theta.size(); ++i) {
-          const vector6<double> column = j.col(i);
-          slope[i] = nearest.normal.dot(column.head<3>()) + moment.dot(column.tail<3>());
-        }
-        result.push_back({slope, around.margin - nearest.distance});
+  for_each_proximity(chain, theta, around, [&](std::size_t body, std::size_t, const auto& nearest) {
+    if (nearest.distance - around.margin < around.horizon) {
+      const auto j = jacobian(chain, theta, frame::spatial, around.bodies[body].link);
+      const vector3<double> moment = cross(components(nearest.on_body), components(nearest.normal));
+      V slope(theta.size());
+      for (Eigen::Index i = 0; i < theta.size(); ++i) {
+        const vector6<double> column = j.col(i);
+        slope[i] = nearest.normal.dot(column.head<3>()) + moment.dot(column.tail<3>());
       }
+      result.push_back({slope, around.margin - nearest.distance});
     }
-  }
+  });
   return result;
 }
 

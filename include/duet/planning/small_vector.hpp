@@ -19,23 +19,17 @@ struct small_vector {
   [[nodiscard]] double operator[](std::ptrdiff_t i) const { return values[std::size_t(i)]; }
   [[nodiscard]] double& operator[](std::ptrdiff_t i) { return values[std::size_t(i)]; }
 
-  small_vector& operator+=(const small_vector& b) {
-    for (std::size_t i = 0; i < std::size_t(N); ++i) {
-      values[i] += b.values[i];
-    }
-    return *this;
-  }
-  small_vector& operator-=(const small_vector& b) {
-    for (std::size_t i = 0; i < std::size_t(N); ++i) {
-      values[i] -= b.values[i];
-    }
-    return *this;
-  }
   [[nodiscard]] friend small_vector operator+(small_vector a, const small_vector& b) {
-    return a += b;
+    for (std::size_t i = 0; i < std::size_t(N); ++i) {
+      a.values[i] += b.values[i];
+    }
+    return a;
   }
   [[nodiscard]] friend small_vector operator-(small_vector a, const small_vector& b) {
-    return a -= b;
+    for (std::size_t i = 0; i < std::size_t(N); ++i) {
+      a.values[i] -= b.values[i];
+    }
+    return a;
   }
   [[nodiscard]] friend small_vector operator*(double s, small_vector a) {
     for (double& x : a.values) {
