@@ -97,9 +97,8 @@ template <class S, class A, class X>
 /// A₀ᵀ(b − A x) is never formed, so that the square of cond(A) multiplies only what is left of b.
 ///
 /// \throws invalid_input where sizes do not match, where A has entries that are not finite, and
-/// where
-///         the rank that Eigen finds is not n. Columns whose sizes differ by 1/ε count as
-///         dependent: choose the units of the unknowns accordingly.
+/// where the rank that Eigen finds is not n. Columns whose sizes differ by 1/ε count as dependent:
+/// choose the units of the unknowns accordingly.
 template <class A, class B>
 [[nodiscard]] auto least_squares(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   using S = detail::common_scalar_t<A, B>;

@@ -155,9 +155,8 @@ void require_square(const A& a, const B& b) {
 /// relative error is that of x, about cond(A) ε, but may grow with every order by another cond(A).
 ///
 /// \throws invalid_input where sizes do not match, where A has entries that are not finite, and
-/// where
-///         A is singular: where a pivot is at most 4nε times the sum of the absolute terms that it
-///         is the sum of. What is nearly singular passes, and has an error to match.
+/// where A is singular: where a pivot is at most 4nε times the sum of the absolute terms that it is
+/// the sum of. What is nearly singular passes, and has an error to match.
 template <class A, class B>
 [[nodiscard]] auto solve(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   using S = detail::common_scalar_t<A, B>;

@@ -116,8 +116,7 @@ template <class Solver, class Y>
 /// constant: all its infinitesimal parts zero.
 ///
 /// \throws invalid_input where A is not square or has entries that are not finite, and at a
-/// repeated
-///         eigenvalue of a matrix that is not constant.
+/// repeated eigenvalue of a matrix that is not constant.
 /// \throws no_convergence where Eigen's solver does not converge.
 template <class A>
 [[nodiscard]] auto symmetric_eigen(const Eigen::MatrixBase<A>& a) {

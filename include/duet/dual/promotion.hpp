@@ -134,9 +134,7 @@ template <class A, class B>
 /// Two numbers, at least one of a field other than the reals: no digits may be lost.
 template <class A, class B>
 [[nodiscard]] constexpr auto promotion_of_fields() {
-  if constexpr (Arithmetic<A>) {
-    return promotion_of_fields<B, A>();
-  } else if constexpr (Arithmetic<B>) {
+  if constexpr (Arithmetic<B>) {
     using constant = constant_t<A>;
     return std::type_identity<std::conditional_t<
         std::is_same_v<std::common_type_t<constant, B>, constant>, A, no_promotion>>{};
@@ -151,22 +149,19 @@ template <class A, class B>
 [[nodiscard]] constexpr auto promotion() {
   if constexpr (std::is_same_v<A, B>) {
     return std::type_identity<A>{};
+  } else if constexpr ((!Infinitesimal<A> && Infinitesimal<B>) ||
+                       (Arithmetic<A> && !Arithmetic<B>)) {
+    return promotion<B, A>();
   } else if constexpr (Infinitesimal<A> && ArithmeticOf<B, A>) {
     return std::type_identity<A>{}; // a literal takes the precision of what it meets
-  } else if constexpr (ArithmeticOf<A, B> && Infinitesimal<B>) {
-    return std::type_identity<B>{};
   } else if constexpr (Infinitesimal<A> && Infinitesimal<B>) {
     return promotion_of_levels<A, B>();
   } else if constexpr (Infinitesimal<A> && Field<B>) {
     return promotion_below<A, typename scalar_traits<A>::value_type, B>();
-  } else if constexpr (Field<A> && Infinitesimal<B>) {
-    return promotion_below<B, typename scalar_traits<B>::value_type, A>();
   } else if constexpr (Arithmetic<A> && Arithmetic<B>) {
     return std::common_type<A, B>{};
   } else if constexpr (Real<A> && Arithmetic<B>) {
     return std::type_identity<A>{};
-  } else if constexpr (Arithmetic<A> && Real<B>) {
-    return std::type_identity<B>{};
   } else if constexpr (field_traits<A>::is_field || field_traits<B>::is_field) {
     return promotion_of_fields<A, B>();
   } else {

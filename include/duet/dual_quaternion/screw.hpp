@@ -42,10 +42,9 @@ struct screw_motion {
 /// The screw of a pose, the same for A and −A: log A = ½ (φ + εd)(n + εm).
 ///
 /// \param tolerance  an angle up to this is none (radians), and a translation up to this none
-/// (units
-///                   of length): a pure translation has angle 0, its direction as axis, moment 0
-///                   and d ≥ 0; no motion has zeros. Below about 1e-8 the place of the axis would
-///                   be rounding noise, which is why that is the default.
+/// (units of length): a pure translation has angle 0, its direction as axis, moment 0 and d ≥ 0; no
+/// motion has zeros. Below about 1e-8 the place of the axis would be rounding noise, which is why
+/// that is the default.
 template <class T>
 [[nodiscard]] screw_motion<T> screw_parameters(const dual_quaternion<T>& a,
                                                double tolerance = 1e-8) {
