@@ -82,10 +82,8 @@ template <class A, class B>
 struct structure<std::pair<A, B>> {
   template <class F, class... Rest>
   [[nodiscard]] static constexpr auto map(F&& f, const std::pair<A, B>& x, const Rest&... rest) {
-    return std::pair<decltype(structure<A>::map(f, x.first, rest.first...)),
-                     decltype(structure<B>::map(f, x.second, rest.second...))>{
-        structure<A>::map(f, x.first, rest.first...),
-        structure<B>::map(f, x.second, rest.second...)};
+    return std::pair{structure<A>::map(f, x.first, rest.first...),
+                     structure<B>::map(f, x.second, rest.second...)};
   }
 };
 

@@ -114,15 +114,6 @@ inline constexpr int mask_limit = branch_limit;
 /// after it, though it is never made.
 inline constexpr int in_place_limit = 32;
 
-template <class Row>
-[[nodiscard]] constexpr bool is_masked_in_place() {
-  if constexpr (requires { Row::packet_count; }) {
-    return Row::packet_count <= in_place_limit;
-  } else {
-    return false;
-  }
-}
-
 // How partials are combined: `kernel(product, p…)` for each of them, where product(slope, p) is
 // slope · p with surviving zeros.
 
@@ -211,7 +202,7 @@ combined(const Kernel<T>& kernel, const Mask& is_finite, const Row& row, const R
       return with([](const T& slope, const auto& p)
                       DUET_INLINE_LAMBDA { return std::remove_cvref_t<decltype(p)>(p * slope); });
     }
-    if constexpr (is_masked_in_place<Row>()) {
+    if constexpr (requires { requires Row::packet_count <= in_place_limit; }) {
       return with(masked);
     } else {
       return guarded_chain(kernel, row, rows...);

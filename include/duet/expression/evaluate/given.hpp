@@ -44,13 +44,8 @@ template <class T>
 struct scalar_of<screw_dual<T>> {
   using type = T;
 };
-template <class T, int Rows, int Columns, int Options>
-struct scalar_of<Eigen::Matrix<T, Rows, Columns, Options>> : scalar_of<T> {};
 template <class T>
-struct scalar_of<quaternion<T>> : scalar_of<T> {};
-
-template <class T>
-using scalar_of_t = typename scalar_of<T>::type;
+using scalar_of_t = typename scalar_of<typename structure<T>::scalar>::type;
 
 /// The scalar that holds some; of none a double.
 template <class... T>
