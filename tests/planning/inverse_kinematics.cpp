@@ -300,6 +300,30 @@ TEST_CASE("bad problems") {
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.iterations = 0}), invalid_input);
 }
 
+TEST_CASE("the error of a pose is the twist of the shorter screw motion to another") {
+  duet_test::random_source random(38);
+  for (const double angle : {0., 1e-200, 1e-160, 1e-9, 1e-3, 1., 3., pi - 1e-9, pi, 4., 6.}) {
+    for (const double sign : {1., -1.}) {
+      const auto n = random.direction<3>(), t = random.direction<3>(), u = random.direction<3>();
+      const auto turn = exp(vector3<double>(.5 * angle * vector3<double>(n[0], n[1], n[2])));
+      const auto rotation = exp(vector3<double>(t[0], t[1], t[2]));
+      const detail::tip_place from{rotation, {u[0], u[1], u[2]}};
+      const detail::tip_place to{sign * (turn * rotation), {t[2], 3 * t[0], t[1]}};
+      const auto e = detail::error_twist(from, to);
+      const vector3<double> omega(e[3], e[4], e[5]), p(u[0], u[1], u[2]);
+      CHECK(omega.norm() <= pi * (1 + 1e-15));
+      CHECK(omega.norm() == doctest::Approx(std::min(angle, 2 * pi - angle)));
+      const vector3<double> spatial = vector3<double>(e[0], e[1], e[2]) - omega.cross(p);
+      const auto there =
+          exp(make_dual_vector(vector3<double>(omega / 2), vector3<double>(spatial / 2))) *
+          detail::pose_at(from);
+      const auto left = deviation_between(there, detail::pose_at(to));
+      CHECK(left.length < 1e-14);
+      CHECK(left.angle < 1e-14);
+    }
+  }
+}
+
 TEST_CASE("nothing is allocated, restarts included") {
   std::array<joint<>, 16> joints;
   for (std::size_t i = 0; i < 16; ++i) {
