@@ -19,8 +19,8 @@ using duet::detail::block_row;
 using duet::detail::block_tridiagonal;
 using duet::detail::corners;
 
-std::vector<block_row<double, 3>> random_rows(std::size_t n, duet_test::random_source& random) {
-  std::vector<block_row<double, 3>> rows(n);
+std::vector<block_row<double>> random_rows(std::size_t n, duet_test::random_source& random) {
+  std::vector<block_row<double>> rows(n);
   for (auto& row : rows) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
@@ -33,7 +33,7 @@ std::vector<block_row<double, 3>> random_rows(std::size_t n, duet_test::random_s
   return rows;
 }
 
-Eigen::MatrixXd dense(const std::vector<block_row<double, 3>>& rows, const corners& at) {
+Eigen::MatrixXd dense(const std::vector<block_row<double>>& rows, const corners& at) {
   const auto n = Eigen::Index(rows.size());
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -58,7 +58,7 @@ void check(std::size_t n, const corners& at) {
       right[3 * Eigen::Index(i) + j] = x[i][j] = random.uniform(-1, 1);
     }
   }
-  block_tridiagonal<double, 3> solver;
+  block_tridiagonal<double> solver;
   solver.rows() = rows;
   REQUIRE(solver.factorise(at));
   solver.solve(x);
@@ -85,7 +85,7 @@ TEST_CASE("systems with a wider band at their ends, down to three rows, against 
 TEST_CASE("one factorisation serves any scalar above") {
   duet_test::random_source random(1);
   const auto rows = random_rows(7, random);
-  block_tridiagonal<double, 3> solver;
+  block_tridiagonal<double> solver;
   solver.rows() = rows;
   REQUIRE(solver.factorise({6, 0}));
   std::vector<duet::vector3<double>> value(7), part(7);
@@ -112,7 +112,7 @@ TEST_CASE("a singular pivot is reported") {
   duet_test::random_source random(1);
   auto rows = random_rows(4, random);
   rows[0].diagonal.setZero();
-  block_tridiagonal<double, 3> solver;
+  block_tridiagonal<double> solver;
   solver.rows() = rows;
   CHECK(!solver.factorise({2, 1}));
 }

@@ -3,6 +3,7 @@
 #include <duet/core/rounding.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/curve_ends.hpp>
@@ -11,6 +12,7 @@
 #include <duet/spline/equations/newton.hpp>
 #include <duet/spline/equations/small_turns.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
@@ -88,7 +90,75 @@ void check_all_ends(const way& most) {
   check("periodic", duet::periodic{});
 }
 
+/// How far solutions for differences of residuals are from the differences of unknowns that they
+/// are for, at and near the curve.
+template <class Spline>
+double error_of_jacobian(const rows& data, const duet::curve_ends<double>& ends, double away) {
+  const duet::detail::equations_of_t<Spline> f(data.parameters, data.orientations, ends);
+  auto x = duet::detail::spline_newton(f).solution();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (int k = 0; k < x[i].size(); ++k) {
+      x[i][k] += away * std::sin(3. * k + double(i));
+    }
+  }
+  typename duet::detail::equations_of_t<Spline>::matrix jacobian;
+  auto above = x, below = x;
+  REQUIRE(f.linearise(x, above, jacobian));
+  double worst = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (int k = 0; k < x[i].size(); ++k) {
+      auto moved = x;
+      moved[i][k] = x[i][k] + 1e-5;
+      f.residuals(moved, above);
+      moved[i][k] = x[i][k] - 1e-5;
+      f.residuals(moved, below);
+      for (std::size_t j = 0; j < x.size(); ++j) {
+        above[j] = (above[j] - below[j]) / 2e-5;
+      }
+      jacobian.solve(above);
+      above[i][k] -= 1;
+      for (const auto& each : above) {
+        worst = std::max(worst, each.norm());
+      }
+    }
+  }
+  return worst;
+}
+
+/// \param most  which the differences are off by
+template <class Spline>
+void check_jacobians(double away, double most) {
+  rows data;
+  for (int i = 0; i <= 7; ++i) {
+    data.parameters.push_back(i + .3 * std::sin(2. * i));
+    data.orientations.push_back(
+        duet::exp(vector3(.9 * std::sin(i), .8 * std::cos(1.3 * i), .5 * std::sin(.7 * i + 1))));
+  }
+  data.orientations = duet::aligned_orientations(data.orientations);
+  const vector3 v(.3, -.2, .5), w(.1, .4, -.2);
+  const auto check = [&](const char* name, const duet::curve_ends<double>& ends) {
+    CAPTURE(name);
+    CHECK(error_of_jacobian<Spline>(data, ends, away) < most);
+  };
+  check("natural", duet::natural{});
+  check("clamped", duet::clamped{v, w});
+  check("end_acceleration", duet::end_acceleration{v, w});
+  check("not_a_knot", duet::not_a_knot{});
+  if constexpr (Spline::order == 6) {
+    check("fully_clamped", duet::fully_clamped{duet::clamped{v, w}, duet::end_acceleration{w, v}});
+  }
+  data.orientations.back() = data.orientations.front();
+  data.orientations = duet::aligned_orientations(data.orientations);
+  check("periodic", duet::periodic{});
+}
+
 } // namespace
+
+TEST_CASE("Jacobians against differences") {
+  check_jacobians<cumulative>(0, 1e-8); // elsewhere they only make the same step of Newton's
+  check_jacobians<rotation_vector<4>>(.1, 1e-8);
+  check_jacobians<rotation_vector<6>>(.1, 1e-4);
+}
 
 TEST_CASE("no step is small where one is not a number") {
   const double nan = std::numeric_limits<double>::quiet_NaN();

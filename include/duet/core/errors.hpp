@@ -1,9 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <initializer_list>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 /// \file
 /// The exceptions duet throws. Each message says what, where and which value.
@@ -26,13 +29,43 @@ public:
 
 namespace duet::detail {
 
-/// The parts in a row, whatever the locale.
-template <class... Parts>
-[[nodiscard, gnu::cold, gnu::noinline]] std::string message(const Parts&... parts) {
+/// A part of a message: text, or anything that is written to a stream.
+class message_part {
+public:
+  message_part(std::string_view text) : text_(text) {}
+  template <class Value>
+    requires(!std::is_convertible_v<const Value&, std::string_view>)
+  message_part(const Value& value)
+      : value_(&value),
+        write_([](std::ostream& out, const void* of) { out << *static_cast<const Value*>(of); }) {}
+
+  void write(std::ostream& out) const {
+    if (write_ != nullptr) {
+      write_(out, value_);
+    } else {
+      out << text_;
+    }
+  }
+
+private:
+  std::string_view text_;
+  const void* value_ = nullptr;
+  void (*write_)(std::ostream&, const void*) = nullptr;
+};
+
+/// The parts in a row, whatever the locale. (Compiled once, not for every list of types.)
+[[nodiscard, gnu::cold, gnu::noinline]] inline std::string
+joined(std::initializer_list<message_part> parts) {
   std::ostringstream text;
   text.imbue(std::locale::classic()); // known by <ios>
-  (text << ... << parts);
+  for (const message_part& part : parts) {
+    part.write(text);
+  }
   return text.str();
+}
+template <class... Parts>
+[[nodiscard]] std::string message(const Parts&... parts) {
+  return joined({message_part(parts)...});
 }
 
 /// \throws invalid_input, which says the parts in a row, unless the condition holds

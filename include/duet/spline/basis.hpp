@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <sstream>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -254,12 +253,8 @@ private:
       }
       highest += result.polynomials[j][k - 1];
     }
-    if (!(highest - highest == 0)) {
-      std::ostringstream message;
-      message << "duet: knots: knot " << i << " = " << knots_[i] << " and knot " << i + 1 << " = "
-              << knots_[i + 1] << " are too close: a derivative overflows";
-      throw invalid_input(message.str());
-    }
+    detail::require(highest - highest == 0, "duet: knots: knot ", i, " = ", knots_[i], " and knot ",
+                    i + 1, " = ", knots_[i + 1], " are too close: a derivative overflows");
     raise(k);
     R sum(0);
     for (std::size_t j = k - 1; j >= 1; --j) {

@@ -13,7 +13,6 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -90,12 +89,8 @@ private:
   friend class piecewise_curve<cumulative_bspline, real_type_t<T>>;
 
   void check_count(const char* what, std::size_t count) const {
-    if (count != basis_.size()) {
-      std::ostringstream message;
-      message << "duet: cumulative_bspline: " << basis_.knots().size() << " knots of order "
-              << Order << " take " << basis_.size() << " " << what << ", got " << count;
-      throw invalid_input(message.str());
-    }
+    detail::require(count == basis_.size(), "duet: cumulative_bspline: ", basis_.knots().size(),
+                    " knots of order ", Order, " take ", basis_.size(), " ", what, ", got ", count);
   }
 
   [[nodiscard]] const basis_type& spans() const { return basis_; }

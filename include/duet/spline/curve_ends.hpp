@@ -11,7 +11,6 @@
 
 #include <array>
 #include <cstddef>
-#include <sstream>
 
 /// \file
 /// End conditions as data, so that no equation is compiled for each of them.
@@ -36,11 +35,10 @@ void check_end_rates(const char* condition, const V& start, const V& end) {
   const auto check = [&](const char* which, const V& rate) {
     for (int i = 0; i < V::SizeAtCompileTime; ++i) {
       if (!(innermost(rate[i]) - innermost(rate[i]) == 0)) {
-        std::ostringstream message;
-        message << "duet: " << condition << ": the rate at the " << which << ", ("
-                << rate.transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "})
-                << "), is not finite";
-        throw invalid_input(message.str());
+        throw invalid_input(
+            message("duet: ", condition, ": the rate at the ", which, ", (",
+                    rate.transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "}),
+                    "), is not finite"));
       }
     }
   };

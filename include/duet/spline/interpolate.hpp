@@ -19,7 +19,6 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -67,19 +66,19 @@ template <class Equations, class Newton>
 /// The last row as the first one again.
 /// \throws invalid_row where it is another
 template <class T>
-[[nodiscard]] std::vector<quaternion<T>> closed(std::vector<quaternion<T>> q) {
+[[nodiscard, gnu::cold, gnu::noinline]] std::vector<quaternion<T>>
+closed(std::vector<quaternion<T>> q) {
   using std::sqrt;
   const bool is_opposite = innermost(dot(q.front(), q.back())) < 0;
   const quaternion<T> again = is_opposite ? -q.front() : q.front();
-  const vector3<T> half = log_vector(quaternion<T>(conj(again) * q.back()), "interpolate");
+  const vector3<T> half = turn_vector(quaternion<T>(conj(again) * q.back()));
   const auto tolerance = sqrt(std::numeric_limits<real_type_t<T>>::epsilon());
   const auto check = [&](const auto& x, const char* unit) {
     using R = real_type_t<T>;
     const R off = 2 * vector3<R>(innermost(x[0]), innermost(x[1]), innermost(x[2])).norm();
     if (!(off <= tolerance)) {
-      std::ostringstream reason;
-      reason << "periodic ends: differs from row 0 by " << off << unit << ", but must repeat it";
-      throw invalid_row(q.size() - 1, reason.str());
+      throw invalid_row(q.size() - 1, message("periodic ends: differs from row 0 by ", off, unit,
+                                              ", but must repeat it"));
     }
   };
   if constexpr (contains_tag<T, screw_tag>()) {
@@ -162,7 +161,7 @@ template <CurveType Spline, class T>
 /// | `periodic` | as smooth as inside | as smooth as inside |
 ///
 /// Unknown are the increments of P2, or the rates at the knots. Their real parts are found by
-/// Newton's method with AD Jacobian, O(n) a step; where neighbouring rows are far apart, by
+/// Newton's method, O(n) a step; where neighbouring rows are far apart, by
 /// continuation from smaller turns. Infinitesimal parts, those of poses and of derivatives with
 /// respect to the data among them, follow from the equations by linear solves, one each and one
 /// more, to rounding. Against smooth motion and with ends that fit it, the cumulative cubic is

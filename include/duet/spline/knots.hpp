@@ -5,6 +5,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/text/number_text.hpp>
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <limits>
@@ -36,10 +37,7 @@ template <Real R>
 template <Real R>
 void check_knots(const std::vector<R>& knots, int order) {
   const auto fail = [](const auto&... what) {
-    std::ostringstream message;
-    message << "duet: knots: ";
-    (message << ... << what);
-    throw invalid_input(message.str());
+    throw invalid_input(message("duet: knots: ", what...));
   };
   const auto k = std::size_t(order);
   if (knots.size() < 2 * k) {
@@ -71,11 +69,11 @@ void check_knots(const std::vector<R>& knots, int order) {
 /// and the last `order` times, so that the curve ends in its first and last control elements.
 template <Real R>
 [[nodiscard]] std::vector<R> clamped_knots(const std::vector<R>& parameters, int order) {
-  std::vector<R> knots;
-  knots.reserve(parameters.size() + 2 * std::size_t(order) - 2);
-  knots.insert(knots.end(), std::size_t(order) - 1, parameters.front());
-  knots.insert(knots.end(), parameters.begin(), parameters.end());
-  knots.insert(knots.end(), std::size_t(order) - 1, parameters.back());
+  const std::size_t more = std::size_t(order) - 1, last = parameters.size() - 1;
+  std::vector<R> knots(last + 1 + 2 * more);
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    knots[i] = parameters[std::min(i - std::min(i, more), last)];
+  }
   return knots;
 }
 
@@ -95,15 +93,15 @@ template <Real R>
 [[nodiscard]] std::vector<R> periodic_knots(const std::vector<R>& parameters, int order) {
   const std::size_t n = parameters.size() - 1;
   const R period = parameters.back() - parameters.front();
-  std::vector<R> knots;
-  knots.reserve(n + 2 * std::size_t(order) - 1);
-  for (std::size_t before = std::size_t(order) - 1; before > 0; --before) {
-    const std::size_t rounds = (before + n - 1) / n;
-    knots.push_back(parameters[rounds * n - before] - R(rounds) * period);
+  const std::size_t more = std::size_t(order) - 1;
+  std::vector<R> knots(n + 1 + 2 * more);
+  for (std::size_t i = 0; i <= n; ++i) {
+    knots[more + i] = parameters[i];
   }
-  knots.insert(knots.end(), parameters.begin(), parameters.end());
-  for (std::size_t after = 1; after < std::size_t(order); ++after) {
-    knots.push_back(parameters[after % n] + R(after / n + 1) * period);
+  for (std::size_t i = 1; i <= more; ++i) {
+    const std::size_t rounds = (i + n - 1) / n;
+    knots[more - i] = parameters[rounds * n - i] - R(rounds) * period;
+    knots[more + n + i] = parameters[i % n] + R(i / n + 1) * period;
   }
   return knots;
 }

@@ -9,7 +9,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +21,8 @@ namespace duet {
 /// A row of a table that no curve can be put through.
 class invalid_row : public invalid_input {
 public:
-  invalid_row(std::size_t row, const std::string& reason)
-      : invalid_input("duet: row " + std::to_string(row) + ": " + reason), row_(row),
+  [[gnu::cold]] invalid_row(std::size_t row, const std::string& reason)
+      : invalid_input(detail::message("duet: row ", row, ": ", reason)), row_(row),
         reason_(reason) {}
 
   /// Counted from 0.
@@ -41,25 +40,17 @@ namespace detail {
 /// unless the parameters are finite and increase
 template <Real R>
 void check_rows(const std::vector<R>& parameters, std::size_t elements, std::size_t minimum) {
-  if (parameters.size() != elements || elements < minimum) {
-    std::ostringstream message;
-    message << "duet: interpolate: needs " << minimum
-            << " rows or more with these ends, each a parameter and an orientation, got "
-            << parameters.size() << " and " << elements;
-    throw invalid_input(message.str());
-  }
-  const auto fail = [](std::size_t row, const auto&... what) {
-    std::ostringstream reason;
-    (reason << ... << what);
-    throw invalid_row(row, reason.str());
-  };
+  require(parameters.size() == elements && elements >= minimum, "duet: interpolate: needs ",
+          minimum, " rows or more with these ends, each a parameter and an orientation, got ",
+          parameters.size(), " and ", elements);
   for (std::size_t i = 0; i < elements; ++i) {
     const R& u = parameters[i];
     if (!(u - u == 0)) {
-      fail(i, "parameter ", u, " is not finite");
+      throw invalid_row(i, message("parameter ", u, " is not finite"));
     }
     if (i > 0 && !(u > parameters[i - 1])) {
-      fail(i, "parameter ", u, " does not increase, the row before has ", parameters[i - 1]);
+      throw invalid_row(i, message("parameter ", u, " does not increase, the row before has ",
+                                   parameters[i - 1]));
     }
   }
 }
@@ -70,6 +61,16 @@ template <class T>
 [[nodiscard]] quaternion<T> turn_between(const quaternion<T>& a, const quaternion<T>& b) {
   const quaternion<T> difference = conj(a) * (b - a);
   return {dot(a, b), difference.x(), difference.y(), difference.z()};
+}
+
+/// log and exp as they are, but compiled once: where curves are found, calls do not count.
+template <class T>
+[[nodiscard, gnu::noinline]] vector3<T> turn_vector(const quaternion<T>& q) {
+  return log_vector(q, "interpolate");
+}
+template <class T>
+[[nodiscard, gnu::noinline]] quaternion<T> turn_by(const vector3<T>& v) {
+  return duet::exp(v);
 }
 
 } // namespace detail
@@ -85,14 +86,9 @@ template <class T>
     const auto length = norm(detail::innermost_of(q[i]));
     const bool is_finite = detail::is_all_finite(q[i]);
     if (!is_finite || !(abs(length - 1) <= unit_norm_tolerance)) {
-      std::ostringstream reason;
-      reason << "quaternion " << q[i];
-      if (is_finite) {
-        reason << " has norm " << length << ", not 1";
-      } else {
-        reason << " is not finite";
-      }
-      throw invalid_row(i, reason.str());
+      throw invalid_row(
+          i, is_finite ? detail::message("quaternion ", q[i], " has norm ", length, ", not 1")
+                       : detail::message("quaternion ", q[i], " is not finite"));
     }
     q[i] = normalized(q[i]);
   }

@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -27,6 +26,11 @@
 /// the same order.
 
 namespace duet {
+
+namespace detail {
+template <class T, int Order, class Piece>
+class rotation_vector_equations;
+} // namespace detail
 
 /// Q(u) = Q_i exp(x_i(u − u_i)) between the knots u_i and u_{i+1}, with polynomials x_i of
 /// half-angle vectors, x_i(0) = 0, exp(x_i(u_{i+1} − u_i)) = Q_i* Q_{i+1}.
@@ -77,7 +81,7 @@ public:
   from_pieces(const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
               std::vector<std::array<vector3<T>, std::size_t(Order)>> pieces) {
     checked(parameters, elements, pieces, "pieces", 1);
-    rotation_vector_spline result(made_of_pieces{}, clamped_knots(parameters, 2),
+    rotation_vector_spline result(made_of_pieces{}, parameters,
                                   unit_quaternions(std::move(elements)), std::move(pieces));
     for (std::size_t i = 0; i < result.pieces_.size(); ++i) {
       const auto x =
@@ -103,11 +107,14 @@ public:
 private:
   using polynomial = std::array<vector3<T>, std::size_t(Order)>;
   friend class piecewise_curve<rotation_vector_spline, real_type_t<T>>;
+  template <class, int, class>
+  friend class detail::rotation_vector_equations;
 
   struct made_of_pieces {};
-  rotation_vector_spline(made_of_pieces, bspline_basis<2, real_type> spans,
+  rotation_vector_spline(made_of_pieces, const std::vector<real_type>& parameters,
                          std::vector<quaternion<T>> elements, std::vector<polynomial> pieces)
-      : spans_(std::move(spans)), elements_(std::move(elements)), pieces_(std::move(pieces)) {}
+      : spans_(clamped_knots(parameters, 2)), elements_(std::move(elements)),
+        pieces_(std::move(pieces)) {}
 
   /// \param missing  by how many fewer than the elements the parts must be
   template <class Elements, class Parts>
@@ -115,12 +122,9 @@ private:
                                                const Elements& elements, const Parts& parts,
                                                const char* what, std::size_t missing) {
     detail::check_rows(parameters, elements.size(), 2);
-    if (parts.size() + missing != elements.size()) {
-      std::ostringstream message;
-      message << "duet: rotation_vector_spline: " << elements.size() << " rows need "
-              << elements.size() - missing << " " << what << ", got " << parts.size();
-      throw invalid_input(message.str());
-    }
+    detail::require(parts.size() + missing == elements.size(),
+                    "duet: rotation_vector_spline: ", elements.size(), " rows need ",
+                    elements.size() - missing, " ", what, ", got ", parts.size());
     return parameters;
   }
 

@@ -1,8 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/spline/blocks/products.hpp>
+
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <cstddef>
 #include <vector>
@@ -14,12 +15,12 @@ namespace duet::detail {
 
 /// Row i of the system: lower x_{i−1} + diagonal x_i + upper x_{i+1}. The block that would stand
 /// outside has a place of its own: see `corners`.
-template <class R, int N>
+template <class R>
 struct block_row {
-  Eigen::Matrix<R, N, N> lower, diagonal, upper;
+  Eigen::Matrix<R, 3, 3> lower, diagonal, upper;
 
   /// By its place: 0 lower, 1 diagonal, 2 upper.
-  [[nodiscard]] Eigen::Matrix<R, N, N>& at(std::size_t place) {
+  [[nodiscard]] Eigen::Matrix<R, 3, 3>& at(std::size_t place) {
     return place == 0 ? lower : place == 1 ? diagonal : upper;
   }
 };
@@ -34,13 +35,13 @@ struct corners {
 /// The first row's corner fills its column up to the diagonal, the last row's corner its row: with
 /// corners n − 1 and 0 the system is cyclic, the border's elimination included; with 2 and n − 3
 /// its band is wider at both ends.
-template <class R, int N>
+template <class R>
 class block_tridiagonal {
 public:
-  using matrix = Eigen::Matrix<R, N, N>;
+  using matrix = Eigen::Matrix<R, 3, 3>;
 
   /// To be filled before `factorise`, two rows or more: the storage is that of the last time.
-  [[nodiscard]] std::vector<block_row<R, N>>& rows() { return rows_; }
+  [[nodiscard]] std::vector<block_row<R>>& rows() { return rows_; }
 
   /// True where no pivot is singular.
   [[nodiscard]] bool factorise(const corners& at) {
@@ -54,84 +55,95 @@ public:
       if (i == 0) {
         fill = row.lower;
       } else if (i <= column_.size()) {
-        fill.noalias() = -row.lower * column_[i - 1];
+        add_product(fill, R(-1), row.lower, column_[i - 1]);
       }
       if (is_last) {
         eliminate_bottom(row);
       }
       if (i > 0) {
-        row.diagonal.noalias() -= row.lower * rows_[i - 1].upper;
+        add_product(row.diagonal, R(-1), row.lower, rows_[i - 1].upper);
       }
       if (i + 1 == at.first) {
-        row.upper += fill;
+        add_multiple(row.upper, R(1), fill);
       }
-      const matrix inverse = row.diagonal.inverse();
-      if (!inverse.allFinite()) {
+      if (!invert(row.diagonal)) {
         return false;
       }
-      row.diagonal = inverse;
       if (!is_last) {
-        row.upper = (inverse * row.upper).eval();
+        row.upper = product(row.diagonal, row.upper);
       }
       if (i + 1 < at.first) {
-        column_.push_back(inverse * fill);
+        fill = product(row.diagonal, fill);
+        column_.push_back(fill);
       }
     }
     return true;
   }
 
-  /// Solves in place, over any scalar above R: elements of N rows, columns as they like.
+  /// Solves in place, vectors of N over any scalar above R.
   template <class V>
   void solve(std::vector<V>& x) const {
     const std::size_t last = x.size() - 1;
     for (std::size_t i = 0; i <= last; ++i) {
       if (i > 0) {
-        subtract(x[i], rows_[i].lower, x[i - 1]);
+        add_product(x[i], R(-1), rows_[i].lower, x[i - 1]);
       }
       if (i == last) {
         for (std::size_t j = 0; j < bottom_.size(); ++j) {
-          subtract(x[i], bottom_[j], x[at_.last + j]);
+          add_product(x[i], R(-1), bottom_[j], x[at_.last + j]);
         }
       }
-      V solved = V::Zero();
-      subtract(solved, rows_[i].diagonal, x[i]);
-      x[i] = -solved;
+      const V right = x[i];
+      for (int k = 0; k < 3; ++k) {
+        x[i][k] = typename V::Scalar(R(0));
+      }
+      add_product(x[i], R(1), rows_[i].diagonal, right);
     }
     for (std::size_t i = last; i-- > 0;) {
-      subtract(x[i], rows_[i].upper, x[i + 1]);
+      add_product(x[i], R(-1), rows_[i].upper, x[i + 1]);
       if (i < column_.size()) {
-        subtract(x[i], column_[i], x[at_.first]);
+        add_product(x[i], R(-1), column_[i], x[at_.first]);
       }
     }
   }
 
 private:
   /// The last row's corner, moved to the right column by column until it meets `lower`.
-  void eliminate_bottom(block_row<R, N>& row) {
+  void eliminate_bottom(block_row<R>& row) {
     matrix corner = row.upper;
     for (std::size_t j = at_.last; j + 2 < rows_.size(); ++j) {
       bottom_.push_back(corner);
       if (j < column_.size()) {
-        row.diagonal.noalias() -= corner * column_[j];
+        add_product(row.diagonal, R(-1), corner, column_[j]);
       }
-      corner = (-corner * rows_[j].upper).eval();
+      const matrix right = product(corner, rows_[j].upper);
+      corner = matrix::Zero();
+      add_multiple(corner, R(-1), right);
     }
-    row.lower += corner;
+    add_multiple(row.lower, R(1), corner);
   }
 
-  /// y ← y − a x
-  template <class V>
-  static void subtract(V& y, const matrix& a, const V& x) {
-    for (int column = 0; column < V::ColsAtCompileTime; ++column) {
-      for (int i = 0; i < N; ++i) {
-        for (int j = 0; j < N; ++j) {
-          y(i, column) -= a(i, j) * x(j, column);
-        }
+  /// In place, by cofactors; false where it is singular.
+  [[nodiscard]] static bool invert(matrix& m) {
+    matrix cofactors;
+    for (int i = 0; i < 3; ++i) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+      for (int j = 0; j < 3; ++j) {
+        const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+        cofactors(i, j) = m(i1, j1) * m(i2, j2) - m(i1, j2) * m(i2, j1);
       }
     }
+    const R scale =
+        1 / (m(0, 0) * cofactors(0, 0) + m(0, 1) * cofactors(0, 1) + m(0, 2) * cofactors(0, 2));
+    R sum(0);
+    for (int i = 0; i < 9; ++i) {
+      m(i / 3, i % 3) = cofactors(i % 3, i / 3) * scale;
+      sum += m(i / 3, i % 3);
+    }
+    return sum - sum == 0;
   }
 
-  std::vector<block_row<R, N>> rows_;
+  std::vector<block_row<R>> rows_;
   std::vector<matrix> column_, bottom_;
   corners at_{};
 };

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/dual.hpp>
-#include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -12,13 +10,14 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/curve_ends.hpp>
 #include <duet/spline/equations/curve_equations.hpp>
+#include <duet/spline/equations/rate_gradients.hpp>
 #include <duet/spline/equations/small_turns.hpp>
 #include <duet/spline/knots.hpp>
-#include <duet/spline/motion.hpp>
 #include <duet/spline/orientations.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -42,27 +41,24 @@ public:
   using curve_type = cumulative_bspline<T, 4>;
   using real_type = R;
   using unknowns = std::vector<vector3<T>>;
-  using matrix = block_tridiagonal<R, 3>;
+  using matrix = block_tridiagonal<R>;
 
   cubic_equations(const std::vector<R>& u, std::vector<quaternion<T>> q, const curve_ends<T>& ends)
-      : kind_(ends.kind), basis_(knots(u, ends.kind)), data_(std::move(q)) {
-    const std::size_t n = u.size() - 1;
-    turns_.reserve(n);
-    arcs_.reserve(n);
+      : kind_(ends.kind), basis_(knots(u, ends.kind)), data_(std::move(q)), turns_(u.size() - 1),
+        angles_(turns_.size()), arcs_(turns_.size()) {
+    const std::size_t n = turns_.size();
     R shortest = u[1] - u[0], longest = shortest;
     for (std::size_t i = 0; i < n; ++i) {
-      turns_.push_back(turn_between(data_[i], data_[i + 1]));
-      std::size_t span = i;
-      if (kind_ == end_kind::not_a_knot) {
-        span = i == 0 ? 0 : i == n - 1 ? n - 3 : i - 1;
-      }
-      arc a{span, basis_.template weights<0>(span, u[i])[0], basis_.changes(span, u[i], u[i + 1])};
-      if (u[i] == basis_.breaks()[span]) {
-        a.from[2] = R(0);
-      }
-      arcs_.push_back(a);
-      shortest = std::min(shortest, R(u[i + 1] - u[i]));
-      longest = std::max(longest, R(u[i + 1] - u[i]));
+      turns_[i] = turn_between(data_[i], data_[i + 1]);
+      angles_[i] = turn_vector(turns_[i]);
+      const bool is_shifted = kind_ == end_kind::not_a_knot;
+      const std::size_t span = !is_shifted || i == 0 ? i : std::min(i - 1, n - 3);
+      arc& a = arcs_[i];
+      a = {span, basis_.template weights<0>(span, u[i])[0], basis_.changes(span, u[i], u[i + 1])};
+      a.from[2] = u[i] == basis_.breaks()[span] ? R(0) : a.from[2];
+      const R step = u[i + 1] - u[i];
+      shortest = std::min(shortest, step);
+      longest = std::max(longest, step);
     }
     unevenness_ = longest / shortest;
     const auto& rates = kind_ == end_kind::velocity ? ends.velocity : ends.acceleration;
@@ -88,9 +84,10 @@ public:
 
   /// The largest angle from one row to the next, and the row before it.
   [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
+    using std::sqrt;
     std::pair<R, std::size_t> result{R(0), 0};
-    for (std::size_t i = 0; i < turns_.size(); ++i) {
-      const R angle = 2 * log_vector(innermost_of(turns_[i]), "interpolate").norm();
+    for (std::size_t i = 0; i < angles_.size(); ++i) {
+      const R angle = 2 * sqrt(R(innermost(dot(components(angles_[i]), components(angles_[i])))));
       if (angle > result.first) {
         result = {angle, i};
       }
@@ -101,8 +98,9 @@ public:
   /// Makes them the equations of a motion that turns less: Q_i⁻¹ Q_{i+1} to the power λ, end rates
   /// by the factor λ.
   void scale(const R& lambda) {
-    for (quaternion<T>& turn : turns_) {
-      turn = duet::exp((lambda * components(log_vector(turn, "interpolate"))).eigen());
+    for (std::size_t i = 0; i < turns_.size(); ++i) {
+      angles_[i] = lambda * components(angles_[i]);
+      turns_[i] = turn_by(angles_[i]);
     }
     for (vector3<T>& rate : end_rates_) {
       rate = lambda * components(rate);
@@ -112,10 +110,7 @@ public:
   /// The j-th of the three unknowns in an equation.
   [[nodiscard]] std::size_t unknown(std::size_t row, std::size_t j) const {
     const std::size_t n = size();
-    if (is_cyclic()) {
-      return (row + n - 1 + j) % n;
-    }
-    return (row == 0 ? 0 : row == n - 1 ? n - 3 : row - 1) + j;
+    return is_cyclic() ? (row + n - 1 + j) % n : std::min(row - std::size_t(row > 0), n - 3) + j;
   }
   /// Its block's place: 0 lower, 1 diagonal, 2 upper, corners included.
   [[nodiscard]] std::size_t place(std::size_t row, std::size_t j) const {
@@ -124,8 +119,7 @@ public:
 
   /// What an equation leaves, a half-angle vector; end rates are brought to the size of an
   /// increment.
-  template <class D>
-  [[nodiscard]] vector3<D> residual(std::size_t row, const std::array<vector3<D>, 3>& omega) const {
+  [[nodiscard]] vector3<T> residual(std::size_t row, const std::array<vector3<T>, 3>& omega) const {
     if (has_end_rates()) {
       if (row == 0 || row + 1 == size()) {
         return end_residual(row == 0, omega);
@@ -135,68 +129,49 @@ public:
     const arc& a = arcs_[row];
     // Factors that stand on both sides are left out: they turn those between them. What is left is
     // as small as the turn, and keeps all its digits.
-    std::array<vector3<D>, 3> turned;
+    std::array<vector3<T>, 3> turned;
     for (std::size_t j = 0; j < 3; ++j) {
       turned[j] = a.change[j] * components(omega[j]);
       if (j > 0 && a.from[j] != 0) {
-        const quaternion<D> back = duet::exp((R(-a.from[j]) * components(omega[j])).eigen());
+        const quaternion<T> back = turn_by<T>(R(-a.from[j]) * components(omega[j]));
         for (std::size_t k = 0; k < j; ++k) {
           turned[k] = rotate(back, turned[k]);
         }
       }
     }
-    const quaternion<D> turn = duet::exp(turned[0]) * duet::exp(turned[1]) * duet::exp(turned[2]);
-    return log_vector(quaternion<D>(conj(turn) * quaternion<D>(turns_[row])), "interpolate");
+    const quaternion<T> turn = turn_by(turned[0]) * turn_by(turned[1]) * turn_by(turned[2]);
+    return turn_vector(quaternion<T>(conj(turn) * turns_[row]));
   }
 
   /// An equation for turns so small that their order does not matter: Σ weights_j x_j = right.
   [[nodiscard]] small_turn_equation<T> small_turns(std::size_t row) const {
     if (has_end_rates()) {
       if (row == 0 || row + 1 == size()) {
-        const curve_end end = end_of_curve(row == 0);
-        std::array<R, 3> weights = end.weights[kind_ == end_kind::velocity ? 1 : 2];
-        for (R& weight : weights) {
-          weight *= end.scale;
-        }
-        return {weights, end.scale * components(end_rates_[row == 0 ? 0 : 1])};
+        return end_equation(row == 0);
       }
       --row;
     }
-    return {arcs_[row].change, log_vector(turns_[row], "interpolate")};
+    return {arcs_[row].change, angles_[row]};
   }
 
   /// All of them.
-  void residuals(const std::vector<vector3<T>>& x, std::vector<vector3<T>>& result) const {
+  void residuals(const unknowns& x, unknowns& result) const {
     result.resize(size());
     for (std::size_t row = 0; row < size(); ++row) {
-      result[row] =
-          residual(row, std::array{x[unknown(row, 0)], x[unknown(row, 1)], x[unknown(row, 2)]});
+      result[row] = residual(row, its_unknowns(row, x));
     }
   }
 
   /// Residuals and factorised Jacobian; false where that is singular. For real T.
   [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
-    using D = dual<R, 9, derivative_tag<cubic_equations>>;
-    r.resize(x.size());
+    static_assert(Real<T>);
+    residuals(x, r);
     auto& rows = jacobian.rows();
     rows.resize(x.size());
     for (std::size_t row = 0; row < x.size(); ++row) {
-      std::array<vector3<D>, 3> omega;
+      const gradient_by_three<R> blocks = gradient(row, its_unknowns(row, x));
       for (std::size_t j = 0; j < 3; ++j) {
-        const vector3<R>& value = x[unknown(row, j)];
-        for (int b = 0; b < 3; ++b) {
-          omega[j][b] = D::variable(value[b], int(3 * j) + b);
-        }
-      }
-      const vector3<D> left = residual(row, omega);
-      for (std::size_t j = 0; j < 3; ++j) {
-        matrix3<R>& block = rows[row].at(place(row, j));
-        for (int a = 0; a < 3; ++a) {
-          r[row][a] = left[a].value();
-          for (int b = 0; b < 3; ++b) {
-            block(a, b) = left[a].partial(int(3 * j) + b);
-          }
-        }
+        rows[row].at(place(row, j)) = blocks[j];
       }
     }
     return jacobian.factorise(corner_columns());
@@ -205,8 +180,7 @@ public:
   [[nodiscard]] curve_type curve(const std::vector<R>&, const std::vector<quaternion<T>>&,
                                  const unknowns& x) const {
     std::vector<vector3<T>> omega = increments(x);
-    std::vector<quaternion<T>> made = controls(omega);
-    return curve_type(basis_, std::move(made), std::move(omega));
+    return curve_type(basis_, controls(omega), omega);
   }
 
 private:
@@ -221,10 +195,9 @@ private:
 
   /// ω_0 = 0 and the increments of all controls.
   [[nodiscard]] std::vector<vector3<T>> increments(const std::vector<vector3<T>>& x) const {
-    std::vector<vector3<T>> omega{vector3<T>::Zero()};
-    omega.reserve(basis_.size());
-    for (std::size_t i = 1; i < basis_.size(); ++i) {
-      omega.push_back(x[is_cyclic() ? (i + 2 * size() - 2) % size() : i - 1]);
+    std::vector<vector3<T>> omega(basis_.size(), vector3<T>::Zero());
+    for (std::size_t i = 1; i < omega.size(); ++i) {
+      omega[i] = x[is_cyclic() ? (i + 2 * size() - 2) % size() : i - 1];
     }
     return omega;
   }
@@ -238,13 +211,13 @@ private:
       const arc& a = arcs_[i];
       if (a.span == result.size()) {
         const auto back = [&](std::size_t j) {
-          return duet::exp((R(-a.from[j]) * components(increments[a.span + 1 + j])).eigen());
+          return turn_by<T>(R(-a.from[j]) * components(increments[a.span + 1 + j]));
         };
         result.push_back(normalized(data_[i] * back(1) * back(0)));
       }
     }
     while (result.size() < basis_.size()) {
-      result.push_back(normalized(result.back() * duet::exp(increments[result.size()])));
+      result.push_back(normalized(result.back() * turn_by(increments[result.size()])));
     }
     return result;
   }
@@ -256,31 +229,63 @@ private:
     std::array<R, 3> from, change;
   };
 
-  /// The weights at an end of the curve, and what brings its rate to the size of an increment.
-  struct curve_end {
-    cumulative_weights<R, 4, 2> weights;
-    R scale;
-  };
-  [[nodiscard]] curve_end end_of_curve(bool at_start) const {
-    const std::size_t span = at_start ? 0 : basis_.breaks().size() - 2;
-    const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
-    return {basis_.template weights<2>(span, at_start ? basis_.front() : basis_.back()),
-            kind_ == end_kind::velocity ? R(h / 3) : R(h * h / 6)};
+  [[nodiscard]] std::array<vector3<T>, 3> its_unknowns(std::size_t row, const unknowns& x) const {
+    return {x[unknown(row, 0)], x[unknown(row, 1)], x[unknown(row, 2)]};
   }
 
-  template <class D>
-  [[nodiscard]] vector3<D> end_residual(bool at_start,
-                                        const std::array<vector3<D>, 3>& omega) const {
-    const curve_end end = end_of_curve(at_start);
-    const auto m = product_of_exponentials<2>(quaternion<D>(D(1)), omega.data(), end.weights);
-    return end.scale * ((kind_ == end_kind::velocity ? m.velocity : m.acceleration) -
-                        components(end_rates_[at_start ? 0 : 1]));
+  /// What an equation leaves changes by its unknowns. (The logarithm r of what turns differ by
+  /// changes by that times J⁻¹(r), which no step of Newton's method sees: J(r) r = r.)
+  [[nodiscard]] gradient_by_three<R> gradient(std::size_t row,
+                                              const std::array<vector3<R>, 3>& omega) const {
+    if (has_end_rates()) {
+      const bool is_first = row == 0;
+      if (is_first || row + 1 == size()) {
+        return end_gradient(end_equation(is_first).weights, omega, !is_first);
+      }
+      --row;
+    }
+    const auto& [span, from, change] = arcs_[row];
+    using factor = std::pair<std::size_t, R>;
+    return minus_product_gradient(std::array{factor(2, -from[2]), factor(1, -from[1]),
+                                             factor(0, change[0]), factor(1, from[1] + change[1]),
+                                             factor(2, from[2] + change[2])},
+                                  omega);
+  }
+
+  /// By how much the increments are in the rate that is given at an end of the curve, and that,
+  /// both brought to the size of an increment.
+  [[nodiscard]] small_turn_equation<T> end_equation(bool at_start) const {
+    const std::size_t span = at_start ? 0 : basis_.breaks().size() - 2;
+    const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
+    const bool is_velocity = kind_ == end_kind::velocity;
+    const R scale = is_velocity ? R(h / 3) : R(h * h / 6),
+            end = basis_.breaks()[at_start ? 0 : span + 1];
+    const auto weights = basis_.template weights<2>(span, end);
+    small_turn_equation<T> result{weights[is_velocity ? 1 : 2],
+                                  scale * components(end_rates_[at_start ? 0 : 1])};
+    for (R& weight : result.weights) {
+      weight *= scale;
+    }
+    return result;
+  }
+
+  /// The weights are zero at the start, one at the end, and the last rate there is that of the last
+  /// increment alone: no more turns than by this one.
+  [[nodiscard]] vector3<T> end_residual(bool at_start,
+                                        const std::array<vector3<T>, 3>& omega) const {
+    const auto [b, right] = end_equation(at_start);
+    three_vector<T> sum = b[0] * components(omega[0]) + b[1] * components(omega[1]);
+    if (!at_start) {
+      sum = rotated(conj(turn_by(omega[2])), sum);
+    }
+    return sum + b[2] * components(omega[2]) - components(right);
   }
 
   end_kind kind_;
   bspline_basis<4, R> basis_;
   std::vector<quaternion<T>> data_;
   std::vector<quaternion<T>> turns_;
+  std::vector<vector3<T>> angles_; ///< of the turns: half-angle vectors
   std::vector<arc> arcs_;
   R unevenness_;
   std::array<vector3<T>, 2> end_rates_;

@@ -8,14 +8,14 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <sstream>
+#include <string>
 
 /// \file
 /// The real solution of the equations of an interpolating curve.
 
 namespace duet::detail {
 
-/// Newton's method with AD Jacobian on real equations, from their own start. Where the turns are
+/// Newton's method on real equations, from their own start. Where the turns are
 /// too large for that, by continuation from smaller ones: that also finds the curve that belongs to
 /// them, where several fulfil the equations.
 ///
@@ -100,7 +100,7 @@ private:
   }
 
   /// λ from 0 to 1: turns to the power λ, where each solution is the start for the next.
-  void continue_from_smaller_turns() {
+  [[gnu::cold, gnu::noinline]] void continue_from_smaller_turns() {
     R lambda(0);
     R h(0.25);
     x_.assign(x_.size(), unknown::Zero());
@@ -132,24 +132,25 @@ private:
     }
   }
 
-  [[noreturn]] void fail(const R& lambda) const {
+  [[noreturn, gnu::cold, gnu::noinline]] void fail(const R& lambda) const {
     const auto [angle, row] = full_.largest_turn();
-    std::ostringstream message;
-    message << "duet: interpolate: ";
-    if (lambda > 0) {
-      message << "with all steps between rows turning by no more than " << lambda
-              << " of their angles there is a curve, but none was found that goes on from there";
-    } else {
-      message << "no curve was found, though steps between rows were let turn by no more than "
-              << smallest_lambda << " of their angles";
-    }
-    message << "; after " << iterations_ << " iterations. The largest step is " << angle
-            << " rad, from row " << row << " to the next";
-    if (const R ratio = full_.unevenness(); ratio >= 100) {
-      message << "; for these ends the parameters may be too uneven, the longest interval is "
-              << ratio << " times the shortest";
-    }
-    throw no_convergence(message.str());
+    const std::string found =
+        lambda > 0
+            ? message(
+                  "with all steps between rows turning by no more than ", lambda,
+                  " of their angles there is a curve, but none was found that goes on from there")
+            : message(
+                  "no curve was found, though steps between rows were let turn by no more than ",
+                  smallest_lambda, " of their angles");
+    const R ratio = full_.unevenness();
+    const std::string uneven =
+        ratio >= 100 ? message("; for these ends the parameters may be too uneven, the longest "
+                               "interval is ",
+                               ratio, " times the shortest")
+                     : "";
+    throw no_convergence(message("duet: interpolate: ", found, "; after ", iterations_,
+                                 " iterations. The largest step is ", angle, " rad, from row ", row,
+                                 " to the next", uneven));
   }
 
   [[nodiscard]] bool linearise(const equations& f) { return f.linearise(x_, residual_, matrix_); }

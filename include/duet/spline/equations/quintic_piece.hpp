@@ -4,7 +4,10 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
+#include <duet/spline/blocks/products.hpp>
 #include <duet/spline/rotation_vector_segment.hpp>
+
+#include <Eigen/Core>
 
 #include <array>
 #include <cstddef>
@@ -28,21 +31,28 @@ class quintic_piece {
 
 public:
   static constexpr std::size_t count = 4;
-  template <class S>
-  using coefficients = std::array<vector3<S>, count>;
+  using coefficients = std::array<vector3<T>, count>;
   using factors = std::array<std::array<R, count>, count>;
 
   quintic_piece(const R& h, const vector3<T>& d) : h_(h), d_(d), segment_(h, d) {}
 
-  template <class S>
   struct ends {
-    coefficients<S> x, y;
+    coefficients x, y;
   };
-  template <class S>
-  [[nodiscard]] ends<S> taylor(const coefficients<S>& at_start,
-                               const coefficients<S>& at_end) const {
+  [[nodiscard]] ends taylor(const coefficients& at_start, const coefficients& at_end) const {
     return {segment_.template taylor_at_start<count>(at_start),
             segment_.template taylor_at_end<count>(at_end)};
+  }
+
+  /// By all rates of a knot, w_0 … w_3.
+  using gradient = Eigen::Matrix<R, 3, 3 * int(count)>;
+  struct end_gradients {
+    std::array<gradient, count> x, y;
+  };
+  /// How x_1 … x_4 change by the rates at the start, and y_1 … y_4 by those at the end. For real T.
+  [[nodiscard]] end_gradients taylor_gradients(const ends& e) const {
+    return {inverted(segment_.gradients_at_start(e.x), matrix3<R>::Identity()),
+            inverted(segment_.gradients_at_end(e.y), segment_.inverse())};
   }
 
   /// What stands before x_1 … x_4 in the equations, right sides taken to the left; those of second
@@ -63,9 +73,9 @@ public:
              {o, o, ll, R(-2 * h * ll)}}};
   }
   /// What x and y leave of them.
-  [[nodiscard]] coefficients<T> left(const ends<T>& e, const R& l) const {
+  [[nodiscard]] coefficients left(const ends& e, const R& l) const {
     const factors a = factors_of_start(l), b = factors_of_end(l);
-    coefficients<T> result;
+    coefficients result;
     for (std::size_t m = 0; m < count; ++m) {
       three_vector<T> sum = R(m > 0 ? 0 : -1 / h_) * components(d_);
       for (std::size_t k = 0; k < count; ++k) {
@@ -77,26 +87,36 @@ public:
   }
 
   /// The fifth rate w_4 at the start: what the rates at the start and those at the end contribute.
-  template <class S>
-  [[nodiscard]] std::array<vector3<S>, 2> last_rate_at_start(const ends<S>& e) const {
+  [[nodiscard]] std::array<vector3<T>, 2> last_rate_at_start(const ends& e) const {
     const R per_h = 1 / h_;
-    const vector3<S> w = segment_.template rates_at_start<count + 1>(with_zero(e.x))[count];
+    const vector3<T> w = segment_.template rates_at_start<count + 1>(with_zero(e.x))[count];
     return {components(w) + R(-per_h) * components(e.x[3]), per_h * components(e.y[3])};
   }
   /// The fifth rate at the end: what the rates at the start and those at the end contribute.
-  template <class S>
-  [[nodiscard]] std::array<vector3<S>, 2> last_rate_at_end(const ends<S>& e) const {
+  [[nodiscard]] std::array<vector3<T>, 2> last_rate_at_end(const ends& e) const {
     const R per_h = 1 / h_;
-    const vector3<S> w = segment_.template rates_at_end<count + 1>(with_zero(e.y))[count];
-    const auto turned = [&](const vector3<S>& x, const R& factor) {
+    const vector3<T> w = segment_.template rates_at_end<count + 1>(with_zero(e.y))[count];
+    const auto turned = [&](const vector3<T>& x, const R& factor) {
       return segment_.template rates_at_end<1>(
-          std::array<vector3<S>, 1>{factor * components(x)})[0];
+          std::array<vector3<T>, 1>{factor * components(x)})[0];
     };
     return {turned(e.x[3], R(-per_h)), components(w) + components(turned(e.y[3], per_h))};
   }
+  /// How these two change, each by the rates of its knot. For real T.
+  [[nodiscard]] std::array<gradient, 2> gradients_of_last_rate_at_start(const ends& e) const {
+    const end_gradients by = taylor_gradients(e);
+    return last_rate_gradients(segment_.gradients_at_start(with_zero(e.x)), by.x, by.y[3],
+                               R(-1 / h_));
+  }
+  [[nodiscard]] std::array<gradient, 2> gradients_of_last_rate_at_end(const ends& e) const {
+    const end_gradients by = taylor_gradients(e);
+    const auto [of_end, of_start] =
+        last_rate_gradients(segment_.gradients_at_end(with_zero(e.y)), by.y, by.x[3], R(1 / h_));
+    return {of_start, of_end};
+  }
 
   /// x_0 … x_5.
-  [[nodiscard]] std::array<vector3<T>, 6> polynomial(const ends<T>& e) const {
+  [[nodiscard]] std::array<vector3<T>, 6> polynomial(const ends& e) const {
     std::array<vector3<T>, 6> result;
     result[0] = vector3<T>::Constant(T(R(0)));
     for (int k = 0; k < 3; ++k) {
@@ -111,9 +131,43 @@ public:
   }
 
 private:
-  template <class S>
-  [[nodiscard]] static std::array<vector3<S>, count + 1> with_zero(const coefficients<S>& x) {
-    return {x[0], x[1], x[2], x[3], vector3<S>::Constant(S(R(0)))};
+  [[nodiscard]] static std::array<vector3<T>, count + 1> with_zero(const coefficients& x) {
+    return {x[0], x[1], x[2], x[3], vector3<T>::Constant(T(R(0)))};
+  }
+
+  template <std::size_t Count>
+  using rate_gradients = std::array<std::array<matrix3<R>, Count>, Count>;
+
+  /// By own and other rates; x_5 is `per_h` (own x_4 − other x_4)/5.
+  [[nodiscard]] static std::array<gradient, 2>
+  last_rate_gradients(const rate_gradients<count + 1>& of, const std::array<gradient, count>& own,
+                      const gradient& other, const R& per_h) {
+    const matrix3<R>& jacobian = of[0][0];
+    std::array<gradient, 2> result{gradient::Zero(), gradient::Zero()};
+    for (std::size_t m = 0; m < count; ++m) {
+      add_product(result[0], R(1), of[count][m], own[m]);
+    }
+    add_product(result[0], per_h, jacobian, own[count - 1]);
+    add_product(result[1], R(-per_h), jacobian, other);
+    return result;
+  }
+
+  /// From how w_0 … w_3 change by x_1 … x_4 how these change by those.
+  [[nodiscard]] static std::array<gradient, count> inverted(const rate_gradients<count>& of,
+                                                            const matrix3<R>& inverse) {
+    std::array<gradient, count> result;
+    for (std::size_t k = 0; k < count; ++k) {
+      gradient left = gradient::Zero();
+      for (int i = 0; i < 3; ++i) {
+        left(i, 3 * int(k) + i) = R(1);
+      }
+      for (std::size_t m = 0; m < k; ++m) {
+        add_product(left, R(-1), of[k][m], result[m]);
+      }
+      result[k].setZero();
+      add_product(result[k], R(1) / R(k + 1), inverse, left);
+    }
+    return result;
   }
 
   R h_;

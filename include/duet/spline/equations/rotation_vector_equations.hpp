@@ -9,6 +9,7 @@
 #include <duet/spline/equations/rotation_vector_ends.hpp>
 #include <duet/spline/equations/small_turns.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -46,11 +47,11 @@ public:
     int exponent = 0;
     static_cast<void>(frexp(R((u.back() - u.front()) / R(last)), &exponent));
     unit_ = ldexp(R(1), exponent);
-    steps_.reserve(last);
-    turns_.reserve(last);
+    steps_.resize(last);
+    turns_.resize(last);
     for (std::size_t i = 0; i < last; ++i) {
-      steps_.push_back((u[i + 1] - u[i]) / unit_);
-      turns_.push_back(log_vector(turn_between(q[i], q[i + 1]), "interpolate"));
+      steps_[i] = (u[i + 1] - u[i]) / unit_;
+      turns_[i] = turn_vector(turn_between(q[i], q[i + 1]));
     }
     make_pieces();
   }
@@ -121,16 +122,18 @@ protected:
     return result;
   }
 
-  /// Coefficients of polynomials of the parameter itself.
-  template <class Polynomial>
-  void in_own_units(std::vector<Polynomial>& polynomials) const {
-    for (Polynomial& each : polynomials) {
+  using curve = rotation_vector_spline<T, Order>;
+  /// The curve with these polynomials, which are of the parameter in units.
+  [[nodiscard]] curve made_of(const std::vector<R>& u, std::vector<quaternion<T>> q,
+                              std::vector<typename curve::polynomial> polynomials) const {
+    for (auto& each : polynomials) {
       R per_unit(1);
       for (vector3<T>& coefficient : each) {
         coefficient = per_unit * components(coefficient);
         per_unit /= unit_;
       }
     }
+    return curve(typename curve::made_of_pieces(), u, std::move(q), std::move(polynomials));
   }
 
   ends_type ends_;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/blocks/band_lu.hpp>
@@ -17,7 +16,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -37,8 +35,6 @@ class rotation_vector_quintic_equations : public rotation_vector_equations<T, 6,
   using typename base::R;
   static constexpr std::size_t count = piece::count;
   static constexpr int n = 3 * int(count);
-  template <class S>
-  using coefficients = typename piece::template coefficients<S>;
 
 public:
   using curve_type = rotation_vector_spline<T, 6>;
@@ -71,9 +67,8 @@ public:
   /// What x leaves of the equations: of each piece, then of the ends.
   void residuals(const unknowns& x, unknowns& r) const {
     r.assign(x.size(), unknown::Constant(T(R(0))));
-    const auto rates = rates_of<T>(x);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      const auto left = pieces_[i].left(taylor<T>(i, rates), scale_of(i));
+      const auto left = pieces_[i].left(taylor(i, x), scale_of(i));
       for (std::size_t m = 0; m < count; ++m) {
         r[i].template segment<3>(3 * int(m)) = left[m];
       }
@@ -82,10 +77,10 @@ public:
       vector3<T> left;
       const auto [joint, derivative] = ends_.equations[k];
       if (joint == 0) {
-        left = rates(knot)[derivative] - ends_.given[end][k] * T(this->unit_to(derivative + 1));
+        left = rates(x[knot])[derivative] - ends_.given[end][k] * T(this->unit_to(derivative + 1));
       } else {
-        const auto before = pieces_[knot - 1].last_rate_at_end(taylor<T>(knot - 1, rates));
-        const auto after = pieces_[knot].last_rate_at_start(taylor<T>(knot, rates));
+        const auto before = pieces_[knot - 1].last_rate_at_end(taylor(knot - 1, x));
+        const auto after = pieces_[knot].last_rate_at_start(taylor(knot, x));
         left = before[0] + before[1] - after[0] - after[1];
       }
       r.back().template segment<3>(end_row(end, k)) = (scale * components(left)).eigen();
@@ -95,23 +90,21 @@ public:
   /// Residuals and factorised Jacobian; false where that is singular. For real T.
   [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
     static_assert(Real<T>);
-    using D = dual<R, n, derivative_tag<rotation_vector_quintic_equations>>;
     using equations = typename matrix::equations;
     using panel = typename matrix::panel;
     residuals(x, r);
-    const auto rates = rates_of<D>(x);
-    // Adds the partials of factor · v to three rows.
-    const auto add = [](auto&& rows, const R& factor, const vector3<D>& v) {
+    // Adds factor · v to three rows.
+    const auto add = [](auto&& rows, const R& factor, const typename piece::gradient& v) {
       for (int a = 0; a < 3; ++a) {
         for (int b = 0; b < n; ++b) {
-          rows(a, b) += factor * v[a].partial(b);
+          rows(a, b) += factor * v(a, b);
         }
       }
     };
     std::vector<equations> groups;
     groups.reserve(pieces_.size() + 4);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      const auto e = taylor<D>(i, rates);
+      const auto e = pieces_[i].taylor_gradients(taylor(i, x));
       const auto of_x = pieces_[i].factors_of_start(scale_of(i));
       const auto of_y = pieces_[i].factors_of_end(scale_of(i));
       panel at_start = panel::Zero(n, n), at_end = at_start;
@@ -147,8 +140,8 @@ public:
       } else {
         group.coefficients = panel::Zero(3, 3 * n);
         const auto of = [&](int at) { return group.coefficients.template middleCols<n>(at * n); };
-        const auto before = pieces_[knot - 1].last_rate_at_end(taylor<D>(knot - 1, rates));
-        const auto after = pieces_[knot].last_rate_at_start(taylor<D>(knot, rates));
+        const auto before = pieces_[knot - 1].gradients_of_last_rate_at_end(taylor(knot - 1, x));
+        const auto after = pieces_[knot].gradients_of_last_rate_at_start(taylor(knot, x));
         add(of(0), scale, before[0]);
         add(of(1), scale, before[1]);
         add(of(1), R(-scale), after[0]);
@@ -161,14 +154,11 @@ public:
 
   [[nodiscard]] curve_type curve(const std::vector<R>& u, std::vector<quaternion<T>> q,
                                  const unknowns& x) const {
-    std::vector<std::array<vector3<T>, 6>> pieces;
-    pieces.reserve(pieces_.size());
-    const auto rates = rates_of<T>(x);
+    std::vector<std::array<vector3<T>, 6>> pieces(pieces_.size());
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      pieces.push_back(pieces_[i].polynomial(taylor<T>(i, rates)));
+      pieces[i] = pieces_[i].polynomial(taylor(i, x));
     }
-    this->in_own_units(pieces);
-    return curve_type::from_pieces(u, std::move(q), std::move(pieces));
+    return this->made_of(u, std::move(q), std::move(pieces));
   }
 
 private:
@@ -176,27 +166,18 @@ private:
   /// What brings the rates at a piece's ends to one size.
   [[nodiscard]] R scale_of(std::size_t i) const { return std::min(lengths_[i], lengths_[next(i)]); }
 
-  /// The rates at a knot, as variables where S is a dual number over T.
-  template <class S>
-  [[nodiscard]] static auto rates_of(const unknowns& x) {
-    return [&x](std::size_t knot) {
-      coefficients<S> result;
-      for (int a = 0; a < n; ++a) {
-        S& each = result[std::size_t(a / 3)][a % 3];
-        if constexpr (std::is_same_v<S, T>) {
-          each = x[knot][a];
-        } else {
-          each = S::variable(x[knot][a], a);
-        }
-      }
-      return result;
-    };
+  /// The rates at a knot.
+  [[nodiscard]] static typename piece::coefficients rates(const unknown& x) {
+    typename piece::coefficients result;
+    for (int a = 0; a < n; ++a) {
+      result[std::size_t(a / 3)][a % 3] = x[a];
+    }
+    return result;
   }
 
   /// Of piece i, with the rates at its knots.
-  template <class S, class Rates>
-  [[nodiscard]] auto taylor(std::size_t i, const Rates& rates) const {
-    return pieces_[i].template taylor<S>(rates(i), rates(next(i)));
+  [[nodiscard]] auto taylor(std::size_t i, const unknowns& x) const {
+    return pieces_[i].taylor(rates(x[i]), rates(x[next(i)]));
   }
 
   /// Calls f(end, k, knot, scale) for equation k of either end, which is about a knot; times the

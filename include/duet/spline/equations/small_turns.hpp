@@ -4,7 +4,6 @@
 #include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/blocks/tridiagonal.hpp>
 
 #include <Eigen/Core>
 
@@ -28,26 +27,31 @@ struct small_turn_equation {
   vector3<T> right;
 };
 
-/// The solution of all these equations, a tridiagonal system of numbers; zero where it is singular.
+/// The solution of all these equations; zero where they are singular.
 template <class R, class Equations>
 [[nodiscard]] std::vector<vector3<R>> small_turn_solution(const Equations& equations) {
   const std::size_t n = equations.size();
-  block_tridiagonal<R, 1> matrix;
+  typename Equations::matrix matrix;
   auto& rows = matrix.rows();
   rows.resize(n);
-  std::vector<Eigen::Matrix<R, 1, 3>> x(n);
+  std::vector<vector3<R>> x(n);
   for (std::size_t row = 0; row < n; ++row) {
     const small_turn_equation<R> equation = equations.small_turns(row);
     for (std::size_t j = 0; j < 3; ++j) {
-      rows[row].at(equations.place(row, j))(0, 0) = equation.weights[j];
+      matrix3<R>& block = rows[row].at(equations.place(row, j));
+      block.setZero();
+      for (int k = 0; k < 3; ++k) {
+        block(k, k) = equation.weights[j];
+      }
     }
     x[row] = equation.right;
   }
   if (!matrix.factorise(equations.corner_columns())) {
-    return std::vector<vector3<R>>(n, vector3<R>::Zero());
+    x.assign(n, vector3<R>::Zero());
+    return x;
   }
   matrix.solve(x);
-  return std::vector<vector3<R>>(x.begin(), x.end());
+  return x;
 }
 
 /// How large a step of the unknowns from x is in relation to what it changes: the largest such

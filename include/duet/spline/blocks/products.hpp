@@ -1,0 +1,49 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+/// \file
+/// Sums and products of small matrices as plain loops: of Eigen's expressions the compiler would
+/// have more to do than the processor.
+
+namespace duet::detail {
+
+/// y + factor · a, in place.
+template <class M, class R>
+void add_multiple(M& y, const R& factor, const M& a) {
+  for (int column = 0; column < M::ColsAtCompileTime; ++column) {
+    for (int i = 0; i < M::RowsAtCompileTime; ++i) {
+      y(i, column) += factor * a(i, column);
+    }
+  }
+}
+
+/// y + factor · a x, in place; x and y over any scalar above that of a.
+template <class Y, class R, class A, class X>
+void add_product(Y& y, const R& factor, const A& a, const X& x) {
+  for (int column = 0; column < X::ColsAtCompileTime; ++column) {
+    for (int j = 0; j < A::ColsAtCompileTime; ++j) {
+      const typename X::Scalar multiple = factor * x(j, column);
+      for (int i = 0; i < A::RowsAtCompileTime; ++i) {
+        y(i, column) += a(i, j) * multiple;
+      }
+    }
+  }
+}
+
+/// a b of square matrices
+template <class M>
+[[nodiscard]] M product(const M& a, const M& b) {
+  M result;
+  for (int column = 0; column < M::ColsAtCompileTime; ++column) {
+    for (int i = 0; i < M::RowsAtCompileTime; ++i) {
+      typename M::Scalar sum = a(i, 0) * b(0, column);
+      for (int j = 1; j < M::ColsAtCompileTime; ++j) {
+        sum += a(i, j) * b(j, column);
+      }
+      result(i, column) = sum;
+    }
+  }
+  return result;
+}
+
+} // namespace duet::detail
