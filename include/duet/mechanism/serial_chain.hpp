@@ -78,7 +78,7 @@ struct poses_of {
 /// Links joined one after the other, each turning about or sliding along the axis of a joint.
 ///
 /// \tparam N  number of joints that move; negative: up to −N, their number known at run time
-/// \tparam T  scalar of the table
+/// \tparam T  scalar of the table, a real number
 ///
 /// Joints are numbered from 0, links from 0, the base: joint i moves link i + 1. Coordinates θ are
 /// Eigen vectors or `std::array`s over any scalar, radians, or units of length where joints slide.
@@ -86,6 +86,8 @@ struct poses_of {
 template <int N, class T = double>
 class serial_chain : public detail::poses_of<serial_chain<N, T>> {
   static_assert(N != 0, "duet: serial_chain<N> needs its number of joints, or -capacity");
+  static_assert(!Infinitesimal<T>, "duet: serial_chain: a table holds real numbers, what has "
+                                   "derivatives are the coordinates: pose(theta)");
 
 public:
   using scalar_type = T;
