@@ -23,10 +23,11 @@ class lower_triangle {
   using packet = typename packing<T, N>::packet;
   using row_type = partials<T, N>;
 
-  /// Row i has ⌊i / width⌋ + 1 packets; so many have all rows before one.
+  /// Row i has ⌊i / width⌋ + 1 packets; so many have all rows before one. Unsigned: the rounding of
+  /// a signed division costs clang's Hessian of 3 a sixth.
   static constexpr int packets_before(int row) {
-    const int full = row / width, rest = row % width;
-    return (full + 1) * (width * full + 2 * rest) / 2;
+    const unsigned i = unsigned(row), full = i / width;
+    return int((full + 1) * (2 * i - width * full) / 2);
   }
 
 public:
