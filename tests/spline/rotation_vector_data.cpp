@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curves.hpp"
+#include "support/message.hpp"
 
 #include <duet/spline/interpolate.hpp>
 
@@ -43,6 +44,21 @@ TEST_CASE_TEMPLATE("derivatives with respect to the data", order, std::integral_
   CHECK(std::abs(automatic.x().epsilon() - difference.x()) < 1e-9);
   CHECK(std::abs(automatic.y().epsilon() - difference.y()) < 1e-9);
   CHECK(std::abs(automatic.z().epsilon() - difference.z()) < 1e-9);
+}
+
+TEST_CASE("parameters that rates overflow over") {
+  using duet_test::message_of;
+  using curve = duet::rotation_vector_spline<double>;
+  const duet::quaternion<double> one(1);
+  const auto over = [&](double from, double to) {
+    return message_of([&] { static_cast<void>(curve::from_pieces({from, to}, {one, one}, {{}})); });
+  };
+  CHECK(over(0, 1) == "");
+  CHECK(over(0, 5e-324) ==
+        "duet: rotation_vector_spline: parameter 0 = 0 and parameter 1 = 4.94066e-324 are too "
+        "close: a derivative overflows");
+  CHECK(over(-1.7e308, 1.7e308) ==
+        "duet: rotation_vector_spline: the distance from -1.7e+308 to 1.7e+308 overflows");
 }
 
 } // namespace test_spline_rotation_vector_data

@@ -88,7 +88,10 @@ template <class T>
         const P of_v = norm2(v);
         return select(
             innermost(near_one.w()) > 0 || innermost(of_v) > least_moderate<real_type_t<P>>(),
-            [&] { return vector3<P>(v.vec() * arc_ratio(of_v, near_one.w())); },
+            [&] {
+              const P ratio = arc_ratio(of_v, near_one.w());
+              return vector3<P>(v.x() * ratio, v.y() * ratio, v.z() * ratio);
+            },
             [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
               const P short_way = arc_ratio(of_v, P(-near_one.w()));
               const quaternion<P> half_turn = axis_of(near_one) * constant::pi<real_type_t<P>>();

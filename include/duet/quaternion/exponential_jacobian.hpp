@@ -204,11 +204,9 @@ template <class T>
   const T xy = cr[0] * r[1];
   const T xz = cr[0] * r[2];
   const T yz = cr[1] * r[2];
-  matrix3<T> m;
-  m << a + cr[0] * r[0], xy - axial[2], xz + axial[1], //
-      xy + axial[2], a + cr[1] * r[1], yz - axial[0],  //
-      xz - axial[1], yz + axial[0], a + cr[2] * r[2];
-  return m;
+  return matrix_of_rows<T>({a + cr[0] * r[0], xy - axial[2], xz + axial[1]},
+                           {xy + axial[2], a + cr[1] * r[1], yz - axial[0]},
+                           {xz - axial[1], yz + axial[0], a + cr[2] * r[2]});
 }
 
 template <class T>

@@ -124,13 +124,7 @@ public:
     return {dot(x_, v), dot(y_, v), dot(z_, v)};
   }
 
-  [[nodiscard]] DUET_ALWAYS_INLINE matrix3<T> matrix() const {
-    matrix3<T> r;
-    r << x_.x, x_.y, x_.z, //
-        y_.x, y_.y, y_.z,  //
-        z_.x, z_.y, z_.z;
-    return r;
-  }
+  [[nodiscard]] DUET_ALWAYS_INLINE matrix3<T> matrix() const { return matrix_of_rows(x_, y_, z_); }
 
 private:
   three_vector<T> x_, y_, z_; ///< rows

@@ -72,6 +72,17 @@ template <class X, class Y, class Z, class U, class V, class W>
   return three_vector{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// In place of Eigen's `m << …`, of which the compiler has more to do.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE matrix3<T>
+matrix_of_rows(const three_vector<T>& a, const three_vector<T>& b, const three_vector<T>& c) {
+  matrix3<T> m;
+  m(0, 0) = a.x, m(0, 1) = a.y, m(0, 2) = a.z;
+  m(1, 0) = b.x, m(1, 1) = b.y, m(1, 2) = b.z;
+  m(2, 0) = c.x, m(2, 1) = c.y, m(2, 2) = c.z;
+  return m;
+}
+
 /// q v q* of a unit quaternion: v + 2 q₀ (q⃗ × v) + 2 q⃗ × (q⃗ × v).
 template <class Q, class X, class Y, class Z>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto rotated(const Q& q,

@@ -4,7 +4,6 @@
 #include <duet/core/batch/lanes.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/location.hpp>
@@ -36,7 +35,7 @@ using cumulative_weights =
 /// B̃_i = Σ_{j≥i} B_j (P2). On every span the k − 1 of them that vary are stored as polynomials, so
 /// that non-uniform knots cost no more than uniform ones.
 template <int Order, Real R = double>
-class bspline_basis {
+class bspline_basis : public knot_spans<R> {
   static_assert(Order >= 2, "duet: a B-spline basis needs order 2 or more");
 
 public:
@@ -44,60 +43,19 @@ public:
 
   /// \throws invalid_input for knots that decrease, are not finite, leave no domain, or are
   /// repeated more than k times
-  bspline_basis(std::vector<R> knots) : knots_(std::move(knots)) {
-    detail::check_knots(knots_, Order);
+  bspline_basis(std::vector<R> knots)
+      : knot_spans<R>(distinct_in_domain(knots)), knots_(std::move(knots)) {
+    spans_.reserve(this->breaks().size() - 1);
     for (std::size_t i = std::size_t(Order) - 1; i + std::size_t(Order) < knots_.size(); ++i) {
       if (knots_[i] < knots_[i + 1]) {
-        breaks_.push_back(knots_[i]);
         spans_.push_back(make_span(i));
       }
-    }
-    breaks_.push_back(knots_[knots_.size() - std::size_t(Order)]);
-    spans_per_unit_ = R(spans_.size()) / (breaks_.back() - breaks_.front());
-    for (std::size_t i = 0; i < spans_.size(); ++i) {
-      is_about_uniform_ = is_about_uniform_ && guessed_span(spans_[i].middle) == i;
     }
   }
 
   [[nodiscard]] const std::vector<R>& knots() const { return knots_; }
   /// Number of basis functions, which is that of the control elements.
   [[nodiscard]] std::size_t size() const { return knots_.size() - std::size_t(Order); }
-  [[nodiscard]] const R& front() const { return breaks_.front(); }
-  [[nodiscard]] const R& back() const { return breaks_.back(); }
-  /// The distinct knots of the domain.
-  [[nodiscard]] const std::vector<R>& breaks() const { return breaks_; }
-
-  /// Is u in the domain? NaN is not.
-  [[nodiscard]] DUET_ALWAYS_INLINE bool contains(const R& u) const {
-    return u >= breaks_.front() && u <= breaks_.back();
-  }
-
-  /// u; the end of the domain that it is beyond by rounding only, see `outside`.
-  [[nodiscard]] R rounded_into_domain(const R& u) const {
-    return detail::rounded_into(u, breaks_.front(), breaks_.back());
-  }
-
-  /// Number of the non-empty span that holds u: half-open, the last one closed. Beyond an end by
-  /// rounding only, that at the end.
-  /// \throws invalid_input outside the domain
-  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t span_of(const R& u) const {
-    if (!contains(u)) [[unlikely]] {
-      return span_beside(u);
-    }
-    // Where knots are about uniform the guess is right; otherwise a binary search finds the span.
-    const std::size_t guess = guessed_span(u);
-    if (breaks_[guess] <= u && u < breaks_[guess + 1]) [[likely]] {
-      return guess;
-    }
-    const auto above = std::upper_bound(breaks_.begin(), breaks_.end(), u) - breaks_.begin();
-    return std::min(static_cast<std::size_t>(above), spans_.size()) - 1;
-  }
-  /// The span that holds u, looked for in that of the hint and the next one first where knots are
-  /// not about uniform; the hint is updated.
-  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t span_of(const R& u, span_hint& hint) const {
-    return hint.span = is_about_uniform_ ? span_of(u) : span_near(u, hint.span);
-  }
-
   /// Index of the first of the k functions that do not vanish on a span.
   [[nodiscard]] std::size_t first_function(std::size_t span) const { return spans_[span].first; }
 
@@ -148,17 +106,15 @@ public:
   }
 
 private:
-  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t guessed_span(const R& u) const {
-    return std::min(static_cast<std::size_t>((u - breaks_.front()) * spans_per_unit_),
-                    spans_.size() - 1);
-  }
-  [[nodiscard]] std::size_t span_near(const R& u, std::size_t hint) const {
-    for (std::size_t i = hint; i < spans_.size() && i - hint < 2; ++i) {
-      if (breaks_[i] <= u && u < breaks_[i + 1]) {
-        return i;
+  [[nodiscard]] static std::vector<R> distinct_in_domain(const std::vector<R>& knots) {
+    detail::check_knots(knots, Order);
+    std::vector<R> result;
+    for (std::size_t i = std::size_t(Order) - 1; i + std::size_t(Order) <= knots.size(); ++i) {
+      if (result.empty() || result.back() < knots[i]) {
+        result.push_back(knots[i]);
       }
     }
-    return span_of(u);
+    return result;
   }
 
   /// Derivatives 0 … k−1 at the middle of the span. About the middle no term of the Taylor series
@@ -264,24 +220,8 @@ private:
     return result;
   }
 
-  [[nodiscard, gnu::cold]] std::size_t span_beside(const R& u) const {
-    if (contains(rounded_into_domain(u))) {
-      return u < breaks_.front() ? 0 : spans_.size() - 1;
-    }
-    std::string message = "duet: spline evaluated at " + detail::all_digits(u) +
-                          ", outside its domain [" + detail::all_digits(breaks_.front()) + ", " +
-                          detail::all_digits(breaks_.back()) + "]";
-    if (u == u) {
-      message += "; set_outside_domain(outside::clamp) makes a curve stay at its end";
-    }
-    throw invalid_input(message);
-  }
-
   std::vector<R> knots_;
-  std::vector<R> breaks_;
   std::vector<span_data<R>> spans_;
-  R spans_per_unit_;
-  bool is_about_uniform_ = true;
 };
 
 } // namespace duet

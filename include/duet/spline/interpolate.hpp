@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/spline/blocks/products.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/curve_ends.hpp>
 #include <duet/spline/end_conditions.hpp>
@@ -75,7 +76,7 @@ closed(std::vector<quaternion<T>> q) {
   const auto tolerance = sqrt(std::numeric_limits<real_type_t<T>>::epsilon());
   const auto check = [&](const auto& x, const char* unit) {
     using R = real_type_t<T>;
-    const R off = 2 * vector3<R>(innermost(x[0]), innermost(x[1]), innermost(x[2])).norm();
+    const R off = 2 * length(vector3<R>(innermost(x[0]), innermost(x[1]), innermost(x[2])));
     if (!(off <= tolerance)) {
       throw invalid_row(q.size() - 1, message("periodic ends: differs from row 0 by ", off, unit,
                                               ", but must repeat it"));

@@ -3,14 +3,9 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/core/text/number_text.hpp>
 
 #include <algorithm>
-#include <concepts>
 #include <cstddef>
-#include <limits>
-#include <sstream>
-#include <string>
 #include <vector>
 
 /// \file
@@ -18,19 +13,6 @@
 
 namespace duet {
 namespace detail {
-
-/// A number for messages, told apart from its neighbours.
-template <Real R>
-[[nodiscard]] std::string all_digits(const R& x) {
-  if constexpr (std::floating_point<R>) {
-    return to_text(x);
-  } else {
-    std::ostringstream text;
-    text.precision(std::numeric_limits<R>::max_digits10);
-    text << x;
-    return text.str();
-  }
-}
 
 /// \throws invalid_input unless the knots are finite, do not decrease, leave a domain for splines
 /// of this order and repeat none more often than `order` times

@@ -61,7 +61,7 @@ public:
   rotation_vector_spline(
       const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
       const std::vector<std::array<vector3<T>, std::size_t(Order) / 2 - 1>>& half_rates)
-      : spans_(clamped_knots(checked(parameters, elements, half_rates, "rates", 0), 2)),
+      : spans_(spans_over(checked(parameters, elements, half_rates, "rates", 0))),
         elements_(aligned_orientations(std::move(elements))) {
     pieces_.reserve(parameters.size() - 1);
     for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
@@ -113,8 +113,8 @@ private:
   struct made_of_pieces {};
   rotation_vector_spline(made_of_pieces, const std::vector<real_type>& parameters,
                          std::vector<quaternion<T>> elements, std::vector<polynomial> pieces)
-      : spans_(clamped_knots(parameters, 2)), elements_(std::move(elements)),
-        pieces_(std::move(pieces)) {}
+      : spans_(spans_over(parameters)), elements_(std::move(elements)), pieces_(std::move(pieces)) {
+  }
 
   /// \param missing  by how many fewer than the elements the parts must be
   template <class Elements, class Parts>
@@ -128,7 +128,21 @@ private:
     return parameters;
   }
 
-  [[nodiscard]] const bspline_basis<2, real_type>& spans() const { return spans_; }
+  /// \throws invalid_input where they are so far apart, or so close, that rates overflow
+  [[nodiscard]] static knot_spans<real_type> spans_over(const std::vector<real_type>& u) {
+    const auto is_finite = [](const real_type& x) { return x - x == 0; };
+    detail::require(is_finite(u.back() - u.front()),
+                    "duet: rotation_vector_spline: the distance from ", u.front(), " to ", u.back(),
+                    " overflows");
+    for (std::size_t i = 0; i + 1 < u.size(); ++i) {
+      detail::require(is_finite(1 / (u[i + 1] - u[i])), "duet: rotation_vector_spline: parameter ",
+                      i, " = ", u[i], " and parameter ", i + 1, " = ", u[i + 1],
+                      " are too close: a derivative overflows");
+    }
+    return knot_spans<real_type>(u);
+  }
+
+  [[nodiscard]] const knot_spans<real_type>& spans() const { return spans_; }
 
   /// Q, w, w′, w″.
   template <int Rates, class P>
@@ -166,7 +180,7 @@ private:
     return m;
   }
 
-  bspline_basis<2, real_type> spans_; ///< broken lines over the same knots: it is here to search
+  knot_spans<real_type> spans_;
   std::vector<quaternion<T>> elements_;
   std::vector<polynomial> pieces_;
 };

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <cmath>
+
 /// \file
 /// Sums and products of small matrices as plain loops: of Eigen's expressions the compiler would
 /// have more to do than the processor.
@@ -44,6 +46,13 @@ template <class M>
     }
   }
   return result;
+}
+
+/// The length of three components of a vector, from the first on.
+template <class V>
+[[nodiscard]] typename V::Scalar length(const V& v, int first = 0) {
+  using std::sqrt;
+  return sqrt(v[first] * v[first] + v[first + 1] * v[first + 1] + v[first + 2] * v[first + 2]);
 }
 
 } // namespace duet::detail

@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/rounding.hpp>
+#include <duet/spline/blocks/products.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -86,7 +87,7 @@ private:
       }
       moved += largest(residual_);
       for (std::size_t k = 0; k < x_.size(); ++k) {
-        x_[k] -= residual_[k];
+        add_multiple(x_[k], R(-1), residual_[k]);
       }
       ++iterations_;
       // The Jacobian is about as far off as x has moved: the next step would be less than rounding.
@@ -109,7 +110,7 @@ private:
       const unknowns at = x_;
       h = std::min(h, R(1 - lambda));
       for (std::size_t k = 0; k < x_.size(); ++k) {
-        x_[k] += h * slope[k];
+        add_multiple(x_[k], h, slope[k]);
       }
       const int before = iterations_;
       equations part = full_;
@@ -118,7 +119,9 @@ private:
       }
       if (descend(part)) {
         for (std::size_t k = 0; k < x_.size(); ++k) {
-          slope[k] = (x_[k] - at[k]) / h;
+          for (int j = 0; j < unknown::SizeAtCompileTime; ++j) {
+            slope[k][j] = (x_[k][j] - at[k][j]) / h;
+          }
         }
         lambda += h;
         h *= iterations_ - before <= 8 ? 2 : 1;
@@ -156,9 +159,14 @@ private:
   [[nodiscard]] bool linearise(const equations& f) { return f.linearise(x_, residual_, matrix_); }
 
   [[nodiscard]] static R largest(const unknowns& x) {
+    using std::sqrt;
     R result(0);
     for (const unknown& v : x) {
-      result = larger_or_nan(result, R(v.norm()));
+      R square(0);
+      for (int j = 0; j < unknown::SizeAtCompileTime; ++j) {
+        square += v[j] * v[j];
+      }
+      result = larger_or_nan(result, R(sqrt(square)));
     }
     return result;
   }

@@ -132,7 +132,9 @@ end_gradient(const std::array<R, 3>& b, const std::array<vector3<R>, 3>& omega, 
   gradient_by_three<R> by;
   by.fill(matrix3<R>::Zero());
   for (std::size_t j = 0; j < 3; ++j) {
-    add_multiple(by[j], b[j], matrix3<R>(matrix3<R>::Identity()));
+    for (int i = 0; i < 3; ++i) {
+      by[j](i, i) = b[j];
+    }
   }
   if (is_turned) { // ŵ = e* w e changes by 2 ŵ × J δω_2
     const turning_factor<R> e(omega[2]);

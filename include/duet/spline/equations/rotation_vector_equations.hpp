@@ -107,10 +107,14 @@ protected:
     const std::size_t last = steps_.size();
     const std::size_t left = i > 0 ? i - 1 : ends_.is_cyclic ? last - 1 : 0;
     const std::size_t right = i < last ? i : last - 1;
-    const vector3<T> before = turns_[left] / steps_[left];
-    const vector3<T> after = turns_[right] / steps_[right];
     const R h = steps_[left] + steps_[right];
-    return {(before * steps_[right] + after * steps_[left]) / h, (after - before) * (2 / h)};
+    std::pair<vector3<T>, vector3<T>> result;
+    for (int k = 0; k < 3; ++k) {
+      const T before = turns_[left][k] / steps_[left], after = turns_[right][k] / steps_[right];
+      result.first[k] = (before * steps_[right] + after * steps_[left]) / h;
+      result.second[k] = (after - before) * (2 / h);
+    }
+    return result;
   }
 
   /// A power of the unit.

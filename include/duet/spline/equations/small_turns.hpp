@@ -4,6 +4,7 @@
 #include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/blocks/products.hpp>
 
 #include <Eigen/Core>
 
@@ -66,13 +67,13 @@ template <class R, class Equations>
   R largest(0);
   for (std::size_t row = 0; row < n; ++row) {
     const small_turn_equation<R> equation = equations.small_turns(row);
-    term[row] = equation.right.norm();
+    term[row] = length(equation.right);
     for (std::size_t j = 0; j < 3; ++j) {
       const std::size_t k = equations.unknown(row, j);
       const R weight = abs(equation.weights[j]);
-      const R change = weight * step[k].norm();
+      const R change = weight * length(step[k]);
       moved[row] += change;
-      term[row] = std::max(R(term[row] + change), R(weight * x[k].norm()));
+      term[row] = std::max(R(term[row] + change), R(weight * length(x[k])));
     }
     largest = std::max(largest, term[row]);
   }
@@ -102,10 +103,10 @@ template <class R, int N>
     const std::size_t left = i > 0 ? i - 1 : x.size() == pieces ? pieces - 1 : 0;
     const std::size_t right = std::min(i, pieces - 1);
     R size =
-        std::max(R(turns[left].norm() / lengths[left]), R(turns[right].norm() / lengths[right]));
+        std::max(R(length(turns[left]) / lengths[left]), R(length(turns[right]) / lengths[right]));
     for (int k = 0; k < N; k += 3) {
-      const R moved = step[i].template segment<3>(k).norm();
-      const R now = x[i].template segment<3>(k).norm();
+      const R moved = length(step[i], k);
+      const R now = length(x[i], k);
       const R ratio = moved > 0 ? R(moved / std::max(size, std::max(now, moved))) : moved;
       result = larger_or_nan(result, ratio);
       size /= std::max(lengths[left], lengths[right]);
