@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/bounded_step.hpp>
@@ -104,28 +105,7 @@ public:
     start_ = within_limits(start_);
   }
 
-  [[nodiscard]] attempt operator()(const tip_place& goal) const {
-    if (model_.reach.is_beyond(goal, options_.tolerance)) {
-      return {start_, equations_at(start_, goal).left, 0, 0, 0, stop_reason::out_of_reach};
-    }
-    attempt best = approach(start_, goal);
-    int iterations = best.iterations, restarts = 0;
-    split_mix random(options_.seed);
-    while (best.reason != stop_reason::reached && restarts < options_.restarts) {
-      const attempt next = approach(configuration(random), goal);
-      iterations += next.iterations;
-      ++restarts;
-      if (!(best.error <= next.error)) { // nor is it a number if coordinates overflow
-        best = next;
-      }
-    }
-    if (best.reason == stop_reason::no_progress) {
-      best.reason = obstacle(best.joints, goal);
-    }
-    best.iterations = iterations;
-    best.restarts = restarts;
-    return best;
-  }
+  [[nodiscard]] attempt operator()(const tip_place& goal) const;
 
 private:
   /// What is left to do at some θ: J Δ = e. Lengths count as parts of the chain's.
@@ -231,6 +211,36 @@ private:
   vector spread_; ///< how far from the start random coordinates are that have no limits
   vector start_;
 };
+
+template <int Room>
+typename inverse_kinematics_search<Room>::attempt
+inverse_kinematics_search<Room>::operator()(const tip_place& goal) const {
+  if (model_.reach.is_beyond(goal, options_.tolerance)) {
+    return {start_, equations_at(start_, goal).left, 0, 0, 0, stop_reason::out_of_reach};
+  }
+  attempt best = approach(start_, goal);
+  int iterations = best.iterations, restarts = 0;
+  split_mix random(options_.seed);
+  while (best.reason != stop_reason::reached && restarts < options_.restarts) {
+    const attempt next = approach(configuration(random), goal);
+    iterations += next.iterations;
+    ++restarts;
+    if (!(best.error <= next.error)) { // nor is it a number if coordinates overflow
+      best = next;
+    }
+  }
+  if (best.reason == stop_reason::no_progress) {
+    best.reason = obstacle(best.joints, goal);
+  }
+  best.iterations = iterations;
+  best.restarts = restarts;
+  return best;
+}
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE class inverse_kinematics_search<8>;
+DUET_COMPILED_TEMPLATE class inverse_kinematics_search<16>;
+#endif
 
 } // namespace detail
 } // namespace duet

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/path_step.hpp>
 #include <duet/planning/planning_model.hpp>
@@ -51,21 +52,7 @@ public:
         options_(options), slope_(slope), length_(stops_.back() - stops_.front()),
         iterations_left_(options.iterations) {}
 
-  [[nodiscard]] route plan(const vector& start) {
-    route best = stay(start, stop_reason::no_progress);
-    go_on(best);
-    // From where it got stuck, or else from the beginning.
-    for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
-      if (is_at_end(best) || options_.search_step == 0) {
-        break;
-      }
-      route other = with_search(best, first);
-      if (other.back().u > best.back().u) {
-        best = std::move(other);
-      }
-    }
-    return best;
-  }
+  [[nodiscard]] route plan(const vector& start);
 
   /// Nothing but the start.
   [[nodiscard]] route stay(const vector& start, stop_reason why) const {
@@ -190,5 +177,27 @@ private:
   double length_;
   int iterations_left_;
 };
+
+template <int Room>
+typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
+  route best = stay(start, stop_reason::no_progress);
+  go_on(best);
+  // From where it got stuck, or else from the beginning.
+  for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
+    if (is_at_end(best) || options_.search_step == 0) {
+      break;
+    }
+    route other = with_search(best, first);
+    if (other.back().u > best.back().u) {
+      best = std::move(other);
+    }
+  }
+  return best;
+}
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE class path_follower<8>;
+DUET_COMPILED_TEMPLATE class path_follower<16>;
+#endif
 
 } // namespace duet::detail

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/planning/follow_path.hpp>
 
@@ -13,7 +14,8 @@ namespace detail {
 
 /// The shorter screw motion between two poses (N19), by τ.
 template <class T>
-[[nodiscard]] auto screw_path(const dual_quaternion<T>& first, const dual_quaternion<T>& last) {
+[[nodiscard]] path_function screw_path(const dual_quaternion<T>& first,
+                                       const dual_quaternion<T>& last) {
   dual_quaternion<T> between = conj(first) * normalized(last);
   if (innermost(between.w()) < 0) {
     between = -between;
@@ -22,6 +24,11 @@ template <class T>
     return dual_quaternion<T>(first * exp(dual_vector<T>(half * screw_dual<T>(tau))));
   };
 }
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE path_function screw_path(const dual_quaternion<double>&,
+                                                const dual_quaternion<double>&);
+#endif
 
 } // namespace detail
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/jacobian.hpp>
@@ -16,6 +17,10 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+
+#ifdef DUET_COMPILED
+#include <duet/mechanism/robots.hpp>
+#endif
 
 /// \file
 /// What planners see of a chain and of what is around it. Nothing in a planner depends on the type
@@ -197,14 +202,27 @@ public:
   explicit chain_model(const C& chain, const no_scene& = {}) : base(chain), chain_(chain) {}
 
   [[nodiscard]] const C& chain() const { return chain_; }
-  void set(state& of, const vector& theta) const override {
-    of.theta = theta;
-    of.tip = fill_jacobian<hybrid_frame, true, double>(of.jacobian, chain_,
-                                                       own_joints(chain_, theta), tip_of_chain{});
-  }
+  void set(state& of, const vector& theta) const override;
 
 private:
   const C& chain_;
 };
+
+template <class C>
+void chain_model<C>::set(state& of, const vector& theta) const {
+  of.theta = theta;
+  of.tip = fill_jacobian<hybrid_frame, true, double>(of.jacobian, chain_, own_joints(chain_, theta),
+                                                     tip_of_chain{});
+}
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE class chain_model<compiled_chain<robots::panda_arm>>;
+DUET_COMPILED_TEMPLATE class chain_model<compiled_chain<robots::iiwa14_arm>>;
+DUET_COMPILED_TEMPLATE class chain_model<compiled_chain<robots::ur5e_arm>>;
+DUET_COMPILED_TEMPLATE class chain_model<compiled_chain<robots::baxter_left_arm>>;
+DUET_COMPILED_TEMPLATE class chain_model<serial_chain<6>>;
+DUET_COMPILED_TEMPLATE class chain_model<serial_chain<7>>;
+DUET_COMPILED_TEMPLATE class chain_model<serial_chain<-16>>; // of URDF
+#endif
 
 } // namespace duet::detail

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/basis.hpp>
@@ -129,5 +130,13 @@ template <CurveType Spline, class R, class T>
   const R rms = largest - largest == 0 ? R(largest * sqrt(squares / R(residuals.size()))) : largest;
   return {problem.curve(basis), residuals, rms, iterations, problem.outlier()};
 }
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE fit_result<cumulative_bspline<double>>
+fit(std::vector<double>, std::vector<quaternion<double>>, std::vector<double>, const fit_options&);
+DUET_COMPILED_TEMPLATE fit_result<cumulative_bspline<screw_dual<double>>>
+fit(std::vector<double>, std::vector<quaternion<screw_dual<double>>>, std::vector<double>,
+    const fit_options&);
+#endif
 
 } // namespace duet

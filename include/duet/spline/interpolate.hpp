@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/spline/blocks/products.hpp>
@@ -141,6 +142,29 @@ template <CurveType Spline, class T>
     }
   }
 }
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE cumulative_bspline<double> curve_through(const std::vector<double>&,
+                                                                std::vector<quaternion<double>>,
+                                                                const curve_ends<double>&,
+                                                                fit_report*);
+DUET_COMPILED_TEMPLATE rotation_vector_spline<double> curve_through(const std::vector<double>&,
+                                                                    std::vector<quaternion<double>>,
+                                                                    const curve_ends<double>&,
+                                                                    fit_report*);
+DUET_COMPILED_TEMPLATE rotation_vector_spline<double, 6>
+curve_through(const std::vector<double>&, std::vector<quaternion<double>>,
+              const curve_ends<double>&, fit_report*);
+DUET_COMPILED_TEMPLATE cumulative_bspline<screw_dual<double>>
+curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
+              const curve_ends<screw_dual<double>>&, fit_report*);
+DUET_COMPILED_TEMPLATE rotation_vector_spline<screw_dual<double>>
+curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
+              const curve_ends<screw_dual<double>>&, fit_report*);
+DUET_COMPILED_TEMPLATE rotation_vector_spline<screw_dual<double>, 6>
+curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
+              const curve_ends<screw_dual<double>>&, fit_report*);
+#endif
 
 } // namespace detail
 

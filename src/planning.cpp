@@ -1,0 +1,11 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// Searches for joints and plans.
+
+#include <duet/core/compiled.hpp>
+
+#undef DUET_COMPILED_TEMPLATE
+#define DUET_COMPILED_TEMPLATE template
+
+#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/planning/plan_screw_motion.hpp>

@@ -1,0 +1,67 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// Every bit of what the library's functions return.
+
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/spline/fit.hpp>
+
+#include <cstddef>
+#include <cstdio>
+#include <vector>
+
+namespace {
+
+void print(const char* what, const auto& numbers, std::ptrdiff_t count) {
+  std::printf("%s", what);
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    std::printf(" %a", numbers[i]);
+  }
+  std::printf("\n");
+}
+
+void print(const char* what, const duet::quaternion<double>& q) {
+  const double numbers[] = {q.w(), q.x(), q.y(), q.z()};
+  print(what, numbers, 4);
+}
+
+void move_an_arm() {
+  const auto arm = duet::robots::panda();
+  Eigen::Matrix<double, 7, 1> start;
+  start << 0, -.4, .2, -2, .1, 1.7, .3;
+  const auto turn = duet::from_axis_angle(duet::vector3<double>(.6, 0, .8), .5);
+  const auto goal = duet::pose(turn, duet::vector3<double>(.05, .1, -.1)) * arm.pose(start);
+  const auto found = duet::inverse_kinematics(arm, goal, start);
+  print(duet::to_text(found.reason), found.joints, 7);
+  const auto plan = duet::plan_screw_motion(arm, start, goal);
+  std::printf("%s, %d waypoints\n", duet::to_text(plan.reason), int(plan.joints.size()));
+  for (const auto& joints : plan.joints) {
+    print("waypoint", joints, 7);
+  }
+}
+
+void draw_curves() {
+  std::vector<double> times;
+  std::vector<duet::quaternion<double>> rows;
+  for (int i = 0; i <= 12; ++i) {
+    const double u = .25 * i;
+    times.push_back(u + .01 * u * u);
+    rows.push_back(duet::exp(duet::vector3<double>(.3 * u, .1 * u * u, .2 - .05 * u * u * u)));
+  }
+  const auto through =
+      duet::interpolate<duet::rotation_vector_spline<double>>(times, rows, duet::not_a_knot{});
+  const auto near = duet::fit<duet::cumulative_bspline<double>>(
+      times, rows, duet::clamped_knots(std::vector<double>{times[0], times[6], times[12]}, 4));
+  for (double u = .1; u < times.back(); u += .37) {
+    print("through", through(u));
+    print("near", near.curve(u));
+  }
+}
+
+} // namespace
+
+int main() {
+  move_an_arm();
+  draw_curves();
+}
