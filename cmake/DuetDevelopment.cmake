@@ -23,3 +23,13 @@ target_compile_options(duet_development INTERFACE
   -Woverloaded-virtual -Wold-style-cast ${duet_compiler_memory}
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>"
   $<$<AND:$<CXX_COMPILER_ID:Clang>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,22>>:-Wno-c2y-extensions>)
+
+# What tests and examples precompile is all of duet. clang 14 cannot read from there what tells the numbers of
+# a formula apart: by it formulas are not precompiled.
+file(STRINGS ${PROJECT_SOURCE_DIR}/include/duet/duet.hpp headers REGEX "^#include ")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 15)
+  list(FILTER headers EXCLUDE REGEX "<duet/expression/")
+endif()
+list(JOIN headers "\n" headers)
+set(duet_to_precompile ${PROJECT_BINARY_DIR}/to_precompile.hpp)
+file(CONFIGURE OUTPUT ${duet_to_precompile} CONTENT "${headers}\n")
