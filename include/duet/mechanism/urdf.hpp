@@ -1,11 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
-#include <duet/mechanism/urdf_reader.hpp>
+#include <duet/mechanism/urdf_contents.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -14,6 +15,10 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#ifndef DUET_COMPILED
+#include <duet/mechanism/urdf_reader.hpp>
+#endif
 
 /// \file
 /// Chains out of robot descriptions in URDF, the XML of the robot operating system.
@@ -26,10 +31,7 @@ namespace duet {
 template <int Capacity>
 class urdf_chain : public serial_chain<-Capacity> {
 public:
-  struct named_link {
-    std::string name;
-    attached_frame<double> frame;
-  };
+  using named_link = detail::urdf_link;
 
   urdf_chain(const serial_chain<-Capacity>& chain, std::vector<std::string> joint_names,
              std::vector<named_link> links)
@@ -69,28 +71,15 @@ private:
 template <int Capacity = 16>
 [[nodiscard]] urdf_chain<Capacity> read_urdf(const std::string& path, const std::string& base,
                                              const std::string& tip) {
-  detail::urdf_reader<boost::property_tree::ptree> reader(path);
-  std::vector<joint<double>> joints;
-  std::vector<std::string> names;
-  using named_link = typename urdf_chain<Capacity>::named_link;
-  std::vector<named_link> links{{base, {}}};
-  placement<double> since_joint; // fixed joints since the last one that moves
-  for (const auto* element : reader.path(base, tip)) {
-    joints.push_back(reader.read(*element));
-    if (joints.back().kind == joint_kind::fixed) {
-      since_joint = since_joint * joints.back().origin;
-    } else {
-      since_joint = {};
-      names.push_back(reader.name(*element));
-    }
-    links.push_back({reader.child(*element), {int(names.size()), since_joint}});
-  }
-  if (names.size() > std::size_t(Capacity)) {
-    reader.fail("", std::to_string(names.size()) + " moving joints from \"" + base + "\" to \"" +
-                        tip + "\": use read_urdf<" + std::to_string(names.size()) + ">");
-  }
-  return {serial_chain<-Capacity>(std::span<const joint<double>>(joints)), std::move(names),
-          std::move(links)};
+  auto read = detail::read_urdf_contents<detail::xml_library>(path, base, tip, Capacity);
+  return {serial_chain<-Capacity>(std::span<const joint<double>>(read.joints)),
+          std::move(read.joint_names), std::move(read.links)};
 }
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE detail::urdf_contents
+detail::read_urdf_contents<detail::xml_library>(const std::string&, const std::string&,
+                                                const std::string&, std::size_t);
+#endif
 
 } // namespace duet

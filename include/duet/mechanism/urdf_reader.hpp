@@ -7,6 +7,7 @@
 #include <duet/core/text/text_rows.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
+#include <duet/mechanism/urdf_contents.hpp>
 #include <duet/mechanism/xml_check.hpp>
 
 #include <boost/property_tree/ptree.hpp>
@@ -30,9 +31,7 @@
 
 namespace duet::detail {
 
-/// Tells file and element of what is wrong. A template so that compilers make the parser for those
-/// alone who read a file.
-///
+/// Tells file and element of what is wrong.
 /// \tparam Xml  boost::property_tree::ptree
 template <class Xml>
 class urdf_reader {
@@ -268,5 +267,34 @@ private:
   std::set<std::string> links_;
   std::map<std::string, Xml> joint_above_; ///< by the link that it moves
 };
+
+struct xml_library {
+  using document = boost::property_tree::ptree;
+};
+
+template <class Xml>
+urdf_contents read_urdf_contents(const std::string& path, const std::string& base,
+                                 const std::string& tip, std::size_t most) {
+  urdf_reader<typename Xml::document> reader(path);
+  urdf_contents result;
+  std::vector<std::string>& names = result.joint_names;
+  result.links.push_back({base, {}});
+  placement<double> since_joint; // fixed joints since the last one that moves
+  for (const auto* element : reader.path(base, tip)) {
+    result.joints.push_back(reader.read(*element));
+    if (result.joints.back().kind == joint_kind::fixed) {
+      since_joint = since_joint * result.joints.back().origin;
+    } else {
+      since_joint = {};
+      names.push_back(reader.name(*element));
+    }
+    result.links.push_back({reader.child(*element), {int(names.size()), since_joint}});
+  }
+  if (names.size() > most) {
+    reader.fail("", std::to_string(names.size()) + " moving joints from \"" + base + "\" to \"" +
+                        tip + "\": use read_urdf<" + std::to_string(names.size()) + ">");
+  }
+  return result;
+}
 
 } // namespace duet::detail

@@ -3,12 +3,14 @@
 // Every bit of what the library's functions return.
 
 #include <duet/mechanism/robots.hpp>
+#include <duet/mechanism/urdf.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/spline/fit.hpp>
 
 #include <cstddef>
 #include <cstdio>
+#include <fstream>
 #include <vector>
 
 namespace {
@@ -41,6 +43,17 @@ void move_an_arm() {
   }
 }
 
+void read_an_arm() {
+  std::ofstream("arm.urdf") << R"(<robot name="arm"><link name="a"/><link name="b"/><link name="c"/>
+    <joint name="turn" type="continuous"><parent link="a"/><child link="b"/>
+      <origin xyz=".1 .2 .3" rpy=".4 .5 .6"/><axis xyz="0 .6 .8"/></joint>
+    <joint name="slide" type="prismatic"><parent link="b"/><child link="c"/>
+      <limit lower="-.5" upper="1" effort="1" velocity="1"/></joint></robot>)";
+  const auto arm = duet::read_urdf("arm.urdf", "a", "c");
+  const Eigen::Vector2d joints(.7, .3);
+  print(arm.joint_names()[1].c_str(), rotation(arm.pose(joints)));
+}
+
 void draw_curves() {
   std::vector<double> times;
   std::vector<duet::quaternion<double>> rows;
@@ -63,5 +76,6 @@ void draw_curves() {
 
 int main() {
   move_an_arm();
+  read_an_arm();
   draw_curves();
 }

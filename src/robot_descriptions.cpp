@@ -1,0 +1,10 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// Chains from URDF.
+
+#include <duet/mechanism/urdf_reader.hpp>
+
+#undef DUET_COMPILED_TEMPLATE
+#define DUET_COMPILED_TEMPLATE template
+
+#include <duet/mechanism/urdf.hpp>
