@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -87,7 +88,8 @@ template <class D>
   return result;
 }
 
-// The checks are functions of their own: within `row` they would be compiled for every line.
+// The checks are functions of their own: within `check_line` they would be compiled for every
+// function.
 
 template <class T>
 [[gnu::noinline]] void check_identical(const char* what, T a, T b) {
@@ -181,13 +183,22 @@ template <std::size_t I, std::size_t M, class F>
 }
 
 /// One line of a table: the value at x, the derivatives by every argument, and those of constants.
+template <std::size_t M>
+struct line {
+  numbers<M> x;
+  double value;
+  numbers<M> slopes;
+  double constant = 0;
+};
+
 template <std::size_t M, class F>
-[[gnu::noinline]] void row(const std::string& name, F f, const numbers<M>& x, double value,
-                           const numbers<M>& slopes, double constant = 0) {
+[[gnu::noinline]] void check_line(const std::string& name, F f, const line<M>& expected) {
+  const numbers<M>& x = expected.x;
+  const double constant = expected.constant;
   CAPTURE(name);
   CAPTURE(x[0]);
   CAPTURE(x[M - 1]);
-  check_agrees("value", call<M>(f, [&](auto i) { return x[i]; }), value);
+  check_agrees("value", call<M>(f, [&](auto i) { return x[i]; }), expected.value);
   check_constants<inner, M>(f, x, constant);
   check_constants<dual<double, 3>, M>(f, x, constant);
   check_constants<taylor<double, 2>, M>(f, x, constant);
@@ -195,96 +206,82 @@ template <std::size_t M, class F>
   check_constants<taylor<inner, 2, outer_tag>, M>(f, x, constant);
   check_constants<dual<float>, M>(f, x, constant);
   [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (check_variable<I, M>(f, x, slopes[I], constant), ...);
+    (check_variable<I, M>(f, x, expected.slopes[I], constant), ...);
   }
   (std::make_index_sequence<M>());
 }
 
+/// All lines of one function: each function is compiled once.
+template <std::size_t M, class F>
+void rows(const std::string& name, F f, std::initializer_list<line<M>> lines) {
+  for (const line<M>& expected : lines) {
+    check_line(name, f, expected);
+  }
+}
+
 } // namespace
 
-#define DUET_ROW_1(f, ...)                                                                         \
-  row<1>(                                                                                          \
-      #f, [](const auto& x) { return f; }, __VA_ARGS__)
-#define DUET_ROW_2(f, ...)                                                                         \
-  row<2>(                                                                                          \
-      #f, [](const auto& x, const auto& y) { return f; }, __VA_ARGS__)
+#define DUET_ROWS_1(f, ...) rows<1>(#f, [](const auto& x) { return f; }, {__VA_ARGS__})
+#define DUET_ROWS_2(f, ...)                                                                        \
+  rows<2>(#f, [](const auto& x, const auto& y) { return f; }, {__VA_ARGS__})
 
 TEST_CASE("functions of one variable") {
   const double nan = not_a_number;
-  DUET_ROW_1(sqrt(x), {0}, 0, {infinity});
-  DUET_ROW_1(sqrt(x), {-0.0}, 0, {-infinity});
-  DUET_ROW_1(sqrt(x), {-1}, nan, {nan});
-  DUET_ROW_1(cbrt(x), {0}, 0, {infinity});
-  DUET_ROW_1(1 / x, {0}, infinity, {-infinity});
-  DUET_ROW_1(1 / x, {-0.0}, -infinity, {-infinity});
-  DUET_ROW_1(x / 0, {1}, infinity, {infinity});
-  DUET_ROW_1(x / 0, {0}, nan, {infinity});
-  DUET_ROW_1(x / x, {0}, nan, {nan});
-  DUET_ROW_1(log(x), {0}, -infinity, {infinity});
-  DUET_ROW_1(log(x), {-1}, nan, {-1});
-  DUET_ROW_1(log(x), {infinity}, infinity, {0});
-  DUET_ROW_1(log1p(x), {-1}, -infinity, {infinity});
-  DUET_ROW_1(exp(x), {800}, infinity, {infinity});
-  DUET_ROW_1(exp(x), {-800}, 0, {0});
-  DUET_ROW_1(sin(x), {infinity}, nan, {nan});
-  DUET_ROW_1(tan(x), {infinity}, nan, {nan});
-  DUET_ROW_1(asin(x), {1}, pi / 2, {infinity});
-  DUET_ROW_1(acos(x), {1}, 0, {-infinity});
-  DUET_ROW_1(acos(x), {2}, nan, {nan});
-  DUET_ROW_1(atan(x), {infinity}, pi / 2, {0});
-  DUET_ROW_1(tanh(x), {800}, 1, {0});
-  DUET_ROW_1(acosh(x), {1}, 0, {infinity});
-  DUET_ROW_1(atanh(x), {1}, infinity, {infinity});
-  DUET_ROW_1(atanh(x), {2}, nan, {-1.0 / 3});
-  DUET_ROW_1(erf(x), {800}, 1, {0});
-  DUET_ROW_1(tgamma(x), {0}, infinity, {-infinity});
-  DUET_ROW_1(lgamma(x), {0}, infinity, {-infinity});
-  DUET_ROW_1(abs(x), {0}, 0, {1});
-  DUET_ROW_1(abs(x), {-0.0}, 0, {-1});
-  DUET_ROW_1(floor(x), {1}, 1, {0});
+  DUET_ROWS_1(sqrt(x), {{0}, 0, {infinity}}, {{-0.0}, 0, {-infinity}}, {{-1}, nan, {nan}});
+  DUET_ROWS_1(cbrt(x), {{0}, 0, {infinity}});
+  DUET_ROWS_1(1 / x, {{0}, infinity, {-infinity}}, {{-0.0}, -infinity, {-infinity}});
+  DUET_ROWS_1(x / 0, {{1}, infinity, {infinity}}, {{0}, nan, {infinity}});
+  DUET_ROWS_1(x / x, {{0}, nan, {nan}});
+  DUET_ROWS_1(log(x), {{0}, -infinity, {infinity}}, {{-1}, nan, {-1}}, {{infinity}, infinity, {0}});
+  DUET_ROWS_1(log1p(x), {{-1}, -infinity, {infinity}});
+  DUET_ROWS_1(exp(x), {{800}, infinity, {infinity}}, {{-800}, 0, {0}});
+  DUET_ROWS_1(sin(x), {{infinity}, nan, {nan}});
+  DUET_ROWS_1(tan(x), {{infinity}, nan, {nan}});
+  DUET_ROWS_1(asin(x), {{1}, pi / 2, {infinity}});
+  DUET_ROWS_1(acos(x), {{1}, 0, {-infinity}}, {{2}, nan, {nan}});
+  DUET_ROWS_1(atan(x), {{infinity}, pi / 2, {0}});
+  DUET_ROWS_1(tanh(x), {{800}, 1, {0}});
+  DUET_ROWS_1(acosh(x), {{1}, 0, {infinity}});
+  DUET_ROWS_1(atanh(x), {{1}, infinity, {infinity}}, {{2}, nan, {-1.0 / 3}});
+  DUET_ROWS_1(erf(x), {{800}, 1, {0}});
+  DUET_ROWS_1(tgamma(x), {{0}, infinity, {-infinity}});
+  DUET_ROWS_1(lgamma(x), {{0}, infinity, {-infinity}});
+  DUET_ROWS_1(abs(x), {{0}, 0, {1}}, {{-0.0}, 0, {-1}});
+  DUET_ROWS_1(floor(x), {{1}, 1, {0}});
 }
 
 TEST_CASE("functions of two variables") {
   const double nan = not_a_number;
-  DUET_ROW_2(hypot(x, y), {0, 0}, 0, {nan, nan});
-  DUET_ROW_2(hypot(x, y), {0, 2}, 2, {0, 1});
-  DUET_ROW_2(atan2(x, y), {0, 0}, 0, {nan, nan});
-  DUET_ROW_2(atan2(x, y), {0, -1}, pi, {-1, 0});
-  DUET_ROW_2(atan2(x, y), {-0.0, -1}, -pi, {-1, 0});
-  DUET_ROW_2(fmax(x, y), {1, 1}, 1, {1, 0});
-  DUET_ROW_2(fmin(x, y), {1, 1}, 1, {1, 0});
-  DUET_ROW_2(fdim(x, y), {1, 1}, 0, {0, 0});
-  DUET_ROW_2(fmod(x, y), {1, 0}, nan, {1, nan});
+  DUET_ROWS_2(hypot(x, y), {{0, 0}, 0, {nan, nan}}, {{0, 2}, 2, {0, 1}});
+  DUET_ROWS_2(atan2(x, y), {{0, 0}, 0, {nan, nan}}, {{0, -1}, pi, {-1, 0}},
+              {{-0.0, -1}, -pi, {-1, 0}});
+  DUET_ROWS_2(fmax(x, y), {{1, 1}, 1, {1, 0}});
+  DUET_ROWS_2(fmin(x, y), {{1, 1}, 1, {1, 0}});
+  DUET_ROWS_2(fdim(x, y), {{1, 1}, 0, {0, 0}});
+  DUET_ROWS_2(fmod(x, y), {{1, 0}, nan, {1, nan}});
 }
 
 TEST_CASE("the nine cases of pow") {
   const double nan = not_a_number;
-  DUET_ROW_2(pow(x, y), {2, 3}, 8, {12, 8 * ln2});
-  DUET_ROW_2(pow(x, y), {2, 0}, 1, {0, ln2});
-  DUET_ROW_2(pow(x, y), {0, 2}, 0, {0, 0});
-  DUET_ROW_2(pow(x, y), {0, 1}, 0, {1, 0});
-  DUET_ROW_2(pow(x, y), {0, 0.5}, 0, {infinity, 0});
-  DUET_ROW_2(pow(x, y), {0, 0}, 1, {0, -infinity});
-  DUET_ROW_2(pow(x, y), {0, -1}, infinity, {-infinity, -infinity});
-  DUET_ROW_2(pow(x, y), {-2, 2}, 4, {-4, nan});
-  DUET_ROW_2(pow(x, y), {-2, 0}, 1, {0, nan});
-  DUET_ROW_2(pow(x, y), {-2, -1}, -0.5, {-0.25, nan});
-  DUET_ROW_2(pow(x, y), {-2, 0.5}, nan, {nan, nan});
-  DUET_ROW_2(pow(x, y), {infinity, 0}, 1, {0, infinity});
+  DUET_ROWS_2(pow(x, y), {{2, 3}, 8, {12, 8 * ln2}}, {{2, 0}, 1, {0, ln2}}, {{0, 2}, 0, {0, 0}},
+              {{0, 1}, 0, {1, 0}}, {{0, 0.5}, 0, {infinity, 0}}, {{0, 0}, 1, {0, -infinity}},
+              {{0, -1}, infinity, {-infinity, -infinity}}, {{-2, 2}, 4, {-4, nan}},
+              {{-2, 0}, 1, {0, nan}}, {{-2, -1}, -0.5, {-0.25, nan}}, {{-2, 0.5}, nan, {nan, nan}},
+              {{infinity, 0}, 1, {0, infinity}});
 }
 
 TEST_CASE("compositions") {
   const double nan = not_a_number;
-  DUET_ROW_1(sqrt(x * x), {0}, 0, {0});
-  DUET_ROW_2(sqrt(x * x + y * y), {0, 0}, 0, {0, 0});
-  row<2>("norm of (x, y)",
-         [](const auto& x, const auto& y) {
-           using T = std::common_type_t<decltype(x), decltype(y)>;
-           return Eigen::Matrix<T, 2, 1>(T(x), T(y)).norm();
-         },
-         {0, 0}, 0, {0, 0});
-  DUET_ROW_1(x * log(x), {0}, nan, {nan}, nan);
-  DUET_ROW_1(x * infinity, {1}, infinity, {infinity}, nan);
+  DUET_ROWS_1(sqrt(x * x), {{0}, 0, {0}});
+  DUET_ROWS_2(sqrt(x * x + y * y), {{0, 0}, 0, {0, 0}});
+  rows<2>("norm of (x, y)",
+          [](const auto& x, const auto& y) {
+            using T = std::common_type_t<decltype(x), decltype(y)>;
+            return Eigen::Matrix<T, 2, 1>(T(x), T(y)).norm();
+          },
+          {{{0, 0}, 0, {0, 0}}});
+  DUET_ROWS_1(x * log(x), {{0}, nan, {nan}, nan});
+  DUET_ROWS_1(x * infinity, {{1}, infinity, {infinity}, nan});
 }
 
 TEST_CASE("std::max and std::min take the first of equal numbers") {
