@@ -5,11 +5,11 @@
 #include <duet/comparison/domain.hpp>
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
+#include <duet/core/compiled.hpp>
 #include <duet/core/progress.hpp>
 #include <duet/core/text/number_text.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +17,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -101,33 +102,80 @@ namespace detail {
   return failures == differences.size() && !shrinks ? verdict::disagrees : verdict::loses_digits;
 }
 
-template <class... T, class F, class G, class Inputs>
-[[nodiscard]] comparison compared(const std::string& label, const F& automatic,
-                                  const G& closed_form, const Inputs& inputs,
+/// Two formulas and their inputs, of whose types what is common to all comparisons knows nothing,
+/// so that compilers make it once.
+class formula_pair {
+public:
+  virtual ~formula_pair() = default;
+  [[nodiscard]] virtual std::vector<coordinates> points(const comparison_options&) const = 0;
+  [[nodiscard]] virtual bool contains(const coordinates& point) const = 0;
+  [[nodiscard]] virtual std::string describe(const coordinates& point) const = 0;
+  /// In every precision.
+  virtual void measure_at(const coordinates& point, std::span<difference> out) const = 0;
+  [[nodiscard]] virtual counterexample values_at(const coordinates& point) const = 0;
+};
+
+/// \tparam T  the scalars
+template <class F, class G, class Inputs, class... T>
+class formula_pair_of final : public formula_pair {
+public:
+  formula_pair_of(const std::string& label, const F& automatic, const G& closed_form,
+                  const Inputs& inputs, double tolerance)
+      : label_(label), automatic_(automatic), closed_form_(closed_form), inputs_(inputs),
+        tolerance_(tolerance) {}
+
+  [[nodiscard]] std::vector<coordinates> points(const comparison_options& options) const override {
+    return inputs_.points(options.samples, options.seed);
+  }
+  [[nodiscard]] bool contains(const coordinates& point) const override {
+    return inputs_.contains(point);
+  }
+  [[nodiscard]] std::string describe(const coordinates& point) const override {
+    return inputs_.describe(point);
+  }
+  void measure_at(const coordinates& point, std::span<difference> out) const override {
+    std::size_t k = 0;
+    ((out[k++] = measure<T>(label_, automatic_, closed_form_, inputs_, point, tolerance_)), ...);
+  }
+  [[nodiscard]] counterexample values_at(const coordinates& point) const override {
+    return {describe(point), evaluate_at<double>(automatic_, inputs_, point),
+            evaluate_at<double>(closed_form_, inputs_, point)};
+  }
+
+private:
+  const std::string& label_;
+  const F& automatic_;
+  const G& closed_form_;
+  const Inputs& inputs_;
+  double tolerance_;
+};
+
+/// \param errors  of every precision, nothing being known but their digits
+/// \tparam Pair   formula_pair
+template <class Pair>
+[[nodiscard]] comparison compared(const std::string& label, const Pair& pair,
+                                  std::vector<worst_errors> errors,
                                   const comparison_options& options) {
-  const auto differences_at = [&](std::span<const double> point) {
-    return std::array{
-        measure<T>(label, automatic, closed_form, inputs, point, options.tolerance)...};
-  };
-  const std::vector<coordinates> points = inputs.points(options.samples, options.seed);
+  std::vector<difference> differences(errors.size());
+  const std::vector<coordinates> points = pair.points(options);
   comparison result;
   result.label = label;
   result.samples = points.size();
   result.tolerance = options.tolerance;
-  result.errors = {worst_errors{.digits = std::numeric_limits<T>::digits10}...};
+  result.errors = std::move(errors);
   coordinates worst_point;
   double worst_ulps = -1;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto differences = differences_at(points[i]);
+    pair.measure_at(points[i], differences);
     const verdict found = judged(differences, options.tolerance);
     double ulps = 0;
     for (std::size_t k = 0; k < differences.size(); ++k) {
-      worst_errors& errors = result.errors[k];
-      errors.absolute = std::max(errors.absolute, differences[k].absolute);
-      errors.relative = std::max(errors.relative, differences[k].relative);
-      if (differences[k].ulps > errors.ulps) {
-        errors.ulps = differences[k].ulps;
-        errors.input = inputs.describe(points[i]);
+      worst_errors& worst = result.errors[k];
+      worst.absolute = std::max(worst.absolute, differences[k].absolute);
+      worst.relative = std::max(worst.relative, differences[k].relative);
+      if (differences[k].ulps > worst.ulps) {
+        worst.ulps = differences[k].ulps;
+        worst.input = pair.describe(points[i]);
       }
       ulps = std::max(ulps, differences[k].ulps);
     }
@@ -146,17 +194,20 @@ template <class... T, class F, class G, class Inputs>
     }
   }
   if (result.outcome != verdict::agrees) {
-    const coordinates simplest = simplified(
-        worst_point, [&](const coordinates& point) { return inputs.contains(point); },
+    result.simplest = pair.values_at(simplified(
+        worst_point, [&](const coordinates& point) { return pair.contains(point); },
         [&](const coordinates& point) {
-          return judged(differences_at(point), options.tolerance) == result.outcome;
-        });
-    result.simplest =
-        counterexample{inputs.describe(simplest), evaluate_at<double>(automatic, inputs, simplest),
-                       evaluate_at<double>(closed_form, inputs, simplest)};
+          pair.measure_at(point, differences);
+          return judged(differences, options.tolerance) == result.outcome;
+        }));
   }
   return result;
 }
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE comparison compared(const std::string&, const formula_pair&,
+                                           std::vector<worst_errors>, const comparison_options&);
+#endif
 
 } // namespace detail
 
@@ -182,9 +233,12 @@ template <class... T, class F, class G, class Inputs>
 [[nodiscard]] comparison compare(const std::string& label, const F& automatic, const G& closed_form,
                                  const Inputs& inputs, const comparison_options& options = {}) {
   if constexpr (sizeof...(T) == 0) {
-    return detail::compared<double, long double>(label, automatic, closed_form, inputs, options);
+    return compare<double, long double>(label, automatic, closed_form, inputs, options);
   } else {
-    return detail::compared<T...>(label, automatic, closed_form, inputs, options);
+    const detail::formula_pair_of<F, G, Inputs, T...> pair(label, automatic, closed_form, inputs,
+                                                           options.tolerance);
+    return detail::compared<detail::formula_pair>(
+        label, pair, {worst_errors{.digits = std::numeric_limits<T>::digits10}...}, options);
   }
 }
 

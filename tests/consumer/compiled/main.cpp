@@ -2,6 +2,7 @@
 
 // Every bit of what the library's functions return.
 
+#include <duet/comparison/compare.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/urdf.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
@@ -72,9 +73,21 @@ void draw_curves() {
   }
 }
 
+void judge_a_formula() {
+  const auto found = duet::compare(
+      "sine",
+      [](auto x) {
+        using std::sin;
+        return sin(x);
+      },
+      [](auto x) { return x - x * x * x / 6; }, duet::sampler(duet::real_numbers{-1, 1}));
+  std::printf("%s%a\n", to_text(found).c_str(), found.errors[0].ulps);
+}
+
 } // namespace
 
 int main() {
+  judge_a_formula();
   move_an_arm();
   read_an_arm();
   draw_curves();
