@@ -26,6 +26,7 @@ target_compile_options(duet_development INTERFACE
 
 # What tests and examples precompile is all of duet. clang 14 cannot read from there what tells the numbers of
 # a formula apart: by it formulas are not precompiled.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/duet/duet.hpp)
 file(STRINGS ${PROJECT_SOURCE_DIR}/include/duet/duet.hpp headers REGEX "^#include ")
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 15)
   list(FILTER headers EXCLUDE REGEX "<duet/expression/")
