@@ -8,6 +8,7 @@
 #include <duet/core/compiled.hpp>
 #include <duet/core/progress.hpp>
 #include <duet/core/text/number_text.hpp>
+#include <duet/derivative/function.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -101,6 +103,12 @@ namespace detail {
       differences.size() > 1 && differences.back().absolute < differences.front().absolute / 2;
   return failures == differences.size() && !shrinks ? verdict::disagrees : verdict::loses_digits;
 }
+
+/// What a function makes of the inputs.
+template <class T, class F, class Inputs>
+using result_type = decltype(result_of_call(
+    std::apply(std::declval<const F&>(),
+               std::declval<const Inputs&>().template make<T>(std::span<const double>()))));
 
 /// Two formulas and their inputs, of whose types what is common to all comparisons knows nothing,
 /// so that compilers make it once.
@@ -235,6 +243,9 @@ template <class... T, class F, class G, class Inputs>
   if constexpr (sizeof...(T) == 0) {
     return compare<double, long double>(label, automatic, closed_form, inputs, options);
   } else {
+    // Asked here, so that compilers name the caller's line: what is virtual they make elsewhere.
+    using results [[maybe_unused]] =
+        std::tuple<detail::result_type<T, F, Inputs>..., detail::result_type<T, G, Inputs>...>;
     const detail::formula_pair_of<F, G, Inputs, T...> pair(label, automatic, closed_form, inputs,
                                                            options.tolerance);
     return detail::compared<detail::formula_pair>(
