@@ -25,11 +25,13 @@ namespace {
 
 void print_faults(const recording& r, const std::string& path) {
   if (!r.remark.empty()) {
-    std::cerr << path << ": " << r.remark << "\n";
+    std::cerr << duet::printable(path) << ": " << r.remark << "\n";
   }
   constexpr std::size_t most = 20;
   for (std::size_t i = 0; i < r.faults.size() && i < most; ++i) {
-    std::cerr << duet::file_error(path, r.faults[i].line, r.faults[i].reason).what() << "\n";
+    const fault& each = r.faults[i];
+    std::cerr << duet::printable(path + ":" + std::to_string(each.line) + ": " + each.reason)
+              << "\n";
   }
   if (r.faults.size() > most) {
     std::cerr << duet::printable(path) << ": and " << r.faults.size() - most << " more\n";

@@ -4,6 +4,7 @@
 #include <duet/core/text/file.hpp>
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -14,11 +15,11 @@ namespace example {
 
 /// Finds out before the work whether files could be written to a folder, or to one to be made;
 /// makes nothing.
-/// \throws duet::file_error
+/// \throws std::runtime_error
 inline void require_folder(const std::string& folder) {
   namespace fs = std::filesystem;
   if (folder.empty()) {
-    throw duet::file_error("--out", "a folder's name is empty");
+    throw std::runtime_error("--out: a folder's name is empty");
   }
   std::error_code ignored;
   fs::path above = fs::path(folder);
@@ -29,13 +30,13 @@ inline void require_folder(const std::string& folder) {
     }
   }
   if (!is_directory(fs::status(above, ignored))) {
-    throw duet::file_error(folder,
-                           above == folder ? "is no folder" : above.string() + " is no folder");
+    throw std::runtime_error(folder + ": " +
+                             (above == folder ? "is no folder" : above.string() + " is no folder"));
   }
   try {
     duet::require_writable((above / "duet").string());
   } catch (const duet::file_error&) {
-    throw duet::file_error(folder, "nothing can be written to the folder " + above.string());
+    throw std::runtime_error(folder + ": nothing can be written to the folder " + above.string());
   }
 }
 

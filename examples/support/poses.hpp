@@ -57,6 +57,12 @@ inline duet::dual_quaternion<double> parse_pose(const std::string& option,
   }
 }
 
+/// A message of the library, which begins with its name.
+inline std::string without_name(const std::string& message) {
+  const std::string name = "duet: ";
+  return message.starts_with(name) ? message.substr(name.size()) : message;
+}
+
 struct pose_row {
   std::size_t line;
   duet::dual_quaternion<double> pose;
@@ -91,7 +97,7 @@ inline std::vector<pose_row> read_poses(const std::string& path) {
     try {
       result.push_back({row.line, parse_pose(numbers)});
     } catch (const duet::invalid_input& error) {
-      throw duet::file_error(path, row.line, error.what());
+      throw duet::file_error(path, row.line, without_name(error.what()));
     }
   }
   return result;

@@ -189,7 +189,7 @@ TEST_CASE("links are followed") {
   // To nowhere, and round and round.
   fs::create_symlink("none/new.csv", here.at("nowhere"));
   CHECK(message(here.at("nowhere")) ==
-        here.at("nowhere") + ": cannot be written: No such file or directory");
+        "duet: " + here.at("nowhere") + ": cannot be written: No such file or directory");
   fs::create_symlink("round", here.at("round"));
   CHECK(message(here.at("round")).find("round: cannot be written: ") != std::string::npos);
 }
@@ -209,10 +209,10 @@ TEST_CASE("devices and pipes are written to and stay what they are") {
 
   if (fs::is_character_file("/dev/full") && fs::is_character_file("/dev/null")) {
     write_file("/dev/null", "gone\n");
-    CHECK(message("/dev/full") == "/dev/full: cannot be written: No space left on device");
+    CHECK(message("/dev/full") == "duet: /dev/full: cannot be written: No space left on device");
     fs::create_symlink("/dev/full", here.at("full"));
     CHECK(message(here.at("full")) ==
-          here.at("full") + ": cannot be written: No space left on device");
+          "duet: " + here.at("full") + ": cannot be written: No space left on device");
     CHECK(fs::is_character_file("/dev/full"));
     CHECK(fs::is_character_file("/dev/null"));
   }
@@ -229,11 +229,12 @@ TEST_CASE("what cannot be written is found before") {
         std::pair(here.at("none/a.csv"), "No such file or directory"),
         std::pair(here.at(std::string(300, 'x')), "File name too long")}) {
     CHECK(asked(path) == message(path));
-    CHECK(message(path) == path + ": cannot be written: " + reason);
+    CHECK(message(path) == "duet: " + path + ": cannot be written: " + reason);
   }
   CHECK(here.count() == 0);
   CHECK(message(here.at("none\n\x1b[2J/a.csv")) ==
-        here.at("none\\n\\x1b[2J/a.csv") + ": cannot be written: No such file or directory");
+        "duet: " + here.at("none\\n\\x1b[2J/a.csv") +
+            ": cannot be written: No such file or directory");
 }
 
 TEST_CASE("files and folders without permission") {
@@ -245,10 +246,10 @@ TEST_CASE("files and folders without permission") {
   const std::string path = here.at("a.csv");
   write_file(path, "first\n");
   fs::permissions(path, fs::perms(0400));
-  CHECK(message(path) == path + ": cannot be written: Permission denied");
+  CHECK(message(path) == "duet: " + path + ": cannot be written: Permission denied");
   fs::permissions(path, fs::perms(0600));
   fs::permissions(here.at(""), fs::perms(0500));
-  CHECK(message(path) == path + ": cannot be written: Permission denied");
+  CHECK(message(path) == "duet: " + path + ": cannot be written: Permission denied");
   CHECK(message(here.at("new.csv")).find("Permission denied") != std::string::npos);
   fs::permissions(here.at(""), fs::perms(0700));
   CHECK(content_of(path) == "first\n");

@@ -59,25 +59,27 @@ TEST_CASE("headers are read as headers, with as many columns as were written") {
 }
 
 TEST_CASE("what is no file of rows says why") {
-  CHECK(complaint("no/such/file") == "no/such/file: cannot be read");
-  CHECK(complaint(".") == ".: is a folder, not a file");
+  CHECK(complaint("no/such/file") == "duet: no/such/file: cannot be read");
+  CHECK(complaint(".") == "duet: .: is a folder, not a file");
+  CHECK_THROWS_AS(static_cast<void>(csv_file(".")), duet::invalid_input); // as other bad input
   write("a,b\n");
-  CHECK(complaint(path) == path + ": holds no rows");
+  CHECK(complaint(path) == "duet: " + path + ": holds no rows");
   write("\xff\xfe"
         "1\n");
-  CHECK(complaint(path) == path + ": is UTF-16: UTF-8 expected");
+  CHECK(complaint(path) == "duet: " + path + ": is UTF-16: UTF-8 expected");
   write("1,2\n" + std::string(2'000'000, '1'));
-  CHECK(complaint(path) == path + ":2: more than a million characters: no file of rows");
+  CHECK(complaint(path) == "duet: " + path + ":2: more than a million characters: no file of rows");
   write("1,1e400\n");
-  CHECK(complaint(path) == path + ":1: column 2 is 1e400, beyond the range of a double");
+  CHECK(complaint(path) == "duet: " + path + ":1: column 2 is 1e400, beyond the range of a double");
   write("1,-1e-400\n");
-  CHECK(complaint(path) == path + ":1: column 2 is -1e-400, beyond the range of a double");
+  CHECK(complaint(path) ==
+        "duet: " + path + ":1: column 2 is -1e-400, beyond the range of a double");
   write("1,inf\n");
-  CHECK(complaint(path) == path + ":1: column 2 is inf");
+  CHECK(complaint(path) == "duet: " + path + ":1: column 2 is inf");
   write("1,2\n1,2,3\n");
-  CHECK(complaint(path, 2) == path + ":2: 2 numbers expected, got 3");
+  CHECK(complaint(path, 2) == "duet: " + path + ":2: 2 numbers expected, got 3");
   write("1,2;3\n");
-  CHECK(complaint(path) == path + ":1: column 2 is not a number: '2;3'");
+  CHECK(complaint(path) == "duet: " + path + ":1: column 2 is not a number: '2;3'");
   std::remove(path.c_str());
 }
 

@@ -53,9 +53,9 @@ endforeach()
 foreach(name IN ITEMS tolerance_study/tolerance_study workspace_sweep)
   shell(${name} 1 "[a-z_]+: file: is no folder\n" "\"$tool\" --samples 10000000 --out file")
 endforeach()
-shell(inverse_kinematics 1 "inverse_kinematics: none/a.csv: cannot be written: No such file or directory\n"
+shell(inverse_kinematics 1 "inverse_kinematics: duet: none/a.csv: cannot be written: No such file or directory\n"
   "\"$tool\" --out none/a.csv")
-shell(inverse_kinematics 1 "inverse_kinematics: /dev/full: cannot be written: No space left on device\n"
+shell(inverse_kinematics 1 "inverse_kinematics: duet: /dev/full: cannot be written: No space left on device\n"
   "\"$tool\" --out /dev/full")
 shell(screw_motion/screw_motion 0 "" "
   test -c /dev/full

@@ -46,7 +46,7 @@ endforeach()
 # What is wrong in the first process is said once, and ends all.
 execute_process(COMMAND ${mpirun} -n 3 ${program} ${options} --seed 2 --out out3 WORKING_DIRECTORY ${folder}
   RESULT_VARIABLE result ERROR_VARIABLE error OUTPUT_QUIET)
-string(REGEX MATCHALL "tolerance_study: out3/samples/00000.csv:1: made with seed 1, not seed 2" said "${error}")
+string(REGEX MATCHALL "tolerance_study: duet: out3/samples/00000.csv:1: made with seed 1, not seed 2" said "${error}")
 list(LENGTH said times)
 if(NOT result EQUAL 1 OR NOT times EQUAL 1)
   message(FATAL_ERROR "status ${result}\n${error}")

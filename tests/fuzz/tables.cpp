@@ -29,7 +29,7 @@ void try_loading(const std::string& path) {
   try {
     table = duet::load_table<T>(path);
   } catch (const duet::file_error& error) {
-    duet_fuzz::require_message(error.what(), path + ":");
+    duet_fuzz::require_message(error.what(), "duet: " + path + ":");
     return;
   }
   require(!table.elements.empty() && table.elements.size() == table.parameters.size(), "rows");

@@ -48,14 +48,15 @@ void target(const std::string& input) {
   try {
     r = fit_trajectory::read_recording(path);
   } catch (const duet::file_error& error) {
-    duet_fuzz::require_message(error.what(), path + ":");
+    duet_fuzz::require_message(error.what(), "duet: " + path + ":");
     std::remove(path.c_str());
     return;
   }
   require(!r.rows.empty() && r.left_out <= r.faults.size(), "rows and faults");
   duet_fuzz::require_message(r.remark, "");
   for (const auto& fault : r.faults) {
-    duet_fuzz::require_message(duet::file_error(path, fault.line, fault.reason).what(), path + ":");
+    duet_fuzz::require_message(duet::file_error(path, fault.line, fault.reason).what(),
+                               "duet: " + path + ":");
   }
   std::string text = "# timestamp [s], tx, ty, tz, qx, qy, qz, qw\n";
   for (std::size_t i = 0; i < r.rows.size(); ++i) {

@@ -69,7 +69,7 @@ TEST_CASE("origins, axes and limits as the format says") {
 }
 
 TEST_CASE("what is wrong is said with file and element") {
-  const std::string file = "duet: read_urdf: " + path + ": ";
+  const std::string file = "duet: " + path + ": ";
   const std::string q = file + "<joint name=\"q\">";
   const auto says = [&](const std::string& joint, const std::string& expected) {
     write(links + first + joint);
@@ -114,7 +114,7 @@ TEST_CASE("what is wrong is said with file and element") {
 }
 
 TEST_CASE("cycles, broken and missing files") {
-  const std::string file = "duet: read_urdf: " + path + ": ";
+  const std::string file = "duet: " + path + ": ";
   write(links + "<joint name=\"q\" type=\"fixed\"><parent link=\"b\"/><child link=\"c\"/></joint>"
                 "<joint name=\"r\" type=\"fixed\"><parent link=\"c\"/><child link=\"b\"/></joint>");
   CHECK(message() == file + "<joint name=\"r\">: closes a cycle at the link \"c\"");
@@ -127,7 +127,7 @@ TEST_CASE("cycles, broken and missing files") {
 }
 
 TEST_CASE("nesting, and what a parser makes of it") {
-  const std::string file = "duet: read_urdf: " + path + ": ";
+  const std::string file = "duet: " + path + ": ";
   const auto says = [&](const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
     return message("a", "a");
@@ -195,8 +195,8 @@ TEST_CASE("what a terminal would obey is not repeated") {
   write("<link name=\"a\"/><link name=\"\x1b[2J\"/>"
         "<joint name=\"&#27;]0;x&#7;\"><parent link=\"a\"/><child link=\"\x1b[2J\"/></joint>");
   CHECK(message("a", "\x1b[2J") ==
-        "duet: read_urdf: " + path + ": <joint name=\"\\x1b]0;x\\x07\">: no attribute \"type\"");
-  CHECK(message("a", "\n") == "duet: read_urdf: " + path + ": no link \"\\n\"");
+        "duet: " + path + ": <joint name=\"\\x1b]0;x\\x07\">: no attribute \"type\"");
+  CHECK(message("a", "\n") == "duet: " + path + ": no link \"\\n\"");
   std::filesystem::remove(path);
 }
 

@@ -159,19 +159,20 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
        {"0,.3,.9,.3,.1\n", "1305031098.6659,1.3563,0.6305,1.6380,0.6132,0.5962,"
                            "-0.3311,-0.3986\n"}) {
     const std::string message = complaint(unnamed);
-    CHECK(message.starts_with(path + ":1: no header before the first row says which column is "));
+    CHECK(message.starts_with("duet: " + path +
+                              ":1: no header before the first row says which column is "));
     CHECK(is_told(message));
   }
   CHECK(complaint("t,q0,q1,q2,q3\n0,.1,.3,.9,.3\n")
-            .starts_with(path + ":1: the header names no column qw: known are u "));
+            .starts_with("duet: " + path + ":1: the header names no column qw: known are u "));
   CHECK(is_told(complaint("u,w,x,y,z\n0,.1,.3,.9,.3\n")));
   CHECK(is_told(complaint("# t q0 q1 q2 q3\n0 .1 .3 .9 .3\n")));
   CHECK(complaint("qw,qx,qy,qz\n.1,.3,.9,.3\n")
-            .starts_with(path + ":1: the header names no column u"));
+            .starts_with("duet: " + path + ":1: the header names no column u"));
   CHECK(complaint("t,u,qw,qx,qy,qz\n0,0,.1,.3,.9,.3\n") ==
-        path + ":1: the header has both 't' and 'u'");
+        "duet: " + path + ":1: the header has both 't' and 'u'");
   CHECK(complaint("# t qx qy qz qw norm\n0 .3 .9 .3 .1\n") ==
-        path + ":1: the comment names 6 columns, the rows have 5");
+        "duet: " + path + ":1: the comment names 6 columns, the rows have 5");
   std::remove(path.c_str());
 }
 
@@ -187,18 +188,19 @@ TEST_CASE("bad tables and bounds are named") {
     return std::string("nothing");
   };
   const std::string header = "u,qw,qx,qy,qz\n";
-  CHECK(loading(header + "0,1,0,0\n") == path + ":2: 5 columns expected, got 4");
+  CHECK(loading(header + "0,1,0,0\n") == "duet: " + path + ":2: 5 columns expected, got 4");
   CHECK(loading(header + "0,1,0,0,0\n1,2,0,0,0\n") ==
-        path + ":3: the quaternion has norm 2, not 1: are its columns what the header says?");
+        "duet: " + path +
+            ":3: the quaternion has norm 2, not 1: are its columns what the header says?");
   CHECK(loading(header + "0,1,0,0,0\n\n0,1,0,0,0\n") ==
-        path + ":4: parameter 0 does not increase, the row before has 0");
-  CHECK(loading(header + "0,1,0,0,nan\n") == path + ":2: qz is nan");
+        "duet: " + path + ":4: parameter 0 does not increase, the row before has 0");
+  CHECK(loading(header + "0,1,0,0,nan\n") == "duet: " + path + ":2: qz is nan");
   CHECK(loading(header + "1e400,1,0,0,0\n") ==
-        path + ":2: u is 1e400, beyond the range of a double");
+        "duet: " + path + ":2: u is 1e400, beyond the range of a double");
   CHECK(loading(header + "1e-400,1,0,0,0\n") ==
-        path + ":2: u is 1e-400, beyond the range of a double");
-  CHECK(loading(header + "0,1,0,o,0\n") == path + ":2: qy is not a number: 'o'");
-  CHECK(loading(header) == path + ": holds no rows");
+        "duet: " + path + ":2: u is 1e-400, beyond the range of a double");
+  CHECK(loading(header + "0,1,0,o,0\n") == "duet: " + path + ":2: qy is not a number: 'o'");
+  CHECK(loading(header) == "duet: " + path + ": holds no rows");
   std::remove(path.c_str());
 
   const auto message = [](double first, double last, double tolerance, std::size_t most) {

@@ -63,7 +63,7 @@ private:
 /// radians. Joint limits are those of the `limit` elements.
 ///
 /// \tparam Capacity  how many moving joints there may be; their number is known at run time
-/// \throws invalid_input with file and element for what cannot be read: XML that is not well
+/// \throws file_error with the element for what cannot be read: XML that is not well
 /// formed, nested more than 100 deep or has a document type, missing elements and
 /// attributes, bad numbers, axes that are no unit vectors, unknown links, cycles, links with two
 /// joints above them, joints that mimic others or are of other kinds than revolute, continuous,

@@ -31,7 +31,7 @@ struct xml_library;
 
 /// A template so that compilers make the parser for those alone who read a file.
 /// \param most  how many joints may move
-/// \throws invalid_input as `read_urdf`
+/// \throws file_error as `read_urdf`
 template <class Xml>
 [[nodiscard]] urdf_contents read_urdf_contents(const std::string& path, const std::string& base,
                                                const std::string& tip, std::size_t most);

@@ -1,9 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/core/text/printable.hpp>
 #include <duet/core/text/text_rows.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
@@ -126,8 +125,7 @@ public:
     return attribute(element.get_child("child"), where(element), "link");
   }
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
-    throw invalid_input(
-        printable("duet: read_urdf: " + path_ + ": " + (where.empty() ? "" : where + ": ") + what));
+    throw file_error(path_, (where.empty() ? "" : where + ": ") + what);
   }
 
 private:

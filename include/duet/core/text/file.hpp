@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/errors.hpp>
 #include <duet/core/text/printable.hpp>
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -25,13 +25,13 @@
 
 namespace duet {
 
-/// A file that cannot be used: `path:line: reason`, on one line whatever it quotes.
-class file_error : public std::runtime_error {
+/// A file that cannot be used: `duet: path:line: reason`, on one line whatever it quotes.
+class file_error : public invalid_input {
 public:
   file_error(const std::string& path, const std::string& reason)
-      : std::runtime_error(printable(path + ": " + reason)) {}
+      : invalid_input(printable("duet: " + path + ": " + reason)) {}
   file_error(const std::string& path, std::size_t line, const std::string& reason)
-      : std::runtime_error(printable(path + ":" + std::to_string(line) + ": " + reason)) {}
+      : file_error(path + ":" + std::to_string(line), reason) {}
 };
 
 namespace detail {
