@@ -2,12 +2,15 @@
 
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
+#include <duet/derivative/second_order.hpp>
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
+#include <vector>
 
 // gradient, jacobian and hessian: vectors of every kind and size.
 
@@ -185,6 +188,131 @@ TEST_CASE("Hessians") {
   const auto [z, gz, Hz] =
       hessian([](const auto& v) { return v[0] * v[0]; }, Eigen::Matrix<double, 1, 1>(3));
   CHECK(Hz(0, 0) == 2);
+}
+
+/// Σ sin(x_i) x_j x_j over all i < j: no second derivative is zero.
+struct all_pairs {
+  template <class X>
+  auto operator()(const X& x) const {
+    using std::sin;
+    auto sum = 0.0 * x[0];
+    for (std::size_t j = 1; j < std::size_t(x.size()); ++j) {
+      for (std::size_t i = 0; i < j; ++i) {
+        sum += sin(x[i]) * x[j] * x[j];
+      }
+    }
+    return sum;
+  }
+};
+
+template <class X>
+void check_hessian(const X& x) {
+  const auto n = Eigen::Index(x.size());
+  const auto [y, g, H] = hessian(all_pairs{}, x);
+  REQUIRE(H.rows() == n);
+  REQUIRE(H.cols() == n);
+  CHECK(y == doctest::Approx(all_pairs{}(x)).epsilon(1e-14));
+  const auto expected = gradient(all_pairs{}, x).gradient;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    CHECK(g[i] == doctest::Approx(expected[i]).epsilon(1e-13));
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const auto xi = x[std::size_t(i)], xj = x[std::size_t(j)];
+      double second = 2 * std::cos(xj) * xi;
+      if (i == j) {
+        second = 0;
+        for (Eigen::Index k = 0; k < n; ++k) {
+          const double xk = x[std::size_t(k)];
+          second += k < i ? 2 * std::sin(xk) : k > i ? -std::sin(xi) * xk * xk : 0.0;
+        }
+      }
+      CHECK(H(i, j) == doctest::Approx(second).epsilon(1e-13));
+      CHECK(H(j, i) == H(i, j));
+    }
+  }
+}
+
+template <int N>
+void check_fixed_hessian() {
+  const Eigen::Matrix<double, N, 1> x = Eigen::Matrix<double, N, 1>::LinSpaced(N, 0.3, 1.9);
+  check_hessian(x);
+}
+
+TEST_CASE("Hessians of any size, in blocks of eight") {
+  for (const int n : {1, 2, 7, 8, 9, 16, 17, 40}) {
+    const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, 0.3, 1.9);
+    check_hessian(x);
+    check_hessian(std::vector<double>(x.begin(), x.end()));
+  }
+  check_fixed_hessian<32>();
+  check_fixed_hessian<33>();
+  CHECK_THROWS_WITH_AS(static_cast<void>(hessian(quadratic{}, std::vector<double>{})),
+                       "duet: hessian of a function of no variables", duet::invalid_input);
+}
+
+TEST_CASE("how often a Hessian evaluates its function") {
+  int calls = 0;
+  const auto counted = [&calls](const auto& x) {
+    ++calls;
+    return all_pairs{}(x);
+  };
+  static_cast<void>(hessian(counted, Eigen::Matrix<double, 32, 1>::Ones().eval()));
+  CHECK(calls == 1);
+  calls = 0;
+  static_cast<void>(hessian(counted, Eigen::VectorXd::Ones(17).eval()));
+  CHECK(calls == 6); // three blocks, six pairs of them
+}
+
+TEST_CASE("standard vectors, in and out") {
+  const std::vector<double> x{1, 2, 3};
+  const auto squares = [](const auto& v) {
+    auto result = v;
+    for (auto& each : result) {
+      each *= each;
+    }
+    return result;
+  };
+  const auto [y, J] = jacobian(squares, x);
+  static_assert(std::is_same_v<decltype(y), const std::vector<double>>);
+  CHECK(y == std::vector<double>{1, 4, 9});
+  CHECK(J == Eigen::Matrix3d(Eigen::Vector3d(2, 4, 6).asDiagonal()));
+  CHECK(gradient(quadratic{}, std::vector{1, 2}).gradient == Eigen::Vector2d(2, 5));
+
+  const auto moved = duet::directional_derivative(squares, x, std::vector<double>{1, 0, -1});
+  CHECK(moved.derivative == std::vector<double>{2, 0, -6});
+}
+
+TEST_CASE("functions of several arguments") {
+  const auto f = [](const auto& x, const auto& k, const auto& list) {
+    return k * x[0] * x[1] + k * k * list[2];
+  };
+  const std::tuple at(Eigen::Vector2d(2, 3), 5, std::vector<double>{7, 8, 9});
+  const auto [y, g] = gradient(f, at);
+  CHECK(y == 255);
+  REQUIRE(g.size() == 6);
+  CHECK(g == (Eigen::VectorXd(6) << 15, 10, 96, 0, 0, 25).finished());
+  const auto H = hessian(f, at).hessian;
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(6, 6);
+  expected(0, 1) = expected(1, 0) = 5;
+  expected(0, 2) = expected(2, 0) = 3;
+  expected(1, 2) = expected(2, 1) = 2;
+  expected(2, 2) = 18;
+  expected(2, 5) = expected(5, 2) = 10;
+  CHECK(H == expected);
+
+  // Of sizes known at compile time so is the result; a tuple may be taken as one argument.
+  const auto of_tuple = [](const auto& both) {
+    const auto& [x, k] = both;
+    return (x * k).eval();
+  };
+  const auto [product, J] = jacobian(of_tuple, std::tuple(Eigen::Vector2d(2, 3), 5.0));
+  static_assert(std::is_same_v<decltype(J), const Eigen::Matrix<double, 2, 3>>);
+  CHECK(product == Eigen::Vector2d(10, 15));
+  CHECK(J == (Eigen::Matrix<double, 2, 3>() << 5, 0, 2, 0, 5, 3).finished());
+
+  const auto direction = std::tuple(Eigen::Vector2d(1, 0), 1.0, std::vector<double>{0, 0, 1});
+  CHECK(duet::directional_derivative(f, at, direction).derivative == 15 + 96 + 25);
+  CHECK(duet::hessian_vector_product(f, at, direction).product ==
+        expected.col(0) + expected.col(2) + expected.col(5));
 }
 
 TEST_CASE("gradients in single precision") {

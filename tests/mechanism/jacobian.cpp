@@ -88,6 +88,7 @@ TEST_CASE("as many joints as there turn out to be") {
   CHECK(m.cols() == 3);
   CHECK(gap(m, jacobian(same, theta, frame::body)) == 0);
   CHECK(gap(m, jacobian(chain, std::array{.3, -1.2, .7}, frame::body)) == 0);
+  CHECK(gap(m, jacobian(chain, std::vector{.3, -1.2, .7}, frame::body)) == 0);
 }
 
 TEST_CASE("wrenches: τ = Jᵀ F is the same in every frame, and has the same power") {

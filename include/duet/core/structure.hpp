@@ -10,6 +10,7 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 /// \file
 /// The one walk over what holds scalars: containers of any kind say how to reach them, and lanes,
@@ -20,7 +21,8 @@ namespace duet {
 /// Scalars inside an object: `structure<X>::map(f, x, y…)` is the same object with f of the scalars
 /// that stand at the same place of x and y…, from the first to the last (which is why results are
 /// made in braces); `structure<X>::scalar` is their type where they have one. Scalars, arrays,
-/// complex numbers and tuples are here; matrices of Eigen, rotations and poses add their own.
+/// standard vectors, complex numbers and tuples are here; matrices of Eigen, rotations and poses
+/// add their own.
 template <class X>
 struct structure;
 
@@ -48,6 +50,20 @@ struct structure<std::array<T, N>> {
       return std::array<result, N>{at(I)...};
     }
     (std::make_index_sequence<N>{});
+  }
+};
+
+template <class T, class Allocator>
+struct structure<std::vector<T, Allocator>> {
+  using scalar = typename structure<T>::scalar;
+  template <class F, class... Rest>
+  [[nodiscard]] static auto map(F&& f, const std::vector<T, Allocator>& x, const Rest&... rest) {
+    std::vector<std::decay_t<decltype(structure<T>::map(f, x[0], rest[0]...))>> result;
+    result.reserve(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      result.push_back(structure<T>::map(f, x[i], rest[i]...));
+    }
+    return result;
   }
 };
 

@@ -51,7 +51,7 @@ template <class X>
   static_assert(
       refers_elsewhere<result> || requires { sizeof(structure<result>); },
       "duet: a function must return a scalar, an Eigen vector or matrix, a rotation, a "
-      "pose, or a std::array, std::tuple or std::pair of these");
+      "pose, or an array, standard vector, tuple or pair of these");
   return std::forward<X>(x);
 }
 

@@ -2,14 +2,17 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/seed.hpp>
+#include <duet/dual/dual.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/dual/second_dual.hpp>
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -45,7 +48,7 @@ struct value_gradient_and_hessian {
 /// \throws invalid_input where the sizes do not match or x is empty
 ///
 /// Example: `Eigen::VectorXd g(n); const double y = gradient_into<16>(f, x, g);`
-template <int Chunk = 0, class Tag = void, class F, VectorLike X, class G>
+template <int Chunk = 0, class Tag = void, class F, Variables X, class G>
 [[nodiscard]] auto gradient_into(F&& f, const X& x, G&& gradient) {
   static_assert(Chunk >= 0, "duet: gradient_into<Chunk> needs a number of partials");
   using tag = detail::tag_for<Tag, F>;
@@ -65,9 +68,13 @@ template <int Chunk = 0, class Tag = void, class F, VectorLike X, class G>
   return value;
 }
 
-/// f(x) and ∇f(x): x an Eigen vector or a `std::array` of n components, f scalar; the gradient is a
-/// column of n. Up to 32 components known at compile time take one evaluation of f.
-template <class Tag = void, class F, VectorLike X>
+/// f(x) and ∇f(x): x an Eigen vector, a `std::array` or `std::vector` of n components, f scalar;
+/// the gradient is a column of n. Of several arguments x is a tuple, `gradient(f, std::tuple(a,
+/// b))` of f(a, b), scalars and vectors, and the gradient is by the components of one after the
+/// other.
+///
+/// Up to 32 components known at compile time take one evaluation of f.
+template <class Tag = void, class F, Variables X>
 [[nodiscard]] auto gradient(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
@@ -82,26 +89,99 @@ template <class Tag = void, class F, VectorLike X>
   return result;
 }
 
-/// f(x), ∇f(x) and the symmetric Hessian, for up to 32 components known at compile time.
-template <class Tag = void, class F, VectorLike X>
+namespace detail {
+
+/// Components in a block, where a Hessian takes more than one pass.
+inline constexpr int hessian_block = 8;
+
+/// Value, gradient and Hessian by blocks of components: those on the diagonal by numbers with
+/// second derivatives, those beside it by f(x + ε + η), ε of one block and η of another.
+template <class Tag, class F, class X, class Result>
+void hessian_in_blocks(F&& f, const X& x, Result& result) {
+  using argument = vector_argument<X>;
+  using T = typename argument::scalar;
+  constexpr int n = hessian_block;
+  const Eigen::Index size = argument::size(x);
+  const auto for_block = [&](Eigen::Index first, auto&& visit) {
+    for (int i = 0; i < std::min<Eigen::Index>(n, size - first); ++i) {
+      visit(first + i, i);
+    }
+  };
+  for (Eigen::Index block = 0; block < size; block += n) {
+    using D = second_dual<T, n, Tag>;
+    auto variables = constants<D>(x);
+    for_block(block, [&](Eigen::Index at, int i) {
+      component(variables, at) = D::variable(argument::get(x, at), i);
+    });
+    const auto y = result_of_call(call(f, variables));
+    result.value = part<Tag>(y, 0);
+    for_block(block, [&](Eigen::Index row, int i) {
+      result.gradient[row] = part<Tag>(y, 1 + i);
+      for_block(block, [&](Eigen::Index column, int j) {
+        result.hessian(row, column) = part<Tag>(y, 1 + n + n * i + j);
+      });
+    });
+  }
+  for (Eigen::Index row_block = n; row_block < size; row_block += n) {
+    for (Eigen::Index column_block = 0; column_block < row_block; column_block += n) {
+      using column_tag = derivative_tag<Tag, struct columns_of_hessian>;
+      using E = dual<T, n, column_tag>;
+      using D = dual<E, n, Tag>;
+      auto variables = constants<D>(x);
+      for_block(row_block, [&](Eigen::Index at, int i) {
+        component(variables, at) = D::variable(E(argument::get(x, at)), i);
+      });
+      for_block(column_block, [&](Eigen::Index at, int j) {
+        component(variables, at) = D(E::variable(argument::get(x, at), j));
+      });
+      const auto y = result_of_call(call(f, variables));
+      for_block(row_block, [&](Eigen::Index row, int i) {
+        const auto slope = part<Tag>(y, 1 + i);
+        for_block(column_block, [&](Eigen::Index column, int j) {
+          result.hessian(row, column) = result.hessian(column, row) =
+              part<column_tag>(slope, 1 + j);
+        });
+      });
+    }
+  }
+}
+
+} // namespace detail
+
+/// f(x), ∇f(x) and the symmetric Hessian. Arguments as `gradient`.
+///
+/// Up to 32 components known at compile time take one evaluation of f. Otherwise f is evaluated for
+/// every pair of blocks of eight components, p (p + 1) / 2 times for p blocks, and beyond 32 the
+/// matrix is one of a size known at run time. Where most entries are known to be zero there is
+/// `sparse_hessian`.
+template <class Tag = void, class F, Variables X>
 [[nodiscard]] auto hessian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using T = typename argument::scalar;
-  constexpr int n = argument::size_at_compile_time;
-  static_assert(n > 0 && n <= detail::single_pass_limit,
-                "duet: hessian needs a vector of at most 32 components, known at compile time");
   using tag = detail::tag_for<Tag, F>;
-  const auto y = detail::result_of_call(f(detail::seeded<second_dual<T, n, tag>>(x)));
-  static_assert(Scalar<std::remove_const_t<decltype(y)>>,
-                "duet: hessian needs a function that returns a scalar");
-  using S = decltype(detail::part<tag>(y, 0));
-  value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
-  result.value = detail::part<tag>(y, 0);
-  for (int i = 0; i < n; ++i) {
-    result.gradient[i] = detail::part<tag>(y, 1 + i);
-    for (int j = 0; j < n; ++j) {
-      result.hessian(i, j) = detail::part<tag>(y, 1 + n + n * i + j);
+  constexpr int n = argument::size_at_compile_time;
+  constexpr bool is_single_pass = 0 < n && n <= detail::single_pass_limit;
+  using number = second_dual<T, is_single_pass ? n : detail::hessian_block, tag>;
+  using output =
+      std::decay_t<decltype(detail::result_of_call(detail::call(f, detail::constants<number>(x))))>;
+  static_assert(Scalar<output>, "duet: hessian needs a function that returns a scalar");
+  using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
+  constexpr int rows = is_single_pass ? n : Eigen::Dynamic;
+  const Eigen::Index size = argument::size(x);
+  detail::require(size > 0, "duet: hessian of a function of no variables");
+  value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, rows, rows>> result{
+      S(0), Eigen::Matrix<S, n, 1>(size), Eigen::Matrix<S, rows, rows>(size, size)};
+  if constexpr (is_single_pass) {
+    const auto y = detail::result_of_call(detail::call(f, detail::seeded<number>(x)));
+    result.value = detail::part<tag>(y, 0);
+    for (int i = 0; i < n; ++i) {
+      result.gradient[i] = detail::part<tag>(y, 1 + i);
+      for (int j = 0; j < n; ++j) {
+        result.hessian(i, j) = detail::part<tag>(y, 1 + n + n * i + j);
+      }
     }
+  } else {
+    detail::hessian_in_blocks<tag>(f, x, result);
   }
   return result;
 }

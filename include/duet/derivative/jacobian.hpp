@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/seed.hpp>
@@ -69,8 +70,10 @@ void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::
 
 } // namespace detail
 
-/// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors or `std::array`s.
-template <class Tag = void, class F, VectorLike X>
+/// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors, `std::array`s or
+/// `std::vector`s; of several arguments x is a tuple, `jacobian(f, std::tuple(a, b))` of f(a, b),
+/// and the columns are by the components of one after the other.
+template <class Tag = void, class F, Variables X>
   requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
@@ -93,7 +96,7 @@ template <class Tag = void, class F, VectorLike X>
 
 /// f(x); writes ∂f_i/∂x_j into `jacobian`, any writable Eigen matrix of as many rows as f(x) has
 /// components and as many columns as x. Everything else as `gradient_into`.
-template <int Chunk = 0, class Tag = void, class F, VectorLike X, class J>
+template <int Chunk = 0, class Tag = void, class F, Variables X, class J>
 [[nodiscard]] auto jacobian_into(F&& f, const X& x, J&& jacobian) {
   static_assert(Chunk >= 0, "duet: jacobian_into<Chunk> needs a number of partials");
   using tag = detail::tag_for<Tag, F>;
@@ -106,18 +109,19 @@ template <int Chunk = 0, class Tag = void, class F, VectorLike X, class J>
   });
 }
 
-/// f(x) and d/dt f(x + t v) at t = 0: x and v scalars or vectors of one size, f(x) of any shape.
+/// f(x) and d/dt f(x + t v) at t = 0: x and v scalars, or vectors of one size, or
+/// tuples of them; f(x) of any shape.
 template <class Tag = void, class F, class X, class V>
-  requires(VectorLike<X>&& VectorLike<V>)
+  requires(Variables<X>&& Variables<V>)
 || ((Scalar<X> || Arithmetic<X>)&&(Scalar<V> || Arithmetic<V>))
         [[nodiscard]] auto directional_derivative(F&& f, const X& x, const V& v) {
   using tag = detail::tag_for<Tag, F>;
   const auto y = [&] {
-    if constexpr (VectorLike<X>) {
+    if constexpr (Variables<X>) {
       using T = promote_t<typename detail::vector_argument<X>::scalar,
                           typename detail::vector_argument<V>::scalar>;
-      return detail::result_of_call(
-          f(detail::moving<dual<T, 1, tag>>("directional_derivative", x, "direction", v)));
+      return detail::result_of_call(detail::call(
+          f, detail::moving<dual<T, 1, tag>>("directional_derivative", x, "direction", v)));
     } else {
       using T = promote_t<detail::differentiable_t<X>, detail::differentiable_t<V>>;
       return detail::result_of_call(f(dual<T, 1, tag>(T(x), T(v))));

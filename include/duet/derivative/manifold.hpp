@@ -77,8 +77,10 @@ struct manifold<X> {
 };
 
 template <class X, std::size_t N>
+  requires requires { manifold<X>::dimension; }
 struct manifold<std::array<X, N>> {
-  static constexpr int dimension = int(N) * manifold<X>::dimension;
+  static constexpr int dimension =
+      manifold<X>::dimension == Eigen::Dynamic ? Eigen::Dynamic : int(N) * manifold<X>::dimension;
   using scalar = typename manifold<X>::scalar;
   template <class Delta, class Frame = spatial_frame>
   [[nodiscard]] static auto plus(const std::array<X, N>& x, const Delta& delta, Frame frame = {}) {
@@ -103,8 +105,11 @@ private:
 };
 
 template <class... X>
+  requires(requires { manifold<X>::dimension; } && ...)
 struct manifold<std::tuple<X...>> {
-  static constexpr int dimension = (manifold<X>::dimension + ...);
+  static constexpr int dimension = ((manifold<X>::dimension == Eigen::Dynamic) || ...)
+                                       ? Eigen::Dynamic
+                                       : (manifold<X>::dimension + ...);
   using scalar = std::common_type_t<typename manifold<X>::scalar...>;
 
   template <class Delta, class Frame = spatial_frame>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/seed.hpp>
@@ -27,9 +28,9 @@ struct value_gradient_and_product {
 /// f(x), ∇f and H v, H the matrix of second derivatives at x: the derivative of the gradient along
 /// v, at about twice the cost of the gradient, for any number of components.
 ///
-/// \param x, v  Eigen vectors or `std::array`s of one size; f returns a scalar
+/// \param x, v  as of `gradient`, of one size; f returns a scalar
 /// \throws invalid_input where the sizes differ or x is empty
-template <class Tag = void, class F, VectorLike X, VectorLike V>
+template <class Tag = void, class F, Variables X, Variables V>
 [[nodiscard]] auto hessian_vector_product(F&& f, const X& x, const V& v) {
   using T = promote_t<typename detail::vector_argument<X>::scalar,
                       typename detail::vector_argument<V>::scalar>;

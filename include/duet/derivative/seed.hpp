@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
@@ -18,44 +19,10 @@
 #include <utility>
 
 /// \file
-/// Arguments of several components, and how they are made the variables of a differentiation.
+/// How the components of arguments are made the variables of a differentiation.
 
 namespace duet {
 namespace detail {
-
-template <class X>
-struct vector_argument;
-
-template <class X>
-  requires std::derived_from<X, Eigen::MatrixBase<X>>
-struct vector_argument<X> {
-  static_assert(X::ColsAtCompileTime == 1 || X::IsVectorAtCompileTime,
-                "duet: differentiate with respect to a vector, not to a matrix");
-  using scalar = differentiable_t<typename X::Scalar>;
-  static constexpr int size_at_compile_time = X::SizeAtCompileTime;
-  template <class D>
-  using over = Eigen::Matrix<D, X::RowsAtCompileTime, X::ColsAtCompileTime>;
-  static Eigen::Index size(const X& x) { return x.size(); }
-  static scalar get(const X& x, Eigen::Index i) { return scalar(x[i]); }
-  template <class D>
-  static over<D> make(const X& x) {
-    return over<D>(x.rows(), x.cols());
-  }
-};
-
-template <class T, std::size_t N>
-struct vector_argument<std::array<T, N>> {
-  using scalar = differentiable_t<T>;
-  static constexpr int size_at_compile_time = int(N);
-  template <class D>
-  using over = std::array<D, N>;
-  static constexpr Eigen::Index size(const std::array<T, N>&) { return Eigen::Index(N); }
-  static scalar get(const std::array<T, N>& x, Eigen::Index i) { return scalar(x[std::size_t(i)]); }
-  template <class D>
-  static over<D> make(const std::array<T, N>&) {
-    return {};
-  }
-};
 
 /// Up to this many components are differentiated in one pass.
 inline constexpr int single_pass_limit = 32;
@@ -85,7 +52,7 @@ template <class D, class X>
   using argument = vector_argument<X>;
   auto result = argument::template make<D>(x);
   for (Eigen::Index i = 0; i < argument::size(x); ++i) {
-    result[std::size_t(i)] = D(argument::get(x, i));
+    component(result, i) = D(argument::get(x, i));
   }
   return result;
 }
@@ -96,7 +63,7 @@ template <class D, class X>
   using argument = vector_argument<X>;
   auto result = argument::template make<D>(x);
   unrolled<argument::size_at_compile_time>([&](int i) DUET_INLINE_LAMBDA {
-    result[std::size_t(i)] = D::variable(argument::get(x, i), i);
+    component(result, i) = D::variable(argument::get(x, i), i);
   });
   return result;
 }
@@ -112,16 +79,17 @@ template <class D, class X, class V>
           argument::size(x), " components, the ", name, " ", direction::size(v));
   auto result = argument::template make<D>(x);
   for (Eigen::Index i = 0; i < argument::size(x); ++i) {
-    result[std::size_t(i)] = D(T(argument::get(x, i)), T(direction::get(v, i)));
+    component(result, i) = D(T(argument::get(x, i)), T(direction::get(v, i)));
   }
   return result;
 }
 
 /// What f returns over the duals of one pass over the components of an X.
 template <class Tag, int Chosen, class F, class X>
-using result_of_pass = std::decay_t<decltype(result_of_call(std::declval<F&>()(
-    constants<dual<typename vector_argument<X>::scalar, partials_per_pass<X, Chosen>, Tag>>(
-        std::declval<const X&>()))))>;
+using result_of_pass = std::decay_t<decltype(result_of_call(
+    call(std::declval<F&>(),
+         constants<dual<typename vector_argument<X>::scalar, partials_per_pass<X, Chosen>, Tag>>(
+             std::declval<const X&>()))))>;
 
 /// Calls visit(f(x seeded from `first`), first, count) for every pass over the components of x.
 /// From one pass to the next only the partials change that are not zero.
@@ -134,29 +102,22 @@ void for_each_pass(F&& f, const X& x, Visit&& visit) {
   const Eigen::Index size = argument::size(x);
   if constexpr (0 < argument::size_at_compile_time && argument::size_at_compile_time <= n) {
     const auto variables = seeded<D>(x);
-    visit(result_of_call(f(variables)), 0, size);
+    visit(result_of_call(call(f, variables)), 0, size);
   } else {
     auto variables = constants<D>(x);
     for (Eigen::Index first = 0; first < size; first += n) {
       const Eigen::Index count = std::min<Eigen::Index>(n, size - first);
       const auto set_diagonal = [&](const T& slope) {
         for (Eigen::Index i = 0; i < count; ++i) {
-          variables[std::size_t(first + i)].set_partial(int(i), slope);
+          component(variables, first + i).set_partial(int(i), slope);
         }
       };
       set_diagonal(T(1));
-      visit(result_of_call(f(std::as_const(variables))), first, count);
+      visit(result_of_call(call(f, variables)), first, count);
       set_diagonal(T(0));
     }
   }
 }
 
 } // namespace detail
-
-/// A function's argument of several components: an Eigen vector or a `std::array` of scalars.
-template <class X>
-concept VectorLike = requires {
-  typename detail::vector_argument<X>::scalar;
-};
-
 } // namespace duet

@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/structure.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
@@ -58,8 +59,8 @@ void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
   constexpr int n = tangents_per_pass<X>;
   using D = dual<typename manifold<X>::scalar, n, Tag>;
   for (int first = 0; first < size; first += n) {
-    visit(result_of_call(f(manifold<X>::plus(x, tangent_seeds<D, n, X>(first), frame))), first,
-          std::min(n, size - first));
+    visit(result_of_call(call(f, manifold<X>::plus(x, tangent_seeds<D, n, X>(first), frame))),
+          first, std::min(n, size - first));
   }
 }
 
@@ -71,7 +72,7 @@ constexpr void ask_for_frame() {
 }
 
 template <class X>
-concept NeedsFrame = ManifoldPoint<X> && !VectorLike<X> && !Scalar<X> && !Arithmetic<X>;
+concept NeedsFrame = ManifoldPoint<X> && !Variables<X> && !Scalar<X> && !Arithmetic<X>;
 
 } // namespace detail
 
@@ -79,7 +80,7 @@ concept NeedsFrame = ManifoldPoint<X> && !VectorLike<X> && !Scalar<X> && !Arithm
 /// moves along its j-th tangent coordinate.
 ///
 /// \param x      a scalar, fixed-size vector, rotation (three coordinates), pose (six), array or
-///               `std::tuple` of them, which f takes as one argument
+///               `std::tuple` of them, which f takes as one argument or as several
 /// \param frame  axes of the tangent coordinates of rotations, on both sides: `frame::spatial`,
 ///               where x moves as exp(δ/2) x, or `frame::body`, where it moves as x exp(δ/2)
 ///
@@ -94,7 +95,7 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
   constexpr int n = detail::tangents_per_pass<X>;
   using D = dual<typename manifold<X>::scalar, n, tag>;
   using output = std::decay_t<decltype(detail::result_of_call(
-      f(manifold<X>::plus(x, detail::tangent_seeds<D, n, X>(0), frame))))>;
+      detail::call(f, manifold<X>::plus(x, detail::tangent_seeds<D, n, X>(0), frame))))>;
   using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
   using target = manifold<value>;
   value_and_jacobian<
@@ -136,8 +137,8 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
       value, row.transpose()};
 }
 
-/// f(x), ∇f and the symmetric matrix of second derivatives in the tangent coordinates of x, up to
-/// 32 of them: f(x moved by δ) = f + gᵀδ + ½ δᵀHδ + O(δ³), where a rotation moves by exp(δ/2),
+/// f(x), ∇f and the symmetric matrix of second derivatives in the tangent coordinates of x:
+/// f(x moved by δ) = f + gᵀδ + ½ δᵀHδ + O(δ³), where a rotation moves by exp(δ/2),
 /// along geodesics.
 ///
 /// Where f is not stationary, H depends on how rotations move. In both frames it is the same form
@@ -145,10 +146,12 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
 template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
 [[nodiscard]] auto hessian(F&& f, const X& x, Frame frame) {
   constexpr int n = manifold<X>::dimension;
-  static_assert(n > 0 && n <= detail::single_pass_limit,
-                "duet: hessian needs at most 32 tangent coordinates, known at compile time");
+  static_assert(n > 0, "duet: a Hessian in tangent coordinates needs vectors of a size known at "
+                       "compile time");
   // The tangent vector is a vector like any other, at which f is a function of it.
-  const auto moved = [&](const auto& delta) { return f(manifold<X>::plus(x, delta, frame)); };
+  const auto moved = [&](const auto& delta) {
+    return detail::call(f, manifold<X>::plus(x, delta, frame));
+  };
   using vector = Eigen::Matrix<typename manifold<X>::scalar, n, 1>;
   return hessian<std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
       moved, vector(vector::Zero()));

@@ -6,7 +6,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/known_constant.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/derivative/seed.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/rules/lift.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/derivative/seed.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/chain_walk.hpp>
 #include <duet/mechanism/joint.hpp>
@@ -81,8 +81,8 @@ struct poses_of {
 /// \tparam T  scalar of the table, a real number
 ///
 /// Joints are numbered from 0, links from 0, the base: joint i moves link i + 1. Coordinates θ are
-/// Eigen vectors or `std::array`s over any scalar, radians, or units of length where joints slide.
-/// Limits are kept as given and not enforced. No heap is used.
+/// Eigen vectors, `std::array`s or `std::vector`s over any scalar, radians, or units of length
+/// where joints slide. Limits are kept as given and not enforced. No heap is used.
 template <int N, class T = double>
 class serial_chain : public detail::poses_of<serial_chain<N, T>> {
   static_assert(N != 0, "duet: serial_chain<N> needs its number of joints, or -capacity");

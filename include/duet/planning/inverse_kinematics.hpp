@@ -3,7 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/parallel_for.hpp>
-#include <duet/derivative/seed.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/inverse_kinematics_search.hpp>

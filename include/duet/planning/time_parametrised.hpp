@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/derivative/seed.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/planning/joint_trajectory.hpp>
 #include <duet/planning/motion_plan.hpp>
 

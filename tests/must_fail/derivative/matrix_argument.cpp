@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: differentiate with respect to a vector, not to a matrix
+// expect: duet: differentiate with respect to a vector, not to a matrix: x.reshaped\(\)
 
 #include <duet/derivative/gradient.hpp>
 

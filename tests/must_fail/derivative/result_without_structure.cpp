@@ -4,11 +4,11 @@
 #include <duet/derivative/derivative.hpp>
 
 #include <array>
-#include <vector>
+#include <list>
 
 int main() {
 #ifdef DUET_MUST_FAIL
-  const auto f = [](auto x) { return std::vector{x, x}; };
+  const auto f = [](auto x) { return std::list{x, x}; };
 #else
   const auto f = [](auto x) { return std::array{x, x}; };
 #endif

@@ -1,0 +1,188 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/function.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Arguments of several components.
+
+namespace duet {
+namespace detail {
+
+template <class X>
+inline constexpr bool is_tuple = false;
+template <class... X>
+inline constexpr bool is_tuple<std::tuple<X...>> = true;
+
+template <class X>
+struct vector_argument;
+
+/// n, but what Eigen thinks too much for the stack gets a size known at run time.
+template <class D>
+constexpr int fixed_length(int n) {
+  const bool is_large = n > 1 && EIGEN_STACK_ALLOCATION_LIMIT > 0 &&
+                        std::size_t(n) * sizeof(D) > std::size_t(EIGEN_STACK_ALLOCATION_LIMIT);
+  return is_large ? Eigen::Dynamic : n;
+}
+
+template <class X>
+  requires std::derived_from<X, Eigen::MatrixBase<X>>
+struct vector_argument<X> {
+  static_assert(X::ColsAtCompileTime == 1 || X::IsVectorAtCompileTime,
+                "duet: differentiate with respect to a vector, not to a matrix: x.reshaped()");
+  using scalar = differentiable_t<typename X::Scalar>;
+  static constexpr int size_at_compile_time = X::SizeAtCompileTime;
+  template <class D>
+  using over = Eigen::Matrix<D, fixed_length<D>(X::RowsAtCompileTime),
+                             fixed_length<D>(X::ColsAtCompileTime)>;
+  static Eigen::Index size(const X& x) { return x.size(); }
+  static scalar get(const X& x, Eigen::Index i) { return scalar(x[i]); }
+  template <class D>
+  static over<D> make(const X& x) {
+    return over<D>(x.rows(), x.cols());
+  }
+};
+
+template <class T, std::size_t N>
+  requires(Scalar<T> || Arithmetic<T>)
+struct vector_argument<std::array<T, N>> {
+  using scalar = differentiable_t<T>;
+  static constexpr int size_at_compile_time = int(N);
+  template <class D>
+  using over = std::array<D, N>;
+  static constexpr Eigen::Index size(const std::array<T, N>&) { return Eigen::Index(N); }
+  static scalar get(const std::array<T, N>& x, Eigen::Index i) { return scalar(x[std::size_t(i)]); }
+  template <class D>
+  static over<D> make(const std::array<T, N>&) {
+    return {};
+  }
+};
+
+template <class T>
+  requires(Scalar<T> || Arithmetic<T>)
+struct vector_argument<std::vector<T>> {
+  using scalar = differentiable_t<T>;
+  static constexpr int size_at_compile_time = Eigen::Dynamic;
+  template <class D>
+  using over = std::vector<D>;
+  static Eigen::Index size(const std::vector<T>& x) { return Eigen::Index(x.size()); }
+  static scalar get(const std::vector<T>& x, Eigen::Index i) { return scalar(x[std::size_t(i)]); }
+  template <class D>
+  static over<D> make(const std::vector<T>& x) {
+    return over<D>(x.size());
+  }
+};
+
+/// A vector or scalar among several arguments.
+template <class X>
+struct argument_part;
+template <class X>
+  requires(!is_tuple<X> && requires { typename vector_argument<X>::scalar; })
+struct argument_part<X> : vector_argument<X> {};
+template <class X>
+  requires(Scalar<X> || Arithmetic<X>)
+struct argument_part<X> {
+  using scalar = differentiable_t<X>;
+  static constexpr int size_at_compile_time = 1;
+  template <class D>
+  using over = D;
+  static constexpr Eigen::Index size(const X&) { return 1; }
+  static scalar get(const X& x, Eigen::Index) { return scalar(x); }
+  template <class D>
+  static over<D> make(const X&) {
+    return {};
+  }
+};
+
+/// The component of a vector, or of several arguments one after the other.
+template <class X>
+[[nodiscard]] DUET_ALWAYS_INLINE auto& component(X& x, Eigen::Index i) {
+  return x[std::size_t(i)];
+}
+template <class X>
+  requires(Scalar<X>)
+[[nodiscard]] X& component(X& x, Eigen::Index) { return x; }
+template <class First, class... Rest>
+[[nodiscard]] auto& component(std::tuple<First, Rest...>& x, Eigen::Index i) {
+  using result = std::remove_reference_t<decltype(component(std::get<0>(x), 0))>;
+  result* found = nullptr;
+  const auto look_at = [&](auto& part) {
+    const Eigen::Index size = argument_part<std::decay_t<decltype(part)>>::size(part);
+    if (0 <= i && i < size) {
+      found = &component(part, i);
+    }
+    i -= size;
+  };
+  std::apply([&](auto&... part) { (look_at(part), ...); }, x);
+  return *found;
+}
+
+/// Several arguments, scalars and vectors: their components one after the other.
+template <class... X>
+  requires(sizeof...(X) > 0 && (requires { typename argument_part<X>::scalar; } && ...))
+struct vector_argument<std::tuple<X...>> {
+  using scalar = std::common_type_t<typename argument_part<X>::scalar...>;
+  static constexpr int size_at_compile_time =
+      ((argument_part<X>::size_at_compile_time == Eigen::Dynamic) || ...)
+          ? Eigen::Dynamic
+          : (argument_part<X>::size_at_compile_time + ...);
+  template <class D>
+  using over = std::tuple<typename argument_part<X>::template over<D>...>;
+  static Eigen::Index size(const std::tuple<X...>& x) {
+    return std::apply([](const X&... part) { return (argument_part<X>::size(part) + ...); }, x);
+  }
+  static scalar get(const std::tuple<X...>& x, Eigen::Index i) {
+    scalar result(0);
+    const auto look_at = [&]<class Part>(const Part& part) {
+      const Eigen::Index size = argument_part<Part>::size(part);
+      if (0 <= i && i < size) {
+        result = scalar(argument_part<Part>::get(part, i));
+      }
+      i -= size;
+    };
+    std::apply([&](const X&... part) { (look_at(part), ...); }, x);
+    return result;
+  }
+  template <class D>
+  static over<D> make(const std::tuple<X...>& x) {
+    return std::apply(
+        [](const X&... part) { return over<D>{argument_part<X>::template make<D>(part)...}; }, x);
+  }
+};
+
+/// f of x; where x is a tuple of several arguments that f does not take as one, of these.
+template <class F, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE decltype(auto) call(F&& f, const X& x) {
+  if constexpr (is_tuple<X> && !std::is_invocable_v<F&, const X&>) {
+    return std::apply(f, x);
+  } else {
+    return f(x);
+  }
+}
+
+} // namespace detail
+
+/// What a function is differentiated by: an Eigen vector, a `std::array` or `std::vector` of
+/// scalars, or a `std::tuple` of these and of scalars, the components of one after the other.
+template <class X>
+concept Variables = requires {
+  typename detail::vector_argument<X>::scalar;
+};
+
+/// An argument of several components: an Eigen vector, a `std::array` or `std::vector` of scalars.
+template <class X>
+concept VectorLike = Variables<X> && !detail::is_tuple<X>;
+
+} // namespace duet
