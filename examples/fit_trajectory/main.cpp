@@ -11,7 +11,9 @@
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
-#include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/printable.hpp>
+#include <duet/spline/recording.hpp>
 
 #include <cstddef>
 #include <cstdio>
@@ -29,7 +31,7 @@ void print_faults(const recording& r, const std::string& path) {
   }
   constexpr std::size_t most = 20;
   for (std::size_t i = 0; i < r.faults.size() && i < most; ++i) {
-    const fault& each = r.faults[i];
+    const duet::recording_fault& each = r.faults[i];
     std::cerr << duet::printable(path + ":" + std::to_string(each.line) + ": " + each.reason)
               << "\n";
   }
@@ -40,27 +42,29 @@ void print_faults(const recording& r, const std::string& path) {
 
 void run(const options& given) {
   example::require_folder(given.out);
-  const recording r = given.file ? read_recording(*given.file) : made_up_recording();
+  const recording r = given.file ? duet::load_recording<duet::screw_dual<double>>(*given.file)
+                                 : made_up_recording();
   if (given.file) {
     print_faults(r, *given.file);
   }
   const auto rows_per_knot = std::size_t(given.rows_per_knot);
-  if (r.rows.size() < rows_per_knot + 4) {
-    throw std::runtime_error(
-        given.file.value_or("the made-up recording") + ": " + std::to_string(r.rows.size()) +
-        " usable rows are too few for one knot in " + std::to_string(rows_per_knot));
+  const std::size_t rows = r.lines.size();
+  if (rows < rows_per_knot + 4) {
+    throw std::runtime_error(given.file.value_or("the made-up recording") + ": " +
+                             std::to_string(rows) + " usable rows are too few for one knot in " +
+                             std::to_string(rows_per_knot));
   }
-  const double duration = r.rows.back().time - r.rows.front().time;
+  const double duration = r.table.parameters.back();
   const double rate = rate_for(duration, given.rate);
-  std::cout << r.rows.size() << " rows over " << duration << " s: fitting\n" << std::flush;
+  std::cout << rows << " rows over " << duration << " s: fitting\n" << std::flush;
   const smoothed s = smooth(r, rows_per_knot, given.length, given.outlier);
 
   std::filesystem::create_directories(given.out);
   duet::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, rate));
   duet::write_file(given.out + "/rows.csv", rows_csv(r, s));
-  const bool drawn = example::draw(given.out, "fit", "1000,900",
-                                   picture_script(r.rows.front().time, duration, s.outlier,
-                                                  r.rows.size(), std::size_t(duration * rate)));
+  const bool drawn = example::draw(
+      given.out, "fit", "1000,900",
+      picture_script(r.start, duration, s.outlier, rows, std::size_t(duration * rate)));
   std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {
@@ -68,8 +72,8 @@ void run(const options& given) {
   }
   std::printf("fit trajectory: rows=%zu left_out=%zu controls=%zu outliers=%zu "
               "median_residual=%.3g rms=%.3g\n",
-              r.rows.size(), r.left_out, s.fit.curve.controls().size(), outliers(s),
-              median(s.fit.residuals), s.fit.rms);
+              rows, r.left_out, s.fit.curve.controls().size(), outliers(s), median(s.fit.residuals),
+              s.fit.rms);
 }
 
 } // namespace

@@ -32,7 +32,8 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       "pictures.\n\n  fit_trajectory [FILE] [options]\n\n"
       "FILE has rows `timestamp tx ty tz qx qy qz qw` (seconds, metres, # starts a comment), or a "
       "header, a\nfirst line or a comment, that names the columns in another order; files of the "
-      "EuRoC data set are known.\nWithout FILE, a made-up recording is taken. Rows that are no "
+      "EuRoC and KITTI data sets are known.\nWithout FILE, a made-up recording is taken. Rows that "
+      "are no "
       "poses "
       "or repeat a timestamp are named and\nleft out. Velocities and accelerations are in fixed "
       "axes, those of the origin and angular ones.\nOptions");

@@ -30,15 +30,6 @@ namespace fit_trajectory {
 using curve = duet::cumulative_bspline<duet::dual<double, 1, duet::screw_tag>, 4>;
 using fitted = duet::fit_result<curve>;
 
-/// Seconds since the first row: timestamps of the epoch leave few digits for them.
-inline std::vector<double> times_of(const recording& r) {
-  std::vector<double> times;
-  for (const row& each : r.rows) {
-    times.push_back(each.time - r.rows.front().time);
-  }
-  return times;
-}
-
 /// A knot at every n-th row, so that gaps have few and dense parts many.
 inline std::vector<double> knots_at_rows(const std::vector<double>& times, std::size_t n) {
   std::vector<double> breaks;
@@ -64,15 +55,9 @@ struct smoothed {
 /// is given.
 inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double length,
                        double outlier) {
-  std::vector<double> times = times_of(r);
-  std::vector<pose_type> poses;
-  poses.reserve(r.rows.size());
-  for (const row& each : r.rows) {
-    poses.push_back(each.pose);
-  }
-  std::vector<double> knots = knots_at_rows(times, rows_per_knot);
   const duet::fit_options options{.length = length, .outlier = std::max(outlier, 0.0)};
-  fitted result = duet::fit<curve>(std::move(times), std::move(poses), std::move(knots), options);
+  fitted result = duet::fit<curve>(r.table.parameters, r.table.elements,
+                                   knots_at_rows(r.table.parameters, rows_per_knot), options);
   const double limit = result.outlier;
   return {std::move(result), limit};
 }
@@ -107,7 +92,7 @@ inline std::string trajectory_csv(const recording& r, const curve& s, double rat
     const double t = double(i) / rate;
     const auto m = s.motion(t, duet::frame::hybrid, hint);
     const auto x = duet::pose_coordinates(m.value);
-    std::vector<double> numbers{r.rows.front().time + t, x[0], x[1], x[2], x[4], x[5], x[6], x[3]};
+    std::vector<double> numbers{r.start + t, x[0], x[1], x[2], x[4], x[5], x[6], x[3]};
     numbers.insert(numbers.end(), m.velocity.begin(), m.velocity.end());
     numbers.insert(numbers.end(), m.acceleration.begin(), m.acceleration.end());
     text += duet::csv_line(numbers);
@@ -118,11 +103,11 @@ inline std::string trajectory_csv(const recording& r, const curve& s, double rat
 /// Row by row what was measured and how far the curve is from it.
 inline std::string rows_csv(const recording& r, const smoothed& s) {
   std::string text = "line,timestamp,tx,ty,tz,residual,is_outlier\n";
-  for (std::size_t i = 0; i < r.rows.size(); ++i) {
-    const vector3<double> t = duet::translation(r.rows[i].pose);
+  for (std::size_t i = 0; i < r.lines.size(); ++i) {
+    const vector3<double> t = duet::translation(r.table.elements[i]);
     const double residual = s.fit.residuals[i];
-    text += duet::csv_line({double(r.rows[i].line), r.rows[i].time, t[0], t[1], t[2], residual,
-                            residual > s.outlier ? 1.0 : 0.0});
+    text += duet::csv_line({double(r.lines[i]), r.start + r.table.parameters[i], t[0], t[1], t[2],
+                            residual, residual > s.outlier ? 1.0 : 0.0});
   }
   return text;
 }

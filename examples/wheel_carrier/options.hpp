@@ -67,10 +67,10 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       "hardpoints", po::value<std::string>()->value_name("FILE"),
       "another carrier: five lines `name, ax, ay, az, px, py, pz` (chassis and carrier end of a "
       "rod) "
-      "and one `wheel centre, x, y, z`")(
-      "table", po::value<std::string>()->value_name("FILE"),
-      "a look-up table of your own: lines `u, qw, qx, qy, qz`, u increasing. Compared with the "
-      "carrier only where --hardpoints is given too")(
+      "and one `wheel centre, x, y, z`")("table", po::value<std::string>()->value_name("FILE"),
+                                         "a look-up table of your own: a CSV file under the header "
+                                         "`u,qw,qx,qy,qz`, u increasing. Compared with the "
+                                         "carrier only where --hardpoints is given too")(
       "rows", po::value<int>()->value_name("N"),
       "rows of the table made from the carrier, at equal arcs (default: 0.003 rad apart)")(
       "spline", po::value<std::string>()->value_name("cumulative|rotation-vector|quintic"),

@@ -3,19 +3,18 @@
 
 #include "carrier.hpp"
 
-#include <duet/core/text/csv.hpp>
-#include <duet/spline/interpolate.hpp>
-#include <duet/spline/table_rows.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/spline/orientations.hpp>
+#include <duet/spline/table_file.hpp>
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -92,40 +91,19 @@ inline table equal_arc_table(const carrier& mechanism, const arc_length& arcs, i
   return result;
 }
 
-/// Reads u, qw, qx, qy, qz, in the order that a header gives. Rows a curve cannot go through are
-/// reported here, where their line is known. \throws file_error
+/// Reads u, qw, qx, qy, qz, in the order of the header. Rows a curve cannot go through are reported
+/// here, where their file is known. \throws file_error
 inline table read_table(const std::string& path) {
-  using duet::detail::table_column;
-  table result;
-  std::vector<std::size_t> lines;
-  const auto start = [&](std::size_t line, const auto& cells, const auto& header, bool) {
-    if (!header && cells.size() != 5) {
-      throw file_error(path, line, "5 numbers expected, got " + std::to_string(cells.size()));
-    }
-    return header.value_or(duet::detail::table_layout(
-        {table_column::u, table_column::qw, table_column::qx, table_column::qy, table_column::qz},
-        {"u", "qw", "qx", "qy", "qz"}));
-  };
-  duet::detail::for_each_table_row(
-      path, true, false, start,
-      [&](std::size_t line, const std::array<double, 8>& x, const std::string& fault) {
-        if (!fault.empty()) {
-          throw file_error(path, line, fault);
-        }
-        lines.push_back(line);
-        result.u.push_back(x[0]);
-        result.q.emplace_back(x[4], x[5], x[6], x[7]);
-      });
-  if (result.u.size() < 2) {
-    throw file_error(path, result.u.empty() ? "holds no rows" : "needs two rows or more");
+  auto [u, q] = duet::load_table<double>(path);
+  if (u.size() < 2) {
+    throw file_error(path, "needs two rows or more");
   }
   try {
-    duet::detail::check_rows(result.u, result.q.size(), 2);
-    result.q = duet::aligned_orientations(result.q);
+    q = duet::aligned_orientations(q);
   } catch (const duet::invalid_row& error) {
-    throw file_error(path, lines[error.row()], error.reason());
+    throw file_error(path, "row " + std::to_string(error.row() + 1) + ": " + error.reason());
   }
-  return result;
+  return {std::move(u), std::move(q)};
 }
 
 } // namespace wheel_carrier

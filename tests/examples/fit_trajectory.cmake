@@ -56,7 +56,7 @@ expect_fault("rows.txt:42: timestamp 0.55 is out of order: sorted in"
   "${rows}0.55 1 0.055 0 0.6 0 0 0.8\n")
 expect_fault("rows.txt:42: qw is nan: left out" "${rows}4.1 1 0.41 0 0.6 0 0 nan\n")
 expect_fault("rows.txt:42: tx is inf: left out" "${rows}4.1 inf 0.41 0 0.6 0 0 0.8\n")
-expect_fault("rows.txt:42: the quaternion has norm 0, not 1: left out" "${rows}4.1 1 0.41 0 0 0 0 0\n")
+expect_fault("rows.txt:42: the quaternion of qw, qx, qy, qz has norm 0, not 1: left out" "${rows}4.1 1 0.41 0 0 0 0 0\n")
 expect_fault("rows.txt:42: tx is 1e400, beyond the range of a double: left out"
   "${rows}4.1 1e400 0.41 0 0.6 0 0 0.8\n")
 expect_fault("rows.txt:42: tz is -1e-400, beyond the range of a double: left out"
@@ -109,7 +109,7 @@ run_rows(1 "rows.txt: 14 usable rows are too few for one knot in 20" "0 1 2 3 0 
 8 1 2 3 0 0 0 1\n9 1 2 3 0 0 0 1\n10 1 2 3 0 0 0 1\n11 1 2 3 0 0 0 1\n12 1 2 3 0 0 0 1
 13 1 2 3 0 0 0 1\n" --rows-per-knot 20)
 run_rows(1 "rows.txt:2: 8 columns expected, got 7" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0\n")
-run_rows(1 "rows.txt:1: 8 numbers expected [(]timestamp tx ty tz qx qy qz qw[)], got 7" "1 1 2 3 0 0 0\n")
+run_rows(1 "rows.txt:1: 7 columns, and no header before the first row says which is which, as `u,x,y,z,qw,qx,qy,qz` does" "1 1 2 3 0 0 0\n")
 run_rows(1 "rows.txt:1: tx is not a number: 'one'" "0 one 2 3 0 0 0 1\n")
 run(1 "--rate: a positive number expected" --rate 0)
 run(1 "--rows-per-knot: 1 or more" --rows-per-knot 0)

@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -16,12 +17,56 @@
 #include <string>
 #include <vector>
 
-// Tables: what is loaded can be put a curve through and is read back as it was written.
+// Tables: what is loaded can be put a curve through and is read back as it was written, in every
+// format.
 
 namespace test_fuzz_tables {
 namespace {
 
 using duet_fuzz::require;
+
+const std::string copy = "copy_of_fuzz_tables.csv", times = "times_of_fuzz_tables.csv";
+
+bool are_near(const duet::vector3<double>& a, const duet::vector3<double>& b) {
+  return (a - b).stableNorm() <= 1e-14 * b.stableNorm() + 1e-300;
+}
+
+void require_copies(const duet::look_up_table<double>& table) {
+  duet::save_table(copy, table);
+  const auto again = duet::load_table<double>(copy);
+  require(again.parameters == table.parameters, "the same parameters");
+  require(again.elements == table.elements, "the same rotations");
+  std::remove(copy.c_str());
+}
+void require_copies(const duet::look_up_table<duet::screw_dual<double>>& table) {
+  using enum duet::table_format;
+  for (const auto format : {csv, tum, euroc, kitti}) {
+    const std::string file_of_times = format == kitti ? times : "";
+    try {
+      duet::save_table(copy, table, format, file_of_times);
+    } catch (const duet::invalid_input& error) {
+      duet_fuzz::require_message(error.what(), "duet: save_table: ");
+      require(format == euroc, "only whole nanoseconds may not do");
+      continue;
+    }
+    const auto again = duet::load_table<duet::screw_dual<double>>(copy, file_of_times);
+    require(again.elements.size() == table.elements.size(), "as many rows");
+    for (std::size_t i = 0; i < table.elements.size(); ++i) {
+      const double u = table.parameters[i];
+      require(again.parameters[i] == u ||
+                  (format == euroc && std::abs(u) < 0x1p23 &&
+                   std::abs(again.parameters[i] - u) < 0.5001e-9 + 1e-16 * std::abs(u)),
+              "the same parameters");
+      const auto a = duet::rotation(again.elements[i]), b = duet::rotation(table.elements[i]);
+      require(a == b || (format == kitti && std::min(norm(a - b), norm(a + b)) < 1e-15),
+              "the same rotations");
+      require(are_near(duet::translation(again.elements[i]), duet::translation(table.elements[i])),
+              "the same places");
+    }
+  }
+  std::remove(copy.c_str());
+  std::remove(times.c_str());
+}
 
 template <class T>
 void try_loading(const std::string& path) {
@@ -45,42 +90,33 @@ void try_loading(const std::string& path) {
       require(duet::translation(q).allFinite(), "finite places");
     }
   }
-  const std::string copy = "copy_of_" + path;
-  duet::save_table(copy, table);
-  const auto again = duet::load_table<T>(copy);
-  require(again.parameters == table.parameters, "the same parameters");
-  for (std::size_t i = 0; i < table.elements.size(); ++i) {
-    const auto& a = again.elements[i];
-    const auto& b = table.elements[i];
-    if constexpr (std::is_same_v<T, double>) {
-      require(a == b, "the same rotations");
-    } else {
-      require(duet::rotation(a) == duet::rotation(b), "the same rotations");
-      const duet::vector3<double> place = duet::translation(b);
-      require((duet::translation(a) - place).stableNorm() <= 1e-14 * place.stableNorm() + 1e-300,
-              "the same places");
-    }
-  }
-  std::remove(copy.c_str());
+  require_copies(table);
 }
 
 } // namespace
 
 std::vector<std::string> seeds() {
-  return {"u,qw,qx,qy,qz\n0,1,0,0,0\n0.5,0.8,0.6,0,0\n1,0.6,0.8,0,0\n2.5,0.28,0.96,0,0\n",
-          "u,x,y,z,qw,qx,qy,qz\n-1e-3,0.25,-1.5,1e300,0.5,0.5,-0.5,0.5\n"
-          "0,4e-320,-0,17,0.7071067811865476,0,0.7071067811865476,0\n"
-          "0.1,1,2,3,-1,0,0,0\n",
-          "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n"
-          "1305031098.6659 1.3563 0.6305 1.6380 0.6132 0.5962 -0.3311 -0.3986\n"
-          "1305031098.6758 1.3543 0.6306 1.6360 0.6129 0.5966 -0.3316 -0.3980\n",
-          "\xef\xbb\xbf#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
-          "q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1]\r\n"
-          "1403636580838555648,4.688319,-1.786938,0.783338,0.534108,-0.153029,-0.827383,-0.082152,"
-          "-0.027876\r\n"
-          "1403636580843555328,4.688177,-1.786770,0.787350,0.534640,-0.152990,-0.826976,-0.082863,"
-          "0.033272\r\n",
-          "t [s] , q.x , q.y , q.z , q.w\n0, 0, 0, 0, 1 # the first\n\n1, 0.6, 0, 0, 0.8,\n"};
+  return {
+      "u,qw,qx,qy,qz\n0,1,0,0,0\n0.5,0.8,0.6,0,0\n1,0.6,0.8,0,0\n2.5,0.28,0.96,0,0\n",
+      "u,x,y,z,qw,qx,qy,qz\n-1e-3,0.25,-1.5,1e300,0.5,0.5,-0.5,0.5\n"
+      "0,4e-320,-0,17,0.7071067811865476,0,0.7071067811865476,0\n"
+      "0.1,1,2,3,-1,0,0,0\n",
+      "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n"
+      "1305031098.6659 1.3563 0.6305 1.6380 0.6132 0.5962 -0.3311 -0.3986\n"
+      "1305031098.6758 1.3543 0.6306 1.6360 0.6129 0.5966 -0.3316 -0.3980\n",
+      "\xef\xbb\xbf#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
+      "q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1]\r\n"
+      "1403636580838555648,4.688319,-1.786938,0.783338,0.534108,-0.153029,-0.827383,-0.082152,"
+      "-0.027876\r\n"
+      "1403636580843555328,4.688177,-1.786770,0.787350,0.534640,-0.152990,-0.826976,-0.082863,"
+      "0.033272\r\n",
+      "t [s] , q.x , q.y , q.z , q.w\n0, 0, 0, 0, 1 # the first\n\n1, 0.6, 0, 0, 0.8,\n",
+      "1403636580838555648,4.688319,-1.786938,0.783338,0.534108,-0.153029,-0.827383,-0.082152\n",
+      "1403636580838555648.0 4.688319 -1.786938 0.783338 -0.153029 -0.827383 -0.082152 0.534108\n",
+      "1.000000e+00 9.043680e-12 2.326809e-11 5.551115e-17 9.043683e-12 1.000000e+00 "
+      "2.392370e-10 3.330669e-16 2.326810e-11 2.392370e-10 9.999999e-01 -4.440892e-16\n"
+      "9.999978e-01 5.272628e-04 -2.066935e-03 -4.690294e-02 -5.296506e-04 9.999992e-01 "
+      "-1.154865e-03 -2.839928e-02 2.066324e-03 1.155958e-03 9.999971e-01 8.586941e-01\n"};
 }
 
 void target(const std::string& input) {

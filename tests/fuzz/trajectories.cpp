@@ -1,11 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "../../examples/fit_trajectory/trajectory.hpp"
 #include "fuzz/seeded_loop.hpp"
 
-#include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/spline/recording.hpp>
 
 #include <doctest/doctest.h>
 
@@ -37,44 +36,44 @@ std::vector<std::string> seeds() {
       "1403636580838555648.0 4.688319 -1.78693 0.783338 -0.153029 -0.827383 -0.082152 0.534108\n",
       "timestamp,tx,ty,tz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,ax,ay,az,alphax,alphay,alphaz\n"
       "0,1,2,3,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0\n0.01,1,2,3,0,0,0.6,0.8,1,1,1,1,1,1,1,1,1,1,1,1\n",
-      "0, ,2,3,0,0,0,1\n", // a blank cell
+      "t,x,y,z,qx,qy,qz,qw\n0, ,2,3,0,0,0,1\n", // a blank cell
+      "1 0 0 4 0 1 0 5 0 0 1 6\n1 0 0 4 0 1 0 5 0 0 -1 6\n0.8 -0.6 0 1 0.6 0.8 0 2 0 0 1 3\n",
       "stamp_us z y x qw qz qy qx\n12000000 1 2 3 -1 0 0 0\n"};
 }
 
 void target(const std::string& input) {
+  using T = duet::screw_dual<double>;
   const std::string path = "fuzz_trajectories.txt";
   std::ofstream(path, std::ios::binary) << input;
-  fit_trajectory::recording r;
+  duet::recording<T> r;
   try {
-    r = fit_trajectory::read_recording(path);
+    r = duet::load_recording<T>(path);
   } catch (const duet::file_error& error) {
     duet_fuzz::require_message(error.what(), "duet: " + path + ":");
     std::remove(path.c_str());
     return;
   }
-  require(!r.rows.empty() && r.left_out <= r.faults.size(), "rows and faults");
+  const auto& [times, poses] = r.table;
+  require(!times.empty() && r.left_out <= r.faults.size(), "rows and faults");
+  require(times.size() == poses.size() && times.size() == r.lines.size(), "a line for each row");
+  require(std::isfinite(r.start) && times.front() == 0, "times begin at 0");
   duet_fuzz::require_message(r.remark, "");
   for (const auto& fault : r.faults) {
-    duet_fuzz::require_message(duet::file_error(path, fault.line, fault.reason).what(),
-                               "duet: " + path + ":");
+    require(fault.line >= 1, "lines of faults");
+    duet_fuzz::require_message(fault.reason, "");
   }
-  std::string text = "# timestamp [s], tx, ty, tz, qx, qy, qz, qw\n";
-  for (std::size_t i = 0; i < r.rows.size(); ++i) {
-    const auto& [line, time, pose] = r.rows[i];
-    require(line >= 1 && std::isfinite(time), "lines and times");
-    require(i == 0 || time > r.rows[i - 1].time, "in order of time");
-    require(std::abs(norm(duet::rotation(pose)) - 1) < 1e-15, "units");
-    const auto x = duet::pose_coordinates(pose);
-    require(x.allFinite(), "finite places");
-    text += duet::csv_line({time, x[0], x[1], x[2], x[4], x[5], x[6], x[3]});
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    require(r.lines[i] >= 1 && std::isfinite(times[i]), "lines and times");
+    require(i == 0 || times[i] > times[i - 1], "in order of time");
+    require(std::abs(norm(duet::rotation(poses[i])) - 1) < 1e-15, "units");
+    require(duet::translation(poses[i]).allFinite(), "finite places");
   }
-  std::ofstream(path, std::ios::binary) << text;
-  const auto again = fit_trajectory::read_recording(path);
-  require(again.rows.size() == r.rows.size() && again.faults.empty(), "the same rows");
-  for (std::size_t i = 0; i < r.rows.size(); ++i) {
-    require(again.rows[i].time == r.rows[i].time, "the same times");
-    const auto a = duet::pose_coordinates(again.rows[i].pose);
-    const auto b = duet::pose_coordinates(r.rows[i].pose);
+  duet::save_table(path, r.table, duet::table_format::tum);
+  const auto again = duet::load_recording<T>(path);
+  require(again.table.parameters == times && again.faults.empty(), "the same times");
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto a = duet::pose_coordinates(again.table.elements[i]);
+    const auto b = duet::pose_coordinates(poses[i]);
     require((a - b).stableNorm() <= 1e-14 * b.stableNorm(), "the same poses");
   }
   std::remove(path.c_str());

@@ -1,108 +1,179 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/scalar_traits.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
-#include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
 #include <duet/spline/look_up_table.hpp>
-#include <duet/spline/table_rows.hpp>
+#include <duet/spline/tables/row_reader.hpp>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
+#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 /// \file
-/// Look-up tables of rotations and poses as files.
+/// Tables of rotations and poses as files: CSV, TUM, EuRoC, KITTI. Those that may have bad rows:
+/// spline/recording.hpp.
 
 namespace duet {
+
+/// How a table is written. When it is read, the file tells.
+enum class table_format {
+  csv,   ///< `u,x,y,z,qw,qx,qy,qz`, of rotations `u,qw,qx,qy,qz`, under a header
+  tum,   ///< `timestamp tx ty tz qx qy qz qw`, in seconds and metres
+  euroc, ///< `timestamp,x,y,z,qw,qx,qy,qz` under the data set's header, whole nanoseconds
+  kitti  ///< the matrix [R t] row by row, 12 numbers; the parameters in a file of their own
+};
+
 namespace detail {
 
 template <class T>
 inline constexpr bool is_rotation_scalar = std::is_same_v<T, double>;
 
-/// Files keep all digits, so what is a unit to rounding stays as it is.
-[[nodiscard]] inline quaternion<double> unit_of_file(const quaternion<double>& q) {
-  return std::abs(norm(q) - 1) <= 4e-16 ? q : normalized(q);
+/// What stands in a file of rotations or poses, as `T` says.
+template <class T>
+[[nodiscard]] quaternion<T> element_of(const table_row& row) {
+  if constexpr (is_rotation_scalar<T>) {
+    return row.rotation;
+  } else {
+    return pose(row.rotation, row.place);
+  }
+}
+
+[[nodiscard]] inline std::string blank_line(const std::vector<double>& numbers) {
+  std::string line = csv_line(numbers);
+  std::replace(line.begin(), line.end(), ',', ' ');
+  return line;
+}
+
+/// Whole nanoseconds, rounded. (Seconds to 2^63 ns.)
+[[nodiscard]] inline std::int64_t nanoseconds_of(double seconds) {
+  require(std::abs(seconds) < 9.2e9, "duet: save_table: ", to_text(seconds),
+          " s are beyond 9.2e18 nanoseconds");
+  const double whole = std::floor(seconds);
+  return std::int64_t(whole) * 1'000'000'000 + std::llround((seconds - whole) * 1e9);
+}
+
+/// The rows of poses, and what is above them.
+[[nodiscard]] inline std::string text_of(const look_up_table<screw_dual<double>>& table,
+                                         table_format format) {
+  std::string text;
+  if (format == table_format::tum) {
+    text = "# timestamp [s] tx [m] ty [m] tz [m] qx qy qz qw\n";
+  } else if (format == table_format::euroc) {
+    text = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+           "q_RS_z []\n";
+  } else if (format == table_format::csv) {
+    text = "u,x,y,z,qw,qx,qy,qz\n";
+  }
+  std::int64_t last = 0;
+  for (std::size_t i = 0; i < table.parameters.size(); ++i) {
+    const double u = table.parameters[i];
+    const auto x = pose_coordinates(table.elements[i]);
+    if (format == table_format::csv) {
+      text += csv_line({u, x[0], x[1], x[2], x[3], x[4], x[5], x[6]});
+    } else if (format == table_format::tum) {
+      text += blank_line({u, x[0], x[1], x[2], x[4], x[5], x[6], x[3]});
+    } else if (format == table_format::euroc) {
+      const std::int64_t now = nanoseconds_of(u);
+      require(i == 0 || now > last, "duet: save_table: row ", i, " at ", to_text(u),
+              " s is not a nanosecond after the row before");
+      last = now;
+      text += std::to_string(now) + "," + csv_line({x[0], x[1], x[2], x[3], x[4], x[5], x[6]});
+    } else {
+      const Eigen::Matrix4d m = transform_matrix(table.elements[i]);
+      std::vector<double> numbers;
+      for (Eigen::Index k = 0; k < 12; ++k) {
+        numbers.push_back(m(k / 4, k % 4));
+      }
+      text += blank_line(numbers);
+    }
+  }
+  return text;
+}
+[[nodiscard]] inline std::string text_of(const look_up_table<double>& table, table_format format) {
+  require(format == table_format::csv,
+          "duet: save_table: TUM, EuRoC and KITTI files hold poses, not rotations alone");
+  std::string text = "u,qw,qx,qy,qz\n";
+  for (std::size_t i = 0; i < table.parameters.size(); ++i) {
+    const quaternion<double>& q = table.elements[i];
+    text += csv_line({table.parameters[i], q.w(), q.x(), q.y(), q.z()});
+  }
+  return text;
 }
 
 } // namespace detail
 
-/// Writes a table as CSV: `u,qw,qx,qy,qz`, of poses `u,x,y,z,qw,qx,qy,qz`, with all digits and
-/// independently of the locale; the whole file or none.
-/// \throws file_error
+/// Writes a table of rotations or poses with all digits and independently of the locale; the whole
+/// file or none. Parameters are seconds in TUM's and EuRoC's files, the latter round them to whole
+/// nanoseconds; KITTI's have none.
+///
+/// Read back, parameters and quaternions have the same bits, and places differ by rounding, as a
+/// dual quaternion holds half the product of both. In EuRoC's files that is so of parameters from
+/// 2^23 s on and of the nearest doubles to whole nanoseconds; KITTI's matrices hold quaternions to
+/// rounding, without their sign.
+/// \param times  where KITTI's parameters go, a line each; empty: nowhere
+/// \throws invalid_input where there are not as many parameters as elements, for rotations in a
+/// format of poses, times of another format than KITTI's, and times that EuRoC's cannot tell apart;
+/// file_error
 template <class T>
-void save_table(const std::string& path, const look_up_table<T>& table) {
-  constexpr bool is_rotation = detail::is_rotation_scalar<T>;
-  std::string text = is_rotation ? "u,qw,qx,qy,qz\n" : "u,x,y,z,qw,qx,qy,qz\n";
-  for (std::size_t i = 0; i < table.parameters.size(); ++i) {
-    std::vector<double> numbers{table.parameters[i]};
-    const quaternion<T>& q = table.elements[i];
-    if constexpr (is_rotation) {
-      for (const double x : {q.w(), q.x(), q.y(), q.z()}) {
-        numbers.push_back(x);
-      }
-    } else {
-      const auto x = pose_coordinates(q);
-      numbers.insert(numbers.end(), x.begin(), x.end());
+void save_table(const std::string& path, const look_up_table<T>& table,
+                table_format format = table_format::csv, const std::string& times = {}) {
+  detail::require(table.parameters.size() == table.elements.size(),
+                  "duet: save_table: ", table.parameters.size(), " parameters for ",
+                  table.elements.size(), " elements");
+  detail::require(times.empty() || format == table_format::kitti,
+                  "duet: save_table: only KITTI files have times in a file of their own");
+  const std::string text = detail::text_of(table, format);
+  if (!times.empty()) {
+    std::string column;
+    for (const double u : table.parameters) {
+      column += csv_line({u});
     }
-    text += csv_line(numbers);
+    write_file(times, column);
   }
   write_file(path, text);
 }
 
-/// Reads what `save_table` writes, and tables whose header, a first line or a comment, names the
-/// columns in another order or in other words: `# timestamp tx ty tz qx qy qz qw`. The numbers are
-/// taken as they are, whatever units the header has; columns of other names are passed over.
-/// \throws file_error for a file without a header, as nothing else tells qw first from qw last, or
-/// with one in doubt; with the line of a row that is ragged, not finite, not a unit or does not
-/// follow the one before
+/// Reads a table of rotations (T = double) or poses (T = screw_dual<double>) of any format that
+/// `save_table` writes. The file tells which one it is, and in which order its columns are: by a
+/// header, a first line or a comment, or the number of columns, see spline/tables/row_format.hpp.
+///
+/// Parameters are the doubles nearest to the seconds of the file, whatever its unit of time, with
+/// places in metres; columns named u or tau are taken as they are. (Doubles of seconds since 1970
+/// are 2.4e-7 s apart: `load_recording` keeps the digits.) Quaternions are normalised whose norm is
+/// 1 to `unit_norm_tolerance`; of matrices with R Rᵀ = 1 to `rotation_matrix_tolerance` it takes
+/// the nearest rotation. \param times  for KITTI's files: a file with the time of each row, in
+/// seconds; without, the
+///               parameters are 0, 1, 2 …
+/// \throws file_error for a file without rows, or whose columns are in doubt; with the line of a
+/// row that is ragged, not finite, no unit or rotation, or does not follow the one before, and with
+/// the column and its value
 template <class T>
-[[nodiscard]] look_up_table<T> load_table(const std::string& path) {
-  constexpr bool is_rotation = detail::is_rotation_scalar<T>;
+[[nodiscard]] look_up_table<T> load_table(const std::string& path, const std::string& times = {}) {
   look_up_table<T> table;
-  const auto start = [&](std::size_t line, const auto&, const auto& header, bool) {
-    if (!header) {
-      throw file_error(path, line,
-                       std::string("no header before the first row says which column is "
-                                   "which, as `") +
-                           (is_rotation ? "u,qw,qx,qy,qz" : "u,x,y,z,qw,qx,qy,qz") +
-                           "` does: " + detail::known_columns);
-    }
-    return *header;
-  };
   detail::for_each_table_row(
-      path, true, !is_rotation, start,
-      [&](std::size_t line, const std::array<double, 8>& x, const std::string& fault) {
-        if (!fault.empty()) {
-          throw file_error(path, line, fault);
+      path, times, !detail::is_rotation_scalar<T>, [&](const detail::table_row& row) {
+        if (!row.fault.empty()) {
+          throw file_error(path, row.line, row.fault);
         }
-        const quaternion<double> q(x[4], x[5], x[6], x[7]);
-        if (const double length = norm(q); !(std::abs(length - 1) <= unit_norm_tolerance)) {
-          throw file_error(path, line,
-                           "the quaternion has norm " + to_text(length) +
-                               ", not 1: are its columns what the header says?");
-        }
-        if (!table.parameters.empty() && !(x[0] > table.parameters.back())) {
-          throw file_error(path, line,
-                           "parameter " + to_text(x[0]) +
-                               " does not increase, the row before has " +
+        const double u = row.time.seconds();
+        if (!table.parameters.empty() && !(u > table.parameters.back())) {
+          throw file_error(path, row.line,
+                           "parameter " + to_text(u) + " does not increase, the row before has " +
                                to_text(table.parameters.back()));
         }
-        table.parameters.push_back(x[0]);
-        if constexpr (is_rotation) {
-          table.elements.push_back(detail::unit_of_file(q));
-        } else {
-          table.elements.push_back(
-              pose(detail::unit_of_file(q), vector3<double>(x[1], x[2], x[3])));
-        }
+        table.parameters.push_back(u);
+        table.elements.push_back(detail::element_of<T>(row));
       });
   if (table.parameters.empty()) {
     throw file_error(path, "holds no rows");

@@ -15,7 +15,7 @@
 #include <vector>
 
 /// \file
-/// Rows of rotations and poses in text files, by the names of their columns.
+/// Which column of a table of rotations or poses holds what, by the names in a header.
 
 namespace duet::detail {
 
@@ -29,6 +29,7 @@ inline constexpr const char* known_columns = "known are u (tau, t, time, timesta
 /// A name in a header: of what, and in which unit.
 struct column_name {
   table_column what = table_column::other;
+  bool is_a_time = false; ///< a `u` in seconds, or in a unit of time
   std::string name;
   std::string unit; ///< as written, empty where none is
 
@@ -50,8 +51,13 @@ private:
     return result;
   }
 
+  /// Of the name, and whether it is a time.
   [[nodiscard]] table_column meaning() {
-    if (name == "u" || name == "tau" || is_time(name)) {
+    if (name == "u" || name == "tau") {
+      return table_column::u;
+    }
+    if (is_time(name)) {
+      is_a_time = true;
       return table_column::u;
     }
     const std::size_t cut = name.rfind('_');
@@ -59,6 +65,7 @@ private:
     if ((last == "s" || last == "ms" || last == "us" || last == "ns") &&
         is_time(name.substr(0, cut)) && unit.empty()) {
       unit = last; // timestamp_ns
+      is_a_time = true;
       return table_column::u;
     }
     const std::string_view axes = "wxyz";
@@ -92,7 +99,8 @@ struct table_layout {
   std::array<std::size_t, 8> at;
   std::array<std::string, 8> names; ///< as in the header
   std::size_t columns = 0;
-  std::string time_unit, place_unit;
+  std::array<std::string, 8> units;
+  bool has_time = false; ///< its parameter is a time
   bool is_euroc = false; ///< named as in the files of the EuRoC data set
 
   table_layout() { at.fill(absent); }
@@ -122,12 +130,9 @@ struct table_layout {
       }
       at[k] = i;
       names[k] = header[i];
-      if (cell.what == table_column::u) {
-        time_unit = cell.unit;
-      } else if (cell.what == table_column::x) {
-        place_unit = cell.unit;
-        is_euroc = cell.name.starts_with("p_rs_");
-      }
+      units[k] = cell.unit;
+      has_time = has_time || cell.is_a_time;
+      is_euroc = is_euroc || cell.name.starts_with("p_rs_");
     }
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < 8; ++k) {
@@ -186,65 +191,5 @@ private:
   std::vector<std::string> cells_;
   bool is_certain_ = false;
 };
-
-/// Calls row(line, numbers, fault) for every row of a file, with its eight numbers in the order of
-/// `table_column`, those that the file does not have 0; `fault` says what is wrong with one that is
-/// not finite, or is empty.
-///
-/// The columns are told by a header: a first line of names, or a comment before the first row.
-/// Columns of other names are passed over.
-/// \param start  start(line, cells, header, has_commas) makes the layout at the first row; `header`
-///               is empty where the file has none, cells are apart by commas or by blanks
-/// \throws file_error with the line of what is no row, or a header in doubt
-template <class Start, class Row>
-void for_each_table_row(const std::string& path, bool has_u, bool has_place, const Start& start,
-                        const Row& row) {
-  std::optional<table_layout> header;
-  commented_header comment;
-  table_layout layout;
-  std::size_t row_count = 0;
-  std::vector<std::string_view> cells;
-  for_each_line(path, [&](std::size_t line, std::string_view whole) {
-    const split_line parts(whole);
-    const bool is_begin = row_count == 0 && !header;
-    if (parts.text.empty()) {
-      if (is_begin && !parts.comment.empty()) {
-        comment.look_at(line, parts.comment);
-      }
-      return;
-    }
-    split_cells(parts.text, cells);
-    if (is_begin && are_words(cells)) {
-      header.emplace();
-      if (const std::string problem = header->read(cells, has_u, has_place); !problem.empty()) {
-        throw file_error(path, line, problem);
-      }
-      return;
-    }
-    if (row_count == 0) {
-      if (!header) {
-        header = comment.layout(path, cells.size(), has_u, has_place);
-      }
-      layout = start(line, cells, header, parts.text.find(',') != std::string_view::npos);
-    }
-    ++row_count;
-    if (cells.size() != layout.columns) {
-      throw file_error(path, line,
-                       std::to_string(layout.columns) + " columns expected, got " +
-                           std::to_string(cells.size()));
-    }
-    std::array<double, 8> numbers{};
-    std::string fault;
-    for (std::size_t k = 0; k < 8; ++k) {
-      if (layout.at[k] != table_layout::absent) {
-        std::string its = read_cell(path, line, layout.names[k], cells[layout.at[k]], numbers[k]);
-        if (!its.empty() && fault.empty()) {
-          fault = std::move(its);
-        }
-      }
-    }
-    row(line, numbers, fault);
-  });
-}
 
 } // namespace duet::detail

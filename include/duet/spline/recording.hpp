@@ -1,0 +1,118 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/core/text/printable.hpp>
+#include <duet/spline/look_up_table.hpp>
+#include <duet/spline/table_file.hpp>
+#include <duet/spline/tables/row_reader.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Recorded rotations and poses, whose files may have rows that are bad or out of order.
+
+namespace duet {
+
+/// A row that was left out or put elsewhere, and why.
+struct recording_fault {
+  std::size_t line;
+  std::string reason; ///< on one line, as `tx is nan: left out`
+};
+
+/// Recorded rotations (T = double) or poses (T = screw_dual<double>).
+template <class T>
+struct recording {
+  look_up_table<T> table;              ///< parameters: seconds since `start`, from 0 on, increasing
+  double start = 0;                    ///< the first time of the file, in seconds
+  std::vector<std::size_t> lines;      ///< where in the file each row stands
+  std::vector<recording_fault> faults; ///< by line
+  std::size_t left_out = 0;            ///< how many rows of the file the table does not have
+  std::string remark;                  ///< how the file was understood, where that is not plain
+};
+
+namespace detail {
+
+/// The rows that are good, in order of time, each time once; the others become faults.
+/// \throws file_error where differences of times overflow
+[[nodiscard]] inline std::vector<table_row> in_order(const std::string& path,
+                                                     std::vector<table_row> rows,
+                                                     std::vector<recording_fault>& faults) {
+  std::sort(rows.begin(), rows.end(), [](const table_row& a, const table_row& b) {
+    return a.time < b.time || (!(b.time < a.time) && a.line < b.line);
+  });
+  const auto fault = [&](const table_row& row, const std::string& what) {
+    faults.push_back({row.line, printable("timestamp " + to_text(row.time.seconds()) + what)});
+  };
+  std::vector<table_row> once;
+  for (const table_row& row : rows) {
+    const double since = row.time.since(rows.front().time);
+    if (!(since - since == 0)) {
+      throw file_error(path, row.line,
+                       "timestamp " + to_text(row.time.seconds()) + ", and line " +
+                           std::to_string(rows.front().line) + " has " +
+                           to_text(rows.front().time.seconds()) + ": too far apart");
+    }
+    if (!once.empty() && !(since > once.back().time.since(rows.front().time))) {
+      fault(row, " repeats line " + std::to_string(once.back().line) + ": left out");
+    } else {
+      once.push_back(row);
+    }
+  }
+  std::size_t earliest = once.empty() ? 0 : once.back().line; // of the rows later in time
+  for (auto row = once.rbegin(); row != once.rend(); ++row) {
+    if (row->line > earliest) {
+      fault(*row, " is out of order: sorted in");
+    }
+    earliest = std::min(earliest, row->line);
+  }
+  std::sort(faults.begin(), faults.end(),
+            [](const auto& a, const auto& b) { return a.line < b.line; });
+  return once;
+}
+
+} // namespace detail
+
+/// Reads recorded rotations or poses of any format that `load_table` reads. Rows that are not
+/// finite, no units or rotations, or repeat a time, are left out, rows out of order sorted in, and
+/// `faults` names them all.
+///
+/// Parameters are the differences of the times in the file, with all its digits: of nanoseconds
+/// since 1970, too, of which a double of seconds holds steps of 238.
+/// \param times  as `load_table`
+/// \throws file_error for a file without a row that is good, or whose columns are in doubt; with
+/// the line of a row that is ragged or has cells that are no numbers
+template <class T>
+[[nodiscard]] recording<T> load_recording(const std::string& path, const std::string& times = {}) {
+  recording<T> result;
+  std::vector<detail::table_row> rows;
+  std::size_t count = 0;
+  result.remark = detail::for_each_table_row(
+      path, times, !detail::is_rotation_scalar<T>, [&](const detail::table_row& row) {
+        ++count;
+        if (row.fault.empty()) {
+          rows.push_back(row);
+        } else {
+          result.faults.push_back({row.line, printable(row.fault + ": left out")});
+        }
+      });
+  if (rows.empty()) {
+    throw file_error(path, "holds no usable rows");
+  }
+  rows = detail::in_order(path, std::move(rows), result.faults);
+  result.left_out = count - rows.size();
+  result.start = rows.front().time.seconds();
+  for (const detail::table_row& row : rows) {
+    result.table.parameters.push_back(row.time.since(rows.front().time));
+    result.table.elements.push_back(detail::element_of<T>(row));
+    result.lines.push_back(row.line);
+  }
+  return result;
+}
+
+} // namespace duet

@@ -1,0 +1,69 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/number_text.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+/// \file
+/// Times in files, whose digits a double of seconds cannot hold.
+
+namespace duet::detail {
+
+/// A time in seconds. From one double to the next there are 2.4e-7 s in the seconds since 1970, so
+/// whole seconds and the rest are kept, too: differences of times have all digits of the file.
+class file_time {
+public:
+  explicit file_time(double seconds = 0)
+      : seconds_(seconds), whole_(std::trunc(seconds)), rest_(seconds - whole_) {}
+
+  /// Of a cell that spells a finite number, in units of 10^−digits s. The decimal point is moved in
+  /// the text, as divisions round.
+  file_time(std::string_view cell, std::size_t digits) {
+    cell = trimmed(cell);
+    if (cell.find_first_of("eE") != cell.npos) {
+      *this = file_time(number_of(cell) / number_of("1e" + std::to_string(digits)));
+      return;
+    }
+    const double sign = cell.starts_with('-') ? -1 : 1;
+    if (cell.starts_with('-') || cell.starts_with('+')) {
+      cell.remove_prefix(1);
+    }
+    const std::size_t point = std::min(cell.find('.'), cell.size());
+    std::string before = std::string(digits, '0');
+    before += cell.substr(0, point);
+    std::string after = before.substr(before.size() - digits);
+    after += cell.substr(std::min(point + 1, cell.size()));
+    before = "0" + before.substr(0, before.size() - digits);
+    after = "." + after + "0";
+    seconds_ = sign * number_of(before + after);
+    whole_ = sign * number_of(before);
+    rest_ = sign * number_of("0" + after);
+  }
+
+  /// The nearest double.
+  [[nodiscard]] double seconds() const { return seconds_; }
+  /// Seconds since another time, to 1e-16 s and rounding; since 0 the nearest double.
+  [[nodiscard]] double since(const file_time& start) const {
+    return start.seconds_ == 0 ? seconds_ : (whole_ - start.whole_) + (rest_ - start.rest_);
+  }
+  [[nodiscard]] bool operator<(const file_time& other) const {
+    return whole_ < other.whole_ || (whole_ == other.whole_ && rest_ < other.rest_);
+  }
+
+private:
+  /// 0 where it is nearer to 0 than any double.
+  [[nodiscard]] static double number_of(std::string_view text) {
+    double number = 0;
+    static_cast<void>(read_number(text, number));
+    return number;
+  }
+
+  double seconds_ = 0, whole_ = 0, rest_ = 0;
+};
+
+} // namespace duet::detail

@@ -1,0 +1,198 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/core/text/text_rows.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/tables/columns.hpp>
+#include <duet/spline/tables/file_rotation.hpp>
+#include <duet/spline/tables/file_time.hpp>
+#include <duet/spline/tables/row_format.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Rows of rotations and poses in files of any format.
+
+namespace duet::detail {
+
+/// A row of a file.
+struct table_row {
+  std::size_t line = 0;
+  std::string fault; ///< what is wrong with it, empty if nothing; then the rest is there
+  file_time time;
+  vector3<double> place = vector3<double>::Zero();
+  quaternion<double> rotation{1};
+};
+
+/// Reads a file line by line.
+class table_row_reader {
+public:
+  /// \param times_path  a file of times, empty if none
+  /// \param has_place   must rows have places?
+  /// \throws file_error for a bad file of times
+  table_row_reader(std::string path, std::string times_path, bool has_place)
+      : path_(std::move(path)), times_path_(std::move(times_path)), has_place_(has_place) {
+    if (!times_path_.empty()) {
+      times_ = csv_file(times_path_, 1).rows();
+    }
+  }
+
+  /// The row that a line holds, if it does.
+  /// \throws file_error with the line of what is no row, or a header in doubt
+  [[nodiscard]] std::optional<table_row> read(std::size_t line, std::string_view whole) {
+    const split_line parts(whole);
+    const bool is_begin = !format_ && !header_;
+    if (parts.text.empty()) {
+      if (is_begin) {
+        comment_.look_at(line, parts.comment);
+      }
+      return std::nullopt;
+    }
+    split_cells(parts.text, cells_);
+    if (is_begin && are_words(cells_)) {
+      header_.emplace();
+      if (const std::string problem = header_->read(cells_, true, has_place_); !problem.empty()) {
+        throw file_error(path_, line, problem);
+      }
+      return std::nullopt;
+    }
+    if (!format_) {
+      choose_format(line, parts.text.find(',') != parts.text.npos);
+    }
+    if (cells_.size() != format_->layout.columns) {
+      throw file_error(path_, line,
+                       std::to_string(format_->layout.columns) + " columns expected, got " +
+                           std::to_string(cells_.size()));
+    }
+    table_row row;
+    row.line = line;
+    if (format_->is_matrix) {
+      read_matrix(row);
+    } else {
+      read_columns(row);
+    }
+    ++row_count_;
+    return row;
+  }
+
+  /// After the last line.
+  /// \throws file_error for more times than rows
+  void finish() const {
+    if (row_count_ > 0 && row_count_ < times_.size()) {
+      throw file_error(times_path_, times_[row_count_].line,
+                       "a time beyond the " + std::to_string(row_count_) + " rows of " + path_);
+    }
+  }
+
+  /// How the file was understood, where that is not plain.
+  [[nodiscard]] std::string remark() const { return format_ ? format_->remark : ""; }
+
+private:
+  void choose_format(std::size_t line, bool has_commas) {
+    if (!header_) {
+      header_ = comment_.layout(path_, cells_.size(), true, has_place_);
+    }
+    format_ = header_ ? format_of_header(path_, line, *header_, cells_, has_place_)
+                      : format_of_row(path_, line, cells_, has_commas);
+    if (!times_path_.empty() && !format_->is_matrix) {
+      throw file_error(path_, line, "has times of its own besides those of " + times_path_);
+    }
+  }
+
+  void read_columns(table_row& row) const {
+    const table_layout& layout = format_->layout;
+    std::array<double, 8> x{};
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (layout.at[k] != table_layout::absent) {
+        note(row, read_cell(path_, row.line, layout.names[k], cells_[layout.at[k]], x[k]));
+      }
+    }
+    if (!row.fault.empty()) {
+      return;
+    }
+    const quaternion<double> q(x[4], x[5], x[6], x[7]);
+    if (const double length = norm(q); !(std::abs(length - 1) <= unit_norm_tolerance)) {
+      row.fault = "the quaternion of " + layout.names[4] + ", " + layout.names[5] + ", " +
+                  layout.names[6] + ", " + layout.names[7] + " has norm " + to_text(length) +
+                  ", not 1";
+      return;
+    }
+    if (format_->must_be_whole && x[0] != std::floor(x[0])) {
+      throw file_error(path_, row.line,
+                       layout.names[0] + " " + to_text(x[0]) +
+                           " is no whole number of nanoseconds: a header with its unit, as in "
+                           "`timestamp [s]`, is needed");
+    }
+    row.time = file_time(cells_[layout.at[0]], format_->digits);
+    row.place = {x[1], x[2], x[3]};
+    row.rotation = unit_of_file(q);
+  }
+
+  void read_matrix(table_row& row) const {
+    Eigen::Matrix<double, 3, 4> m;
+    for (std::size_t i = 0; i < 12; ++i) {
+      note(row, read_cell(path_, row.line, "column " + std::to_string(i + 1), cells_[i],
+                          m(Eigen::Index(i / 4), Eigen::Index(i % 4))));
+    }
+    if (row.fault.empty()) {
+      row.fault = read_rotation(m.leftCols<3>(), row.rotation);
+    }
+    row.place = m.col(3);
+    if (times_path_.empty()) {
+      row.time = file_time(double(row_count_));
+    } else if (row_count_ < times_.size()) {
+      row.time = file_time(times_[row_count_].numbers[0]);
+    } else {
+      throw file_error(path_, row.line,
+                       "a row beyond the " + std::to_string(times_.size()) + " times of " +
+                           times_path_);
+    }
+  }
+
+  /// The first fault is told.
+  static void note(table_row& row, std::string fault) {
+    if (row.fault.empty()) {
+      row.fault = std::move(fault);
+    }
+  }
+
+  std::string path_, times_path_;
+  bool has_place_;
+  std::vector<csv_row> times_;
+  std::optional<table_layout> header_;
+  commented_header comment_;
+  std::optional<row_format> format_;
+  std::size_t row_count_ = 0;
+  std::vector<std::string_view> cells_;
+};
+
+/// Calls row(r) for every `table_row` of a file.
+/// \return how the file was understood, where that is not plain
+/// \throws file_error as `table_row_reader`
+template <class Row>
+std::string for_each_table_row(const std::string& path, const std::string& times_path,
+                               bool has_place, const Row& row) {
+  table_row_reader reader(path, times_path, has_place);
+  for_each_line(path, [&](std::size_t line, std::string_view whole) {
+    if (const std::optional<table_row> r = reader.read(line, whole)) {
+      row(*r);
+    }
+  });
+  reader.finish();
+  return reader.remark();
+}
+
+} // namespace duet::detail

@@ -1,0 +1,472 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/message.hpp"
+#include "support/random.hpp"
+
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/look_up_table.hpp>
+#include <duet/spline/table_file.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <clocale>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <locale>
+#include <string>
+#include <vector>
+
+namespace test_spline_table_file {
+namespace {
+
+using duet::table_format;
+using duet::vector3;
+using rotation = duet::quaternion<double>;
+using screw = duet::screw_dual<double>;
+using rotations = duet::look_up_table<double>;
+using poses = duet::look_up_table<screw>;
+
+/// A file of its own, gone at last.
+class scratch_file {
+public:
+  explicit scratch_file(const char* name) : path(std::string("test_spline_table_file_") + name) {}
+  scratch_file(const char* name, const std::string& text) : scratch_file(name) { write(text); }
+  ~scratch_file() { std::remove(path.c_str()); }
+  void write(const std::string& text) const { std::ofstream(path, std::ios::binary) << text; }
+  [[nodiscard]] std::string text() const {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  const std::string path;
+};
+
+/// As T would be read of such a text.
+template <class T>
+duet::look_up_table<T> loaded(const std::string& text) {
+  const scratch_file file("loaded.txt", text);
+  return duet::load_table<T>(file.path);
+}
+
+poses random_poses(std::size_t count, double first, double step) {
+  duet_test::random_source random(7);
+  const auto vector = [&](double size) -> vector3<double> {
+    return size * vector3<double>(random.normal(), random.normal(), random.normal());
+  };
+  poses table;
+  for (std::size_t i = 0; i < count; ++i) {
+    table.parameters.push_back(first + double(i) * step);
+    table.elements.push_back(duet::pose(duet::from_rotation_vector(vector(2)), vector(10)));
+  }
+  return table;
+}
+
+/// The largest difference of places, where quaternions have the same bits.
+double distance_of_places(const poses& a, const poses& b) {
+  REQUIRE(a.elements.size() == b.elements.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < a.elements.size(); ++i) {
+    CHECK(duet::rotation(a.elements[i]) == duet::rotation(b.elements[i]));
+    const vector3<double> between =
+        duet::translation(a.elements[i]) - duet::translation(b.elements[i]);
+    largest = std::max(largest, between.norm());
+  }
+  return largest;
+}
+
+const std::string header_of_euroc =
+    "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+    "q_RS_z []\n";
+
+} // namespace
+
+TEST_CASE("rotations are saved and loaded with all bits") {
+  const scratch_file file("rotations.csv");
+  rotations table;
+  const poses source = random_poses(50, -1.5, 0.1);
+  table.parameters = source.parameters;
+  for (const auto& pose : source.elements) {
+    table.elements.push_back(duet::rotation(pose));
+  }
+  table.elements[3] = rotation(-0.0, 0.6, -0.0, -0.8);
+  duet::save_table(file.path, table);
+  const rotations again = duet::load_table<double>(file.path);
+  CHECK(again.parameters == table.parameters);
+  CHECK(again.elements == table.elements);
+  CHECK(std::signbit(again.elements[3].w()));
+  CHECK(std::signbit(again.elements[3].y()));
+  CHECK(file.text().starts_with("u,qw,qx,qy,qz\n-1.5,"));
+}
+
+TEST_CASE("poses are saved and loaded in every format") {
+  const scratch_file file("poses.txt"), times("times.txt");
+  for (const double first : {0.0, -3.25, 1403636580.8385556}) {
+    const poses table = random_poses(100, first, 0.005);
+    for (const table_format format : {table_format::csv, table_format::tum}) {
+      duet::save_table(file.path, table, format);
+      const poses again = duet::load_table<screw>(file.path);
+      CHECK(again.parameters == table.parameters);
+      CHECK(distance_of_places(again, table) < 2e-14);
+    }
+  }
+  // Nearest doubles to whole nanoseconds, and any doubles from 2^23 s on.
+  poses table = random_poses(100, 0, 0);
+  for (const double first : {-1.0, 0.0, 12345.0, 8388608.0, 1403636580.8385556, 9.19e9}) {
+    for (std::size_t i = 0; i < table.parameters.size(); ++i) {
+      table.parameters[i] =
+          first < 8388608
+              ? double(std::ptrdiff_t(1e9 * first) + 5'000'001 * std::ptrdiff_t(i)) / 1e9
+              : first + 0.005 * double(i);
+    }
+    duet::save_table(file.path, table, table_format::euroc);
+    const poses again = duet::load_table<screw>(file.path);
+    CHECK(again.parameters == table.parameters);
+    CHECK(distance_of_places(again, table) < 2e-14);
+  }
+  duet::save_table(file.path, table, table_format::kitti, times.path);
+  const poses again = duet::load_table<screw>(file.path, times.path);
+  CHECK(again.parameters == table.parameters);
+  REQUIRE(again.elements.size() == table.elements.size());
+  for (std::size_t i = 0; i < table.elements.size(); ++i) {
+    const rotation a = duet::rotation(again.elements[i]), b = duet::rotation(table.elements[i]);
+    CHECK(std::min(norm(a - b), norm(a + b)) < 1e-15);
+    CHECK((duet::translation(again.elements[i]) - duet::translation(table.elements[i])).norm() <
+          2e-14);
+  }
+  CHECK(duet::load_table<screw>(file.path).parameters[99] == 99);
+}
+
+TEST_CASE("what files hold, to the letter") {
+  const scratch_file file("letter.txt"), times("letter_times.txt");
+  poses table;
+  table.parameters = {-0.5, 1403636580.25};
+  table.elements = {duet::pose(rotation(1), vector3<double>(1, -2, 0.5)),
+                    duet::pose(rotation(0.6, 0, 0, 0.8), vector3<double>(0, 0, 0))};
+  duet::save_table(file.path, table);
+  CHECK(file.text() == "u,x,y,z,qw,qx,qy,qz\n-0.5,1,-2,0.5,1,0,0,0\n"
+                       "1403636580.25,0,0,0,0.6,0,0,0.8\n");
+  duet::save_table(file.path, table, table_format::tum);
+  CHECK(file.text() == "# timestamp [s] tx [m] ty [m] tz [m] qx qy qz qw\n"
+                       "-0.5 1 -2 0.5 0 0 0 1\n1403636580.25 0 0 0 0 0 0.8 0.6\n");
+  duet::save_table(file.path, table, table_format::euroc);
+  CHECK(file.text() == header_of_euroc + "-500000000,1,-2,0.5,1,0,0,0\n"
+                                         "1403636580250000000,0,0,0,0.6,0,0,0.8\n");
+  table.elements[1] = duet::pose(rotation(0, 0, 0, 1), vector3<double>(4, 5, 6));
+  duet::save_table(file.path, table, table_format::kitti, times.path);
+  CHECK(file.text() == "1 0 0 1 0 1 0 -2 0 0 1 0.5\n-1 0 0 4 0 -1 0 5 0 0 1 6\n");
+  CHECK(times.text() == "-0.5\n1403636580.25\n");
+}
+
+TEST_CASE("what cannot be saved says why, and nothing is written") {
+  const scratch_file file("unsaved.txt");
+  const auto complaint = [&](const auto& table, table_format format, const char* times = "") {
+    return duet_test::message_of([&] { duet::save_table(file.path, table, format, times); });
+  };
+  poses table = random_poses(3, 0, 1);
+  CHECK(complaint(rotations{{0}, {rotation(1)}}, table_format::tum) ==
+        "duet: save_table: TUM, EuRoC and KITTI files hold poses, not rotations alone");
+  CHECK(complaint(table, table_format::tum, "times.txt") ==
+        "duet: save_table: only KITTI files have times in a file of their own");
+  table.parameters = {0, 1e-3, 1.0000002e-3};
+  CHECK(complaint(table, table_format::euroc) ==
+        "duet: save_table: row 2 at 0.0010000002 s is not a nanosecond after the row before");
+  table.parameters[2] = 1e10;
+  CHECK(complaint(table, table_format::euroc) ==
+        "duet: save_table: 1e+10 s are beyond 9.2e18 nanoseconds");
+  table.parameters[2] = std::nan("");
+  CHECK(complaint(table, table_format::euroc) ==
+        "duet: save_table: nan s are beyond 9.2e18 nanoseconds");
+  table.parameters.pop_back();
+  CHECK(complaint(table, table_format::csv) == "duet: save_table: 2 parameters for 3 elements");
+  CHECK(file.text().empty());
+}
+
+TEST_CASE("files of others: blanks, line ends, byte order marks, comments, commas at ends") {
+  // TUM's, and its numbers as a German locale has them are no numbers (below).
+  const std::string tum =
+      "# ground truth trajectory\r\n# timestamp tx ty tz qx qy qz qw\r\n"
+      "  1305031098.6659 1.3563 0.6305\t1.6380 0.6132 0.5962 -0.3311 -0.3986 \r\n"
+      "\r\n1305031098.6758 1.3543 +0.6306 1.6360 0.6129 0.5966 -0.3316 -0.3980";
+  const poses a = loaded<screw>(tum);
+  CHECK(a.parameters == std::vector<double>{1305031098.6659, 1305031098.6758});
+  CHECK(duet::rotation(a.elements[0]) == normalized(rotation(-0.3986, 0.6132, 0.5962, -0.3311)));
+  CHECK((duet::translation(a.elements[1]) - vector3<double>(1.3543, 0.6306, 1.6360)).norm() <
+        1e-15);
+  const auto bare = tum.substr(tum.find("  1305"));
+  CHECK(loaded<screw>("\xef\xbb\xbf" + bare).elements == a.elements);
+  CHECK(loaded<double>(bare).elements[1] == duet::rotation(a.elements[1]));
+
+  // EuRoC's, with the further columns of its ground truth, and what ORB-SLAM writes for it.
+  const poses b = loaded<screw>(
+      "\xef\xbb\xbf#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
+      "q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1]\r\n"
+      "1403636580868555648,4.688319,-1.786938,0.783338,0.534108,-0.153029,-0.827383,-0.082152,-0."
+      "02,"
+      "\r\n");
+  CHECK(b.parameters == std::vector<double>{1403636580.868555648});
+  CHECK(duet::rotation(b.elements[0]) ==
+        normalized(rotation(0.534108, -0.153029, -0.827383, -0.082152)));
+  const poses commas = loaded<screw>(
+      "1403636580868555648,4.688319,-1.786938,0.783338,0.534108,-0.153029,-0.827383,-0.082152,\n");
+  const poses blanks = loaded<screw>("1403636580868555648.000000 4.688319 -1.786938 0.783338 "
+                                     "-0.153029 -0.827383 -0.082152 0.534108\n");
+  for (const poses& same : {commas, blanks}) {
+    CHECK(same.parameters == b.parameters);
+    CHECK(same.elements == b.elements);
+  }
+
+  // KITTI's, of seven digits.
+  const std::string kitti =
+      "1.000000e+00 9.043680e-12 2.326809e-11 5.551115e-17 9.043683e-12 1.000000e+00 2.392370e-10 "
+      "3.330669e-16 2.326810e-11 2.392370e-10 9.999999e-01 -4.440892e-16\n"
+      "9.999978e-01 5.272628e-04 -2.066935e-03 -4.690294e-02 -5.296506e-04 9.999992e-01 "
+      "-1.154865e-03 -2.839928e-02 2.066324e-03 1.155958e-03 9.999971e-01 8.586941e-01\n";
+  const poses c = loaded<screw>(kitti);
+  CHECK(c.parameters == std::vector<double>{0, 1});
+  CHECK((duet::translation(c.elements[1]) -
+         vector3<double>(-4.690294e-02, -2.839928e-02, 8.586941e-01))
+            .norm() < 1e-15);
+  duet::matrix3<double> r;
+  r << 9.999978e-01, 5.272628e-04, -2.066935e-03, -5.296506e-04, 9.999992e-01, -1.154865e-03,
+      2.066324e-03, 1.155958e-03, 9.999971e-01;
+  const rotation q = duet::rotation(c.elements[1]);
+  CHECK(std::abs(norm(q) - 1) < 4e-16);
+  CHECK((duet::rotation_matrix(q) - r).cwiseAbs().maxCoeff() < 1e-7);
+  CHECK(loaded<double>(kitti).elements[1] == q);
+  const scratch_file file("kitti.txt", kitti),
+      times("kitti_times.txt", "0.000000e+00\r\n1.037359e-01\r\n");
+  CHECK(duet::load_table<screw>(file.path, times.path).parameters ==
+        std::vector<double>{0, 0.1037359});
+}
+
+TEST_CASE("of a matrix of few digits, the nearest rotation") {
+  // The nearest of all: no small turn leads nearer.
+  const rotation q = normalized(rotation(0.3, -0.5, 0.7, 0.2));
+  duet::matrix3<double> m = duet::rotation_matrix(q);
+  m(0, 1) += 2e-4;
+  m(2, 0) -= 3e-4;
+  rotation found;
+  CHECK(duet::detail::read_rotation(m, found).empty());
+  CHECK(norm(found - q) > 2e-5);
+  const auto distance = [&](const rotation& p) {
+    return (duet::rotation_matrix(p) - m).squaredNorm();
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const vector3<double> turn = 1e-4 * vector3<double>::Unit(axis);
+    const double there = distance(duet::from_rotation_vector(turn) * found);
+    const double back = distance(duet::from_rotation_vector(vector3<double>(-turn)) * found);
+    CHECK(std::abs(there - back) < 1e-14); // its derivative along the turn: 2e-4 times that, and 0
+    CHECK(std::min(there, back) > distance(found));
+  }
+}
+
+TEST_CASE("times keep their digits") {
+  const auto time_of = [](const std::string& cell, const std::string& unit) {
+    return loaded<double>("t [" + unit + "],qw,qx,qy,qz\n" + cell + ",1,0,0,0\n").parameters.at(0);
+  };
+  // Divided by 1e9, the double nearest to these nanoseconds is another one.
+  CHECK(time_of("1403636580868555648", "ns") == 1403636580.868555648);
+  CHECK(time_of("1403636580868555648", "ns") != 1403636580868555648.0 / 1e9);
+  CHECK(time_of("-1403636580868555648", "ns") == -1403636580.868555648);
+  CHECK(time_of("+1403636580868555648.75", "ns") == 1403636580.86855564875);
+  CHECK(time_of("7", "ns") == 7e-9);
+  CHECK(time_of("1234567", "us") == 1.234567);
+  CHECK(time_of("1234.5", "ms") == 1.2345);
+  CHECK(time_of(".5", "ms") == 0.0005);
+  CHECK(time_of("1.5e3", "ms") == 1.5);
+  CHECK(time_of("1403636580.868555648", "s") == 1403636580.868555648);
+  CHECK(time_of("12.e0", "s") == 12);
+  CHECK(time_of("0." + std::string(320, '0') + "4", "s") == 4e-321);
+  CHECK(time_of("0." + std::string(320, '0') + "4", "ns") == 0);
+  CHECK(std::signbit(time_of("-0", "ns")));
+  // What is named u is no time, whatever its size and its unit.
+  CHECK(loaded<double>("u [ns],qw,qx,qy,qz\n1403636580868555648,1,0,0,0\n").parameters.at(0) ==
+        1403636580868555648.0);
+  CHECK(loaded<double>("tau,qw,qx,qy,qz\n2.5,1,0,0,0\n").parameters.at(0) == 2.5);
+  CHECK(loaded<double>("time,qw,qx,qy,qz\n1403636580868555648,1,0,0,0\n").parameters.at(0) ==
+        1403636580.868555648);
+
+  using duet::detail::file_time;
+  const file_time first("1403636580838555648", 9), second("1403636580843555328", 9);
+  CHECK(std::abs(second.since(first) - 4999680e-9) < 1e-16);
+  CHECK(first < second);
+  CHECK_FALSE(second < first);
+  CHECK(file_time("-1.75", 0).since(file_time("-3.5", 0)) == 1.75);
+  CHECK(file_time("20.825545", 0).since(file_time("0", 0)) == 20.825545); // not 20 + 0.825545
+  CHECK(file_time("-1.75", 0) < file_time("-1.5", 0));
+}
+
+TEST_CASE("the names in a header tell the columns; doubt is an error") {
+  const auto path = std::string("test_spline_table_file_names.csv");
+  const auto write = [&](const std::string& text) { std::ofstream(path) << text; };
+  const rotation q(.1, .3, .9, .3);
+  const auto rotation_of = [&](const std::string& text) {
+    write(text);
+    return duet::load_table<double>(path).elements.at(0);
+  };
+  CHECK(rotation_of("t,qx,qy,qz,qw\n0,.3,.9,.3,.1\n") == normalized(q));
+  CHECK(rotation_of("# timestamp tx ty tz qx qy qz qw\n0 1 2 3 .3 .9 .3 .1\n") == normalized(q));
+  CHECK(rotation_of("\xef\xbb\xbfQ_Z , q.w (), Time [s], qy [],speed,Qx\r\n.3,.1,0,.9,a,.3\r\n") ==
+        normalized(q));
+  CHECK(rotation_of(
+            "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
+            "q_RS_y [], q_RS_z []\n7,1,2,3,.1,.3,.9,.3\n") == normalized(q));
+  CHECK(
+      rotation_of(
+          "# columns: t qx qy qz qw\n# t in hours, by hand\n# qw is the cosine\n0 .3 .9 .3 .1\n") ==
+      normalized(q));
+  write("stamp,orientation_w,orientation_x,orientation_y,orientation_z,position_z,position_y,"
+        "position_x\n0,.1,.3,.9,.3,3,2,1\n");
+  const auto a = duet::load_table<screw>(path).elements.at(0);
+  CHECK(duet::rotation(a) == normalized(q));
+  CHECK((duet::translation(a) - vector3<double>(1, 2, 3)).norm() < 1e-15);
+  write("t_s,t_x,t_y,t_z,q_w,q_x,q_y,q_z\n0,1,2,3,.1,.3,.9,.3\n");
+  CHECK(duet::load_table<screw>(path).elements.at(0) == a);
+
+  const auto complaint = [&](const std::string& text) {
+    write(text);
+    return duet_test::message_of<duet::file_error>(
+        [&] { static_cast<void>(duet::load_table<double>(path)); });
+  };
+  const auto is_told = [](const std::string& message) {
+    return message.ends_with(duet::detail::known_columns);
+  };
+  // A table without names, and that of a recording without its comment: w last or first?
+  for (const char* unnamed :
+       {"0,.3,.9,.3,.1\n", "1305031098.6659,1.3563,0.6305,1.6380,0.6132,0.5962,"
+                           "-0.3311,-0.3986\n"}) {
+    const std::string message = complaint(unnamed);
+    CHECK(message.find(" columns, and no header before the first row says which is which") !=
+          message.npos);
+    CHECK(is_told(message));
+  }
+  CHECK(complaint("t,q0,q1,q2,q3\n0,.1,.3,.9,.3\n")
+            .starts_with("duet: " + path + ":1: the header names no column qw: known are u "));
+  CHECK(is_told(complaint("u,w,x,y,z\n0,.1,.3,.9,.3\n")));
+  CHECK(is_told(complaint("# t q0 q1 q2 q3\n0 .1 .3 .9 .3\n")));
+  CHECK(complaint("qw,qx,qy,qz\n.1,.3,.9,.3\n")
+            .starts_with("duet: " + path + ":1: the header names no column u"));
+  CHECK(complaint("t,u,qw,qx,qy,qz\n0,0,.1,.3,.9,.3\n") ==
+        "duet: " + path + ":1: the header has both 't' and 'u'");
+  CHECK(complaint("# t qx qy qz qw norm\n0 .3 .9 .3 .1\n") ==
+        "duet: " + path + ":1: the comment names 6 columns, the rows have 5");
+  std::remove(path.c_str());
+}
+
+TEST_CASE("bad files are named, with line, column and value") {
+  const scratch_file file("bad.txt");
+  const auto complaint = [&](const std::string& text) {
+    file.write(text);
+    const std::string message = duet_test::message_of<duet::invalid_input>(
+        [&] { static_cast<void>(duet::load_table<screw>(file.path)); });
+    const std::string begin = "duet: " + file.path + ":";
+    REQUIRE(message.starts_with(begin));
+    return message.substr(begin.size());
+  };
+  const std::string row = "0 1 2 3 0 0 0 1\n";
+  CHECK(complaint("") == " holds no rows");
+  CHECK(complaint("# nothing\n\n") == " holds no rows");
+  CHECK(complaint("u,x,y,z,qw,qx,qy,qz\n") == " holds no rows");
+  CHECK(complaint("\xff\xfeu") == " is UTF-16: UTF-8 expected");
+  CHECK(complaint(row + "1 nan 2 3 0 0 0 1\n") == "2: tx is nan");
+  CHECK(complaint(row + "1 1 2 inf 0 0 0 1\n") == "2: tz is inf");
+  CHECK(complaint(row + "1 1 2 3 0 0 1e-400 1\n") ==
+        "2: qz is 1e-400, beyond the range of a double");
+  CHECK(complaint(row + "1e400 1 2 3 0 0 0 1\n") ==
+        "2: timestamp is 1e400, beyond the range of a double");
+  CHECK(complaint(row + "1 one 2 3 0 0 0 1\n") == "2: tx is not a number: 'one'");
+  CHECK(complaint(row + "1 1 2 3 0 0 0\n") == "2: 8 columns expected, got 7");
+  CHECK(complaint(row + "1 1 2 3 0 0 0 0.9\n") ==
+        "2: the quaternion of qw, qx, qy, qz has norm 0.9, not 1");
+  CHECK(complaint(row + "0 1 2 3 0 0 0 1\n") ==
+        "2: parameter 0 does not increase, the row before has 0");
+  CHECK(complaint(row + "-1 1 2 3 0 0 0 1\n") ==
+        "2: parameter -1 does not increase, the row before has 0");
+  CHECK(complaint("u,x,y,z,qw,qx,qy,qz\n0,1,,3,1,0,0,0\n") == "2: y is not a number: ''");
+  CHECK(complaint("u,x,y,z,qw,qx,qy\n0,1,2,3,1,0,0\n") ==
+        std::string("1: the header names no column qz: ") + duet::detail::known_columns);
+  CHECK(complaint("u,x,y,qw,qx,qy,qz\n0,1,2,1,0,0,0\n") ==
+        std::string("1: the header names no column z: ") + duet::detail::known_columns);
+  CHECK(complaint("t [h],x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
+        "2: timestamps in 'h': s, ms, us or ns expected");
+  CHECK(complaint("t,x [m],y [m],z [mm],qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
+        "2: positions in 'mm': m expected");
+  CHECK(complaint(header_of_euroc + "0.5,0,0,0,1,0,0,0\n") ==
+        "2: timestamp 0.5 is no whole number of nanoseconds: a header with its unit, as in "
+        "`timestamp [s]`, is needed");
+  // Decimal commas, and semicolons between columns.
+  CHECK(complaint("0,5 1,0 2 3 0 0 0 1\n").starts_with("1: 3 columns, and no header before the "));
+  CHECK(complaint(header_of_euroc + "1,1,2,3,0,5,0,0,1\n") ==
+        "1: the comment names 8 columns, the rows have 9");
+  CHECK(complaint("u;x;y;z;qw;qx;qy;qz\n0;1;2;3;1;0;0;0\n")
+            .starts_with("1: the header names no column u: "));
+
+  const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  CHECK(complaint(identity + "1 0 0 0 0 1 0 0 0 0 -1 0\n") ==
+        "2: the matrix is a reflection: det R = -1");
+  CHECK(complaint(identity + "1 0 0 0 0 1.5 0 0 0 0 1 0\n") ==
+        "2: the matrix is no rotation: |R R^T - 1| = 1.25");
+  CHECK(complaint(identity + "0 0 0 0 0 0 0 0 0 0 0 0\n") ==
+        "2: the matrix is no rotation: |R R^T - 1| = 1");
+  CHECK(complaint(identity + "1e200 1e200 0 0 1e200 -1e200 0 0 0 0 1 0\n") ==
+        "2: the matrix is no rotation: |R R^T - 1| = inf");
+  CHECK(complaint(identity + "1 0 0 nan 0 1 0 0 0 0 1 0\n") == "2: column 4 is nan");
+  CHECK(complaint(identity + "1 0 0 0 0 1 0 0 0 0 1 0,\n") == "2: 12 columns expected, got 1");
+
+  CHECK(duet_test::message_of([] { static_cast<void>(duet::load_table<screw>(".")); }) ==
+        "duet: .: is a folder, not a file");
+  CHECK(duet_test::message_of([] { static_cast<void>(duet::load_table<screw>("no/file.txt")); }) ==
+        "duet: no/file.txt: cannot be read");
+}
+
+TEST_CASE("times and rows of different numbers") {
+  const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  const scratch_file file("rows.txt", "# poses\n" + identity + identity), times("rows_times.txt");
+  const auto complaint = [&](const std::string& text) {
+    times.write(text);
+    return duet_test::message_of<duet::file_error>(
+        [&] { static_cast<void>(duet::load_table<screw>(file.path, times.path)); });
+  };
+  CHECK(complaint("0\n") == "duet: " + file.path + ":3: a row beyond the 1 times of " + times.path);
+  CHECK(complaint("0\n1\n\n2\n") ==
+        "duet: " + times.path + ":4: a time beyond the 2 rows of " + file.path);
+  CHECK(complaint("0\n0\n") ==
+        "duet: " + file.path + ":3: parameter 0 does not increase, the row before has 0");
+  CHECK(complaint("0 1\n") == "duet: " + times.path + ":1: 1 numbers expected, got 2");
+  CHECK(complaint("0\nnan\n") == "duet: " + times.path + ":2: column 1 is nan");
+  CHECK(complaint("") == "duet: " + times.path + ": holds no rows");
+  file.write("0 1 2 3 0 0 0 1\n");
+  CHECK(complaint("0\n") ==
+        "duet: " + file.path + ":1: has times of its own besides those of " + times.path);
+}
+
+TEST_CASE("decimal commas of a locale change nothing") {
+  struct commas : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new commas));
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
+    if (std::setlocale(LC_ALL, name) != nullptr) {
+      break; // where there is one
+    }
+  }
+  const scratch_file file("german.txt"), times("german_times.txt");
+  const poses table = random_poses(5, 1403636580.25, 1000.5);
+  for (const table_format format :
+       {table_format::csv, table_format::tum, table_format::euroc, table_format::kitti}) {
+    const bool is_kitti = format == table_format::kitti;
+    duet::save_table(file.path, table, format, is_kitti ? times.path : "");
+    CHECK(duet::load_table<screw>(file.path, is_kitti ? times.path : "").parameters ==
+          table.parameters);
+  }
+  std::setlocale(LC_ALL, "C");
+  std::locale::global(before);
+}
+
+} // namespace test_spline_table_file
