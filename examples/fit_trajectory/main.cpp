@@ -42,8 +42,9 @@ void print_faults(const recording& r, const std::string& path) {
 
 void run(const options& given) {
   example::require_folder(given.out);
-  const recording r = given.file ? duet::load_recording<duet::screw_dual<double>>(*given.file)
-                                 : made_up_recording();
+  const recording r = given.file
+                          ? duet::load_recording<duet::screw_dual<double>>(*given.file, given.times)
+                          : made_up_recording();
   if (given.file) {
     print_faults(r, *given.file);
   }

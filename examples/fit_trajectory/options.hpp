@@ -15,6 +15,7 @@ namespace fit_trajectory {
 
 struct options {
   std::optional<std::string> file;
+  std::string times; ///< a file of them, empty if none
   int rows_per_knot = 10;
   std::optional<double> rate;
   double length = 1;
@@ -32,15 +33,16 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       "pictures.\n\n  fit_trajectory [FILE] [options]\n\n"
       "FILE has rows `timestamp tx ty tz qx qy qz qw` (seconds, metres, # starts a comment), or a "
       "header, a\nfirst line or a comment, that names the columns in another order; files of the "
-      "EuRoC and KITTI data sets are known.\nWithout FILE, a made-up recording is taken. Rows that "
-      "are no "
-      "poses "
-      "or repeat a timestamp are named and\nleft out. Velocities and accelerations are in fixed "
+      "EuRoC and KITTI data sets\nare known. Without FILE, a made-up recording is taken. Rows that "
+      "are no poses or repeat a timestamp are\nnamed and left out. Velocities and accelerations "
+      "are in fixed "
       "axes, those of the origin and angular ones.\nOptions");
   description.add_options()("help", "print this and stop")(
       "file", po::value<std::string>()->value_name("FILE"),
-      "the recording")("rows-per-knot", po::value<int>()->value_name("N"),
-                       "rows from one knot to the next; more are smoother (default: 10)")(
+      "the recording")("times", po::value<std::string>()->value_name("FILE"),
+                       "times of a recording of KITTI, in seconds (default: a row a second)")(
+      "rows-per-knot", po::value<int>()->value_name("N"),
+      "rows from one knot to the next; more are smoother (default: 10)")(
       "rate", po::value<double>()->value_name("HZ"),
       "poses per second of trajectory.csv (default: 100, fewer where that made more than a "
       "million)")("length", po::value<double>()->value_name("M"),
@@ -55,8 +57,12 @@ inline std::optional<options> parse_options(int argc, char** argv) {
   }
   options result;
   result.file = given->text("file");
+  result.times = given->text("times").value_or(result.times);
   result.rows_per_knot = given->get<int>("rows-per-knot").value_or(result.rows_per_knot);
   result.out = given->text("out").value_or(result.out);
+  if (!result.file && !result.times.empty()) {
+    throw std::runtime_error("--times: a FILE with the poses expected, too");
+  }
   if (result.rows_per_knot < 1) {
     throw std::runtime_error("--rows-per-knot: 1 or more");
   }
