@@ -18,6 +18,7 @@
 #include <fstream>
 #include <iterator>
 #include <locale>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -451,6 +452,9 @@ TEST_CASE("decimal commas of a locale change nothing") {
     std::string do_grouping() const override { return "\3"; }
   };
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new commas));
+  std::ostringstream stream;
+  stream << 1.5;
+  REQUIRE(stream.str() == "1,5"); // it is in force
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
     if (std::setlocale(LC_ALL, name) != nullptr) {
       break; // where there is one
