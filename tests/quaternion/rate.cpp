@@ -72,6 +72,26 @@ TEST_CASE("N7: the angular velocity from the rate is that of the rotation matrix
   }
 }
 
+TEST_CASE("angular accelerations are rates of angular velocities, and back") {
+  const auto check = [](double t, auto axes) {
+    const auto q = duet::derivatives<2>([](const auto& u) { return motion(u); }, t);
+    const auto [omega, rate] = duet::derivative(
+        [&](const auto& u) {
+          const auto [value, slope] = duet::derivative([](const auto& w) { return motion(w); }, u);
+          return angular_velocity(value, slope, axes);
+        },
+        t);
+    const vector3<double> alpha = angular_acceleration(q[0], q[1], q[2], axes);
+    CHECK((alpha - rate).norm() <= 1e-13);
+    const auto back = quaternion_acceleration(q[0], omega, alpha, axes);
+    CHECK(norm(quaternion<double>(back - q[2])) <= 1e-13);
+  };
+  for (double t = -2; t <= 2; t += 0.125) {
+    check(t, frame::spatial);
+    check(t, frame::body);
+  }
+}
+
 TEST_CASE("N7: against 100 digits") {
   worst_error spatial("spatial");
   worst_error body("body");

@@ -23,9 +23,10 @@ namespace duet {
 /// the fixed frame, but does on the body's, whose origin is compared. Smooth where φ < π.
 /// \param length  of the same unit as the translations, at least 0
 /// \throws invalid_input where the length is negative or not finite
-template <class T>
-[[nodiscard]] T squared_distance(const dual_quaternion<T>& a, const dual_quaternion<T>& b,
-                                 double length) {
+template <class A, Promotable<A> B>
+[[nodiscard]] promote_t<A, B> squared_distance(const dual_quaternion<A>& a,
+                                               const dual_quaternion<B>& b, double length) {
+  using T = promote_t<A, B>;
   detail::require(length >= 0 && length - length == 0, "duet: distance: length is ", length,
                   ", not a number from 0 up");
   const vector3<T> move = translation(b) - translation(a);
@@ -70,16 +71,18 @@ template <class T>
 
 /// d, the root of `squared_distance`: a metric of poses, in units of length. Its derivative at
 /// d = 0 does not exist.
-template <class T>
-[[nodiscard]] T distance(const dual_quaternion<T>& a, const dual_quaternion<T>& b, double length) {
+template <class A, Promotable<A> B>
+[[nodiscard]] promote_t<A, B> distance(const dual_quaternion<A>& a, const dual_quaternion<B>& b,
+                                       double length) {
   using std::sqrt;
+  using T = promote_t<A, B>;
   const T square = squared_distance(a, b, length);
   return select(
       detail::is_moderate(innermost(square)), [&] { return T(sqrt(square)); },
       [&] {
         return detail::by_lane(
             [=](const auto& p, const auto& q) { return detail::distance_of_extreme(p, q, length); },
-            a, b);
+            dual_quaternion<T>(a), dual_quaternion<T>(b));
       });
 }
 

@@ -26,17 +26,21 @@ template <class T>
 using dual_quaternion = quaternion<screw_dual<T>>;
 
 /// a + εb
-template <class T>
-[[nodiscard]] dual_vector<T> make_dual_vector(const vector3<T>& a, const vector3<T>& b) {
+template <class A, Promotable<A> B>
+[[nodiscard]] dual_vector<promote_t<A, B>> make_dual_vector(const vector3<A>& a,
+                                                            const vector3<B>& b) {
+  using T = promote_t<A, B>;
   using D = screw_dual<T>;
-  return {D(a[0], b[0]), D(a[1], b[1]), D(a[2], b[2])};
+  return {D(T(a[0]), T(b[0])), D(T(a[1]), T(b[1])), D(T(a[2]), T(b[2]))};
 }
 /// p + εq
-template <class T>
-[[nodiscard]] constexpr dual_quaternion<T> make_dual_quaternion(const quaternion<T>& p,
-                                                                const quaternion<T>& q) {
+template <class A, Promotable<A> B>
+[[nodiscard]] constexpr dual_quaternion<promote_t<A, B>>
+make_dual_quaternion(const quaternion<A>& p, const quaternion<B>& q) {
+  using T = promote_t<A, B>;
   using D = screw_dual<T>;
-  return {D(p.w(), q.w()), D(p.x(), q.x()), D(p.y(), q.y()), D(p.z(), q.z())};
+  return {D(T(p.w()), T(q.w())), D(T(p.x()), T(q.x())), D(T(p.y()), T(q.y())),
+          D(T(p.z()), T(q.z()))};
 }
 
 /// p of p + εq.

@@ -82,21 +82,14 @@ struct nearest_result {
   T squared_distance;      ///< from there to the given pose, in squared units of length
 };
 
-/// The τ in [0, 1] at which the motion A exp(½τ(φ + εd)(n + εm)) is nearest to a pose P, by
-/// `squared_distance`. Where it is not an end, derivatives follow from the equation that it solves;
-/// where a whole part of the motion is equally near, they are zero.
-///
-/// \param start   A
-/// \param motion  in body axes of A, as `screw_parameters(conj(A) * B)`; the angle, in radians, may
-///                be many turns
-/// \param length  how far a turn by one radian is
-/// \throws invalid_input where the length is negative or not finite
+namespace detail {
+
 template <class T>
-[[nodiscard]] nearest_result<T> nearest_on_screw(const dual_quaternion<T>& start,
-                                                 const screw_motion<T>& motion,
-                                                 const dual_quaternion<T>& p, double length) {
+[[nodiscard]] nearest_result<T> nearest_place(const dual_quaternion<T>& start,
+                                              const screw_motion<T>& motion,
+                                              const dual_quaternion<T>& p, double length) {
   using R = real_type_t<T>;
-  if (const int e = detail::extreme_exponent_of_lengths(start, motion, p, length); e != 0) {
+  if (const int e = extreme_exponent_of_lengths(start, motion, p, length); e != 0) {
     using std::ldexp;
     const R unit = ldexp(R(1), -e);
     const auto in_unit = [&](const dual_quaternion<T>& a) {
@@ -104,17 +97,16 @@ template <class T>
     };
     const screw_motion<T> scaled{motion.axis, vector3<T>(motion.moment * unit), motion.angle,
                                  T(motion.translation * unit), motion.kind};
-    const T tau = nearest_on_screw(in_unit(start), scaled, in_unit(p), double(length * unit)).tau;
-    const dual_quaternion<T> there = detail::pose_on_screw(start, motion, tau);
+    const T tau = nearest_place(in_unit(start), scaled, in_unit(p), double(length * unit)).tau;
+    const dual_quaternion<T> there = pose_on_screw(start, motion, tau);
     return {tau, there, squared_distance(there, p, length)};
   }
   const auto distance_at = [&](const auto& tau) {
     using S = std::decay_t<decltype(tau)>;
-    return squared_distance(detail::pose_on_screw(start, motion, tau), dual_quaternion<S>(p),
-                            length);
+    return squared_distance(pose_on_screw(start, motion, tau), dual_quaternion<S>(p), length);
   };
-  T tau(detail::coarse_minimum<R>([&](const R& t) { return innermost(distance_at(T(t))); },
-                                  innermost(motion.angle)));
+  T tau(coarse_minimum<R>([&](const R& t) { return innermost(distance_at(T(t))); },
+                          innermost(motion.angle)));
   // Two steps of Newton's method give the value its other half of the digits, each further one an
   // order of derivatives.
   for (int step = 0; step < 2 + scalar_traits<T>::order; ++step) {
@@ -133,8 +125,28 @@ template <class T>
       break;
     }
   }
-  const dual_quaternion<T> there = detail::pose_on_screw(start, motion, tau);
+  const dual_quaternion<T> there = pose_on_screw(start, motion, tau);
   return {tau, there, squared_distance(there, p, length)};
+}
+
+} // namespace detail
+
+/// The τ in [0, 1] at which the motion A exp(½τ(φ + εd)(n + εm)) is nearest to a pose P, by
+/// `squared_distance`. Where it is not an end, derivatives follow from the equation that it solves;
+/// where a whole part of the motion is equally near, they are zero.
+///
+/// \param start   A
+/// \param motion  in body axes of A, as `screw_parameters(conj(A) * B)`; the angle, in radians, may
+///                be many turns
+/// \param length  how far a turn by one radian is
+/// \throws invalid_input where the length is negative or not finite
+template <class A, Promotable<A> M, Promotable<A> P>
+[[nodiscard]] auto nearest_on_screw(const dual_quaternion<A>& start, const screw_motion<M>& motion,
+                                    const dual_quaternion<P>& p, double length) {
+  using T = promote_t<promote_t<A, M>, P>;
+  const screw_motion<T> over{motion.axis.template cast<T>(), motion.moment.template cast<T>(),
+                             T(motion.angle), T(motion.translation), motion.kind};
+  return detail::nearest_place(dual_quaternion<T>(start), over, dual_quaternion<T>(p), length);
 }
 
 } // namespace duet

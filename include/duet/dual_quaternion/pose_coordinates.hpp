@@ -49,12 +49,13 @@ template <class T>
 
 /// γ̇ = [ṫ; α̇] of a pose that moves with the spatial twist [v; ω]: ṫ = v − t × ω, α̇ = ½ ω α. The
 /// inverse of J2 among the γ̇ that keep α a unit.
-template <class T>
-[[nodiscard]] vector7<T> pose_coordinates_rate(const dual_quaternion<T>& a,
-                                               const vector6<T>& spatial_twist) {
-  const vector3<T> omega = spatial_twist.template tail<3>();
-  const vector3<T> v = spatial_twist.template head<3>();
-  const vector3<T> t_dot = v - translation(a).cross(omega);
+template <class A, Promotable<A> B>
+[[nodiscard]] vector7<promote_t<A, B>> pose_coordinates_rate(const dual_quaternion<A>& a,
+                                                             const vector6<B>& spatial_twist) {
+  using T = promote_t<A, B>;
+  const vector3<T> omega = spatial_twist.template tail<3>().template cast<T>();
+  const vector3<T> v = spatial_twist.template head<3>().template cast<T>();
+  const vector3<T> t_dot = v - translation(a).template cast<T>().cross(omega);
   const quaternion<T> alpha_dot = quaternion_rate(rotation(a), omega, frame::spatial);
   vector7<T> result;
   result << t_dot, alpha_dot.w(), alpha_dot.x(), alpha_dot.y(), alpha_dot.z();

@@ -74,11 +74,13 @@ template <class T>
 }
 
 /// The pose exp(½ (φ + εd)(n + εm)) of a screw motion: unit axis n, moment m perpendicular to it.
-template <class T>
-[[nodiscard]] dual_quaternion<T> from_screw(const vector3<T>& axis, const vector3<T>& moment,
-                                            const T& angle, const T& translation) {
+template <class N, class M, class A, class D>
+  requires Promotable<promote_t<N, M>, promote_t<A, D>>
+[[nodiscard]] auto from_screw(const vector3<N>& axis, const vector3<M>& moment, const A& angle,
+                              const D& translation) {
+  using T = promote_t<promote_t<N, M>, promote_t<A, D>>;
   return exp(dual_vector<T>(make_dual_vector(axis, moment) *
-                            screw_dual<T>(T(angle / 2), T(translation / 2))));
+                            screw_dual<T>(T(T(angle) / 2), T(T(translation) / 2))));
 }
 /// The displacement that `screw_parameters` was of, up to sign.
 template <class T>

@@ -17,9 +17,10 @@ namespace duet {
 /// The inner control point of `squad` at q between two neighbours:
 /// s = q exp(−¼(log(q* next) + log(q* previous))). Signs must be aligned. At an end, where there is
 /// no neighbour, q itself serves. \throws invalid_input where one is zero
-template <class T>
-[[nodiscard]] quaternion<T> squad_control(const quaternion<T>& previous, const quaternion<T>& q,
-                                          const quaternion<T>& next) {
+template <class A, Promotable<A> B, Promotable<A> C>
+[[nodiscard]] auto squad_control(const quaternion<A>& previous, const quaternion<B>& q,
+                                 const quaternion<C>& next) {
+  using T = promote_t<promote_t<A, B>, C>;
   const vector3<T> forth = detail::log_vector(quaternion<T>(conj(q) * next), "squad_control");
   const vector3<T> back = detail::log_vector(quaternion<T>(conj(q) * previous), "squad_control");
   return q * duet::exp(vector3<T>((forth + back) / T(-4)));
@@ -30,9 +31,9 @@ template <class T>
 ///
 /// With control points by `squad_control` and equal parameter steps, segments join with one angular
 /// velocity, not with one angular acceleration.
-template <class T, ScalarFor<T> S>
-[[nodiscard]] auto squad(const quaternion<T>& a, const quaternion<T>& p, const quaternion<T>& q,
-                         const quaternion<T>& b, const S& tau) {
+template <class A, class P, class Q, class B, class S>
+[[nodiscard]] auto squad(const quaternion<A>& a, const quaternion<P>& p, const quaternion<Q>& q,
+                         const quaternion<B>& b, const S& tau) {
   return slerp(slerp(a, b, tau, way::as_given), slerp(p, q, tau, way::as_given),
                2 * tau * (1 - tau), way::as_given);
 }

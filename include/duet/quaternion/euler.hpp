@@ -153,6 +153,10 @@ template <euler_sequence Sequence, Real R>
       });
 }
 
+/// Integers are angles too.
+template <class T>
+using angle_t = std::conditional_t<std::integral<T>, double, T>;
+
 } // namespace detail
 
 /// The rotation R_i(a) R_j(b) R_k(c) of the sequence ijk; angles in the letters' order, radians,
@@ -161,8 +165,7 @@ template <euler_sequence Sequence, Real R>
 template <euler_sequence Sequence, class A, class B, class C>
   requires Promotable<A, promote_t<B, C>>
 [[nodiscard]] auto from_euler(const A& a, const B& b, const C& c) {
-  using common = promote_t<A, promote_t<B, C>>;
-  using T = std::conditional_t<std::integral<common>, double, common>;
+  using T = detail::angle_t<promote_t<A, promote_t<B, C>>>;
   return detail::axis_rotation(Sequence.first, T(a)) *
          detail::axis_rotation(Sequence.second, T(b)) * detail::axis_rotation(Sequence.third, T(c));
 }
@@ -206,13 +209,14 @@ template <euler_sequence Sequence, class T>
 /// e_k.
 ///
 /// P5 (true form): for `zyx` its columns belong to ψ′, θ′, φ′. Singular in gimbal lock.
-template <euler_sequence Sequence, class T>
-[[nodiscard]] matrix3<T> euler_rate_matrix(const T& a, const T& b) {
+template <euler_sequence Sequence, class A, Promotable<A> B>
+[[nodiscard]] auto euler_rate_matrix(const A& a, const B& b) {
   using std::cos;
   using std::sin;
+  using T = detail::angle_t<promote_t<A, B>>;
   constexpr int i = Sequence.first, j = Sequence.second, other = Sequence.other();
   constexpr int sign = Sequence.sign(); // e_i × e_j = ± e_other
-  const T cosine = cos(a), sine = sin(a);
+  const T cosine(cos(a)), sine(sin(a));
   // R_i takes e_other to cos a e_other ∓ sin a e_j. Before, R_j took e_k to the sum of `along` e_i
   // and `across` e_other.
   const T along = Sequence.is_proper() ? T(cos(b)) : T(sign * sin(b));
@@ -237,15 +241,16 @@ template <euler_sequence Sequence, class T>
 /// order of the letters: ψ′, θ′, φ′. The two agree where sin ψ = sin θ.
 /// Source: Houdek, Verlinden, Hajžman, "Derivatives of quaternion spline interpolation function for
 /// multibody dynamics", equation (5).
-template <class T>
-[[nodiscard]] matrix3<T> printed_euler_rate_matrix(const T& psi, const T& theta) {
+template <class A, Promotable<A> B>
+[[nodiscard]] auto printed_euler_rate_matrix(const A& psi, const B& theta) {
   using std::cos;
   using std::sin;
+  using T = detail::angle_t<promote_t<A, B>>;
   const T zero(0);
   matrix3<T> a;
-  a << cos(psi) * cos(theta), -sin(psi), zero, //
-      sin(psi) * cos(theta), cos(psi), zero,   //
-      -sin(psi), zero, T(1);
+  a << T(cos(psi) * cos(theta)), T(-sin(psi)), zero, //
+      T(sin(psi) * cos(theta)), T(cos(psi)), zero,   //
+      T(-sin(psi)), zero, T(1);
   return a;
 }
 

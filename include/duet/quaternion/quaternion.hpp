@@ -102,6 +102,11 @@ struct structure<quaternion<T>> {
 };
 
 /// Is T a `quaternion`?
+/// Of numbers and constants, as a product of them.
+template <class A, class B, class C, class D>
+quaternion(const A&, const B&, const C&, const D&)
+    -> quaternion<promote_t<promote_t<A, B>, promote_t<C, D>>>;
+
 template <class T>
 inline constexpr bool is_quaternion = false;
 template <class T>

@@ -10,7 +10,8 @@
 #include <concepts>
 
 /// \file
-/// Rates of unit quaternions and angular velocities (N6–N8). ω in rad per unit of the parameter.
+/// Rates of unit quaternions, angular velocities (N6–N8) and accelerations. ω in rad per unit of
+/// the parameter.
 
 namespace duet {
 
@@ -56,6 +57,40 @@ template <class A, class B>
 void quaternion_rate(const quaternion<A>&, const vector3<B>&) {
   static_assert(!std::same_as<A, A>,
                 "duet: in which axes? quaternion_rate(q, omega, frame::spatial) or frame::body");
+}
+
+/// The rate ω̇ of the angular velocity of N7: vec(2 q̈ q*) in spatial axes, vec(2 q* q̈) in body axes;
+/// q of unit norm. (q̇ does not enter, as q̇ q̇* is real.)
+template <class A, Promotable<A> B, Promotable<A> C, class Frame>
+[[nodiscard]] vector3<promote_t<promote_t<A, B>, C>>
+angular_acceleration(const quaternion<A>& q, const quaternion<B>&, const quaternion<C>& q_ddot,
+                     Frame frame_of_result) {
+  return angular_velocity(q, q_ddot, frame_of_result);
+}
+
+/// Without a frame it is not clear which is meant.
+template <class A, class B, class C>
+void angular_acceleration(const quaternion<A>&, const quaternion<B>&, const quaternion<C>&) {
+  static_assert(!std::same_as<A, A>, "duet: in which axes? angular_acceleration(q, q_dot, q_ddot, "
+                                     "frame::spatial) or frame::body");
+}
+
+/// q̈ = (½ ω̇ − ¼ |ω|²) q in spatial axes, q (½ ω̇ − ¼ |ω|²) in body axes: of a q whose norm stays 1.
+template <class A, Promotable<A> B, Promotable<A> C, class Frame>
+[[nodiscard]] quaternion<promote_t<promote_t<A, B>, C>>
+quaternion_acceleration(const quaternion<A>& q, const vector3<B>& omega, const vector3<C>& alpha,
+                        Frame frame_of_omega) {
+  using T = promote_t<promote_t<A, B>, C>;
+  const T square(omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2]);
+  const quaternion<T> half(T(-square / 4), T(alpha[0] / 2), T(alpha[1] / 2), T(alpha[2] / 2));
+  return detail::composed_in(frame_of_omega, half, q);
+}
+
+/// Without a frame it is not clear which is meant.
+template <class A, class B, class C>
+void quaternion_acceleration(const quaternion<A>&, const vector3<B>&, const vector3<C>&) {
+  static_assert(!std::same_as<A, A>, "duet: in which axes? quaternion_acceleration(q, omega, "
+                                     "alpha, frame::spatial) or frame::body");
 }
 
 /// N8: the 3×4 matrix with ω = 2 M q̇ in the order (w, x, y, z): E(q) for spatial, G(q) for body

@@ -99,10 +99,13 @@ template <class T>
 /// The shortest rotation that takes the direction of a to that of b. For opposite directions the
 /// axis is undetermined: one perpendicular to a is chosen, without derivatives.
 /// \throws invalid_input where a or b is zero
-template <class T>
-[[nodiscard]] quaternion<T> from_two_vectors(const vector3<T>& a, const vector3<T>& b) {
+template <class A, Promotable<A> B>
+[[nodiscard]] quaternion<promote_t<A, B>> from_two_vectors(const vector3<A>& a,
+                                                           const vector3<B>& b) {
+  using T = promote_t<A, B>;
   return detail::by_lane(
-      [](const auto& u, const auto& v) { return detail::shortest_rotation(u, v); }, a, b);
+      [](const auto& u, const auto& v) { return detail::shortest_rotation(u, v); },
+      vector3<T>(a.template cast<T>()), vector3<T>(b.template cast<T>()));
 }
 
 namespace detail {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/half_rate.hpp>
@@ -10,7 +11,6 @@
 
 #include <array>
 #include <cstddef>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -27,17 +27,14 @@ namespace duet {
 /// \param frame       theirs: `frame::spatial` or `frame::body`
 /// \throws invalid_row for a row that no curve can go through, and for a velocity that is not
 /// finite; invalid_input for fewer than two rows or counts that differ
-template <class T, class V, FrameConstant Frame>
-[[nodiscard]] rotation_vector_spline<T, 4>
-hermite_spline(const std::vector<real_type_t<T>>& parameters, std::vector<quaternion<T>> elements,
-               const std::vector<V>& velocities, Frame frame) {
-  if (velocities.size() != elements.size()) {
-    std::ostringstream message;
-    message << "duet: hermite_spline: " << elements.size() << " elements and " << velocities.size()
-            << " velocities";
-    throw invalid_input(message.str());
-  }
-  elements = aligned_orientations(std::move(elements));
+template <class Q, class V, FrameConstant Frame>
+[[nodiscard]] auto hermite_spline(const std::vector<real_type_t<Q>>& parameters,
+                                  const std::vector<quaternion<Q>>& rows,
+                                  const std::vector<V>& velocities, Frame frame) {
+  using T = promote_t<Q, typename V::Scalar>;
+  detail::require(velocities.size() == rows.size(), "duet: hermite_spline: ", rows.size(),
+                  " elements and ", velocities.size(), " velocities");
+  auto elements = aligned_orientations(std::vector<quaternion<T>>(rows.begin(), rows.end()));
   std::vector<std::array<vector3<T>, 1>> rates;
   rates.reserve(velocities.size());
   for (std::size_t i = 0; i < velocities.size(); ++i) {
@@ -51,7 +48,7 @@ hermite_spline(const std::vector<real_type_t<T>>& parameters, std::vector<quater
       rates.push_back({half});
     }
   }
-  return {parameters, std::move(elements), rates};
+  return rotation_vector_spline<T, 4>(parameters, std::move(elements), rates);
 }
 
 } // namespace duet

@@ -93,6 +93,37 @@ closed(std::vector<quaternion<T>> q) {
   return q;
 }
 
+/// The scalar of a curve of type `Spline` through rows over T.
+template <class Spline, class T>
+struct scalar_of_curve {
+  using type = T;
+};
+template <class Spline, class T>
+  requires requires { typename Spline::scalar_type; }
+struct scalar_of_curve<Spline, T> {
+  using type = typename Spline::scalar_type;
+};
+template <class Spline, class T>
+using scalar_of_curve_t = typename scalar_of_curve<Spline, T>::type;
+
+/// Rows that are constants for a curve over numbers with derivatives.
+template <class Spline, class T>
+[[nodiscard]] auto over_scalar_of_curve(const std::vector<quaternion<T>>& rows) {
+  using S = scalar_of_curve_t<Spline, T>;
+  constexpr bool are_constants = std::same_as<promote_t<S, T>, S> &&
+                                 contains_tag<S, screw_tag>() == contains_tag<T, screw_tag>() &&
+                                 std::same_as<real_type_t<S>, real_type_t<T>>;
+  static_assert(are_constants,
+                "duet: interpolate: the curve is over another scalar than the rows: rotations make "
+                "a cumulative_bspline<double>, poses a "
+                "cumulative_bspline<dual<double, 1, screw_tag>>");
+  if constexpr (are_constants) {
+    return std::vector<quaternion<S>>(rows.begin(), rows.end());
+  } else {
+    return std::vector<quaternion<S>>{};
+  }
+}
+
 /// The curve of type `Spline` through the rows.
 template <CurveType Spline, class T>
 [[nodiscard]] Spline curve_through(const std::vector<real_type_t<T>>& parameters,
@@ -101,12 +132,7 @@ template <CurveType Spline, class T>
   constexpr bool is_curve = requires { typename equations_of_t<Spline>; };
   static_assert(is_curve, "duet: interpolate makes cumulative_bspline<T>, a cubic, and "
                           "rotation_vector_spline<T>, or <T, 6>, a quintic");
-  constexpr bool is_over_rows = std::same_as<typename Spline::scalar_type, T>;
-  static_assert(is_over_rows,
-                "duet: interpolate: the curve is over another scalar than the rows: rotations make "
-                "a cumulative_bspline<double>, poses a "
-                "cumulative_bspline<dual<double, 1, screw_tag>>");
-  if constexpr (is_curve && is_over_rows) {
+  if constexpr (is_curve) {
     using R = real_type_t<T>;
     using equations = equations_of_t<Spline, T>;
     static_assert(CurveEquations<equations>);
@@ -173,7 +199,9 @@ curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<doub
 /// the quintic, C⁴. T is any scalar.
 ///
 /// \param parameters    u_0 < u_1 < …, uniform or not
-/// \param orientations  unit quaternions, or poses; signs are aligned first
+/// \param orientations  unit quaternions, or poses; signs are aligned first. Where T is a number
+/// with
+///                      derivatives, rows over its real numbers are constants
 /// \param ends          as below
 ///
 /// | ends | cubics | quintic |
@@ -197,18 +225,23 @@ curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<doub
 /// quintics four), the counts differ or an end rate is not finite; no_convergence where no curve
 /// was found: neighbours very far apart, or parameters too uneven for the ends
 template <CurveType Spline, class T>
-[[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
-                                 const std::vector<quaternion<T>>& orientations,
-                                 const std::type_identity_t<curve_ends<T>>& ends = natural{}) {
-  return detail::curve_through<Spline>(parameters, orientations, ends, nullptr);
+[[nodiscard]] Spline
+interpolate(const std::vector<real_type_t<T>>& parameters,
+            const std::vector<quaternion<T>>& orientations,
+            const std::type_identity_t<curve_ends<detail::scalar_of_curve_t<Spline, T>>>& ends =
+                natural{}) {
+  return detail::curve_through<Spline>(
+      parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, nullptr);
 }
 /// The curve with S(u_i) = Q_i, and how it went.
 template <CurveType Spline, class T>
-[[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
-                                 const std::vector<quaternion<T>>& orientations,
-                                 const std::type_identity_t<curve_ends<T>>& ends,
-                                 fit_report& report) {
-  return detail::curve_through<Spline>(parameters, orientations, ends, &report);
+[[nodiscard]] Spline
+interpolate(const std::vector<real_type_t<T>>& parameters,
+            const std::vector<quaternion<T>>& orientations,
+            const std::type_identity_t<curve_ends<detail::scalar_of_curve_t<Spline, T>>>& ends,
+            fit_report& report) {
+  return detail::curve_through<Spline>(
+      parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, &report);
 }
 
 } // namespace duet

@@ -49,9 +49,10 @@ struct structure<motion<T>> {
 
 /// The motion in time of a curve whose parameter u is driven by u(t): ω = δ u̇, ω̇ = δ′u̇² + δ ü,
 /// ω̈ = δ″u̇³ + 3 δ′u̇ü + δ u⃛, with the rates δ, δ′, δ″ of m by u in any one frame.
-template <class T, ScalarFor<T> S>
-[[nodiscard]] motion<promote_t<T, S>> chain_rule(const motion<T>& m, const S& u_dot,
-                                                 const S& u_ddot, const S& u_dddot) {
+template <class T, ScalarFor<T> A, ScalarFor<T> B, ScalarFor<T> C>
+[[nodiscard]] auto chain_rule(const motion<T>& m, const A& u_dot, const B& u_ddot,
+                              const C& u_dddot) {
+  using S = promote_t<promote_t<A, B>, C>;
   using result = motion<promote_t<T, S>>;
   using rate = typename result::rate_type;
   using scalar = typename rate::Scalar;
@@ -60,8 +61,9 @@ template <class T, ScalarFor<T> S>
   const rate j = m.jerk.template cast<scalar>();
   const scalar first(u_dot), second(u_ddot), third(u_dddot);
   const scalar square = first * first;
-  return {quaternion<promote_t<T, S>>(m.value), rate(v * first), rate(a * square + v * second),
-          rate(j * (square * first) + a * (3 * first * second) + v * third)};
+  return result{quaternion<promote_t<T, S>>(m.value), rate(v * first),
+                rate(a * square + v * second),
+                rate(j * (square * first) + a * (3 * first * second) + v * third)};
 }
 
 namespace detail {

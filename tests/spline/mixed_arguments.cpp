@@ -1,0 +1,72 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/hermite.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/motion.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
+
+#include <doctest/doctest.h>
+#include <support/mixed_arguments.hpp>
+
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace test_spline_mixed_arguments {
+
+using namespace test_support::mixed;
+
+TEST_CASE("constants mix with derivatives: curves") {
+  const std::vector<double> times{0, 1, 2.5, 3};
+  const std::vector<quaternion<double>> rows{p, q, r, s};
+  const std::vector<dual_quaternion<double>> poses{A, A * B, B, pose(r, v)};
+  check(
+      "interpolate, clamped",
+      [&](const auto& given, const auto& start) {
+        using D = promote_t<typename std::decay_t<decltype(given[0])>::scalar_type,
+                            typename std::decay_t<decltype(start)>::Scalar>;
+        return interpolate<rotation_vector_spline<D>>(times, given, clamped{start, start})(1.3);
+      },
+      rows, u);
+  check(
+      "interpolate, poses",
+      [&](const auto& given, const auto& start) {
+        using D = promote_t<typename std::decay_t<decltype(given[0])>::scalar_type,
+                            typename std::decay_t<decltype(start)>::Scalar>;
+        return interpolate<cumulative_bspline<D>>(times, given, clamped{start, start})(1.3);
+      },
+      poses, xi);
+  check(
+      "hermite_spline",
+      [&](const auto& given, const auto& velocity) {
+        return hermite_spline(times, given, std::vector(4, velocity), frame::body)(1.3);
+      },
+      rows, u);
+  check(
+      "hermite_spline of poses",
+      [&](const auto& given, const auto& velocity) {
+        return hermite_spline(times, given, std::vector(4, velocity), frame::spatial)(1.3);
+      },
+      poses, xi);
+  check(
+      "a curve at a parameter",
+      [&](const auto& given, const auto& at) {
+        using D = typename std::decay_t<decltype(given[0])>::scalar_type;
+        const auto m = interpolate<rotation_vector_spline<D>>(times, given).motion(at, frame::body);
+        return std::tuple(m.value, m.velocity, m.acceleration, m.jerk);
+      },
+      rows, 1.3);
+  check(
+      "chain_rule",
+      [&](const auto& given, const auto& du, const auto& ddu, const auto& dddu) {
+        using D = typename std::decay_t<decltype(given[0])>::scalar_type;
+        const auto m =
+            chain_rule(interpolate<cumulative_bspline<D>>(times, given).motion(1.3, frame::body),
+                       du, ddu, dddu);
+        return std::tuple(m.value, m.velocity, m.acceleration, m.jerk);
+      },
+      rows, 0.4, 0.3, -0.2);
+}
+
+} // namespace test_spline_mixed_arguments
