@@ -310,6 +310,102 @@ TEST_CASE("the length weighs shifts against turns") {
   CHECK(worst_turn(100) < worst_turn(0.1));
 }
 
+/// 2 log(S* Q), [v; ω] of poses
+template <class Q>
+Eigen::VectorXd error_of(const Q& s, const Q& row) {
+  if constexpr (std::is_same_v<Q, rotation>) {
+    return duet::rotation_vector(conj(s) * row);
+  } else {
+    return duet::twist(pose_type(1.0), log(conj(s) * row), duet::frame::spatial);
+  }
+}
+
+/// An ellipsoid, some ten times as long as wide, in no axes of the body's.
+Eigen::MatrixXd random_covariance(random_source& random, Eigen::Index n) {
+  Eigen::MatrixXd root(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      root(i, j) = 0.01 * random.normal();
+    }
+  }
+  return root * root.transpose() + 1e-6 * Eigen::MatrixXd::Identity(n, n);
+}
+
+TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
+  const auto truth = some_curve<Q>();
+  const auto knots = truth.basis().knots();
+  const auto u = steps(8, 100);
+  random_source random(17);
+  auto rows = rows_of(truth, u);
+  const Eigen::Index n = std::is_same_v<Q, rotation> ? 3 : 6;
+  duet::fit_options options;
+  for (Q& row : rows) {
+    row = moved(row, random, 0.02);
+    options.weights.push_back(random.uniform(0.1, 3));
+    options.covariances.push_back(random_covariance(random, n));
+  }
+  const auto check_least = [&](const auto& fitted, const duet::fit_options& of) {
+    const auto residual = [&](const curve<Q>& s, std::size_t i) {
+      const Eigen::VectorXd e = error_of(Q(s(u[i])), rows[i]);
+      const Eigen::MatrixXd& sigma = of.covariances[of.covariances.size() > 1 ? i : 0];
+      return std::sqrt(e.dot(sigma.inverse() * e));
+    };
+    const auto cost = [&](const curve<Q>& s) {
+      double sum = 0;
+      for (std::size_t i = 0; i < u.size(); ++i) {
+        const double r = residual(s, i);
+        const double c = of.outlier;
+        sum += (of.weights.empty() ? 1 : of.weights[i]) * (r <= c ? r * r / 2 : c * (r - c / 2));
+      }
+      return sum;
+    };
+    const double least = cost(fitted.curve);
+    for (std::size_t k = 0; k < fitted.curve.controls().size(); ++k) {
+      for (const double size : {1e-4, -1e-4}) {
+        for (int axis = 0; axis < n; ++axis) {
+          auto controls = fitted.curve.controls();
+          const vector3<double> step = vector3<double>::Unit(axis % 3) * size;
+          if constexpr (std::is_same_v<Q, rotation>) {
+            controls[k] = controls[k] * duet::from_rotation_vector(step);
+          } else {
+            controls[k] = controls[k] * (axis < 3 ? duet::pose(rotation(1.0), step)
+                                                  : pose_type(duet::from_rotation_vector(step)));
+          }
+          CHECK(cost({truth.basis(), controls}) > least);
+        }
+      }
+    }
+    for (const std::size_t i : {std::size_t(0), u.size() / 2}) {
+      CHECK(fitted.residuals[i] == doctest::Approx(residual(fitted.curve, i)).epsilon(1e-9));
+    }
+  };
+  check_least(duet::fit<curve<Q>>(u, rows, knots, options), options);
+  duet::fit_options robust = options;
+  robust.outlier = 2;
+  check_least(duet::fit<curve<Q>>(u, rows, knots, robust), robust);
+  duet::fit_options one_for_all{.weights = options.weights};
+  one_for_all.covariances.push_back(options.covariances[0]);
+  check_least(duet::fit<curve<Q>>(u, rows, knots, one_for_all), one_for_all);
+}
+
+TEST_CASE("covariances of one size are a length, weights all alike are none") {
+  const auto truth = some_curve<pose_type>();
+  const auto knots = truth.basis().knots();
+  const auto u = steps(8, 60);
+  random_source random(19);
+  auto rows = rows_of(truth, u);
+  for (auto& row : rows) {
+    row = moved(row, random, 0.02);
+  }
+  const auto plain = duet::fit<curve<pose_type>>(u, rows, knots, {.length = 0.5});
+  duet::fit_options options{.weights = std::vector<double>(rows.size(), 7.0)};
+  options.covariances.emplace_back(
+      Eigen::Matrix<double, 6, 1>(0.25, 0.25, 0.25, 1, 1, 1).asDiagonal());
+  const auto same = duet::fit<curve<pose_type>>(u, rows, knots, options);
+  CHECK(largest_distance(same.curve, plain.curve) <= 1e-13);
+  CHECK(same.rms == doctest::Approx(plain.rms).epsilon(1e-13));
+}
+
 TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
   using wide = long double;
   const auto truth = some_curve<rotation>();
@@ -367,6 +463,22 @@ TEST_CASE("bad input is named") {
         "fewer knots there");
   CHECK(message(u, rows, {.length = 0}) ==
         "duet: fit: length 0 and outlier inf: the length must be positive, the limit not negative");
+  CHECK(message(u, rows, {.weights = {1, 2}}) == "duet: fit: 2 weights for 41 rows");
+  std::vector<double> weights(41, 1.0);
+  weights[7] = 0;
+  CHECK(message(u, rows, {.weights = weights}) ==
+        "duet: fit: weight 7 is 0, not a positive number: a row that does not count is left out");
+  Eigen::MatrixXd sigma = Eigen::MatrixXd::Identity(3, 3);
+  CHECK(message(u, rows, {.covariances = {sigma, sigma}}) ==
+        "duet: fit: 2 covariances for 41 rows: one for each, or one for all");
+  CHECK(message(u, rows, {.covariances = {Eigen::MatrixXd::Identity(6, 6)}}) ==
+        "duet: fit: covariance 0 is 6 x 6, not 3 x 3");
+  sigma(0, 1) = 0.5;
+  CHECK(message(u, rows, {.covariances = {sigma}}) == "duet: fit: covariance 0 is not symmetric");
+  sigma(1, 0) = 0.5;
+  sigma(2, 2) = -1;
+  CHECK(message(u, rows, {.covariances = {sigma}}) ==
+        "duet: fit: covariance 0 is not positive definite");
   auto repeated = u;
   repeated[8] = repeated[7];
   CHECK(message(repeated, rows) ==

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <sstream>
 #include <type_traits>
 #include <utility>
@@ -31,14 +32,25 @@ struct fit_result {
   using real_type = typename Spline::real_type;
   Spline curve;
   /// Row by row |2 log(S(uᵢ)* Qᵢ)|: radians, of poses together with (distance/length) as a root of
-  /// the sum of squares.
+  /// the sum of squares; with `fit_options::covariances` standard deviations.
   std::vector<real_type> residuals;
-  real_type rms; ///< root of the mean of their squares
+  real_type rms; ///< root of the weighted mean of their squares
   int iterations;
   real_type outlier; ///< residuals beyond this counted as outliers
 };
 
 namespace detail {
+
+/// \throws invalid_input
+inline void require_fit_weights(const std::vector<double>& weights, std::size_t rows) {
+  require(weights.empty() || weights.size() == rows, "duet: fit: ", weights.size(), " weights for ",
+          rows, " rows");
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    require(weights[i] > 0 && weights[i] <= std::numeric_limits<double>::max(),
+            "duet: fit: weight ", i, " is ", weights[i],
+            ", not a positive number: a row that does not count is left out");
+  }
+}
 
 /// Schoenberg's and Whitney's condition: every control element needs a row of its own where its
 /// basis function is not zero, or it would be arbitrary.
@@ -72,15 +84,17 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 
 } // namespace detail
 
-/// The curve of type `Spline` with these knots that is nearest to given rotations or poses: Σ
-/// ρ(|2 log(S(uᵢ)* Qᵢ)|) is least, ρ(r) = ½ r² up to `options.outlier`,
-/// and rows far beyond it do not count (`fit_options::outlier`).
+/// The curve of type `Spline` with these knots that is nearest to given rotations or poses: Σ wᵢ
+/// ρ(|2 log(S(uᵢ)* Qᵢ)|) is least, ρ(r) = ½ r² up to `options.outlier`, and rows far beyond it do
+/// not count (`fit_options::outlier`). wᵢ are `options.weights`; residuals are measured by
+/// `options.covariances` where there are some.
 ///
 /// Time and memory are linear in the number of rows. The signs of the rows do not matter.
 /// \param knots  of the curve, `clamped_knots(few_parameters, Order)` say; more smoothing by fewer
 /// \throws invalid_row for a row that is not finite, not a unit, outside the knots' domain or does
 ///         not follow the row before; invalid_input for counts that differ, too few rows somewhere,
-///         a length that is not positive, a limit that is negative; no_convergence
+///         a length or weight that is not positive, a limit that is negative, a covariance that is
+///         not positive definite; no_convergence
 template <CurveType Spline, class R, class T>
 [[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> rows,
                                      std::vector<R> knots, const fit_options& options = {}) {
@@ -99,6 +113,7 @@ template <CurveType Spline, class R, class T>
             << ": the length must be positive, the limit not negative";
     throw invalid_input(message.str());
   }
+  detail::require_fit_weights(options.weights, rows.size());
   const bspline_basis<Spline::order, R> basis(std::move(knots));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (!basis.contains(parameters[i])) {
@@ -123,11 +138,14 @@ template <CurveType Spline, class R, class T>
   const std::vector<R> residuals = problem.residuals();
   using std::sqrt;
   const R largest = *std::max_element(residuals.begin(), residuals.end());
-  R squares(0); // in relation to the largest, so that they do not overflow
-  for (const R& r : residuals) {
-    squares += largest > 0 ? R((r / largest) * (r / largest)) : R(0);
+  R squares(0), weights(0); // in relation to the largest, so that they do not overflow
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const R ratio = largest > 0 ? R(residuals[i] / largest) : R(0);
+    const R weight(options.weights.empty() ? 1.0 : options.weights[i]);
+    squares += weight * (ratio * ratio);
+    weights += weight;
   }
-  const R rms = largest - largest == 0 ? R(largest * sqrt(squares / R(residuals.size()))) : largest;
+  const R rms = largest - largest == 0 ? R(largest * sqrt(squares / weights)) : largest;
   return {problem.curve(basis), residuals, rms, iterations, problem.outlier()};
 }
 

@@ -1,7 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <Eigen/Core>
+
 #include <limits>
+#include <vector>
 
 /// \file
 /// What may be chosen of a fit.
@@ -17,6 +20,12 @@ struct fit_options {
   /// outliers however far leave the curve where the others take it. Zero: three times the median
   /// residual. Infinite: plain least squares.
   double outlier = std::numeric_limits<double>::infinity();
+  /// How much each row counts, wᵢ > 0 in proportion; none: all the same.
+  std::vector<double> weights;
+  /// Σᵢ of the rows' errors, or one matrix for all of them: 3 × 3, rad², of turns in the row's body
+  /// axes, for poses 6 × 6 of the twists [v; ω] there. Residuals are then |Lᵢ⁻¹ rᵢ|, Σᵢ = Lᵢ Lᵢᵀ,
+  /// in standard deviations, `outlier` with them, and `length` does not matter. None: of one size.
+  std::vector<Eigen::MatrixXd> covariances;
   int max_iterations = 100;
 };
 

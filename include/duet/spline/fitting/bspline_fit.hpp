@@ -30,7 +30,7 @@
 namespace duet::detail {
 
 /// The least-squares problem: control elements c, moved by tangent vectors in body axes, such that
-/// Σ ρ(rᵢ) is least. Normal equations are banded, as a row meets `Order` neighbouring controls.
+/// Σ wᵢ ρ(rᵢ) is least. Normal equations are banded, as a row meets `Order` neighbouring controls.
 template <class T, int Order>
 class bspline_fit : bspline_residuals<T, Order> {
   using residual_type = bspline_residuals<T, Order>;
@@ -48,7 +48,7 @@ class bspline_fit : bspline_residuals<T, Order> {
 public:
   bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> elements,
               const fit_options& options)
-      : residual_type(basis, u, std::move(elements), R(options.length)), options_(options),
+      : residual_type(basis, u, std::move(elements), options), options_(options),
         limits_(u.size(), R(options.outlier)) {
     if (is_robust()) {
       controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
@@ -192,6 +192,9 @@ private:
     throw invalid_row(std::size_t(farthest - sizes.begin()), reason.str());
   }
 
+  [[nodiscard]] R weight_of(std::size_t i) const {
+    return options_.weights.empty() ? R(1) : R(options_.weights[i]);
+  }
   /// Huber's loss: ½ r² up to the limit, from there on along the tangent.
   [[nodiscard]] static R loss(const R& r, const R& limit) {
     return r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
@@ -201,7 +204,7 @@ private:
     typename residual_type::last_span last;
     for (std::size_t i = 0; i < rows().size(); ++i) {
       if (counts(i)) {
-        sum += loss(size_of(residual_at(i, controls, last)), limits_[i]);
+        sum += weight_of(i) * loss(size_of(residual_at(i, controls, last)), limits_[i]);
       }
     }
     return sum;
@@ -234,15 +237,16 @@ private:
       }
       const auto [value, slope] = this->linearised(i, controls_, last);
       const R length = size_of(value);
-      cost += loss(length, limits_[i]);
-      const R weight = length <= limits_[i] ? R(1) : R(limits_[i] / length);
+      cost += weight_of(i) * loss(length, limits_[i]);
+      const R given = weight_of(i);
+      const R weight = length <= limits_[i] ? given : R(given * (limits_[i] / length));
       gradient_.template segment<unknowns>(Eigen::Index(last.first) * dimension) -=
           weight * (slope * value);
       const Eigen::Matrix<R, unknowns, dimension> weighted = weight * slope;
       for (int a = 0; a < unknowns; ++a) { // columns are what Eigen is fast at
         squares.col(a).noalias() += slope.lazyProduct(weighted.row(a).transpose());
       }
-      if (weight < 1 && is_bold) {
+      if (weight < given && is_bold) {
         const Eigen::Matrix<R, unknowns, 1> along = slope * (value / length);
         squares -= R(0.9) * weight * along.lazyProduct(along.transpose());
       }

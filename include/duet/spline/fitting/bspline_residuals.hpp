@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
@@ -11,7 +12,9 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
+#include <duet/spline/fit_options.hpp>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <array>
@@ -35,11 +38,13 @@ protected:
   static constexpr int unknowns = Order * dimension;
   static constexpr std::size_t factors = std::size_t(Order) - 1;
   using tangent = Eigen::Matrix<R, dimension, 1>;
+  using square = Eigen::Matrix<R, dimension, dimension>;
   using basis_type = bspline_basis<Order, R>;
 
   bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> rows,
-                    const R& length)
-      : rows_(std::move(rows)), length_(length) {
+                    const fit_options& options)
+      : rows_(std::move(rows)), length_(options.length),
+        whitening_(inverse_roots(options.covariances)) {
     first_.reserve(u.size());
     weights_.reserve(u.size());
     for (const R& parameter : u) {
@@ -92,7 +97,7 @@ protected:
     for (std::size_t j = 0; j < factors; ++j) {
       value = value * duet::exp(part(i, j, last));
     }
-    return in_lengths(twice(residual(value, i)));
+    return scaled(twice(residual(value, i)), i);
   }
 
   struct linear_residual {
@@ -117,7 +122,7 @@ protected:
     }
     linear_residual result;
     const vector3<T> r = twice(residual(value, i));
-    result.value = in_lengths(r);
+    result.value = scaled(r, i);
     matrix3<T> by_value = -left_jacobian_inverse(r);
     matrix3<T> by_element = matrix3<T>::Zero();
     for (std::size_t j = factors; j-- > 0;) {
@@ -125,11 +130,11 @@ protected:
       for (T& each : by_increment.reshaped()) {
         each *= weights_[i][j];
       }
-      put(by_element + product(by_increment, last.shared.by_next[j]), j + 1, result.slope);
+      put(by_element + product(by_increment, last.shared.by_next[j]), j + 1, i, result.slope);
       by_element = -product(by_increment, last.shared.by_last[j]);
       by_value = product(by_value, rotation_matrix(conj(turns[j])));
     }
-    put(by_element + by_value, 0, result.slope);
+    put(by_element + by_value, 0, i, result.slope);
     return result;
   }
 
@@ -170,30 +175,64 @@ private:
     return a.lazyProduct(b);
   }
 
-  /// Of poses [v/length; ω].
-  [[nodiscard]] tangent in_lengths(const vector3<T>& r) const {
-    if constexpr (dimension == 3) {
-      return r;
-    } else {
-      vector6<R> twist = twist_of<R>(r);
-      twist.template head<3>() /= length_;
-      return twist;
+  /// L⁻¹ of every covariance L Lᵀ.
+  /// \throws invalid_input
+  [[nodiscard]] std::vector<square> inverse_roots(const std::vector<Eigen::MatrixXd>& covariances) {
+    const std::size_t count = covariances.size();
+    require(count <= 1 || count == rows_.size(), "duet: fit: ", count, " covariances for ",
+            rows_.size(), " rows: one for each, or one for all");
+    std::vector<square> result;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::MatrixXd& given = covariances[i];
+      require(given.rows() == dimension && given.cols() == dimension, "duet: fit: covariance ", i,
+              " is ", given.rows(), " x ", given.cols(), ", not ", dimension, " x ", dimension);
+      require(given.isApprox(given.transpose()), "duet: fit: covariance ", i, " is not symmetric");
+      const Eigen::LLT<square> root(given.template cast<R>());
+      require(given.allFinite() && root.info() == Eigen::Success, "duet: fit: covariance ", i,
+              " is not positive definite");
+      result.push_back(root.matrixL().solve(square::Identity()));
     }
+    return result;
+  }
+  [[nodiscard]] const square& whitening(std::size_t i) const {
+    return whitening_[whitening_.size() > 1 ? i : 0];
   }
 
-  /// The linear map m from rates of control element j, transposed.
-  void put(const matrix3<T>& m, std::size_t j, Eigen::Matrix<R, unknowns, dimension>& slope) const {
+  /// Of poses [v/length; ω]; in standard deviations where there are covariances.
+  [[nodiscard]] tangent scaled(const vector3<T>& r, std::size_t i) const {
+    tangent result;
+    if constexpr (dimension == 3) {
+      result = r;
+    } else {
+      result = twist_of<R>(r);
+    }
+    if (!whitening_.empty()) {
+      result = whitening(i).lazyProduct(result).eval();
+    } else if constexpr (dimension == 6) {
+      result.template head<3>() /= length_;
+    }
+    return result;
+  }
+
+  /// The linear map m from rates of control element j to residual i, transposed.
+  void put(const matrix3<T>& m, std::size_t j, std::size_t i,
+           Eigen::Matrix<R, unknowns, dimension>& slope) const {
     auto block = slope.template middleRows<dimension>(Eigen::Index(j) * dimension);
     if constexpr (dimension == 3) {
       block = m.transpose();
     } else {
       block = unfolded(m).transpose();
+    }
+    if (!whitening_.empty()) {
+      block = block.lazyProduct(whitening(i).transpose()).eval();
+    } else if constexpr (dimension == 6) {
       block.template leftCols<3>() /= length_;
     }
   }
 
   std::vector<element> rows_;
   R length_;
+  std::vector<square> whitening_; ///< none, one for all or one for each row
   std::vector<std::size_t> first_;
   std::vector<std::array<R, factors>> weights_;
 };
