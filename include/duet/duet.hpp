@@ -15,6 +15,7 @@
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/text/number_text.hpp>
+#include <duet/core/text/result_text.hpp>
 #include <duet/core/version.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>

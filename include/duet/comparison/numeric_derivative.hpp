@@ -48,6 +48,12 @@ template <class Y>
 struct derivative_and_error {
   Y derivative; ///< f′(x)
   double error; ///< estimate of the largest error of a component
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("derivative", derivative);
+    f("error", error);
+  }
 };
 
 /// f′(x) by central differences, extrapolated to step zero (Richardson, Ridders' tableau).

@@ -20,6 +20,12 @@ template <class Y, class DY>
 struct value_and_derivative {
   Y value;
   DY derivative;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("derivative", derivative);
+  }
 };
 template <class Y, class DY>
 value_and_derivative(Y, DY) -> value_and_derivative<Y, DY>;

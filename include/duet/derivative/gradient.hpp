@@ -27,6 +27,12 @@ template <class Y, class G>
 struct value_and_gradient {
   Y value;
   G gradient;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("gradient", gradient);
+  }
 };
 
 /// What `hessian` returns: f(x), ∇f as a column, and the symmetric matrix of second derivatives.
@@ -35,6 +41,13 @@ struct value_gradient_and_hessian {
   Y value;
   G gradient;
   H hessian;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("gradient", gradient);
+    f("hessian", hessian);
+  }
 };
 
 /// f(x); writes ∇f into `gradient`, any writable Eigen vector of as many components as x.

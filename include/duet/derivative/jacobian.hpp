@@ -32,6 +32,12 @@ template <class Y, class J>
 struct value_and_jacobian {
   Y value;
   J jacobian;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("jacobian", jacobian);
+  }
 };
 
 namespace detail {

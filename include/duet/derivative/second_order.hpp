@@ -23,6 +23,13 @@ struct value_gradient_and_product {
   Y value;
   G gradient;
   G product;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("gradient", gradient);
+    f("product", product);
+  }
 };
 
 /// f(x), ∇f and H v, H the matrix of second derivatives at x: the derivative of the gradient along
@@ -51,6 +58,12 @@ template <class Y, class M>
 struct value_and_mixed_hessian {
   Y value;
   M mixed;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("mixed", mixed);
+  }
 };
 
 /// f(x, y) and the matrix ∂²f/∂xᵢ∂yⱼ, n × m, of two groups of up to 32 variables each: what only

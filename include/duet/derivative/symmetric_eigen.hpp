@@ -23,6 +23,12 @@ template <class Values, class Vectors>
 struct eigenvalues_and_vectors {
   Values values;
   Vectors vectors;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("values", values);
+    f("vectors", vectors);
+  }
 };
 template <class Values, class Vectors>
 eigenvalues_and_vectors(Values, Vectors) -> eigenvalues_and_vectors<Values, Vectors>;

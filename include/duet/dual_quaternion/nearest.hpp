@@ -80,6 +80,13 @@ struct nearest_result {
   T tau;                   ///< the fraction of the motion, in [0, 1]
   dual_quaternion<T> pose; ///< there
   T squared_distance;      ///< from there to the given pose, in squared units of length
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("tau", tau);
+    f("pose", pose);
+    f("squared_distance", squared_distance);
+  }
 };
 
 namespace detail {

@@ -85,6 +85,12 @@ template <class T>
 struct plane {
   vector3<T> normal;
   T offset;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("normal", normal);
+    f("offset", offset);
+  }
 };
 
 /// The plane carried along: n ↦ R n, offset ↦ offset + R n·t.

@@ -6,7 +6,9 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 /// \file
 /// Screw motion: interpolation along it (N19), its axis, angle and pitch.
@@ -29,6 +31,12 @@ enum class screw_kind {
   screw        ///< both
 };
 
+/// Its name.
+[[nodiscard]] inline const char* to_text(screw_kind kind) {
+  constexpr std::array names{"none", "translation", "rotation", "screw"};
+  return names[std::size_t(kind)];
+}
+
 /// A rigid displacement as one motion along and about one line.
 template <class T>
 struct screw_motion {
@@ -37,6 +45,15 @@ struct screw_motion {
   T angle;           ///< φ ∈ [0, π], radians
   T translation;     ///< d along the axis, in units of length
   screw_kind kind;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("axis", axis);
+    f("moment", moment);
+    f("angle", angle);
+    f("translation", translation);
+    f("kind", kind);
+  }
 };
 
 /// The screw of a pose, the same for A and −A: log A = ½ (φ + εd)(n + εm).

@@ -99,6 +99,12 @@ template <class J>
 struct jacobian_and_rate {
   J jacobian;
   J rate;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("jacobian", jacobian);
+    f("rate", rate);
+  }
 };
 
 /// J and J̇ along θ̇, so that J θ̈ + J̇ θ̇ is the derivative of the twist J θ̇. In `frame::hybrid` its

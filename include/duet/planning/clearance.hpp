@@ -80,6 +80,14 @@ struct chain_clearance {
   std::size_t body = 0;
   std::size_t obstacle = 0;
   proximity<S> points = {};
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("distance", distance);
+    f("body", body);
+    f("obstacle", obstacle);
+    f("points", points);
+  }
 };
 
 namespace detail {

@@ -28,6 +28,14 @@ struct proximity {
   vector3<T> on_body;     ///< the point of the body's surface
   vector3<T> on_obstacle; ///< the point of the obstacle's surface
   vector3<T> normal;      ///< unit, out of the obstacle: on_body = on_obstacle + distance · normal
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("distance", distance);
+    f("on_body", on_body);
+    f("on_obstacle", on_obstacle);
+    f("normal", normal);
+  }
 };
 
 namespace detail {

@@ -43,6 +43,15 @@ struct inverse_kinematics_result {
   int iterations = 0;                     ///< from all configurations together
   int restarts = 0;
   stop_reason reason = stop_reason::no_progress;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("joints", joints);
+    f("deviation", deviation);
+    f("iterations", iterations);
+    f("restarts", restarts);
+    f("reason", reason);
+  }
 };
 
 namespace detail {

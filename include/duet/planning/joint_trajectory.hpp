@@ -23,6 +23,13 @@ struct joint_motion {
   V value;
   V velocity;
   V acceleration;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("velocity", velocity);
+    f("acceleration", acceleration);
+  }
 };
 
 namespace detail {

@@ -65,6 +65,12 @@ enum class stop_reason {
 struct pose_deviation {
   double length = 0;
   double angle = 0;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("length", length);
+    f("angle", angle);
+  }
 };
 /// Of a from b, or of b from a: the same.
 template <std::floating_point T>
@@ -94,6 +100,19 @@ struct motion_plan {
   double smallest_clearance = std::numeric_limits<double>::infinity();
   int iterations = 0;
   stop_reason reason = stop_reason::no_progress;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("joints", joints);
+    f("poses", poses);
+    f("tau", tau);
+    f("deviations", deviations);
+    f("smallest_singular_value", smallest_singular_value);
+    f("smallest_limit_margin", smallest_limit_margin);
+    f("smallest_clearance", smallest_clearance);
+    f("iterations", iterations);
+    f("reason", reason);
+  }
 };
 
 namespace detail {

@@ -38,6 +38,12 @@ struct table_result {
   look_up_table<typename Spline::scalar_type> table;
   Spline curve;
   double error;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("table", table);
+    f("error", error);
+  }
 };
 
 namespace detail {

@@ -37,6 +37,14 @@ struct fit_result {
   real_type rms; ///< root of the weighted mean of their squares
   int iterations;
   real_type outlier; ///< residuals beyond this counted as outliers
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("residuals", residuals);
+    f("rms", rms);
+    f("iterations", iterations);
+    f("outlier", outlier);
+  }
 };
 
 namespace detail {

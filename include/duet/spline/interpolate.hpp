@@ -37,6 +37,13 @@ struct fit_report {
   /// vectors by how much its equations are missed, rad per step and its powers.
   double residual = 0;
   double largest_step = 0; ///< the largest turn from one row to the next, rad
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("iterations", iterations);
+    f("residual", residual);
+    f("largest_step", largest_step);
+  }
 };
 
 namespace detail {

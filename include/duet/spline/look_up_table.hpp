@@ -16,6 +16,12 @@ template <class T>
 struct look_up_table {
   std::vector<real_type_t<T>> parameters;
   std::vector<quaternion<T>> elements;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("parameters", parameters);
+    f("elements", elements);
+  }
 };
 
 } // namespace duet

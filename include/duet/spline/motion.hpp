@@ -33,6 +33,14 @@ struct motion {
   rate_type velocity;
   rate_type acceleration;
   rate_type jerk;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("velocity", velocity);
+    f("acceleration", acceleration);
+    f("jerk", jerk);
+  }
 };
 
 template <class T>

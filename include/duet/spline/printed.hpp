@@ -30,6 +30,16 @@ struct printed_derivatives {
   quaternion<T> from_zero_first, from_zero_second;
   /// The commuting sums over all i with the true B̃′_i and B̃″_i; the first is `from_zero_first`.
   quaternion<T> commuting_first, commuting_second;
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("literal_first", literal_first);
+    f("literal_second", literal_second);
+    f("from_zero_first", from_zero_first);
+    f("from_zero_second", from_zero_second);
+    f("commuting_first", commuting_first);
+    f("commuting_second", commuting_second);
+  }
 };
 
 /// P3 and P4 as printed, at a parameter u; for the true derivatives use

@@ -23,6 +23,12 @@ namespace duet {
 struct recording_fault {
   std::size_t line;
   std::string reason; ///< on one line, as `tx is nan: left out`
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("line", line);
+    f("reason", reason);
+  }
 };
 
 /// Recorded rotations (T = double) or poses (T = screw_dual<double>).
@@ -34,6 +40,15 @@ struct recording {
   std::vector<recording_fault> faults; ///< by line
   std::size_t left_out = 0;            ///< how many rows of the file the table does not have
   std::string remark;                  ///< how the file was understood, where that is not plain
+
+  /// For `to_text`.
+  void for_each_field(const auto& f) const {
+    f("table", table);
+    f("start", start);
+    f("left_out", left_out);
+    f("faults", faults);
+    f("remark", remark);
+  }
 };
 
 namespace detail {
