@@ -2,7 +2,7 @@
 
 // Chains from URDF.
 
-#include <duet/mechanism/urdf_reader.hpp>
+#include <duet/mechanism/urdf_library.hpp>
 
 #undef DUET_COMPILED_TEMPLATE
 #define DUET_COMPILED_TEMPLATE template

@@ -59,7 +59,9 @@ TEST_CASE("origins, axes and limits as the format says") {
       pose(from_axis_angle(Eigen::Vector3d(0, 1, 0), .7), Eigen::Vector3d(0, 0, 0));
   CHECK(gap(transform_matrix(chain.pose(theta)), transform_matrix(expected)) < 1e-15);
   CHECK(gap(translation(chain.pose(theta, chain.link("b"))), Eigen::Vector3d(0, 0, .5)) == 0);
-  CHECK_THROWS_WITH_AS((void)chain.link("x"), "duet: no link \"x\" in the chain", invalid_input);
+  CHECK_THROWS_WITH_AS((void)chain.link("x"),
+                       "duet: no link \"x\" in the chain: there are \"a\", \"b\", \"c\"",
+                       invalid_input);
   // Where nothing is said the axis is x.
   write(links + first + joint_to_c(""));
   const auto along_x = read_urdf(path, "b", "c");
@@ -101,11 +103,11 @@ TEST_CASE("what is wrong is said with file and element") {
        q + ": no attribute \"type\"");
   says("", file + "the link \"c\" does not hang on \"a\": above \"c\" there is no joint");
   says("<joint name=\"q\" type=\"fixed\"><parent link=\"z\"/><child link=\"c\"/></joint>",
-       q + " <parent>: no link \"z\"");
+       q + " <parent>: no link \"z\": there are \"a\", \"b\", \"c\"");
   says(joint_to_c("") + joint_to_c(""), q + ": the link \"c\" has a joint above it already");
   write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
-  CHECK(message("a", "z") == file + "no link \"z\"");
-  CHECK(message("z", "c") == file + "no link \"z\"");
+  CHECK(message("a", "z") == file + "no link \"z\": there are \"a\", \"b\", \"c\"");
+  CHECK(message("z", "c") == file + "no link \"z\": there are \"a\", \"b\", \"c\"");
   CHECK(message("c", "a") ==
         file + "the tip \"a\" is an ancestor of the base \"c\": exchange them");
   CHECK_THROWS_WITH_AS((void)read_urdf<1>(path, "a", "c"),
@@ -191,12 +193,33 @@ TEST_CASE("links that are fixed to one another do not count as joints") {
   std::filesystem::remove(path);
 }
 
+TEST_CASE("names of links and joints, and those that are like one that is not there") {
+  write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
+  const auto names = duet::read_urdf_names(path);
+  CHECK(names.links == std::vector<std::string>{"a", "b", "c"});
+  REQUIRE(names.joints.size() == 2);
+  CHECK(names.joints[0].parent == "a");
+  CHECK(to_text(names) == "links:\n  a\n  b\n  c\njoints:\n  p: prismatic, a -> b\n"
+                          "  q: continuous, b -> c\n");
+  std::string arm;
+  for (const char* link :
+       {"base", "shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3", "tool0"}) {
+    arm += std::string("<link name=\"") + link + "\"/>";
+  }
+  write(arm);
+  CHECK(message("base", "wrist3") ==
+        "duet: " + path +
+            ": no link \"wrist3\": there are \"wrist_3\", \"wrist_1\", \"wrist_2\", \"base\", "
+            "\"forearm\", \"tool0\" and 2 more");
+  std::filesystem::remove(path);
+}
+
 TEST_CASE("what a terminal would obey is not repeated") {
   write("<link name=\"a\"/><link name=\"\x1b[2J\"/>"
         "<joint name=\"&#27;]0;x&#7;\"><parent link=\"a\"/><child link=\"\x1b[2J\"/></joint>");
   CHECK(message("a", "\x1b[2J") ==
         "duet: " + path + ": <joint name=\"\\x1b]0;x\\x07\">: no attribute \"type\"");
-  CHECK(message("a", "\n") == "duet: " + path + ": no link \"\\n\"");
+  CHECK(message("a", "\n") == "duet: " + path + ": no link \"\\n\": there are \"a\", \"\\x1b[2J\"");
   std::filesystem::remove(path);
 }
 

@@ -3,6 +3,7 @@
 
 #include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/text/nearest_names.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
@@ -17,7 +18,7 @@
 #include <vector>
 
 #ifndef DUET_COMPILED
-#include <duet/mechanism/urdf_reader.hpp>
+#include <duet/mechanism/urdf_library.hpp>
 #endif
 
 /// \file
@@ -45,7 +46,12 @@ public:
     const auto found = std::find_if(links_.begin(), links_.end(),
                                     [&](const named_link& each) { return each.name == name; });
     if (found == links_.end()) {
-      throw invalid_input(printable("duet: no link \"" + std::string(name) + "\" in the chain"));
+      std::vector<std::string> names;
+      for (const named_link& each : links_) {
+        names.push_back(each.name);
+      }
+      throw invalid_input(printable("duet: no link \"" + std::string(name) +
+                                    "\" in the chain: " + detail::nearest_names(name, names)));
     }
     return found->frame;
   }
@@ -76,7 +82,17 @@ template <int Capacity = 16>
           std::move(read.joint_names), std::move(read.links)};
 }
 
+/// The links and joints of a robot description, to choose a base and a tip from.
+///
+/// Example: `std::cout << to_text(read_urdf_names("robot.urdf"));`
+/// \throws file_error for what cannot be read, as `read_urdf`
+[[nodiscard]] inline urdf_names read_urdf_names(const std::string& path) {
+  return detail::read_names_in_urdf<detail::xml_library>(path);
+}
+
 #ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE urdf_names
+detail::read_names_in_urdf<detail::xml_library>(const std::string&);
 DUET_COMPILED_TEMPLATE detail::urdf_contents
 detail::read_urdf_contents<detail::xml_library>(const std::string&, const std::string&,
                                                 const std::string&, std::size_t);

@@ -12,6 +12,37 @@
 /// \file
 /// What is read from a robot description.
 
+namespace duet {
+
+/// A joint as a robot description has it.
+struct urdf_joint_name {
+  std::string name;
+  std::string type;   ///< `revolute`, `continuous`, `prismatic`, `fixed` or another
+  std::string parent; ///< the link that it hangs on
+  std::string child;  ///< the link that it moves
+};
+
+/// What a robot description has, in the order of the file.
+struct urdf_names {
+  std::vector<std::string> links;
+  std::vector<urdf_joint_name> joints;
+};
+
+/// One link or joint a line, `shoulder_pan_joint: revolute, base_link -> shoulder_link`.
+[[nodiscard]] inline std::string to_text(const urdf_names& robot) {
+  std::string text = "links:\n";
+  for (const std::string& link : robot.links) {
+    text += "  " + link + "\n";
+  }
+  text += "joints:\n";
+  for (const urdf_joint_name& each : robot.joints) {
+    text += "  " + each.name + ": " + each.type + ", " + each.parent + " -> " + each.child + "\n";
+  }
+  return text;
+}
+
+} // namespace duet
+
 namespace duet::detail {
 
 struct urdf_link {
@@ -26,7 +57,7 @@ struct urdf_contents {
   std::vector<urdf_link> links;         ///< from the base on
 };
 
-/// By which library XML is read: in `urdf_reader.hpp`.
+/// By which library XML is read: in `urdf_library.hpp`.
 struct xml_library;
 
 /// A template so that compilers make the parser for those alone who read a file.
@@ -35,5 +66,9 @@ struct xml_library;
 template <class Xml>
 [[nodiscard]] urdf_contents read_urdf_contents(const std::string& path, const std::string& base,
                                                const std::string& tip, std::size_t most);
+
+/// \throws file_error as `read_urdf_names`
+template <class Xml>
+[[nodiscard]] urdf_names read_names_in_urdf(const std::string& path);
 
 } // namespace duet::detail

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/text/file.hpp>
+#include <duet/core/text/nearest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/text_rows.hpp>
 #include <duet/mechanism/joint.hpp>
@@ -9,7 +10,6 @@
 #include <duet/mechanism/urdf_contents.hpp>
 #include <duet/mechanism/xml_check.hpp>
 
-#include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 
 #include <algorithm>
@@ -49,12 +49,15 @@ public:
     }
     for (const auto& [tag, element] : *robot) {
       if (tag == "link") {
-        links_.insert(attribute(element, "<link>", "name"));
+        names_.links.push_back(attribute(element, "<link>", "name"));
+        links_.insert(names_.links.back());
       } else if (tag == "joint") {
         add_joint(element);
       }
     }
   }
+
+  [[nodiscard]] const urdf_names& names() const { return names_; }
 
   /// The joints from the link `base` to the link `tip`, in that order.
   [[nodiscard]] std::vector<const Xml*> path(const std::string& base, const std::string& tip) {
@@ -244,7 +247,7 @@ private:
 
   void require_link(const std::string& where, const std::string& link) const {
     if (!links_.contains(link)) {
-      fail(where, "no link \"" + link + "\"");
+      fail(where, "no link \"" + link + "\": " + nearest_names(link, names_.links));
     }
   }
 
@@ -256,43 +259,18 @@ private:
       }
       require_attribute(element.get_child(key), where(element) + " <" + key + ">", "link");
     }
+    names_.joints.push_back({name(element), element.template get<std::string>("<xmlattr>.type", ""),
+                             element.template get<std::string>("parent.<xmlattr>.link"),
+                             child(element)});
     if (!joint_above_.emplace(child(element), element).second) {
       fail(where(element), "the link \"" + child(element) + "\" has a joint above it already");
     }
   }
 
   std::string path_;
+  urdf_names names_;
   std::set<std::string> links_;
   std::map<std::string, Xml> joint_above_; ///< by the link that it moves
 };
-
-struct xml_library {
-  using document = boost::property_tree::ptree;
-};
-
-template <class Xml>
-urdf_contents read_urdf_contents(const std::string& path, const std::string& base,
-                                 const std::string& tip, std::size_t most) {
-  urdf_reader<typename Xml::document> reader(path);
-  urdf_contents result;
-  std::vector<std::string>& names = result.joint_names;
-  result.links.push_back({base, {}});
-  placement<double> since_joint; // fixed joints since the last one that moves
-  for (const auto* element : reader.path(base, tip)) {
-    result.joints.push_back(reader.read(*element));
-    if (result.joints.back().kind == joint_kind::fixed) {
-      since_joint = since_joint * result.joints.back().origin;
-    } else {
-      since_joint = {};
-      names.push_back(reader.name(*element));
-    }
-    result.links.push_back({reader.child(*element), {int(names.size()), since_joint}});
-  }
-  if (names.size() > most) {
-    reader.fail("", std::to_string(names.size()) + " moving joints from \"" + base + "\" to \"" +
-                        tip + "\": use read_urdf<" + std::to_string(names.size()) + ">");
-  }
-  return result;
-}
 
 } // namespace duet::detail

@@ -1,0 +1,50 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// What was perhaps meant by a name that is not there.
+
+namespace duet::detail {
+
+/// How many letters are to be put in, left out or changed (Levenshtein's distance).
+[[nodiscard]] inline std::size_t letters_apart(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1); // of the letters of a so far, to each beginning of b
+  std::iota(row.begin(), row.end(), std::size_t(0));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t change = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({change, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// `there are "a", "b" … and 7 more`, those that are most like the name first.
+[[nodiscard]] inline std::string nearest_names(std::string_view name,
+                                               std::vector<std::string> names) {
+  constexpr std::size_t most = 6;
+  if (names.empty()) {
+    return "there are none";
+  }
+  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return letters_apart(name, a) < letters_apart(name, b);
+  });
+  std::string text = "there are ";
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+    text += (i > 0 ? ", \"" : "\"") + names[i] + "\"";
+  }
+  return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more"
+                             : text;
+}
+
+} // namespace duet::detail
