@@ -17,7 +17,7 @@
 
 namespace duet {
 
-/// From best to worst.
+/// What `compare` says of two formulas, from best to worst.
 enum class verdict {
   agrees,       ///< everywhere, within the tolerance
   loses_digits, ///< the same formula, but rounding (or a constant of few digits) spoils it
@@ -25,7 +25,7 @@ enum class verdict {
   disagrees     ///< the formulas are not the same
 };
 
-/// In words, as reports have it.
+/// A verdict in words, as reports have it.
 [[nodiscard]] inline std::string_view to_text(verdict v) {
   constexpr std::array words = {"agrees", "loses digits", "not finite", "disagrees"};
   return words[std::size_t(v)];
@@ -44,16 +44,16 @@ struct worst_errors {
 
 /// An input at which two formulas differ, and what they give there in double precision.
 struct counterexample {
-  std::string input;
-  std::vector<double> automatic;
-  std::vector<double> closed_form;
+  std::string input;               ///< the arguments, as text
+  std::vector<double> automatic;   ///< components of the result of the automatic derivative
+  std::vector<double> closed_form; ///< components of the result of the closed form
 };
 
 /// What `compare` found.
 struct comparison {
-  std::string label;
-  verdict outcome = verdict::agrees; ///< the worst of all samples
-  std::size_t samples = 0;
+  std::string label;                      ///< what `compare` was told
+  verdict outcome = verdict::agrees;      ///< the worst of all samples
+  std::size_t samples = 0;                ///< how many inputs were tried
   std::array<std::size_t, 4> counts{};    ///< samples of every verdict
   double tolerance = 0;                   ///< in units of the last place
   std::vector<worst_errors> errors;       ///< one for every scalar type

@@ -53,8 +53,10 @@ namespace detail {
 /// A real number in [lower, upper]. Special: the ends, the integers and halves of small size in
 /// between, and numbers within 1e-8 of zero.
 struct real_numbers {
-  double lower = -1;
-  double upper = 1;
+  double lower = -1; ///< the least number
+  double upper = 1;  ///< the largest number
+
+  // For those who extend duet: what an `InputDomain` is asked.
 
   [[nodiscard]] std::size_t size() const { return 1; }
   [[nodiscard]] bool contains(std::span<const double> point) const {
@@ -85,7 +87,9 @@ struct real_numbers {
 /// diagonals, and vectors of length 1e-4 and 1e-8. Every fourth random one is short.
 template <int N>
 struct vectors {
-  double bound = 1;
+  double bound = 1; ///< the largest size of a component
+
+  // For those who extend duet: what an `InputDomain` is asked.
 
   [[nodiscard]] std::size_t size() const { return std::size_t(N); }
   [[nodiscard]] bool contains(std::span<const double> point) const {
@@ -126,7 +130,9 @@ struct vectors {
 /// N arguments of one kind, as a `std::array`. Special: all of them the same special point.
 template <std::size_t N, class Domain>
 struct arrays {
-  Domain element;
+  Domain element; ///< that of each argument
+
+  // For those who extend duet: what an `InputDomain` is asked.
 
   [[nodiscard]] std::size_t size() const { return N * element.size(); }
   [[nodiscard]] bool contains(std::span<const double> point) const {

@@ -49,7 +49,7 @@ struct derivative_and_error {
   Y derivative; ///< f′(x)
   double error; ///< estimate of the largest error of a component
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("derivative", derivative);
     f("error", error);
@@ -61,6 +61,7 @@ struct derivative_and_error {
 /// For any f of a real number, its source hidden or full of tables: steps step/1.4ᵏ are combined
 /// until rounding wins, and the entry with the smallest estimated error is returned. As a rule
 /// eleven digits in double precision.
+/// \return `derivative_and_error`
 template <class F, Real T>
 [[nodiscard]] auto central_difference_derivative(const F& f, const T& x, const T& step = T(0.1)) {
   constexpr std::size_t rows = 12;

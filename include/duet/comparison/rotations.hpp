@@ -25,6 +25,8 @@ namespace duet {
 struct rotations {
   double largest_angle = 6.283185; ///< just below a full turn, where the rotation vector jumps
 
+  // For those who extend duet: what an `InputDomain` is asked.
+
   [[nodiscard]] std::size_t size() const { return 3; }
   [[nodiscard]] bool contains(std::span<const double> point) const {
     return std::hypot(point[0], point[1], point[2]) <= largest_angle;
@@ -60,7 +62,9 @@ struct rotations {
 /// Any quaternion but zero, with components between −bound and bound; its coordinates are its
 /// components, scalar first. Special: ±1, the imaginary units, and nearly real ones.
 struct quaternions {
-  double bound = 2;
+  double bound = 2; ///< the largest size of a component
+
+  // For those who extend duet: what an `InputDomain` is asked.
 
   [[nodiscard]] std::size_t size() const { return 4; }
   [[nodiscard]] bool contains(std::span<const double> point) const {

@@ -21,8 +21,9 @@
 
 namespace duet {
 
-/// The arguments of a function, each from a domain of its own: special points in all combinations
-/// (or, where those are too many, each with random company), points of the caller, random points.
+/// The arguments of a function, each from a domain of its own. Points are special ones in all
+/// combinations (or, where those are too many, each with random company), points of the caller,
+/// random points.
 ///
 /// Example: `sampler(vectors<3>{3.0}, real_numbers{0, 1}).named("w", "t").including({0, 0, 1,
 /// 0.5})`
@@ -61,6 +62,7 @@ public:
     return std::apply([](const auto&... d) { return (d.size() + ...); }, domains_);
   }
 
+  /// Is a point, the coordinates of all arguments in a row, in their domains?
   [[nodiscard]] bool contains(std::span<const double> point) const {
     bool result = true;
     for_each_part(point, [&](const auto& domain, std::span<const double> part, std::size_t) {

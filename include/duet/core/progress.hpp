@@ -15,7 +15,7 @@ namespace duet {
 
 /// How much of a range is done.
 struct progress {
-  std::size_t done;
+  std::size_t done;  ///< elements that are done
   std::size_t count; ///< of the whole range
 
   /// From 0 to exactly 1.

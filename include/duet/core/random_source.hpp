@@ -12,17 +12,21 @@
 
 namespace duet {
 
-/// Seeded by hand; the standard engine is specified exactly, its distributions are not.
+/// Random numbers, the same on every machine. Seeded by hand; the standard engine is specified
+/// exactly, its distributions are not.
 class random_source {
 public:
   explicit random_source(std::uint64_t seed) : engine_(seed) {}
 
-  /// In [0, 1), 53 bits.
+  /// Uniform in [0, 1), 53 bits.
   [[nodiscard]] double unit() { return double(engine_() >> 11) * 0x1p-53; }
+  /// Uniform in [low, high).
   [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * unit(); }
+  /// A whole number from low to high, both included.
   [[nodiscard]] int integer(int low, int high) {
     return low + int(engine_() % std::uint64_t(high - low + 1));
   }
+  /// 1 or −1.
   [[nodiscard]] double sign() { return engine_() >> 63 != 0 ? -1.0 : 1.0; }
   /// Log-uniform in [low, high), both positive.
   [[nodiscard]] double magnitude(double low, double high) {

@@ -8,6 +8,7 @@
 /// \file
 /// What a scalar is made of. A scalar is a real number, a number of another field that was opted in
 /// (complex, rational), or an infinitesimal extension of a scalar (`dual`, `taylor`), to any depth.
+/// For those who extend duet.
 
 namespace duet {
 

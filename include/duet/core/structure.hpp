@@ -14,7 +14,7 @@
 
 /// \file
 /// The one walk over what holds scalars: containers of any kind say how to reach them, and lanes,
-/// derivatives and constants of whole objects follow.
+/// derivatives and constants of whole objects follow. For those who extend duet.
 
 namespace duet {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 /// \file
-/// Arguments of several components.
+/// Arguments of several components. For those who extend duet.
 
 namespace duet {
 namespace detail {

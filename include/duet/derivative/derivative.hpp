@@ -18,10 +18,10 @@ namespace duet {
 /// What `derivative` returns: y = f(x), and dy/dx of the same shape.
 template <class Y, class DY>
 struct value_and_derivative {
-  Y value;
-  DY derivative;
+  Y value;       ///< f(x)
+  DY derivative; ///< dy/dx, of the shape of f(x)
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("value", value);
     f("derivative", derivative);
@@ -35,6 +35,7 @@ value_and_derivative(Y, DY) -> value_and_derivative<Y, DY>;
 /// The result may be a scalar, an Eigen matrix, an array, a tuple, a quaternion or a dual
 /// quaternion; the derivative has the same shape. Calls may nest: each marks its ε with the type of
 /// its function, or with `Tag` where the caller gives one.
+/// \return `value_and_derivative`
 ///
 /// Example: `auto [y, dy] = derivative([](auto x) { return sin(x); }, 0.3);`
 template <class Tag = void, class F, class X>
@@ -49,6 +50,7 @@ template <class Tag = void, class F, class X>
 }
 
 /// f(x), f′(x), …, f^(K)(x) in one pass over Taylor numbers; element k is the k-th derivative.
+/// \return a `std::array` of K + 1 values, each of the shape of f(x)
 template <int K, class Tag = void, class F, class X>
   requires(Scalar<X> || Arithmetic<X>)
 [[nodiscard]] auto derivatives(F&& f, const X& x) {

@@ -25,10 +25,10 @@ namespace duet {
 /// What `gradient` returns: f(x), and ∇f as a column.
 template <class Y, class G>
 struct value_and_gradient {
-  Y value;
-  G gradient;
+  Y value;    ///< f(x)
+  G gradient; ///< ∇f, a column
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("value", value);
     f("gradient", gradient);
@@ -38,11 +38,11 @@ struct value_and_gradient {
 /// What `hessian` returns: f(x), ∇f as a column, and the symmetric matrix of second derivatives.
 template <class Y, class G, class H>
 struct value_gradient_and_hessian {
-  Y value;
-  G gradient;
-  H hessian;
+  Y value;    ///< f(x)
+  G gradient; ///< ∇f, a column
+  H hessian;  ///< ∂²f/∂x_i∂x_j, a symmetric matrix
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("value", value);
     f("gradient", gradient);
@@ -58,6 +58,7 @@ struct value_gradient_and_hessian {
 ///
 /// One vector of seeds is allocated per call where x has its size at run time, none otherwise; f
 /// takes it by reference.
+/// \return f(x)
 /// \throws invalid_input where the sizes do not match or x is empty
 ///
 /// Example: `Eigen::VectorXd g(n); const double y = gradient_into<16>(f, x, g);`
@@ -81,12 +82,13 @@ template <int Chunk = 0, class Tag = void, class F, Variables X, class G>
   return value;
 }
 
-/// f(x) and ∇f(x): x an Eigen vector, a `std::array` or `std::vector` of n components, f scalar;
-/// the gradient is a column of n. Of several arguments x is a tuple, `gradient(f, std::tuple(a,
-/// b))` of f(a, b), scalars and vectors, and the gradient is by the components of one after the
-/// other.
+/// f(x) and the gradient ∇f(x). x is an Eigen vector, a `std::array` or `std::vector` of n
+/// components, f(x) a scalar; the gradient is a column of n. Of several arguments x is a tuple,
+/// `gradient(f, std::tuple(a, b))` of f(a, b), scalars and vectors, and the gradient is by the
+/// components of one after the other.
 ///
 /// Up to 32 components known at compile time take one evaluation of f.
+/// \return `value_and_gradient`
 template <class Tag = void, class F, Variables X>
 [[nodiscard]] auto gradient(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
@@ -161,12 +163,13 @@ void hessian_in_blocks(F&& f, const X& x, Result& result) {
 
 } // namespace detail
 
-/// f(x), ∇f(x) and the symmetric Hessian. Arguments as `gradient`.
+/// f(x), the gradient ∇f(x) and the symmetric Hessian. Arguments as `gradient`.
 ///
 /// Up to 32 components known at compile time take one evaluation of f. Otherwise f is evaluated for
 /// every pair of blocks of eight components, p (p + 1) / 2 times for p blocks, and beyond 32 the
 /// matrix is one of a size known at run time. Where most entries are known to be zero there is
 /// `sparse_hessian`.
+/// \return `value_gradient_and_hessian`
 template <class Tag = void, class F, Variables X>
 [[nodiscard]] auto hessian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;

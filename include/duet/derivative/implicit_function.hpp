@@ -72,7 +72,7 @@ namespace duet {
 
 /// When Newton's method gives up.
 struct newton_options {
-  int max_iterations = 50;
+  int max_iterations = 50; ///< steps
 };
 
 namespace detail {
@@ -241,6 +241,7 @@ template <class F, class Newton, class P>
 /// Newton's method with AD Jacobian runs on the real values only, in double precision, to the level
 /// of rounding. The derivatives follow by the implicit function theorem, order by order.
 ///
+/// \return x, of the shape of x0
 /// \throws no_convergence where there is no solution near x0 or ∂F/∂x is singular.
 template <class F, class X, class P>
 [[nodiscard]] auto implicit_solution(const F& f, const X& x0, const P& p,
@@ -257,6 +258,7 @@ template <class F, class X, class P>
 /// x(p), x′(p), …, x^(K)(p) of the function defined by F(x, p) = 0, p a scalar. Element k has the
 /// shape of x0; for a rotation it is the k-th derivative of the quaternion.
 ///
+/// \return a `std::array` of K + 1 values, each of the shape of x0
 /// \throws no_convergence as `implicit_solution`.
 template <int K, class Tag = void, class F, class X, class P>
   requires(Scalar<P> || Arithmetic<P>)

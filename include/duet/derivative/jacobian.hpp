@@ -21,7 +21,7 @@
 namespace duet {
 
 /// What has a function `jacobian` of its own, as a mechanism, and is not differentiated as a
-/// callable.
+/// callable. For those who extend duet.
 template <class F>
 concept HasOwnJacobian = requires {
   typename std::remove_cvref_t<F>::own_jacobian;
@@ -30,10 +30,10 @@ concept HasOwnJacobian = requires {
 /// What `jacobian` returns: y = f(x), and ∂y/∂x, a row for each component of y.
 template <class Y, class J>
 struct value_and_jacobian {
-  Y value;
-  J jacobian;
+  Y value;    ///< f(x)
+  J jacobian; ///< ∂y_i/∂x_j, a row for each component of y
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("value", value);
     f("jacobian", jacobian);
@@ -76,9 +76,9 @@ void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::
 
 } // namespace detail
 
-/// f(x) and the matrix ∂f_i/∂x_j, m × n: x and f(x) are Eigen vectors, `std::array`s or
-/// `std::vector`s; of several arguments x is a tuple, `jacobian(f, std::tuple(a, b))` of f(a, b),
-/// and the columns are by the components of one after the other.
+/// f(x) and the Jacobian, the matrix ∂f_i/∂x_j, m × n. x and f(x) are Eigen vectors, `std::array`s
+/// or `std::vector`s; of several arguments x is a tuple, `jacobian(f, std::tuple(a, b))` of f(a,
+/// b), and the columns are by the components of one after the other. \return `value_and_jacobian`
 template <class Tag = void, class F, Variables X>
   requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x) {
@@ -102,6 +102,7 @@ template <class Tag = void, class F, Variables X>
 
 /// f(x); writes ∂f_i/∂x_j into `jacobian`, any writable Eigen matrix of as many rows as f(x) has
 /// components and as many columns as x. Everything else as `gradient_into`.
+/// \return f(x)
 template <int Chunk = 0, class Tag = void, class F, Variables X, class J>
 [[nodiscard]] auto jacobian_into(F&& f, const X& x, J&& jacobian) {
   static_assert(Chunk >= 0, "duet: jacobian_into<Chunk> needs a number of partials");
@@ -117,6 +118,7 @@ template <int Chunk = 0, class Tag = void, class F, Variables X, class J>
 
 /// f(x) and d/dt f(x + t v) at t = 0: x and v scalars, or vectors of one size, or
 /// tuples of them; f(x) of any shape.
+/// \return `value_and_derivative`
 template <class Tag = void, class F, class X, class V>
   requires(Variables<X>&& Variables<V>)
 || ((Scalar<X> || Arithmetic<X>)&&(Scalar<V> || Arithmetic<V>))

@@ -19,6 +19,7 @@
 
 /// \file
 /// Tangent spaces: how an object is moved by a small vector, and which vector its rate is.
+/// For those who extend duet.
 
 namespace duet {
 

@@ -20,11 +20,11 @@ namespace duet {
 /// f(x), ∇f, and the product of the Hessian with a vector.
 template <class Y, class G>
 struct value_gradient_and_product {
-  Y value;
-  G gradient;
-  G product;
+  Y value;    ///< f(x)
+  G gradient; ///< ∇f, a column
+  G product;  ///< H v, a column
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("value", value);
     f("gradient", gradient);
@@ -32,10 +32,11 @@ struct value_gradient_and_product {
   }
 };
 
-/// f(x), ∇f and H v, H the matrix of second derivatives at x: the derivative of the gradient along
+/// f(x), ∇f and H v, the Hessian at x times a vector: the derivative of the gradient along
 /// v, at about twice the cost of the gradient, for any number of components.
 ///
 /// \param x, v  as of `gradient`, of one size; f returns a scalar
+/// \return `value_gradient_and_product`
 /// \throws invalid_input where the sizes differ or x is empty
 template <class Tag = void, class F, Variables X, Variables V>
 [[nodiscard]] auto hessian_vector_product(F&& f, const X& x, const V& v) {
@@ -56,10 +57,10 @@ template <class Tag = void, class F, Variables X, Variables V>
 /// f(x, y), and the block ∂²f/∂xᵢ∂yⱼ of its Hessian.
 template <class Y, class M>
 struct value_and_mixed_hessian {
-  Y value;
-  M mixed;
+  Y value; ///< f(x, y)
+  M mixed; ///< ∂²f/∂xᵢ∂yⱼ, a row for each component of x
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("value", value);
     f("mixed", mixed);
@@ -71,6 +72,7 @@ struct value_and_mixed_hessian {
 ///
 /// \param x, y  Eigen vectors or `std::array`s of sizes known at compile time; f(x, y), over
 ///              different scalars for x and y, returns a scalar
+/// \return `value_and_mixed_hessian`
 template <class Tag = void, class F, VectorLike X, VectorLike Y>
 [[nodiscard]] auto mixed_hessian(F&& f, const X& x, const Y& y) {
   constexpr int n = detail::vector_argument<X>::size_at_compile_time;

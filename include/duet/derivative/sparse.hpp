@@ -99,12 +99,13 @@ private:
 
 } // namespace detail
 
-/// f(x) and the sparse matrix ∂f_i/∂x_j, m × n. Arguments as `jacobian`.
+/// f(x) and the sparse Jacobian ∂f_i/∂x_j, m × n. Arguments as `jacobian`.
 ///
 /// \param structure  m × n: its entries, whatever their values, are all that need not be zero
 ///
 /// Columns without a common row share a partial: with at most k entries in a row, k to a few more
 /// partials do in place of n, and f is evaluated once for every sixteen.
+/// \return `value_and_jacobian`
 /// \throws invalid_input where the structure is of another size, and where an entry that it does
 /// not have is more than a millionth of its row
 template <class Tag = void, class F, Variables X, class P>
@@ -145,12 +146,13 @@ template <class Tag = void, class F, Variables X, class P>
   return result;
 }
 
-/// f(x), ∇f and the sparse symmetric matrix of second derivatives. Arguments as `gradient`.
+/// f(x), ∇f and the sparse symmetric Hessian. Arguments as `gradient`.
 ///
 /// \param structure  n × n: its entries, whatever their values and in either triangle or both, are
 ///                   all that need not be zero
 ///
 /// With k groups of columns, as of `sparse_jacobian`, f is evaluated ⌈n/8⌉ ⌈(k + 1)/4⌉ times.
+/// \return `value_gradient_and_hessian`
 /// \throws invalid_input as `sparse_jacobian`
 template <class Tag = void, class F, Variables X, class P>
 [[nodiscard]] auto sparse_hessian(F&& f, const X& x, const Eigen::SparseMatrixBase<P>& structure) {

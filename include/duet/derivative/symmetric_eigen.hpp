@@ -21,10 +21,10 @@ namespace duet {
 /// A = V diag(λ) Vᵀ: the eigenvalues ascend, and column i of `vectors` belongs to the i-th.
 template <class Values, class Vectors>
 struct eigenvalues_and_vectors {
-  Values values;
-  Vectors vectors;
+  Values values;   ///< λ, ascending, a column
+  Vectors vectors; ///< V, unit eigenvectors as columns
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("values", values);
     f("vectors", vectors);
@@ -121,6 +121,7 @@ template <class Solver, class Y>
 /// vectors jump. Where a gap is at most 4nε max|λ|, and so nothing but rounding, A must be a
 /// constant: all its infinitesimal parts zero.
 ///
+/// \return `eigenvalues_and_vectors`
 /// \throws invalid_input where A is not square or has entries that are not finite, and at a
 /// repeated eigenvalue of a matrix that is not constant.
 /// \throws no_convergence where Eigen's solver does not converge.

@@ -76,7 +76,7 @@ concept NeedsFrame = ManifoldPoint<X> && !Variables<X> && !Scalar<X> && !Arithme
 
 } // namespace detail
 
-/// f(x) and the matrix ∂y/∂x in tangent coordinates: column j is the velocity of y = f(x) while x
+/// f(x) and the Jacobian ∂y/∂x in tangent coordinates: column j is the velocity of y = f(x) while x
 /// moves along its j-th tangent coordinate.
 ///
 /// \param x      a scalar, fixed-size vector, rotation (three coordinates), pose (six), array or
@@ -86,6 +86,7 @@ concept NeedsFrame = ManifoldPoint<X> && !Variables<X> && !Scalar<X> && !Arithme
 ///
 /// f may return any of these too, and vectors of a size known at run time. Vectors do not care for
 /// the frame.
+/// \return `value_and_jacobian`
 ///
 /// Example: `jacobian([](const auto& q) { return conj(q); }, q, frame::body)` is −R(q).
 template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
@@ -126,8 +127,8 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
   return result;
 }
 
-/// f(x) and ∇f in the tangent coordinates of x: gᵀδ is the change of f while x moves by δ.
-/// Arguments as `jacobian`; f returns a scalar.
+/// f(x) and the gradient in the tangent coordinates of x: gᵀδ is the change of f while x moves by
+/// δ. Arguments as `jacobian`; f returns a scalar. \return `value_and_gradient`
 template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
 [[nodiscard]] auto gradient(F&& f, const X& x, Frame frame) {
   auto [value, row] = jacobian<Tag>(std::forward<F>(f), x, frame);
@@ -137,12 +138,12 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
       value, row.transpose()};
 }
 
-/// f(x), ∇f and the symmetric matrix of second derivatives in the tangent coordinates of x:
-/// f(x moved by δ) = f + gᵀδ + ½ δᵀHδ + O(δ³), where a rotation moves by exp(δ/2),
-/// along geodesics.
+/// f(x), the gradient and the symmetric Hessian in the tangent coordinates of x. f(x moved by δ) =
+/// f + gᵀδ + ½ δᵀHδ + O(δ³), where a rotation moves by exp(δ/2), along geodesics.
 ///
 /// Where f is not stationary, H depends on how rotations move. In both frames it is the same form
 /// in other axes: H of `frame::body` is Rᵀ H R of `frame::spatial`.
+/// \return `value_gradient_and_hessian`
 template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
 [[nodiscard]] auto hessian(F&& f, const X& x, Frame frame) {
   constexpr int n = manifold<X>::dimension;

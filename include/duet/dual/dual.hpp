@@ -91,13 +91,18 @@ public:
       return partials_.size();
     }
   }
+  /// The part without ε.
   [[nodiscard]] constexpr const T& value() const { return value_; }
+  /// What stands at εᵢ, i from 0: the i-th partial derivative.
   [[nodiscard]] constexpr T partial(int i) const { return partials_.get(i); }
+  /// What stands at the only ε: the derivative.
   [[nodiscard]] constexpr T epsilon() const requires(N == 1) { return partials_.get(0); }
-  [[nodiscard]] constexpr const partials_type& partials() const { return partials_; }
+  /// Sets what stands at εᵢ.
   constexpr void set_partial(int i, const T& x) { partials_.set(i, x); }
 
-  // What a `Level` says of itself.
+  // For those who extend duet: what a `Level` says of itself.
+
+  [[nodiscard]] constexpr const partials_type& partials() const { return partials_; }
 
   static constexpr int part_count = N > 0 ? N + 1 : N - 1;
   /// The value, then the partials.

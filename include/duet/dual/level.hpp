@@ -10,7 +10,7 @@
 /// What an infinitesimal number says of itself. `dual`, `taylor` and `second_dual` do, in one
 /// header each; functions, rotations, matrices, lanes and drivers ask for nothing else. Another one
 /// is a class that fulfils `Level`, has the kernels that `detail::infinitesimal_operators` turns
-/// into operators, and specialises `scalar_traits`.
+/// into operators, and specialises `scalar_traits`. For those who extend duet.
 
 namespace duet {
 namespace detail {

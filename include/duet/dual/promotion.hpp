@@ -9,7 +9,7 @@
 
 /// \file
 /// Tags that keep infinitesimals of different meaning apart, and the common type of two scalars:
-/// one nesting of levels that holds both.
+/// one nesting of levels that holds both. For those who extend duet.
 
 namespace duet {
 

@@ -71,11 +71,11 @@ public:
     return result;
   }
 
-  [[nodiscard]] const T& value() const { return value_; }
-  [[nodiscard]] T partial(int i) const { return gradient_.get(i); }
-  [[nodiscard]] T second_partial(int i, int j) const { return hessian_.get(i, j); }
+  [[nodiscard]] const T& value() const { return value_; }           ///< the part without ε
+  [[nodiscard]] T partial(int i) const { return gradient_.get(i); } ///< ∂/∂xᵢ, i from 0
+  [[nodiscard]] T second_partial(int i, int j) const { return hessian_.get(i, j); } ///< ∂²/∂xᵢ∂xⱼ
 
-  // What a `Level` says of itself.
+  // For those who extend duet: what a `Level` says of itself.
 
   static constexpr int part_count = 1 + N + N * (N + 1) / 2;
   /// The value, the gradient, then the Hessian row by row, symmetric as it is.

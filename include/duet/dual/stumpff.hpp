@@ -16,6 +16,7 @@
 /// \file
 /// The functions that exp and log of quaternions are made of, over every scalar: regular where
 /// sine, cosine and arctangent forms are not, with exact derivatives of every order.
+/// For those who extend duet.
 ///
 /// Stumpff functions c_n(s) = Σ_k (−s)^k / (2k+n)! of s ≥ 0 are what is left of sine and cosine
 /// when the removable singularities of exp and log at the identity are taken out: c₀ = cos √s, c₁ =

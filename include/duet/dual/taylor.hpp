@@ -23,6 +23,8 @@
 namespace duet {
 DUET_ABI_BEGIN
 
+/// A truncated Taylor series x₀ + x₁ε + … + x_K ε^K: a value and its first K derivatives.
+///
 /// \tparam T    the scalar below
 /// \tparam K    highest power of ε kept
 /// \tparam Tag  what the ε means
@@ -66,11 +68,13 @@ public:
     return result;
   }
 
+  /// x₀
   [[nodiscard]] constexpr const T& value() const { return coefficients_[0]; }
   /// x_k
   [[nodiscard]] constexpr const T& coefficient(int k) const {
     return coefficients_[std::size_t(k)];
   }
+  /// Sets x_k.
   constexpr void set_coefficient(int k, const T& x) { coefficients_[std::size_t(k)] = x; }
   /// The k-th derivative, k! x_k.
   [[nodiscard]] constexpr T derivative(int k) const {
@@ -81,7 +85,7 @@ public:
     return result;
   }
 
-  // What a `Level` says of itself.
+  // For those who extend duet: what a `Level` says of itself.
 
   static constexpr int part_count = K + 1;
   /// The k-th derivative.

@@ -19,9 +19,9 @@
 
 namespace duet {
 
-/// d² = |t_B − t_A|² + length² φ², φ ∈ [0, π] the angle between the rotations. Does not depend on
-/// the fixed frame, but does on the body's, whose origin is compared. Smooth where φ < π.
-/// \param length  of the same unit as the translations, at least 0
+/// The squared distance of two poses, d² = |t_B − t_A|² + length² φ², φ ∈ [0, π] the angle between
+/// the rotations. Does not depend on the fixed frame, but does on the body's, whose origin is
+/// compared. Smooth where φ < π. \param length  of the same unit as the translations, at least 0
 /// \throws invalid_input where the length is negative or not finite
 template <class A, Promotable<A> B>
 [[nodiscard]] promote_t<A, B> squared_distance(const dual_quaternion<A>& a,
@@ -69,8 +69,8 @@ template <class T>
 
 } // namespace detail
 
-/// d, the root of `squared_distance`: a metric of poses, in units of length. Its derivative at
-/// d = 0 does not exist.
+/// The distance of two poses, in units of length: d, the root of `squared_distance`, a metric. Its
+/// derivative at d = 0 does not exist.
 template <class A, Promotable<A> B>
 [[nodiscard]] promote_t<A, B> distance(const dual_quaternion<A>& a, const dual_quaternion<B>& b,
                                        double length) {

@@ -15,17 +15,18 @@
 
 namespace duet {
 
-/// a + εb of rigid motion (N10), T any scalar, derivative duals included.
+/// A dual number a + εb of rigid motion (N10), T any scalar, derivative duals included.
 template <class T>
 using screw_dual = dual<T, 1, screw_tag>;
-/// a⃗ + εb⃗: a line, a screw, a twist (N12).
+/// A dual vector a⃗ + εb⃗: a line, a screw, a twist (N12).
 template <class T>
 using dual_vector = vector3<screw_dual<T>>;
-/// p + εq of quaternions p and q, or four dual numbers: both readings of N13 are this one object.
+/// A dual quaternion, p + εq of quaternions p and q, or four dual numbers: both readings of N13 are
+/// this one object.
 template <class T>
 using dual_quaternion = quaternion<screw_dual<T>>;
 
-/// a + εb
+/// The dual vector a + εb.
 template <class A, Promotable<A> B>
 [[nodiscard]] dual_vector<promote_t<A, B>> make_dual_vector(const vector3<A>& a,
                                                             const vector3<B>& b) {
@@ -33,7 +34,7 @@ template <class A, Promotable<A> B>
   using D = screw_dual<T>;
   return {D(T(a[0]), T(b[0])), D(T(a[1]), T(b[1])), D(T(a[2]), T(b[2]))};
 }
-/// p + εq
+/// The dual quaternion p + εq.
 template <class A, Promotable<A> B>
 [[nodiscard]] constexpr dual_quaternion<promote_t<A, B>>
 make_dual_quaternion(const quaternion<A>& p, const quaternion<B>& q) {
@@ -43,59 +44,59 @@ make_dual_quaternion(const quaternion<A>& p, const quaternion<B>& q) {
           D(T(p.z()), T(q.z()))};
 }
 
-/// p of p + εq.
+/// The real part p of p + εq.
 template <class T>
 [[nodiscard]] constexpr quaternion<T> real_part(const dual_quaternion<T>& a) {
   return {a.w().value(), a.x().value(), a.y().value(), a.z().value()};
 }
-/// q of p + εq.
+/// The dual part q of p + εq.
 template <class T>
 [[nodiscard]] constexpr quaternion<T> dual_part(const dual_quaternion<T>& a) {
   return {a.w().epsilon(), a.x().epsilon(), a.y().epsilon(), a.z().epsilon()};
 }
-/// a of a + εb.
+/// The real part a of a + εb.
 template <class T>
 [[nodiscard]] vector3<T> real_part(const dual_vector<T>& v) {
   return {v[0].value(), v[1].value(), v[2].value()};
 }
-/// b of a + εb.
+/// The dual part b of a + εb.
 template <class T>
 [[nodiscard]] vector3<T> dual_part(const dual_vector<T>& v) {
   return {v[0].epsilon(), v[1].epsilon(), v[2].epsilon()};
 }
 
-/// α, the rotation of a pose.
+/// The rotation α of a pose.
 template <class T>
 [[nodiscard]] constexpr quaternion<T> rotation(const dual_quaternion<T>& a) {
   return real_part(a);
 }
-/// N17: t = 2 β α*.
+/// N17: the translation t = 2 β α* of a pose.
 template <class T>
 [[nodiscard]] vector3<T> translation(const dual_quaternion<T>& a) {
   const quaternion<T> half = dual_part(a) * conj(real_part(a));
   return {2 * half.x(), 2 * half.y(), 2 * half.z()};
 }
 
-/// N10: a − εb, the conjugate of a dual number. (`conj` of a scalar is the identity in generic
+/// N10: the conjugate a − εb of a dual number. (`conj` of a scalar is the identity in generic
 /// code.)
 template <class T>
 [[nodiscard]] constexpr screw_dual<T> dual_conj(const screw_dual<T>& d) {
   return {d.value(), -d.epsilon()};
 }
-/// N15, second conjugate: p − εq, which keeps products: (AB)° = A° B°.
+/// N15: the second conjugate p − εq, which keeps products: (AB)° = A° B°.
 template <class T>
 [[nodiscard]] constexpr dual_quaternion<T> dual_conj(const dual_quaternion<T>& a) {
   return {dual_conj(a.w()), dual_conj(a.x()), dual_conj(a.y()), dual_conj(a.z())};
 }
-/// N15, third conjugate: p* − εq*, which carries points: A (1 + εx) A^(3) = 1 + ε(Rx + t). (The
+/// N15: the third conjugate p* − εq*, which carries points: A (1 + εx) A^(3) = 1 + ε(Rx + t). (The
 /// first is `conj`: p* + εq*, the inverse of a unit, which carries lines.)
 template <class T>
 [[nodiscard]] constexpr dual_quaternion<T> point_conj(const dual_quaternion<T>& a) {
   return dual_conj(conj(a));
 }
 
-/// N16: is A A* = 1, that is |p| = 1 and p·q = 0, each to within the tolerance? `normalized`
-/// restores both.
+/// N16: is it a pose, A A* = 1, that is |p| = 1 and p·q = 0, each to within the tolerance?
+/// `normalized` restores both.
 template <class T>
 [[nodiscard]] auto is_unit(const dual_quaternion<T>& a, double tolerance = 1e-12) {
   using std::abs;

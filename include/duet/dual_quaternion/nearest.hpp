@@ -81,7 +81,7 @@ struct nearest_result {
   dual_quaternion<T> pose; ///< there
   T squared_distance;      ///< from there to the given pose, in squared units of length
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("tau", tau);
     f("pose", pose);
@@ -146,6 +146,7 @@ template <class T>
 /// \param motion  in body axes of A, as `screw_parameters(conj(A) * B)`; the angle, in radians, may
 ///                be many turns
 /// \param length  how far a turn by one radian is
+/// \return `nearest_result<T>`
 /// \throws invalid_input where the length is negative or not finite
 template <class A, Promotable<A> M, Promotable<A> P>
 [[nodiscard]] auto nearest_on_screw(const dual_quaternion<A>& start, const screw_motion<M>& motion,

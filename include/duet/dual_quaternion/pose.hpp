@@ -41,9 +41,9 @@ template <class Q>
 
 } // namespace detail
 
-/// N17: α + εβ with β = ½ t α: first the rotation, a unit quaternion, then the translation.
-/// \throws invalid_input where |α|² is not 1 within 1e-6 (1e-3 in single precision): points would
-/// be scaled by it; NaN passes
+/// N17: the pose α + εβ with β = ½ t α: first the rotation, a unit quaternion, then the
+/// translation. \throws invalid_input where |α|² is not 1 within 1e-6 (1e-3 in single precision):
+/// points would be scaled by it; NaN passes
 template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE dual_quaternion<promote_t<A, B>>
 pose(const quaternion<A>& rotation, const vector3<B>& translation) {
@@ -57,7 +57,7 @@ pose(const quaternion<A>& rotation, const vector3<B>& translation) {
   return detail::pose_of_unit(rotation, translation);
 }
 
-/// R x + t.
+/// A point carried along by a pose: R x + t.
 template <class T, Promotable<T> U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_point(const dual_quaternion<T>& a,
                                                        const vector3<U>& x) {
@@ -65,15 +65,15 @@ template <class T, Promotable<T> U>
   const vector3<T> t = translation(a);
   return {turned[0] + t[0], turned[1] + t[1], turned[2] + t[2]}; // no packets to be put together
 }
-/// R n: what has no place, as a velocity of translation or a normal.
+/// A direction carried along by a pose: R n of what has no place, as a normal.
 template <class T, Promotable<T> U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_direction(const dual_quaternion<T>& a,
                                                            const vector3<U>& n) {
   return rotate(rotation(a), n);
 }
 
-/// A line l + εm in Plücker coordinates, direction l and moment m = point × l, carried along:
-/// A (l + εm) A*. Also any screw and twist.
+/// A line carried along by a pose: A (l + εm) A*, in Plücker coordinates, direction l and moment
+/// m = point × l. Also any screw and twist.
 template <class T, Promotable<T> U>
 [[nodiscard]] dual_vector<promote_t<T, U>> transform_line(const dual_quaternion<T>& a,
                                                           const dual_vector<U>& line) {
@@ -83,17 +83,17 @@ template <class T, Promotable<T> U>
 /// The plane n·x = offset.
 template <class T>
 struct plane {
-  vector3<T> normal;
-  T offset;
+  vector3<T> normal; ///< n, a unit vector
+  T offset;          ///< of the origin along n, in units of length
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("normal", normal);
     f("offset", offset);
   }
 };
 
-/// The plane carried along: n ↦ R n, offset ↦ offset + R n·t.
+/// A plane carried along by a pose: n ↦ R n, offset ↦ offset + R n·t.
 template <class T, Promotable<T> U>
 [[nodiscard]] plane<promote_t<T, U>> transform_plane(const dual_quaternion<T>& a,
                                                      const plane<U>& p) {
@@ -102,7 +102,7 @@ template <class T, Promotable<T> U>
   return {normal, R(p.offset) + normal.dot(translation(a).template cast<R>())};
 }
 
-/// The matrix [R t; 0 1].
+/// The 4 × 4 matrix [R t; 0 1] of a pose.
 template <class T>
 [[nodiscard]] Eigen::Matrix<T, 4, 4> transform_matrix(const dual_quaternion<T>& a) {
   Eigen::Matrix<T, 4, 4> m = Eigen::Matrix<T, 4, 4>::Identity();
@@ -111,7 +111,7 @@ template <class T>
   return m;
 }
 
-/// The pose of a matrix [R t; 0 1].
+/// The pose of a 4 × 4 matrix [R t; 0 1].
 /// \throws invalid_input where the last row is another, and as `from_rotation_matrix`
 template <class T>
 [[nodiscard]] dual_quaternion<T> from_transform_matrix(const Eigen::Matrix<T, 4, 4>& m) {

@@ -13,11 +13,11 @@
 
 namespace duet {
 
-/// [t; α]: a place, then a quaternion, scalar first.
+/// Seven coordinates of a pose, [t; α]: a place, then a quaternion, scalar first.
 template <class T>
 using vector7 = Eigen::Matrix<T, 7, 1>;
 
-/// γ = [t; α].
+/// A pose as seven coordinates γ = [t; α].
 template <class T>
 [[nodiscard]] vector7<T> pose_coordinates(const dual_quaternion<T>& a) {
   const quaternion<T> alpha = rotation(a);
@@ -47,8 +47,8 @@ template <class T>
   return m;
 }
 
-/// γ̇ = [ṫ; α̇] of a pose that moves with the spatial twist [v; ω]: ṫ = v − t × ω, α̇ = ½ ω α. The
-/// inverse of J2 among the γ̇ that keep α a unit.
+/// The rate γ̇ = [ṫ; α̇] of a pose that moves with the spatial twist [v; ω]: ṫ = v − t × ω, α̇ = ½ ω
+/// α. The inverse of J2 among the γ̇ that keep α a unit.
 template <class A, Promotable<A> B>
 [[nodiscard]] vector7<promote_t<A, B>> pose_coordinates_rate(const dual_quaternion<A>& a,
                                                              const vector6<B>& spatial_twist) {

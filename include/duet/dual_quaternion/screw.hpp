@@ -15,7 +15,7 @@
 
 namespace duet {
 
-/// N19: C(τ) = A (A* B)^τ, the screw motion from A to B along the shorter rotation unless
+/// N19: ScLERP, the screw motion C(τ) = A (A* B)^τ from A to B along the shorter rotation unless
 /// another way is asked for: SLERP over dual numbers. Both are unit.
 template <class A, Promotable<A> B, class S>
 [[nodiscard]] auto sclerp(const dual_quaternion<A>& a, const dual_quaternion<B>& b, const S& tau,
@@ -31,7 +31,7 @@ enum class screw_kind {
   screw        ///< both
 };
 
-/// Its name.
+/// The name of a `screw_kind`.
 [[nodiscard]] inline const char* to_text(screw_kind kind) {
   constexpr std::array names{"none", "translation", "rotation", "screw"};
   return names[std::size_t(kind)];
@@ -44,9 +44,9 @@ struct screw_motion {
   vector3<T> moment; ///< point × n
   T angle;           ///< φ ∈ [0, π], radians
   T translation;     ///< d along the axis, in units of length
-  screw_kind kind;
+  screw_kind kind;   ///< which of the two there are
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("axis", axis);
     f("moment", moment);
@@ -91,6 +91,7 @@ template <class T>
 }
 
 /// The pose exp(½ (φ + εd)(n + εm)) of a screw motion: unit axis n, moment m perpendicular to it.
+/// \return `dual_quaternion<T>`
 template <class N, class M, class A, class D>
   requires Promotable<promote_t<N, M>, promote_t<A, D>>
 [[nodiscard]] auto from_screw(const vector3<N>& axis, const vector3<M>& moment, const A& angle,

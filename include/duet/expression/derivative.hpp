@@ -182,10 +182,10 @@ template <Formula F, Symbol U>
       detail::rate_t<typename F::node_type, detail::movement_of_scalar<symbol_type>>{}, f.held());
 }
 
-/// A symbol and the direction in which it moves.
+/// A symbol and the direction in which it moves; made by `along`.
 template <class SymbolType, Term Direction>
 struct moved {
-  Direction direction;
+  Direction direction; ///< a formula of the symbol's kind
 };
 
 /// u moves in the direction of another formula of its kind.

@@ -101,6 +101,7 @@ struct atan : detail::function<atan, duet::rule::atan> {
 
 } // namespace op
 
+/// The function of `<cmath>` as a formula.
 [[nodiscard]] constexpr auto sqrt(const ScalarTerm auto& x) { return apply<op::sqrt>(x); }
 [[nodiscard]] constexpr auto cbrt(const ScalarTerm auto& x) { return apply<op::cbrt>(x); }
 [[nodiscard]] constexpr auto exp(const ScalarTerm auto& x) { return apply<op::exp>(x); }

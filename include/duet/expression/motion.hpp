@@ -22,9 +22,9 @@ namespace duet::expression {
 /// A rotation or pose, its velocity and its acceleration, as columns ω or [v; ω].
 template <class Q, class V>
 struct moving_value {
-  Q value;
-  V velocity;
-  V acceleration;
+  Q value;        ///< the rotation or pose
+  V velocity;     ///< ω or [v; ω], per unit of the parameter
+  V acceleration; ///< the derivative of `velocity`, per unit of the parameter
 };
 
 namespace detail {

@@ -198,12 +198,14 @@ template <class N, Operands<N> D, class Tag = decltype([](op::turn*) {})>
   const auto direction = apply<op::part_of_dual<false>>(detail::term<Tag>(n));
   return apply<op::slide>(direction, detail::term<Tag>(d));
 }
-/// The coordinate axes, lines through the origin, known to the compiler: `screw(axis::z, theta)`,
-/// `slide(axis::x, 0.3)`.
 namespace axis {
 
+/// Type of `axis::x`, `axis::y` and `axis::z`.
 template <int I>
 using coordinate = formula<unit_vector_node<kind::dual_vector, I>, held<>>;
+
+/// The coordinate axes, lines through the origin, known to the compiler: `screw(axis::z, theta)`,
+/// `slide(axis::x, 0.3)`.
 inline constexpr coordinate<0> x{};
 inline constexpr coordinate<1> y{};
 inline constexpr coordinate<2> z{};

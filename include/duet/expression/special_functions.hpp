@@ -73,6 +73,7 @@ struct lgamma : detail::function<lgamma, duet::rule::lgamma> {
 
 } // namespace op
 
+/// The function of `<cmath>` as a formula.
 [[nodiscard]] constexpr auto sinh(const ScalarTerm auto& x) { return apply<op::sinh>(x); }
 [[nodiscard]] constexpr auto cosh(const ScalarTerm auto& x) { return apply<op::cosh>(x); }
 [[nodiscard]] constexpr auto tanh(const ScalarTerm auto& x) { return apply<op::tanh>(x); }

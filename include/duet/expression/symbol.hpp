@@ -16,7 +16,7 @@ namespace duet::expression {
 /// A name as a template argument.
 template <std::size_t Size>
 struct name {
-  char letters[Size];
+  char letters[Size]; ///< the name and a zero
   constexpr name(const char (&text)[Size]) { std::copy_n(text, Size, letters); }
 };
 

@@ -24,7 +24,7 @@
 namespace duet::expression {
 
 /// The unit vector along the I-th axis; of rigid motion, the line through the origin, or for I = 3,
-/// 4, 5 the translation along an axis.
+/// 4, 5 the translation along an axis. For those who extend duet.
 template <kind K, int I>
 struct unit_vector_node {
   static constexpr kind kind_of = K;

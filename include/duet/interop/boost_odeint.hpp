@@ -43,6 +43,7 @@ template <class Range>
 
 /// `boost::numeric::odeint::range_algebra` with the norm of the values.
 struct odeint_algebra : boost::numeric::odeint::range_algebra {
+  /// The largest size of a component's value.
   template <class State>
   [[nodiscard]] static auto norm_inf(const State& error) {
     return detail::largest_value(error);

@@ -27,85 +27,91 @@ namespace duet {
 template <class D>
 concept SpecialArgument = RealInfinitesimal<D> && !Batched<D>;
 
+/// Bessel function of the first kind J_ν(x).
 [[nodiscard]] auto cyl_bessel_j(Arithmetic auto nu, const SpecialArgument auto& x) {
   return detail::cylinder<detail::bessel::j>(double(nu)).value(x);
 }
+/// Bessel function of the second kind Y_ν(x).
 [[nodiscard]] auto cyl_neumann(Arithmetic auto nu, const SpecialArgument auto& x) {
   return detail::cylinder<detail::bessel::y>(double(nu)).value(x);
 }
+/// Modified Bessel function of the first kind I_ν(x).
 [[nodiscard]] auto cyl_bessel_i(Arithmetic auto nu, const SpecialArgument auto& x) {
   return detail::cylinder<detail::bessel::i>(double(nu)).value(x);
 }
+/// Modified Bessel function of the second kind K_ν(x).
 [[nodiscard]] auto cyl_bessel_k(Arithmetic auto nu, const SpecialArgument auto& x) {
   return detail::cylinder<detail::bessel::k>(double(nu)).value(x);
 }
+/// Spherical Bessel function of the first kind j_n(x).
 [[nodiscard]] auto sph_bessel(unsigned n, const SpecialArgument auto& x) {
   return detail::sphere<false>(n).value(x);
 }
+/// Spherical Bessel function of the second kind y_n(x).
 [[nodiscard]] auto sph_neumann(unsigned n, const SpecialArgument auto& x) {
   return detail::sphere<true>(n).value(x);
 }
 
-/// F(φ, k), by φ.
+/// Elliptic integral of the first kind F(φ, k), by φ.
 [[nodiscard]] auto ellint_1(Arithmetic auto k, const SpecialArgument auto& phi) {
   return detail::elliptic<1>(double(k)).value(phi);
 }
-/// E(φ, k), by φ.
+/// Elliptic integral of the second kind E(φ, k), by φ.
 [[nodiscard]] auto ellint_2(Arithmetic auto k, const SpecialArgument auto& phi) {
   return detail::elliptic<2>(double(k)).value(phi);
 }
-/// Π(ν, φ, k), by φ.
+/// Elliptic integral of the third kind Π(ν, φ, k), by φ.
 template <Arithmetic K, Arithmetic N, SpecialArgument D>
 [[nodiscard]] D ellint_3(K k, N nu, const D& phi) {
   return detail::elliptic<3>(double(k), double(nu)).value(phi);
 }
-/// K(k), by the modulus.
+/// Complete elliptic integral of the first kind K(k), by the modulus.
 [[nodiscard]] auto comp_ellint_1(const SpecialArgument auto& k) {
   const auto value = boost::math::ellint_1(innermost(k), detail::quiet_policy());
   return detail::with_innermost(detail::complete_elliptic(k)[0], value);
 }
-/// E(k), by the modulus.
+/// Complete elliptic integral of the second kind E(k), by the modulus.
 [[nodiscard]] auto comp_ellint_2(const SpecialArgument auto& k) {
   const auto value = boost::math::ellint_2(innermost(k), detail::quiet_policy());
   return detail::with_innermost(detail::complete_elliptic(k)[1], value);
 }
 
-/// Ei(x)
+/// Exponential integral Ei(x).
 [[nodiscard]] auto expint(const SpecialArgument auto& x) {
   return detail::exponential_integral{}.value(x);
 }
-/// ζ(s)
+/// Riemann's zeta function ζ(s).
 [[nodiscard]] auto riemann_zeta(const SpecialArgument auto& s) {
   const auto value = boost::math::zeta(innermost(s), detail::quiet_policy());
   return detail::with_innermost(detail::zeta_of(s), value);
 }
-/// B(x, y), by both.
+/// Beta function B(x, y), by both.
 template <class A, class B>
   requires detail::MixedReals<A, B> && SpecialArgument<promote_t<A, B>>
 [[nodiscard]] auto beta(const A& x, const B& y) {
   return detail::lift_promoted(detail::beta_rule{}, promote_t<A, B>(x), promote_t<A, B>(y));
 }
 
-/// P_n(x)
+/// Legendre polynomial P_n(x).
 template <SpecialArgument D>
 [[nodiscard]] D legendre(unsigned n, const D& x) {
   return detail::legendre_by_recurrence(n, 0, x, D(1));
 }
-/// (1 − x²)^(m/2) dᵐP_l/dxᵐ, without the sign (−1)ᵐ.
+/// Associated Legendre function (1 − x²)^(m/2) dᵐP_l/dxᵐ, without the sign (−1)ᵐ.
 template <SpecialArgument D>
 [[nodiscard]] D assoc_legendre(unsigned l, unsigned m, const D& x) {
   using std::pow;
   const D power = pow(detail::one_minus_square(x), real_type_t<D>(m) / 2);
   return detail::legendre_by_recurrence(l, m, x, power);
 }
-/// Y_l^m(θ, 0), with the sign (−1)ᵐ.
+/// Spherical harmonic Y_l^m(θ, 0), with the sign (−1)ᵐ.
 template <SpecialArgument D>
 [[nodiscard]] D sph_legendre(unsigned l, unsigned m, const D& theta) {
   using std::cos;
   using std::sin;
   return detail::normalized_legendre(l, m, D(cos(theta)), D(-sin(theta)));
 }
-/// H_n(x), of physicists: H_1 = 2x.
+/// Hermite polynomial H_n(x), of physicists: H_1 = 2x.
 template <SpecialArgument D>
 [[nodiscard]] D hermite(unsigned n, const D& x) {
   using real = real_type_t<D>;
@@ -117,7 +123,7 @@ template <SpecialArgument D>
   }
   return h;
 }
-/// L_n^m(x)
+/// Associated Laguerre polynomial L_n^m(x).
 template <SpecialArgument D>
 [[nodiscard]] D assoc_laguerre(unsigned n, unsigned m, const D& x) {
   using real = real_type_t<D>;
@@ -129,7 +135,7 @@ template <SpecialArgument D>
   }
   return p;
 }
-/// L_n(x)
+/// Laguerre polynomial L_n(x).
 [[nodiscard]] auto laguerre(unsigned n, const SpecialArgument auto& x) {
   return assoc_laguerre(n, 0, x);
 }

@@ -15,6 +15,7 @@ namespace duet {
 
 /// ∂γ/∂θ, 7 rows, of γ = [t; α] (N20, N21): J2 times it is the spatial Jacobian. α is the
 /// quaternion of `chain.pose(theta)`, which has its own sign. Arguments as `jacobian`.
+/// \return a matrix of 7 rows and a column for each joint
 template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto pose_coordinates_jacobian(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
@@ -29,6 +30,7 @@ template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
 /// ∂[t; a, b, c]/∂θ, 6 rows, for the Euler angles of a sequence: `euler_jacobian<zyx>(chain, θ)`.
 /// Without bounds towards gimbal lock, where the angles' rates do not exist. Arguments as
 /// `jacobian`.
+/// \return a matrix of 6 rows and a column for each joint
 template <euler_sequence Sequence, SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto euler_jacobian(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;

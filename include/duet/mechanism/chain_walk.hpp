@@ -26,7 +26,7 @@
 
 /// \file
 /// Along a chain from its base to one of its links, in a loop over a table in memory or unrolled
-/// over one that the compiler knows.
+/// over one that the compiler knows. For those who extend duet.
 
 namespace duet {
 

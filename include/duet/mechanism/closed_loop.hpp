@@ -77,8 +77,9 @@ public:
       : constraints_(std::move(constraints)), u_(u0), options_(options),
         start_(assembled(position)) {}
 
-  /// The u that all others are reached from, and the position there.
+  /// The u that all others are reached from.
   [[nodiscard]] const P& parameter() const { return u_; }
+  /// The position at `parameter()`.
   [[nodiscard]] const X& position() const { return start_.x; }
 
   /// x(u), over any scalar of duet; real values are in double precision.

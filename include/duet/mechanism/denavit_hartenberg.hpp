@@ -36,13 +36,13 @@ struct fields_by_name {
 /// joint is prismatic.
 template <class T = double>
 struct dh_row {
-  detail::fields_by_name by_name = {};
-  T a = T(0);     ///< length of the link
-  T d = T(0);     ///< offset along the joint's axis
-  T alpha = T(0); ///< twist of the link
-  T theta = T(0); ///< angle at which the coordinate is zero
-  joint_limits<T> limits = {};
-  joint_kind kind = joint_kind::revolute;
+  detail::fields_by_name by_name = {};    ///< refuses values without names
+  T a = T(0);                             ///< length of the link, in units of length
+  T d = T(0);                             ///< offset along the joint's axis, in units of length
+  T alpha = T(0);                         ///< twist of the link, radians
+  T theta = T(0);                         ///< angle at which the coordinate is zero, radians
+  joint_limits<T> limits = {};            ///< of the coordinate
+  joint_kind kind = joint_kind::revolute; ///< how the joint moves
 };
 
 namespace detail {

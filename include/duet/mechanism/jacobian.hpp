@@ -106,9 +106,10 @@ template <class Frame, bool WithRotation, class S, class C, class X, class At, c
 ///
 /// \tparam Frame           see `jacobian`
 /// \param at               the number of a link, or an `attached_frame`; nothing for the tip
+/// \return `value_and_jacobian`
 template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At = tip_of_chain>
-[[nodiscard]] DUET_ALWAYS_INLINE auto pose_and_jacobian(const C& chain, const X& theta, Frame,
-                                                        const At& at = {}) {
+[[nodiscard]] DUET_ALWAYS_INLINE auto pose_and_jacobian(const C& chain, const X& theta,
+                                                        Frame /*frame*/, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
   value_and_jacobian<dual_quaternion<S>, detail::chain_jacobian<C, X>> result;
   const auto at_frame = detail::fill_jacobian<Frame, true, S>(result.jacobian, chain, theta, at);

@@ -77,6 +77,7 @@ private:
 ///
 /// Only in `frame::hybrid` is its linear part ∂²p/∂θ_j∂θ_k of the frame's origin p, symmetric in j
 /// and k. Arguments as `jacobian`.
+/// \return `chain_hessian<S, N>`
 template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto kinematic_hessian(const C& chain, const X& theta, Frame frame_of_result,
                                      const At& at = {}) {
@@ -97,10 +98,10 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At =
 /// J and its rate J̇ = Σ_j ∂J/∂θ_j θ̇_j.
 template <class J>
 struct jacobian_and_rate {
-  J jacobian;
-  J rate;
+  J jacobian; ///< J, 6 rows and a column for each joint
+  J rate;     ///< J̇, of the same size, per unit of time
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("jacobian", jacobian);
     f("rate", rate);
@@ -110,6 +111,7 @@ struct jacobian_and_rate {
 /// J and J̇ along θ̇, so that J θ̈ + J̇ θ̇ is the derivative of the twist J θ̇. In `frame::hybrid` its
 /// linear part is the classical acceleration of the frame's origin, p̈; in the others it is not (see
 /// docs/mechanisms.md). Arguments as `jacobian`.
+/// \return `jacobian_and_rate`
 template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
           PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto jacobian_with_rate(const C& chain, const X& theta, const V& theta_dot,
@@ -165,6 +167,7 @@ template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
 }
 
 /// J̇ of `jacobian_with_rate`.
+/// \return a matrix of 6 rows and a column for each joint
 template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
           PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto jacobian_rate(const C& chain, const X& theta, const V& theta_dot,

@@ -126,8 +126,8 @@ template <class T>
 /// A constant displacement x ↦ R x + t in a table. To compute with it, make it a pose.
 template <class T = double>
 struct placement {
-  quaternion<T> rotation{T(1)};
-  std::array<T, 3> translation{};
+  quaternion<T> rotation{T(1)};   ///< R, by a unit quaternion
+  std::array<T, 3> translation{}; ///< t, in units of length
 
   constexpr placement() = default;
   /// \param r  a unit quaternion, or one written with three digits or more, which is normalised
@@ -139,6 +139,7 @@ struct placement {
     translation = {t[0], t[1], t[2]};
   }
 
+  /// The displacement as a pose.
   [[nodiscard]] dual_quaternion<T> pose() const {
     return detail::pose_of_unit(rotation, detail::components(translation).eigen());
   }
@@ -160,29 +161,30 @@ enum class joint_kind {
   fixed       ///< does not move
 };
 
-/// Of the coordinate θ of a joint: radians, or units of length for a prismatic one; `velocity` is
-/// the largest |θ̇|.
+/// Limits of the coordinate θ of a joint: radians, or units of length for a prismatic one.
 template <class T = double>
 struct joint_limits {
-  T lower = -std::numeric_limits<T>::infinity();
-  T upper = std::numeric_limits<T>::infinity();
-  T velocity = std::numeric_limits<T>::infinity();
+  T lower = -std::numeric_limits<T>::infinity();   ///< the least θ
+  T upper = std::numeric_limits<T>::infinity();    ///< the largest θ
+  T velocity = std::numeric_limits<T>::infinity(); ///< the largest |θ̇|, per unit of time
 };
 
 /// One joint of a chain. Its own frame stands, at θ = 0, at `origin` in the frame of the joint
 /// before; its axis goes through the frame's origin along the unit vector `axis` in that frame.
 template <class T = double>
 struct joint {
-  joint_kind kind = joint_kind::revolute;
-  placement<T> origin = {};
-  std::array<T, 3> axis = {T(0), T(0), T(1)};
-  joint_limits<T> limits = {};
-  T pitch = T(0); ///< of a helical joint, in units of length per radian
+  joint_kind kind = joint_kind::revolute;     ///< how it moves
+  placement<T> origin = {};                   ///< of its frame in that of the joint before
+  std::array<T, 3> axis = {T(0), T(0), T(1)}; ///< a unit vector
+  joint_limits<T> limits = {};                ///< of its coordinate
+  T pitch = T(0);                             ///< of a helical joint, in units of length per radian
 
+  /// Does it turn about its axis?
   [[nodiscard]] constexpr bool turns() const {
     return kind == joint_kind::revolute || kind == joint_kind::continuous ||
            kind == joint_kind::helical;
   }
+  /// Does it slide along its axis?
   [[nodiscard]] constexpr bool slides() const {
     return kind == joint_kind::prismatic || kind == joint_kind::helical;
   }
@@ -200,8 +202,8 @@ struct joint {
 /// offset is from the frame of that joint.
 template <class T = double>
 struct attached_frame {
-  int link = 0;
-  placement<T> offset = {};
+  int link = 0;             ///< number of the link
+  placement<T> offset = {}; ///< from the frame of the joint that moves the link
 
   /// The frame at the point x of this one, of the same axes.
   [[nodiscard]] constexpr attached_frame at_point(const std::array<T, 3>& x) const {

@@ -88,6 +88,7 @@ template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
 }
 
 /// w and ∇w, ∂w/∂θ_j = w tr(J⁺ ∂J/∂θ_j). Arguments as `jacobian`.
+/// \return `value_and_gradient`
 /// \throws invalid_input where J loses rank: w has a kink there
 template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto manipulability_gradient(const C& chain, const X& theta, const At& at = {}) {
@@ -114,14 +115,16 @@ template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
 /// −w log √det(J Jᵀ), which planners lower: away from singularities, with weight w.
 template <class C>
 struct high_manipulability {
-  C chain;
-  double weight = 1;
+  C chain;           ///< the arm
+  double weight = 1; ///< w
 
+  /// Its value at joint coordinates θ.
   template <class X>
   [[nodiscard]] auto operator()(const X& theta) const {
     using std::log;
     return -weight * log(manipulability(chain, theta));
   }
+  /// Its gradient at joint coordinates θ.
   template <class X>
   [[nodiscard]] auto gradient(const X& theta) const {
     auto [w, slope] = manipulability_gradient(chain, theta);

@@ -87,9 +87,13 @@ struct baxter_left_arm {
   }();
 };
 
+/// Franka Emika's Panda, seven joints, metres; the tip is the flange.
 [[nodiscard]] constexpr compiled_chain<panda_arm> panda() { return {}; }
+/// KUKA's LBR iiwa 14, seven joints, metres.
 [[nodiscard]] constexpr compiled_chain<iiwa14_arm> iiwa14() { return {}; }
+/// Universal Robots' UR5e, six joints, metres.
 [[nodiscard]] constexpr compiled_chain<ur5e_arm> ur5e() { return {}; }
+/// The left arm of Rethink's Baxter, seven joints, metres.
 [[nodiscard]] constexpr compiled_chain<baxter_left_arm> baxter_left() { return {}; }
 
 } // namespace duet::robots

@@ -19,9 +19,9 @@ namespace duet {
 /// l, moment m = point × l. A joint that slides along n has l = 0 and n in place of m.
 template <class T = double>
 struct joint_screw {
-  std::array<T, 3> direction;
-  std::array<T, 3> moment;
-  joint_limits<T> limits = {};
+  std::array<T, 3> direction;  ///< l, a unit vector or zero
+  std::array<T, 3> moment;     ///< m + pitch l, in units of length
+  joint_limits<T> limits = {}; ///< of the coordinate
 
   constexpr joint_screw(const std::array<T, 3>& l, const std::array<T, 3>& m,
                         const joint_limits<T>& given_limits = {})

@@ -153,10 +153,15 @@ public:
     }
     return {i, i == 0 ? placement<T>{} : frames_[std::size_t(i - 1)]};
   }
+  /// How joint i moves.
   [[nodiscard]] constexpr joint_kind kind(int i) const { return kinds_[std::size_t(i)]; }
+  /// The limits of joint i.
   [[nodiscard]] constexpr const joint_limits<T>& limits(int i) const {
     return limits_[std::size_t(i)];
   }
+
+  // For those who extend duet: what a `SerialChain` is made of.
+
   /// The table that evaluation reads.
   [[nodiscard]] constexpr const auto& steps() const { return steps_; }
 
@@ -210,23 +215,32 @@ public:
   using own_jacobian = void;
   static constexpr int joints = chain_type::joints;
 
+  /// Number of joints that move.
   [[nodiscard]] static constexpr int size() { return joints; }
+  /// The frame of the tip.
   [[nodiscard]] static constexpr const attached_frame<scalar_type>& tip() {
     return Arm::chain.tip();
   }
+  /// The frame of link i.
   [[nodiscard]] static constexpr attached_frame<scalar_type> link(int i) {
     return Arm::chain.link(i);
   }
+  /// How joint i moves.
   [[nodiscard]] static constexpr joint_kind kind(int i) { return Arm::chain.kind(i); }
+  /// The limits of joint i.
   [[nodiscard]] static constexpr const joint_limits<scalar_type>& limits(int i) {
     return Arm::chain.limits(i);
   }
-  [[nodiscard]] static constexpr const auto& steps() { return Arm::chain.steps(); }
   /// This chain as a table in memory, whose type does not tell the arm.
   [[nodiscard]] static constexpr const chain_type& table() { return Arm::chain; }
+
+  // For those who extend duet: what a `SerialChain` is made of.
+
+  [[nodiscard]] static constexpr const auto& steps() { return Arm::chain.steps(); }
 };
 
 /// The lower and upper limits of all coordinates.
+/// \return a column of as many coordinates as joints
 template <SerialChain C>
 [[nodiscard]] auto lower_limits(const C& chain) {
   detail::joint_vector<typename C::scalar_type, C::joints> result(chain.size());

@@ -16,7 +16,7 @@ namespace duet {
 
 /// A joint as a robot description has it.
 struct urdf_joint_name {
-  std::string name;
+  std::string name;   ///< of the joint
   std::string type;   ///< `revolute`, `continuous`, `prismatic`, `fixed` or another
   std::string parent; ///< the link that it hangs on
   std::string child;  ///< the link that it moves
@@ -24,8 +24,8 @@ struct urdf_joint_name {
 
 /// What a robot description has, in the order of the file.
 struct urdf_names {
-  std::vector<std::string> links;
-  std::vector<urdf_joint_name> joints;
+  std::vector<std::string> links;      ///< names of the links
+  std::vector<urdf_joint_name> joints; ///< fixed ones included
 };
 
 /// One link or joint a line, `shoulder_pan_joint: revolute, base_link -> shoulder_link`.

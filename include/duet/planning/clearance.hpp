@@ -21,8 +21,8 @@ namespace duet {
 
 /// A capsule, or a sphere, fixed to a link of a chain, in the frame of the link.
 struct link_body {
-  int link;
-  capsule<double> shape;
+  int link;              ///< number of the link
+  capsule<double> shape; ///< in the frame of the link
 };
 
 /// What a body can run into.
@@ -30,14 +30,15 @@ using obstacle = std::variant<sphere<double>, box<double>, half_space<double>>;
 
 /// What a chain consists of, and what it must not touch, in the frame of its base.
 struct scene {
-  std::vector<link_body> bodies;
-  std::vector<obstacle> obstacles;
+  std::vector<link_body> bodies;   ///< what the chain consists of
+  std::vector<obstacle> obstacles; ///< in the frame of the chain's base
   /// How far planners keep them apart, in units of length.
   double margin = 0;
   /// From how far beyond the margin on planners look at an obstacle before each step.
   double horizon = .1;
 };
 
+/// Looks whether a scene is one for a chain. For those who extend duet.
 /// \throws invalid_input for shapes that are none (`require_shape`), links that `chain` lacks, and
 /// a margin or horizon that is negative or not finite
 template <SerialChain C>
@@ -55,6 +56,7 @@ void require_scene(const C& chain, const scene& s) {
 }
 
 /// Where a body of a chain is nearest to an obstacle, over the scalar of the coordinates θ.
+/// \return `proximity<S>`
 /// \throws invalid_input as `chain.pose`
 template <SerialChain C, VectorLike X>
 [[nodiscard]] auto closest_points(const C& chain, const X& theta, const link_body& body,
@@ -63,8 +65,9 @@ template <SerialChain C, VectorLike X>
   return std::visit([&](const auto& o) { return closest_points(here, o); }, from);
 }
 
-/// The distance of a body of a chain from an obstacle, and its gradient by θ, by dual numbers
+/// The distance of a body of a chain from an obstacle, and its gradient by θ. By dual numbers
 /// through the pose of the link and the closest points: nᵀ J of the closest point, n the normal.
+/// \return `value_and_gradient`
 /// \throws invalid_input as `chain.pose`
 template <SerialChain C, VectorLike X>
 [[nodiscard]] auto distance_and_gradient(const C& chain, const X& theta, const link_body& body,
@@ -76,12 +79,13 @@ template <SerialChain C, VectorLike X>
 /// The least distance of a chain's bodies from obstacles: which, and where.
 template <class S>
 struct chain_clearance {
+  /// In units of length; negative where they overlap, infinite where there is nothing to touch.
   S distance = S(std::numeric_limits<double>::infinity());
-  std::size_t body = 0;
-  std::size_t obstacle = 0;
-  proximity<S> points = {};
+  std::size_t body = 0;     ///< which of `scene::bodies`
+  std::size_t obstacle = 0; ///< which of `scene::obstacles`
+  proximity<S> points = {}; ///< of these two
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("distance", distance);
     f("body", body);
@@ -109,6 +113,7 @@ void for_each_proximity(const C& chain, const X& theta, const scene& s, const Vi
 
 /// How far the chain is from all obstacles at coordinates θ of any scalar, in units of length;
 /// negative where it overlaps one of them, infinite where there are none.
+/// \return `chain_clearance<S>`
 /// \throws invalid_input as `chain.pose`
 template <SerialChain C, VectorLike X>
 [[nodiscard]] auto clearance(const C& chain, const X& theta, const scene& s) {

@@ -29,7 +29,7 @@ struct proximity {
   vector3<T> on_obstacle; ///< the point of the obstacle's surface
   vector3<T> normal;      ///< unit, out of the obstacle: on_body = on_obstacle + distance · normal
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("distance", distance);
     f("on_body", on_body);

@@ -39,9 +39,10 @@ struct no_objective {};
 /// w/2 Σ (θᵢ − θ̂ᵢ)²: a preferred posture θ̂, of weight w.
 template <class V>
 struct preferred_posture {
-  V posture;
-  double weight = 1;
+  V posture;         ///< θ̂, joint coordinates
+  double weight = 1; ///< w
 
+  /// Its value at joint coordinates θ.
   template <class X>
   [[nodiscard]] auto operator()(const X& theta) const {
     auto sum = (theta[0] - posture[0]) * (theta[0] - posture[0]);
@@ -50,6 +51,7 @@ struct preferred_posture {
     }
     return sum * (weight / 2);
   }
+  /// Its gradient at joint coordinates θ.
   template <class X>
   [[nodiscard]] V gradient(const X& theta) const {
     return weight * (theta - posture);

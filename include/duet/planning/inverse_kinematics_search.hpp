@@ -41,10 +41,11 @@ struct inverse_kinematics_result {
   detail::joint_vector<double, N> joints; ///< within the limits
   pose_deviation deviation;               ///< of the tip from the goal
   int iterations = 0;                     ///< from all configurations together
-  int restarts = 0;
+  int restarts = 0;                       ///< how many random configurations it began anew from
+  /// Why it ended: `reached` where the tip is at the goal, else what is in the way.
   stop_reason reason = stop_reason::no_progress;
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("joints", joints);
     f("deviation", deviation);

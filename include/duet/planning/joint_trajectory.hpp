@@ -20,11 +20,11 @@ namespace duet {
 /// Joint coordinates with their rates.
 template <class V>
 struct joint_motion {
-  V value;
-  V velocity;
-  V acceleration;
+  V value;        ///< θ: radians, or units of length where joints slide
+  V velocity;     ///< θ̇, per unit of time
+  V acceleration; ///< θ̈, per unit of time squared
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("value", value);
     f("velocity", velocity);

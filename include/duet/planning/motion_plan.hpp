@@ -54,7 +54,7 @@ enum class stop_reason {
   out_of_reach     ///< the goal is farther away than the links reach
 };
 
-/// Its name.
+/// The name of a `stop_reason`.
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
   constexpr std::array names{"reached",     "joint_limit",     "singular",    "obstacle",
                              "no_progress", "iteration_limit", "out_of_reach"};
@@ -63,16 +63,16 @@ enum class stop_reason {
 
 /// How far one pose is from another: its origin in units of length, its axes in radians.
 struct pose_deviation {
-  double length = 0;
-  double angle = 0;
+  double length = 0; ///< from origin to origin, in units of length
+  double angle = 0;  ///< between the axes, radians
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("length", length);
     f("angle", angle);
   }
 };
-/// Of a from b, or of b from a: the same.
+/// How far a pose is from another, length and angle apart; the same for a and b as for b and a.
 template <std::floating_point T>
 [[nodiscard]] pose_deviation deviation_between(const dual_quaternion<T>& a,
                                                const dual_quaternion<T>& b) {
@@ -86,8 +86,9 @@ template <std::floating_point T>
 /// \tparam N  as of `serial_chain`
 template <int N>
 struct motion_plan {
+  /// Joint coordinates at each waypoint: radians, or units of length where joints slide.
   std::vector<detail::joint_vector<double, N>> joints;
-  std::vector<dual_quaternion<double>> poses; ///< of the tip
+  std::vector<dual_quaternion<double>> poses; ///< of the tip, at each waypoint
   /// The fraction of the screw motion, or the parameter of the path, at each waypoint; the same in
   /// successive ones where the joints move with the tip in place.
   std::vector<double> tau;
@@ -98,10 +99,11 @@ struct motion_plan {
   double smallest_limit_margin = std::numeric_limits<double>::infinity();
   /// Of the bodies of the chain from obstacles, at any waypoint; infinite without.
   double smallest_clearance = std::numeric_limits<double>::infinity();
-  int iterations = 0;
+  int iterations = 0; ///< of Newton's method, in all
+  /// Why the plan ends where it does: `reached` where that is the goal.
   stop_reason reason = stop_reason::no_progress;
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("joints", joints);
     f("poses", poses);

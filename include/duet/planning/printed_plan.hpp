@@ -24,7 +24,7 @@ struct printed_plan_options {
   double tau = .01;        ///< of the small step of ScLERP; paths given by poses have none
   double beta = 1;         ///< N23
   double tolerance = 1e-4; ///< how close the tip must come, in units of length and radians
-  int iterations = 10000;
+  int iterations = 10000;  ///< the most steps
 };
 
 namespace detail {
@@ -73,6 +73,7 @@ template <class C, class Next, class Keep>
 /// fixed τ of what is left the goal is approached slower and slower: each step leaves about 1 − βτ
 /// of the way, so β does what τ does. \throws invalid_input for a start outside the limits and for
 /// a goal that is no pose
+/// \return `motion_plan<N>`
 template <SerialChain C, VectorLike Start>
 [[nodiscard]] auto printed_screw_plan(const C& chain, const Start& start,
                                       const dual_quaternion<double>& goal,
@@ -104,6 +105,7 @@ template <SerialChain C, VectorLike Start>
 /// of the length h the tip lags (1 − β)/β h behind; it follows for 0 < β < 2, with β = 1 to the
 /// second order of h. \throws invalid_input for a start outside the limits, for no poses, and for
 /// one that is none
+/// \return `motion_plan<N>`
 template <SerialChain C, VectorLike Start>
 [[nodiscard]] auto printed_path_plan(const C& chain, const Start& start,
                                      std::span<const dual_quaternion<double>> path,

@@ -39,7 +39,7 @@ void append_components(std::vector<double>& row, const V& values) {
 
 } // namespace detail
 
-/// Writes the waypoints of a plan as CSV, with all digits and independently of the locale; the
+/// Writes the waypoints of a plan as CSV. With all digits and independently of the locale; the
 /// whole file or none: τ, joint coordinates, the tip's position and rotation, its deviations.
 /// Units in the header are those of robots in metres.
 /// \throws invalid_input for a plan without waypoints, file_error

@@ -19,16 +19,16 @@ namespace duet {
 /// All points no further than `radius` from `centre`.
 template <class T = double>
 struct sphere {
-  vector3<T> centre;
-  T radius;
+  vector3<T> centre; ///< in units of length
+  T radius;          ///< in units of length
 };
 
 /// All points no further than `radius` from the line between two points, which may be one.
 template <class T = double>
 struct capsule {
-  vector3<T> from;
-  vector3<T> to;
-  T radius;
+  vector3<T> from; ///< one end of the line, in units of length
+  vector3<T> to;   ///< its other end
+  T radius;        ///< in units of length
 
   constexpr capsule(const vector3<T>& a, const vector3<T>& b, const T& r)
       : from(a), to(b), radius(r) {}
@@ -38,15 +38,15 @@ struct capsule {
 /// All points whose coordinates in the frame `placed` are, each, between ± `half_sizes`.
 template <class T = double>
 struct box {
-  dual_quaternion<T> placed;
-  vector3<T> half_sizes;
+  dual_quaternion<T> placed; ///< the pose of its centre, along its edges
+  vector3<T> half_sizes;     ///< along its own axes, in units of length
 };
 
 /// All points with normal·x ≤ offset: the unit normal points out of what is solid.
 template <class T = double>
 struct half_space {
-  vector3<T> normal;
-  T offset;
+  vector3<T> normal; ///< a unit vector, out of what is solid
+  T offset;          ///< of the boundary along the normal, in units of length
 };
 
 /// A capsule carried along.
@@ -73,6 +73,7 @@ void require_extent(const std::string& of, const T& x) {
 } // namespace detail
 
 /// Looks whether a shape is one: finite, of no negative size, with unit quaternions and normals.
+/// For those who extend duet.
 /// \param name  for the message
 /// \throws invalid_input
 template <class T>

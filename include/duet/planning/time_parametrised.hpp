@@ -211,6 +211,7 @@ struct time_options {
 /// \param waypoints  joint coordinates, equal neighbours allowed
 /// \param velocity  of each joint, in coordinates per second, positive or infinite
 /// \param acceleration  of each joint, per second², positive and finite
+/// \return `joint_trajectory<N>`
 /// \throws invalid_input for no waypoints, coordinates that are not finite, and for limits that
 /// are not positive or of another number than the joints
 template <class V, VectorLike Velocity, VectorLike Acceleration>
@@ -274,6 +275,7 @@ template <class V, VectorLike Velocity, VectorLike Acceleration>
 
 /// The quickest motion along a plan's joint positions that keeps to limits of the joints'
 /// velocities and accelerations.
+/// \return `joint_trajectory<N>`
 template <int N, VectorLike Velocity, VectorLike Acceleration>
 [[nodiscard]] auto time_parametrised(const motion_plan<N>& plan, const Velocity& velocity,
                                      const Acceleration& acceleration,

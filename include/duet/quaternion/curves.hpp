@@ -17,6 +17,7 @@ namespace duet {
 /// The inner control point of `squad` at q between two neighbours:
 /// s = q exp(−¼(log(q* next) + log(q* previous))). Signs must be aligned. At an end, where there is
 /// no neighbour, q itself serves. \throws invalid_input where one is zero
+/// \return `quaternion<T>`
 template <class A, Promotable<A> B, Promotable<A> C>
 [[nodiscard]] auto squad_control(const quaternion<A>& previous, const quaternion<B>& q,
                                  const quaternion<C>& next) {
@@ -31,6 +32,7 @@ template <class A, Promotable<A> B, Promotable<A> C>
 ///
 /// With control points by `squad_control` and equal parameter steps, segments join with one angular
 /// velocity, not with one angular acceleration.
+/// \return `quaternion<T>`
 template <class A, class P, class Q, class B, class S>
 [[nodiscard]] auto squad(const quaternion<A>& a, const quaternion<P>& p, const quaternion<Q>& q,
                          const quaternion<B>& b, const S& tau) {

@@ -51,8 +51,9 @@ namespace duet {
 
 /// Three axes, 0 = x, 1 = y, 2 = z, no two neighbours equal.
 struct euler_sequence {
-  int first, second, third;
+  int first, second, third; ///< axes of the moving body, turned about in this order
 
+  /// Are first and third one axis?
   [[nodiscard]] constexpr bool is_proper() const { return first == third; }
   /// The axis that is neither first nor second.
   [[nodiscard]] constexpr int other() const { return 3 - first - second; }
@@ -60,8 +61,7 @@ struct euler_sequence {
   [[nodiscard]] constexpr int sign() const { return (second - first + 3) % 3 == 1 ? 1 : -1; }
 };
 
-// The twelve sequences, named by the axes turned about one after the other.
-
+/// The twelve sequences, named by the axes turned about one after the other.
 inline constexpr euler_sequence xyz{0, 1, 2}, yzx{1, 2, 0}, zxy{2, 0, 1};
 inline constexpr euler_sequence xzy{0, 2, 1}, yxz{1, 0, 2}, zyx{2, 1, 0};
 inline constexpr euler_sequence xyx{0, 1, 0}, yzy{1, 2, 1}, zxz{2, 0, 2};
@@ -162,6 +162,7 @@ using angle_t = std::conditional_t<std::integral<T>, double, T>;
 /// The rotation R_i(a) R_j(b) R_k(c) of the sequence ijk; angles in the letters' order, radians,
 /// integers among them.
 /// Example: `from_euler<zyx>(yaw, pitch, roll)`.
+/// \return `quaternion<T>`
 template <euler_sequence Sequence, class A, class B, class C>
   requires Promotable<A, promote_t<B, C>>
 [[nodiscard]] auto from_euler(const A& a, const B& b, const C& c) {

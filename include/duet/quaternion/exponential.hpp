@@ -19,14 +19,16 @@
 #include <type_traits>
 
 /// \file
-/// Exponential, logarithm, powers (N4, N5) and spherical interpolation (N9), in half angles.
+/// Exponential, logarithm, powers (N4, N5) and spherical interpolation `slerp` (N9), in half
+/// angles.
 ///
 /// All work in s = v·v through functions that are regular at s = 0, so the identity, a pure
 /// translation and every order of derivative need no special case.
 
 namespace duet {
 
-/// exp(v) of a pure quaternion: cos|v| + v sin|v|/|v| (N4). v = ½ × rotation vector.
+/// The exponential of a pure quaternion, exp(v) = cos|v| + v sin|v|/|v| (N4). v = ½ × rotation
+/// vector.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<T> exp(const vector3<T>& v) {
   const T s = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
@@ -47,7 +49,7 @@ template <class S, class T>
 
 } // namespace detail
 
-/// exp(w + v) = e^w (cos|v| + v sin|v|/|v|) (N4).
+/// The exponential exp(w + v) = e^w (cos|v| + v sin|v|/|v|) (N4).
 template <class T>
 [[nodiscard]] quaternion<T> exp(const quaternion<T>& q) {
   using std::exp;
@@ -120,7 +122,8 @@ template <class T>
 
 } // namespace detail
 
-/// log q = log|q| + û φ, φ = atan2(|q⃗|, q₀) ∈ [0, π] (N4): the inverse of exp, in half angles.
+/// The logarithm log q = log|q| + û φ, φ = atan2(|q⃗|, q₀) ∈ [0, π] (N4): the inverse of exp, in
+/// half angles.
 ///
 /// Never flips the sign of q, so log(−q) is the logarithm the long way round. Singular at q = −|q|,
 /// a full turn, where the axis is undetermined: the value there is (log|q|, π, 0, 0), and
@@ -200,9 +203,9 @@ template <class T, class S>
 
 } // namespace detail
 
-/// q^ρ = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar. At q = −|q| the axis û is undetermined: x is
-/// chosen, and derivatives are NaN unless ρ is whole.
-/// \throws invalid_input for the zero quaternion
+/// The power q^ρ = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar. At q = −|q| the axis û is
+/// undetermined: x is chosen, and derivatives are NaN unless ρ is whole. \throws invalid_input for
+/// the zero quaternion
 template <class T, ScalarFor<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow(const quaternion<T>& q, const S& exponent) {
   const auto rho = detail::as_constant<promote_t<T, S>>(exponent);
@@ -233,9 +236,10 @@ template <class A, class B>
   return 2 * abs(innermost(dot(a, b))) <= tolerance;
 }
 
-/// SLERP from a to b, both of unit norm: a (a* b)^τ (N9), along the shorter arc unless another way
-/// is asked for. Where a and b are exactly half a turn apart both arcs are equal and b is taken as
-/// it is, see `is_half_turn_apart`. \throws invalid_input where a or b is zero
+/// SLERP, spherical interpolation from a to b, both of unit norm: a (a* b)^τ (N9), along the
+/// shorter arc unless another way is asked for. Where a and b are exactly half a turn apart both
+/// arcs are equal and b is taken as it is, see `is_half_turn_apart`. \throws invalid_input where a
+/// or b is zero
 template <class A, class B, class S>
   requires Promotable<A, B> && ScalarFor<S, promote_t<A, B>>
 [[nodiscard]] auto slerp(const quaternion<A>& a, const quaternion<B>& b, const S& tau,

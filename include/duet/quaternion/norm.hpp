@@ -103,7 +103,7 @@ template <class Condition, class T, class F, class G>
 
 } // namespace detail
 
-/// N3: |q|. Zero for the zero quaternion, where it has no derivative.
+/// N3: the norm |q|. Zero for the zero quaternion, where it has no derivative.
 template <class T>
 [[nodiscard]] T norm(const quaternion<T>& q) {
   using std::ldexp;
@@ -117,7 +117,7 @@ template <class T>
       });
 }
 
-/// q/|q|.
+/// The quaternion of unit norm q/|q|.
 /// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] quaternion<T> normalized(const quaternion<T>& q) {
@@ -132,7 +132,7 @@ template <class T>
       });
 }
 
-/// N3: q⁻¹ = q*/|q|²; for a unit quaternion use `conj`.
+/// N3: the inverse q⁻¹ = q*/|q|²; for a unit quaternion use `conj`.
 /// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] quaternion<T> inverse(const quaternion<T>& q) {

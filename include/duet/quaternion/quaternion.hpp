@@ -51,10 +51,10 @@ public:
       : w_(static_cast<T>(q.w())), x_(static_cast<T>(q.x())), y_(static_cast<T>(q.y())),
         z_(static_cast<T>(q.z())) {}
 
-  [[nodiscard]] constexpr const T& w() const { return w_; }
-  [[nodiscard]] constexpr const T& x() const { return x_; }
-  [[nodiscard]] constexpr const T& y() const { return y_; }
-  [[nodiscard]] constexpr const T& z() const { return z_; }
+  [[nodiscard]] constexpr const T& w() const { return w_; } ///< the scalar part
+  [[nodiscard]] constexpr const T& x() const { return x_; } ///< what stands at i
+  [[nodiscard]] constexpr const T& y() const { return y_; } ///< what stands at j
+  [[nodiscard]] constexpr const T& z() const { return z_; } ///< what stands at k
   /// The vector part (x, y, z).
   [[nodiscard]] vector3<T> vec() const { return {x_, y_, z_}; }
 
@@ -101,18 +101,18 @@ struct structure<quaternion<T>> {
   }
 };
 
-/// Is T a `quaternion`?
 /// Of numbers and constants, as a product of them.
 template <class A, class B, class C, class D>
 quaternion(const A&, const B&, const C&, const D&)
     -> quaternion<promote_t<promote_t<A, B>, promote_t<C, D>>>;
 
+/// Is T a `quaternion`? For those who extend duet.
 template <class T>
 inline constexpr bool is_quaternion = false;
 template <class T>
 inline constexpr bool is_quaternion<quaternion<T>> = true;
 
-/// A scalar that may multiply a quaternion over T.
+/// A scalar that may multiply a quaternion over T. For those who extend duet.
 template <class S, class T>
 concept ScalarFor = (Scalar<S> || Arithmetic<S>)&&Promotable<S, T>;
 
@@ -177,7 +177,7 @@ template <class A, Promotable<A> B>
   return p.w() == q.w() && p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
 }
 
-/// N2: q* = (q₀, −q⃗); (pq)* = q* p*
+/// N2: the conjugate q* = (q₀, −q⃗); (pq)* = q* p*
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<T> conj(const quaternion<T>& q) {
   return {q.w(), -q.x(), -q.y(), -q.z()};
@@ -190,7 +190,7 @@ template <class A, Promotable<A> B>
   return p.w() * q.w() + p.x() * q.x() + p.y() * q.y() + p.z() * q.z();
 }
 
-/// N3: |q|² = q q*
+/// N3: the squared norm |q|² = q q*
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr T norm2(const quaternion<T>& q) {
   return dot(q, q);

@@ -29,7 +29,8 @@ template <class Frame, class M, class Q>
 
 } // namespace detail
 
-/// N7: ω^s = vec(2 q̇ q*) in spatial axes, ω^b = vec(2 q* q̇) in body axes; q of unit norm.
+/// N7: the angular velocity ω^s = vec(2 q̇ q*) in spatial axes, ω^b = vec(2 q* q̇) in body axes; q of
+/// unit norm.
 template <class A, Promotable<A> B, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<A, B>>
 angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame_of_result) {
@@ -44,7 +45,7 @@ void angular_velocity(const quaternion<A>&, const quaternion<B>&) {
                 "duet: in which axes? angular_velocity(q, q_dot, frame::spatial) or frame::body");
 }
 
-/// N7: q̇ = ½ ω^s q = ½ q ω^b
+/// N7: the rate of a rotation with an angular velocity, q̇ = ½ ω^s q = ½ q ω^b
 template <class A, Promotable<A> B, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<A, B>>
 quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_omega) {

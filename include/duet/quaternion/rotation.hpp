@@ -20,7 +20,7 @@
 
 namespace duet {
 
-/// q v q* for a unit quaternion: v turned by the rotation.
+/// The vector v turned by the rotation of a unit quaternion: q v q*.
 template <class T, Promotable<T> U>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<T, U>> rotate(const quaternion<T>& q,
                                                                  const vector3<U>& v) {

@@ -27,19 +27,19 @@ namespace duet {
 /// Settings of `adaptive_table`.
 struct table_options {
   double length = 1; ///< of poses: the distance that counts as much as a turn by one radian
-  std::size_t first_rows = 9;
-  std::size_t most_rows = 100'000;
+  std::size_t first_rows = 9;      ///< to begin with, in equal steps
+  std::size_t most_rows = 100'000; ///< more are an error
 };
 
 /// A table, the curve through it, and the largest distance of the curve from what it stands for
 /// that was seen: radians, of poses as `distance`.
 template <CurveType Spline>
 struct table_result {
-  look_up_table<typename Spline::scalar_type> table;
-  Spline curve;
-  double error;
+  look_up_table<typename Spline::scalar_type> table; ///< as few rows as were needed
+  Spline curve;                                      ///< through the table
+  double error; ///< the largest that was seen: radians, of poses units of length
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("table", table);
     f("error", error);

@@ -53,6 +53,7 @@ public:
     }
   }
 
+  /// The knots, each as often as it was given.
   [[nodiscard]] const std::vector<R>& knots() const { return knots_; }
   /// Number of basis functions, which is that of the control elements.
   [[nodiscard]] std::size_t size() const { return knots_.size() - std::size_t(Order); }

@@ -22,8 +22,8 @@
 
 namespace duet {
 
-/// Q(u) = q_0 ∏_{i≥1} exp(ω_i B̃_i(u)), ω_i = log(q_{i−1}⁻¹ q_i): order k (degree k − 1), C^{k−2} at
-/// simple knots.
+/// The cumulative B-spline curve Q(u) = q_0 ∏_{i≥1} exp(ω_i B̃_i(u)), ω_i = log(q_{i−1}⁻¹ q_i):
+/// order k (degree k − 1), C^{k−2} at simple knots.
 ///
 /// \tparam T      scalar of the control elements: of rotations `double`, of poses
 ///                `dual<double, 1, screw_tag>`, either with any infinitesimals
@@ -80,7 +80,9 @@ public:
     increments_.front() = vector3<T>::Zero();
   }
 
+  /// The basis, which has the knots.
   [[nodiscard]] const basis_type& basis() const { return basis_; }
+  /// q_0, q_1 …, unit quaternions with aligned signs.
   [[nodiscard]] const std::vector<quaternion<T>>& controls() const { return controls_; }
   /// ω_i with exp(ω_i) = q_{i−1}⁻¹ q_i, half angles; ω_0 is zero.
   [[nodiscard]] const std::vector<vector3<T>>& increments() const { return increments_; }

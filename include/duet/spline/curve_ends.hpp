@@ -55,7 +55,7 @@ template <class T>
 struct curve_ends {
   using rates = std::array<vector3<T>, 2>; ///< at the start and at the end
 
-  detail::end_kind kind;
+  detail::end_kind kind;        ///< which of these
   rates velocity, acceleration; ///< halved, in spatial axes; zero where none are given
 
   explicit curve_ends(detail::end_kind k) : kind(k) {
@@ -89,6 +89,7 @@ struct curve_ends {
                   "end_acceleration{…}, fully_clamped{…}, not_a_knot{} or periodic{}");
   }
 
+  /// These ends without infinitesimals.
   [[nodiscard]] curve_ends<real_type_t<T>> real_part() const {
     curve_ends<real_type_t<T>> result(kind);
     for (std::size_t end = 0; end < 2; ++end) {

@@ -17,13 +17,13 @@ struct natural {};
 /// Given angular velocities, or twists.
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct clamped {
-  V start, end;
+  V start, end; ///< ω or [v; ω] at the first and the last row, spatial axes, per unit of u
 };
 
 /// Given angular accelerations, or derivatives of twists.
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct end_acceleration {
-  V start, end;
+  V start, end; ///< ω̇ or [v̇; ω̇] at the first and the last row, spatial axes, per unit of u²
 };
 
 /// Given angular velocities and accelerations, or twists and their derivatives: all that the
@@ -31,8 +31,8 @@ struct end_acceleration {
 /// second knot takes the other's place.)
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct fully_clamped {
-  clamped<V> velocity;
-  end_acceleration<V> acceleration;
+  clamped<V> velocity;              ///< at both ends
+  end_acceleration<V> acceleration; ///< at both ends
 };
 
 /// The first two pieces are one, and so are the last two: what to assume when nothing is known.

@@ -30,15 +30,15 @@ namespace duet {
 template <CurveType Spline>
 struct fit_result {
   using real_type = typename Spline::real_type;
-  Spline curve;
+  Spline curve; ///< with the knots that were given
   /// Row by row |2 log(S(uᵢ)* Qᵢ)|: radians, of poses together with (distance/length) as a root of
   /// the sum of squares; with `fit_options::covariances` standard deviations.
   std::vector<real_type> residuals;
-  real_type rms; ///< root of the weighted mean of their squares
-  int iterations;
+  real_type rms;     ///< root of the weighted mean of their squares
+  int iterations;    ///< of the least-squares method
   real_type outlier; ///< residuals beyond this counted as outliers
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("residuals", residuals);
     f("rms", rms);
@@ -92,7 +92,7 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 
 } // namespace detail
 
-/// The curve of type `Spline` with these knots that is nearest to given rotations or poses: Σ wᵢ
+/// The curve of type `Spline` with these knots that is nearest to given rotations or poses. Σ wᵢ
 /// ρ(|2 log(S(uᵢ)* Qᵢ)|) is least, ρ(r) = ½ r² up to `options.outlier`, and rows far beyond it do
 /// not count (`fit_options::outlier`). wᵢ are `options.weights`; residuals are measured by
 /// `options.covariances` where there are some.

@@ -26,7 +26,7 @@ struct fit_options {
   /// axes, for poses 6 × 6 of the twists [v; ω] there. Residuals are then |Lᵢ⁻¹ rᵢ|, Σᵢ = Lᵢ Lᵢᵀ,
   /// in standard deviations, `outlier` with them, and `length` does not matter. None: of one size.
   std::vector<Eigen::MatrixXd> covariances;
-  int max_iterations = 100;
+  int max_iterations = 100; ///< of the least-squares method
 };
 
 } // namespace duet

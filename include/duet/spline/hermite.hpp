@@ -25,6 +25,7 @@ namespace duet {
 ///
 /// \param velocities  angular velocities, of poses twists [v; ω], per unit of the parameter
 /// \param frame       theirs: `frame::spatial` or `frame::body`
+/// \return `rotation_vector_spline<T, 4>`
 /// \throws invalid_row for a row that no curve can go through, and for a velocity that is not
 /// finite; invalid_input for fewer than two rows or counts that differ
 template <class Q, class V, FrameConstant Frame>

@@ -38,7 +38,7 @@ struct fit_report {
   double residual = 0;
   double largest_step = 0; ///< the largest turn from one row to the next, rad
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("iterations", iterations);
     f("residual", residual);

@@ -32,7 +32,7 @@ enum class outside {
 /// The caller's memory of the span that a parameter was in, for parameters that move little from
 /// one evaluation to the next. Any value will do to begin with, and for any curve.
 struct span_hint {
-  std::size_t span = 0;
+  std::size_t span = 0; ///< its number
 };
 
 } // namespace duet
@@ -69,12 +69,15 @@ public:
     }
   }
 
+  /// The beginning of the domain.
   [[nodiscard]] const R& front() const { return breaks_.front(); }
+  /// The end of the domain.
   [[nodiscard]] const R& back() const { return breaks_.back(); }
   /// The distinct knots of the domain.
   [[nodiscard]] const std::vector<R>& breaks() const { return breaks_; }
   /// Number of spans.
   [[nodiscard]] std::size_t span_count() const { return breaks_.size() - 1; }
+  /// The parameter in the middle of a span.
   [[nodiscard]] R middle(std::size_t span) const {
     return breaks_[span] + (breaks_[span + 1] - breaks_[span]) / 2;
   }

@@ -14,10 +14,10 @@ namespace duet {
 /// Rotations (T = double) or poses (T = dual<double, 1, screw_tag>) at increasing parameters.
 template <class T>
 struct look_up_table {
-  std::vector<real_type_t<T>> parameters;
-  std::vector<quaternion<T>> elements;
+  std::vector<real_type_t<T>> parameters; ///< u_0 < u_1 < …
+  std::vector<quaternion<T>> elements;    ///< as many unit quaternions, or poses
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("parameters", parameters);
     f("elements", elements);

@@ -23,18 +23,19 @@
 
 namespace duet {
 
-/// A rotation or pose and its rates with respect to the parameter: angular velocity (rad per unit),
-/// acceleration and jerk; of poses the twist [v; ω], its derivative and its second derivative.
+/// A rotation or pose and its rates with respect to the parameter. They are angular velocity (rad
+/// per unit), acceleration and jerk; of poses the twist [v; ω], its derivative and its second
+/// derivative.
 template <class T>
 struct motion {
   using rate_type = Eigen::Matrix<typename manifold<quaternion<T>>::scalar,
                                   manifold<quaternion<T>>::dimension, 1>;
-  quaternion<T> value;
-  rate_type velocity;
-  rate_type acceleration;
-  rate_type jerk;
+  quaternion<T> value;    ///< the rotation or pose
+  rate_type velocity;     ///< ω, rad per unit of u; of poses [v; ω]
+  rate_type acceleration; ///< the derivative of `velocity`, per unit of u²
+  rate_type jerk;         ///< the derivative of `acceleration`, per unit of u³
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("value", value);
     f("velocity", velocity);
@@ -57,6 +58,7 @@ struct structure<motion<T>> {
 
 /// The motion in time of a curve whose parameter u is driven by u(t): ω = δ u̇, ω̇ = δ′u̇² + δ ü,
 /// ω̈ = δ″u̇³ + 3 δ′u̇ü + δ u⃛, with the rates δ, δ′, δ″ of m by u in any one frame.
+/// \return `motion<T>`
 template <class T, ScalarFor<T> A, ScalarFor<T> B, ScalarFor<T> C>
 [[nodiscard]] auto chain_rule(const motion<T>& m, const A& u_dot, const B& u_ddot,
                               const C& u_dddot) {

@@ -25,8 +25,9 @@ public:
       : invalid_input(detail::message("duet: row ", row, ": ", reason)), row_(row),
         reason_(reason) {}
 
-  /// Counted from 0.
+  /// Its number, counted from 0.
   [[nodiscard]] std::size_t row() const { return row_; }
+  /// What is wrong with it.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
 private:

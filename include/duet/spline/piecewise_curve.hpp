@@ -33,6 +33,7 @@ public:
   [[nodiscard]] const std::vector<R>& breaks() const { return curve().spans().breaks(); }
   /// What the curve does outside its domain: `outside::error` until told otherwise.
   [[nodiscard]] outside outside_domain() const { return outside_; }
+  /// Says what the curve does outside its domain.
   void set_outside_domain(outside way) { outside_ = way; }
 
   /// Q(u).

@@ -31,7 +31,7 @@ struct printed_derivatives {
   /// The commuting sums over all i with the true B̃′_i and B̃″_i; the first is `from_zero_first`.
   quaternion<T> commuting_first, commuting_second;
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("literal_first", literal_first);
     f("literal_second", literal_second);

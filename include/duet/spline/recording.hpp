@@ -21,10 +21,10 @@ namespace duet {
 
 /// A row that was left out or put elsewhere, and why.
 struct recording_fault {
-  std::size_t line;
+  std::size_t line;   ///< in the file, counted from 1
   std::string reason; ///< on one line, as `tx is nan: left out`
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("line", line);
     f("reason", reason);
@@ -41,7 +41,7 @@ struct recording {
   std::size_t left_out = 0;            ///< how many rows of the file the table does not have
   std::string remark;                  ///< how the file was understood, where that is not plain
 
-  /// For `to_text`.
+  /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("table", table);
     f("start", start);

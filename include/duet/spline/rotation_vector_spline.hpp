@@ -32,8 +32,8 @@ template <class T, int Order, class Piece>
 class rotation_vector_equations;
 } // namespace detail
 
-/// Q(u) = Q_i exp(x_i(u − u_i)) between the knots u_i and u_{i+1}, with polynomials x_i of
-/// half-angle vectors, x_i(0) = 0, exp(x_i(u_{i+1} − u_i)) = Q_i* Q_{i+1}.
+/// The curve Q(u) = Q_i exp(x_i(u − u_i)) between the knots u_i and u_{i+1}, with polynomials x_i
+/// of half-angle vectors, x_i(0) = 0, exp(x_i(u_{i+1} − u_i)) = Q_i* Q_{i+1}.
 ///
 /// \tparam T      scalar of the elements: a real number for rotations, dual<R, 1, screw_tag> for
 ///                poses, derivative duals inside either

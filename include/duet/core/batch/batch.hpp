@@ -35,6 +35,7 @@ public:
       set(i, x);
     }
   }
+  /// For those who extend duet: the p-th vector of the target is f(p).
   template <class F>
   [[nodiscard]] DUET_ALWAYS_INLINE static lane_mask from_packets(F&& f) {
     lane_mask result;
@@ -42,10 +43,12 @@ public:
     return result;
   }
 
+  /// For those who extend duet: the p-th vector of the target.
   [[nodiscard]] DUET_ALWAYS_INLINE const packet& packet_at(int p) const { return packets_[p]; }
   [[nodiscard]] bool operator[](int i) const {
     return packets_[i / storage::width][i % storage::width] != 0;
   }
+  /// Sets lane i.
   void set(int i, bool x) {
     using element = std::remove_cvref_t<decltype(packets_[0][0])>;
     packets_[i / storage::width][i % storage::width] = element(x ? -1 : 0);
@@ -126,6 +129,7 @@ public:
       (std::make_integer_sequence<int, storage::width>{});
     });
   }
+  /// For those who extend duet: the p-th vector of the target is f(p).
   template <class F>
   [[nodiscard]] DUET_ALWAYS_INLINE static batch from_packets(F&& f) {
     batch result(uninitialised{});
@@ -144,7 +148,9 @@ public:
   [[nodiscard]] T operator[](int i) const {
     return packets_[i / storage::width][i % storage::width];
   }
+  /// Sets lane i.
   void set(int i, T x) { packets_[i / storage::width][i % storage::width] = x; }
+  /// For those who extend duet: the p-th vector of the target.
   [[nodiscard]] DUET_ALWAYS_INLINE const packet& packet_at(int p) const { return packets_[p]; }
 
   [[nodiscard]] friend DUET_ALWAYS_INLINE batch operator+(const batch& a) { return a; }
@@ -235,7 +241,8 @@ struct lane_traits<batch<T, W>> {
   using type = T;
 };
 
-/// Both callables are evaluated and blended lane by lane, only one where all lanes agree.
+/// A choice lane by lane: both callables are evaluated and blended lane by lane, only one where all
+/// lanes agree.
 template <class T, int W, std::invocable F, std::invocable G>
 [[nodiscard]] DUET_ALWAYS_INLINE auto select(const lane_mask<T, W>& condition, F&& f, G&& g) {
   using result = std::common_type_t<std::invoke_result_t<F>, std::invoke_result_t<G>>;

@@ -127,6 +127,7 @@ template <class P>
 
 } // namespace detail
 
+/// The function of `<cmath>`, lane by lane.
 template <class T, int W>
 [[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> sqrt(const batch<T, W>& x) {
   return batch<T, W>::from_packets(
@@ -141,6 +142,7 @@ template <class T, int W>
   return detail::sine_cosine_of_batch(x).cosine;
 }
 
+/// The size of the number in each lane.
 template <class T, int W>
 [[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> abs(const batch<T, W>& x) {
   return batch<T, W>::from_packets(
@@ -150,11 +152,12 @@ template <class T, int W>
 [[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> fabs(const batch<T, W>& x) {
   return abs(x);
 }
-/// The larger, as `std::max`.
+/// The larger number in each lane, as `std::max`.
 template <class T, int W>
 [[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> max(const batch<T, W>& a, const batch<T, W>& b) {
   return blended(a < b, b, a);
 }
+/// The smaller number in each lane, as `std::min`.
 template <class T, int W>
 [[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> min(const batch<T, W>& a, const batch<T, W>& b) {
   return blended(b < a, b, a);
@@ -173,6 +176,7 @@ template <class F, class T, int W>
 
 } // namespace detail
 
+/// The function of `<cmath>`, lane by lane.
 template <class T, int W>
 [[nodiscard]] batch<T, W> floor(const batch<T, W>& x) {
   return detail::each_lane([](T a) { return std::floor(a); }, x);
@@ -202,6 +206,7 @@ template <class T, int W>
   return detail::each_lane([](T a) { return std::logb(a); }, x);
 }
 
+/// The function of `<cmath>`, lane by lane.
 template <class T, int W>
 [[nodiscard]] batch<T, W> nextafter(const batch<T, W>& x,
                                     const std::type_identity_t<batch<T, W>>& y) {
@@ -212,6 +217,7 @@ template <class T, int W>
   return detail::each_lane([exponent](T a) { return std::ldexp(a, exponent); }, x);
 }
 
+/// What `<cmath>` says of the number in each lane.
 template <class T, int W>
 [[nodiscard]] lane_mask<T, W> signbit(const batch<T, W>& x) {
   return detail::test_lanes([](T a) { return std::signbit(a); }, x);

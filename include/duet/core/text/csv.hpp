@@ -20,9 +20,9 @@ namespace duet {
 
 /// A row of a file, as numbers.
 struct csv_row {
-  std::size_t line;
-  std::string name; ///< the first cell where it is not a number, else empty
-  std::vector<double> numbers;
+  std::size_t line;            ///< where it stands in the file, counted from 1
+  std::string name;            ///< the first cell where it is not a number, else empty
+  std::vector<double> numbers; ///< the other cells
 };
 
 /// The rows of a file. Empty lines and lines from `#` on are passed over; a first line without any
@@ -70,10 +70,12 @@ public:
     }
   }
 
+  /// Its rows, one or more, in order.
   [[nodiscard]] const std::vector<csv_row>& rows() const { return rows_; }
   /// The names of the columns, empty where the file has none: rows are in the file's order, so
   /// whoever counts on another one looks here.
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }
+  /// Where the names stand, counted from 1; 0 where the file has none.
   [[nodiscard]] std::size_t header_line() const { return header_line_; }
 
 private:

@@ -184,6 +184,7 @@ public:
   /// Where it is until then.
   [[nodiscard]] const std::string& name() const { return name_; }
 
+  /// Writes all of it.
   /// \throws file_error
   void write(const std::string& content) const {
     detail::c_file out(name_, "wb");

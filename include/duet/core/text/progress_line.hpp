@@ -22,9 +22,9 @@ namespace duet {
 
 /// Where progress is shown, and how often.
 struct progress_display {
-  std::FILE* stream;
-  bool is_terminal; ///< one line, written over and over, instead of many
-  double interval;  ///< seconds from line to line, and to the first
+  std::FILE* stream; ///< where to
+  bool is_terminal;  ///< one line, written over and over, instead of many
+  double interval;   ///< seconds from line to line, and to the first
 
   /// Standard error: every second where that is a terminal, else every ten. The environment
   /// variable `DUET_PROGRESS_INTERVAL` gives other seconds; with 0 nothing is passed over, with
@@ -59,6 +59,7 @@ public:
     }
   }
 
+  /// Shows how many are done, where that is due.
   void operator()(const progress& p) {
     say(std::to_string(p.done) + " of " + std::to_string(p.count) + " " + things_,
         p.done == p.count && has_spoken_);

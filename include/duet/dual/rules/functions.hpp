@@ -21,6 +21,7 @@
 
 namespace duet {
 
+/// The function of `<cmath>` with its derivatives, or over complex numbers that of `<complex>`.
 template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D sqrt(const D& x) {
   return detail::lift(rule::sqrt{}, x);
@@ -46,6 +47,7 @@ template <Infinitesimal D>
 [[nodiscard]] auto cosh(const detail::Lifted auto& x) { return detail::lift(rule::cosh{}, x); }
 [[nodiscard]] auto tanh(const detail::Lifted auto& x) { return detail::lift(rule::tanh{}, x); }
 
+/// The function of `<cmath>` with its derivatives.
 [[nodiscard]] auto asin(const detail::LiftedReal auto& x) { return detail::lift(rule::asin{}, x); }
 [[nodiscard]] auto acos(const detail::LiftedReal auto& x) { return detail::lift(rule::acos{}, x); }
 [[nodiscard]] auto atan(const detail::LiftedReal auto& x) { return detail::lift(rule::atan{}, x); }
@@ -87,8 +89,8 @@ template <class Rule, class... A>
 
 } // namespace detail
 
-/// x^p. A constant exponent or base has no slope of its own, so `pow(x, 0)`, `pow(0, p)` and
-/// `pow(−2, 2)` are regular.
+/// The power x^p. A constant exponent or base has no slope of its own, so `pow(x, 0)`, `pow(0, p)`
+/// and `pow(−2, 2)` are regular.
 template <class A, class B>
   requires(detail::MixedScalars<A, B> || detail::MixedReals<A, B>)
 [[nodiscard]] auto pow(const A& x, const B& p) {
@@ -109,10 +111,10 @@ template <class A, detail::MixedReals<A> B>
   return detail::lift_promoted(rule::atan2{}, y, x);
 }
 
+/// √(x² + y²) or √(x² + y² + z²) without overflow.
 template <class A, class B>
   requires detail::MixedReals<A, B>
 [[nodiscard]] auto hypot(A x, B y) { return detail::lift_promoted(rule::hypot{}, x, y); }
-
 template <class A, class B, class C>
   requires detail::MixedReals<A, promote_t<B, C>>
 [[nodiscard]] auto hypot(const A& x, const B& y, const C& z) {
@@ -126,11 +128,13 @@ template <class A, class B, class C>
   return detail::lift_promoted(rule::fma{}, x, y, z);
 }
 
+/// The rest of x/y, with the sign of x.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmod(const A& x, const B& y) {
   return detail::lift_promoted(rule::fmod{}, x, y);
 }
 
+/// The rest of x/y, nearest to 0.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto remainder(const A& x, const B& y) {
   return detail::lift_promoted(rule::remainder{}, x, y);

@@ -21,6 +21,7 @@
 
 namespace duet {
 
+/// What `<cmath>` says of the innermost value.
 [[nodiscard]] auto signbit(RealInfinitesimal auto x) {
   using std::signbit;
   const auto is_negative = signbit(innermost(x));
@@ -51,8 +52,7 @@ namespace duet {
   return fpclassify(innermost(x));
 }
 
-// The quiet comparisons of <cmath>: false, and no exception, where either is NaN.
-
+/// The quiet comparisons of `<cmath>`: no exception where either is NaN.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto isunordered(const A& a, const B& b) {
   using std::isnan;
@@ -80,6 +80,7 @@ template <RealInfinitesimal D>
   return select(
       signbit(x), [&] { return D(-x); }, [&] { return x; });
 }
+/// |x|, as `abs`.
 [[nodiscard]] auto fabs(const RealInfinitesimal auto& x) { return abs(x); }
 
 /// |magnitude| with the sign of `sign`, which only its sign bit enters.
@@ -93,7 +94,7 @@ template <class A, detail::MixedReals<A> B>
       [&] { return common(-x); });
 }
 
-/// The larger; where one is NaN the other, as in `<cmath>`.
+/// The larger of two; where one is NaN the other, as in `<cmath>`.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmax(const A& a, const B& b) {
   using std::isnan;
@@ -103,6 +104,7 @@ template <class A, detail::MixedReals<A> B>
       isnan(innermost(a)) || detail::quiet_less(real(innermost(a)), real(innermost(b))),
       [&] { return common(b); }, [&] { return common(a); });
 }
+/// The smaller of two; where one is NaN the other, as in `<cmath>`.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmin(const A& a, const B& b) {
   using std::isnan;
@@ -123,8 +125,7 @@ template <class A, detail::MixedReals<A> B>
       [&] { return common(a - b); });
 }
 
-// Rounding: flat wherever it is differentiable.
-
+/// The rounding of `<cmath>`: flat wherever it is differentiable.
 template <RealInfinitesimal D>
 [[nodiscard]] D floor(const D& x) {
   using std::floor;
@@ -182,6 +183,7 @@ template <RealInfinitesimal D>
   return detail::with_innermost(x, fraction);
 }
 
+/// The exponent of the innermost value.
 template <RealInfinitesimal D>
 [[nodiscard]] int ilogb(const D& x) {
   using std::ilogb;

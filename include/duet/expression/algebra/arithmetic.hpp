@@ -135,7 +135,7 @@ template <class A, TermAndConstant<A> B, class Tag = decltype([] {})>
   return apply<op::quotient>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 
-/// Whether a product has the number a as its first factor.
+/// Whether a product has the number a as its first factor. For those who extend duet.
 template <class T>
 inline constexpr bool has_number = false;
 template <class A, class B>

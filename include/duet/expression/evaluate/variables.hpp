@@ -51,9 +51,9 @@ struct variables {
   using motions = motions_in<void>;
 };
 
-/// With respect to u, w …: the columns of a Jacobian in this order, one for a scalar, three for a
-/// vector or a rotation, six for a dual vector n + εm, in the order [m; n], or a pose, one for each
-/// entry of a matrix, column by column.
+/// With respect to u, w …: the columns of a Jacobian in this order. They are one for a scalar,
+/// three for a vector or a rotation, six for a dual vector n + εm, in the order [m; n], or a pose,
+/// one for each entry of a matrix, column by column.
 template <Symbol... U>
 [[nodiscard]] constexpr variables<typename U::node_type...> wrt(const U&...) {
   static_assert(sizeof...(U) > 0, "duet: wrt needs at least one symbol");

@@ -165,6 +165,7 @@ public:
   constexpr formula() = default;
   constexpr explicit formula(const Held& held) : held_(held) {}
 
+  /// The constants.
   [[nodiscard]] constexpr const Held& held() const { return held_; }
 
   /// The value where symbols have values: `f(u = 0.3, w = w0)`, over any scalars. Every symbol that

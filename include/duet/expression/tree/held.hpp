@@ -15,6 +15,7 @@
 /// \file
 /// What a formula holds beside its type: the values of the constants in it, and by their types all
 /// symbols it was written with, those that simplification removed included.
+/// For those who extend duet.
 
 namespace duet::expression {
 
@@ -34,6 +35,7 @@ struct holding<held_constant<ConstantNode, T>> {
 
 } // namespace detail
 
+/// The constants of a formula and the symbols it was written with.
 template <class... Items>
 struct held : detail::holding<Items>... {};
 

@@ -7,7 +7,7 @@
 
 /// \file
 /// What formulas are made of: nodes are types without any data, so equal subexpressions are equal
-/// types, and nothing can dangle.
+/// types, and nothing can dangle. For those who extend duet.
 
 namespace duet::expression {
 

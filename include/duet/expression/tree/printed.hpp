@@ -7,14 +7,14 @@
 #include <vector>
 
 /// \file
-/// Formulas as text while they are put together.
+/// Formulas as text while they are put together. For those who extend duet.
 
 namespace duet::expression {
 
 /// How a formula is written.
 enum class notation {
   text, ///< as in a program, with ^ for powers
-  latex
+  latex ///< for mathematics mode
 };
 
 /// How strongly a formula holds together.
@@ -22,14 +22,15 @@ enum class precedence { condition, sum, negative_number, product, power, atom };
 
 /// The text of a formula, and what it is outside all parentheses.
 struct printed {
-  std::string text;
-  precedence outermost = precedence::atom;
-  notation style = notation::text;
+  std::string text;                        ///< what stands there
+  precedence outermost = precedence::atom; ///< of the operation outside all parentheses
+  notation style = notation::text;         ///< how it is written
 
   /// In parentheses if it would fall apart beside an operator of that precedence.
   [[nodiscard]] std::string inside(precedence beside) const {
     return outermost < beside ? in_parentheses() : text;
   }
+  /// In parentheses.
   [[nodiscard]] std::string in_parentheses() const {
     return style == notation::latex ? "\\left(" + text + "\\right)" : "(" + text + ")";
   }

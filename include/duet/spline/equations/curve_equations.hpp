@@ -11,7 +11,7 @@
 #include <vector>
 
 /// \file
-/// What `interpolate` needs to know of a kind of curve.
+/// What `interpolate` needs to know of a kind of curve. For those who extend duet.
 
 namespace duet {
 
