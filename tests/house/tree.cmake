@@ -1,7 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 # What the folders promise: no include points to a higher layer, headers are short, <duet/duet.hpp>
-# has or names everything, every test is in a list. Run from the top of the project.
+# has or names everything, pages name their headers, every test is in a list. Run from the top of the project.
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -146,6 +146,22 @@ foreach(header IN LISTS headers)
   if(NOT header MATCHES "^duet/interop/" AND NOT header IN_LIST reached)
     problem("<duet/duet.hpp> neither includes nor names ${header}")
   endif()
+endforeach()
+
+# Every page begins with the headers it is about, below its title: `duet/a.hpp`, `duet/b.hpp`.
+file(GLOB pages RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} docs/*.md)
+foreach(page IN LISTS pages)
+  file(READ ${page} text)
+  if(NOT text MATCHES "^# [^\n]*\n\nHeaders: (`duet/[a-z_/]+[.]hpp`(, `duet/[a-z_/]+[.]hpp`)*)\n")
+    problem("${page} has no line of headers below its title")
+    continue()
+  endif()
+  string(REGEX MATCHALL "duet/[a-z_/]+[.]hpp" named "${CMAKE_MATCH_1}")
+  foreach(header IN LISTS named)
+    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/include/${header})
+      problem("${page} names ${header}, which there is not")
+    endif()
+  endforeach()
 endforeach()
 
 # A test that is in no list would never run. Files that are compiled together must not see each other's
