@@ -43,6 +43,11 @@ if(NOT result EQUAL 0)
   message(FATAL_ERROR "the control does not compile")
 endif()
 
+# What fails for one mistake need not be compiled further.
+file(STRINGS ${snippet} mistakes REGEX "// mistake$")
+if(NOT mistakes)
+  list(APPEND compile -Wfatal-errors)
+endif()
 execute_process(COMMAND ${compile} -DDUET_MUST_FAIL ${snippet}
   RESULT_VARIABLE result ERROR_VARIABLE log)
 if(result EQUAL 0)
