@@ -13,6 +13,7 @@
 #include <duet/spline/equations/newton.hpp>
 #include <duet/spline/equations/rotation_vector_cubic.hpp>
 #include <duet/spline/equations/rotation_vector_quintic.hpp>
+#include <duet/spline/hermite.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
@@ -26,7 +27,8 @@
 #include <vector>
 
 /// \file
-/// Curves through given rotations or poses.
+/// Curves through given rotations or poses, of every kind and with every end, Hermite ones
+/// included.
 
 namespace duet {
 
