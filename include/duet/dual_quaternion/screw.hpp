@@ -17,6 +17,7 @@ namespace duet {
 
 /// N19: ScLERP, the screw motion C(τ) = A (A* B)^τ from A to B along the shorter rotation unless
 /// another way is asked for: SLERP over dual numbers. Both are unit.
+/// \return `dual_quaternion<T>`
 template <class A, Promotable<A> B, class S>
 [[nodiscard]] auto sclerp(const dual_quaternion<A>& a, const dual_quaternion<B>& b, const S& tau,
                           way round = way::shortest) {

@@ -240,6 +240,7 @@ template <class A, class B>
 /// shorter arc unless another way is asked for. Where a and b are exactly half a turn apart both
 /// arcs are equal and b is taken as it is, see `is_half_turn_apart`. \throws invalid_input where a
 /// or b is zero
+/// \return `quaternion<T>`
 template <class A, class B, class S>
   requires Promotable<A, B> && ScalarFor<S, promote_t<A, B>>
 [[nodiscard]] auto slerp(const quaternion<A>& a, const quaternion<B>& b, const S& tau,

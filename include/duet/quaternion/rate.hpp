@@ -64,8 +64,8 @@ void quaternion_rate(const quaternion<A>&, const vector3<B>&) {
 /// q of unit norm. (q̇ does not enter, as q̇ q̇* is real.)
 template <class A, Promotable<A> B, Promotable<A> C, class Frame>
 [[nodiscard]] vector3<promote_t<promote_t<A, B>, C>>
-angular_acceleration(const quaternion<A>& q, const quaternion<B>&, const quaternion<C>& q_ddot,
-                     Frame frame_of_result) {
+angular_acceleration(const quaternion<A>& q, const quaternion<B>& /*q_dot*/,
+                     const quaternion<C>& q_ddot, Frame frame_of_result) {
   return angular_velocity(q, q_ddot, frame_of_result);
 }
 
