@@ -106,27 +106,26 @@ struct argument_part<X> {
   }
 };
 
-/// The component of a vector, or of several arguments one after the other.
+/// The component of a scalar, a vector, or of several arguments one after the other.
 template <class X>
 [[nodiscard]] DUET_ALWAYS_INLINE auto& component(X& x, Eigen::Index i) {
-  return x[std::size_t(i)];
+  if constexpr (Scalar<std::remove_const_t<X>>) {
+    return x;
+  } else if constexpr (std::derived_from<X, Eigen::EigenBase<std::remove_const_t<X>>>) {
+    return x.coeffRef(i);
+  } else {
+    return x[std::size_t(i)];
+  }
 }
-template <class X>
-  requires(Scalar<X>)
-[[nodiscard]] X& component(X& x, Eigen::Index) { return x; }
-template <class First, class... Rest>
-[[nodiscard]] auto& component(std::tuple<First, Rest...>& x, Eigen::Index i) {
-  using result = std::remove_reference_t<decltype(component(std::get<0>(x), 0))>;
-  result* found = nullptr;
-  const auto look_at = [&](auto& part) {
+template <std::size_t I = 0, class... Parts>
+[[nodiscard]] auto& component(std::tuple<Parts...>& x, Eigen::Index i) {
+  auto& part = std::get<I>(x);
+  if constexpr (I + 1 == sizeof...(Parts)) {
+    return component(part, i);
+  } else {
     const Eigen::Index size = argument_part<std::decay_t<decltype(part)>>::size(part);
-    if (0 <= i && i < size) {
-      found = &component(part, i);
-    }
-    i -= size;
-  };
-  std::apply([&](auto&... part) { (look_at(part), ...); }, x);
-  return *found;
+    return i < size ? component(part, i) : component<I + 1>(x, i - size);
+  }
 }
 
 /// Several arguments, scalars and vectors: their components one after the other.

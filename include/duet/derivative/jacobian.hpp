@@ -55,7 +55,7 @@ template <class Tag, int Chunk, class F, class X, class J, class Prepare>
     }
     for (Eigen::Index j = 0; j < count; ++j) {
       for (Eigen::Index i = 0; i < rows; ++i) {
-        jacobian(i, first + j) = part<Tag>(y[std::size_t(i)], int(j) + 1);
+        jacobian(i, first + j) = part<Tag>(component(y, i), int(j) + 1);
       }
     }
   });

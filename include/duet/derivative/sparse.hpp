@@ -138,7 +138,7 @@ template <class Tag = void, class F, Variables X, class P>
     result.value = detail::parts<tag>(y, 0);
     for (Eigen::Index i = 0; i < rows; ++i) {
       for (int k = 0; k < count; ++k) {
-        groups.sum(i, first + k) = detail::part<tag>(y[std::size_t(i)], k + 1);
+        groups.sum(i, first + k) = detail::part<tag>(detail::component(y, i), k + 1);
       }
     }
   }

@@ -112,7 +112,7 @@ private:
   }
 
   int size_;
-  packet packets_[max_packets];
+  packet packets_[std::size_t(max_packets)];
 };
 
 template <class T, int N>

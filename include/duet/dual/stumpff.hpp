@@ -26,8 +26,8 @@ namespace duet::detail {
 
 /// 1/(2k+n)!, k = 0, 1, …
 template <class T, int N, int Terms>
-[[nodiscard]] constexpr std::array<T, Terms> stumpff_coefficients() {
-  std::array<T, Terms> result{};
+[[nodiscard]] constexpr std::array<T, std::size_t(Terms)> stumpff_coefficients() {
+  std::array<T, std::size_t(Terms)> result{};
   long double factorial = 1;
   for (int i = 2; i <= N; ++i) {
     factorial *= i;

@@ -82,7 +82,7 @@ struct directions<Symbol, Frame, K> {
     return motion_list<
         movement<moving<Symbol, unit_matrix<rows, columns_of(K), I % rows, I / rows>>>...>{};
   }
-  using type = decltype(make(std::make_index_sequence<rows * columns_of(K)>{}));
+  using type = decltype(make(std::make_index_sequence<std::size_t(rows* columns_of(K))>{}));
 };
 
 } // namespace detail

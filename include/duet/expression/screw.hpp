@@ -215,7 +215,8 @@ inline constexpr coordinate<2> z{};
 /// The line along n through a point, n + ε point × n, for `screw`.
 [[nodiscard]] inline dual_vector<double> axis_through(const vector3<double>& point,
                                                       const vector3<double>& n) {
-  return make_dual_vector(n, vector3<double>(point.cross(n)));
+  const vector3<double> moment = point.cross(n);
+  return make_dual_vector(n, moment);
 }
 /// N17: the pose x ↦ q x q* + t.
 template <class Q, Operands<Q> T, class Tag = decltype([](op::turn*) {})>

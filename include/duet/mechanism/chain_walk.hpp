@@ -165,7 +165,7 @@ template <bool WithRotation, class S, class C, class X, class Visit>
     const auto count = std::size_t(links);
     for (std::size_t i = 0; i < count; ++i) {
       const step_in_memory<typename C::scalar_type> step{chain.steps()[i]};
-      const S x(vector_argument<X>::get(theta, i));
+      const S x(vector_argument<X>::get(theta, Eigen::Index(i)));
       if (!WithRotation && i + 1 == count) {
         return after_joint<false>(link, step, i, x, turns_of, visit);
       }

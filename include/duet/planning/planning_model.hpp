@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/jacobian.hpp>
@@ -87,7 +88,7 @@ template <int Room, class X>
 [[nodiscard]] small_vector<Room> planned_joints(const X& theta, int size) {
   small_vector<Room> result;
   for (int i = 0; i < size; ++i) {
-    result[i] = theta[i];
+    result[i] = vector_argument<X>::get(theta, i);
   }
   return result;
 }

@@ -149,7 +149,7 @@ template <CurveType Spline, class R, class T>
   R squares(0), weights(0); // in relation to the largest, so that they do not overflow
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const R ratio = largest > 0 ? R(residuals[i] / largest) : R(0);
-    const R weight(options.weights.empty() ? 1.0 : options.weights[i]);
+    const R weight = options.weights.empty() ? R(1) : R(options.weights[i]);
     squares += weight * (ratio * ratio);
     weights += weight;
   }

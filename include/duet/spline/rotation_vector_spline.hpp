@@ -165,8 +165,8 @@ private:
     detail::half_motion<D> m{start * duet::exp(x[0]), {}, {}, {}};
     if constexpr (Rates > 0) {
       const auto at = detail::components(x[0]);
-      const detail::jacobian_coefficients<Rates, D> jacobian(dot(at, at));
-      std::array<vector3<D>, Rates> rates;
+      const detail::jacobian_coefficients<std::size_t(Rates), D> jacobian(dot(at, at));
+      std::array<vector3<D>, std::size_t(Rates)> rates;
       std::copy(x.begin() + 1, x.end(), rates.begin());
       const auto w = detail::half_body_rates(jacobian, x[0], rates);
       m.velocity = detail::components(w[0]);

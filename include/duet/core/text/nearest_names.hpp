@@ -31,17 +31,19 @@ namespace duet::detail {
 
 /// `there are "a", "b" … and 7 more`, those that are most like the name first.
 [[nodiscard]] inline std::string nearest_names(std::string_view name,
-                                               std::vector<std::string> names) {
+                                               const std::vector<std::string>& names) {
   constexpr std::size_t most = 6;
   if (names.empty()) {
     return "there are none";
   }
-  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
-    return letters_apart(name, a) < letters_apart(name, b);
-  });
+  std::vector<std::pair<std::size_t, std::size_t>> order; // how far, and which
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    order.emplace_back(letters_apart(name, names[i]), i);
+  }
+  std::sort(order.begin(), order.end());
   std::string text = "there are ";
   for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
-    text += (i > 0 ? ", \"" : "\"") + names[i] + "\"";
+    text += (i > 0 ? ", \"" : "\"") + names[order[i].second] + "\"";
   }
   return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more"
                              : text;

@@ -3,8 +3,6 @@
 
 #include <duet/core/errors.hpp>
 
-#include <Eigen/Core>
-
 #include <concepts>
 #include <cstddef>
 #include <ostream>
@@ -54,6 +52,19 @@ template <class X>
   return text + ")" + (size > most ? message(" of ", size) : "");
 }
 
+/// (x, y, z) of a column, [a, b; c, d] of another matrix of Eigen.
+template <class M>
+[[nodiscard]] std::string matrix_text(const M& m, bool is_column) {
+  std::string text(is_column ? "(" : "[");
+  for (std::ptrdiff_t i = 0; i < m.rows(); ++i) {
+    for (std::ptrdiff_t j = 0; j < m.cols(); ++j) {
+      text += i == 0 && j == 0 ? "" : j == 0 && !is_column ? "; " : ", ";
+      text += field_text(m(i, j));
+    }
+  }
+  return text + (is_column ? ")" : "]");
+}
+
 /// A number, vector, matrix, rotation, list of these …; nothing of what has no text.
 template <class X>
 std::string field_text(const X& x) {
@@ -67,12 +78,11 @@ std::string field_text(const X& x) {
     return "{" + text + "}";
   } else if constexpr (std::is_enum_v<X>) {
     return std::string(to_text(x));
-  } else if constexpr (std::derived_from<X, Eigen::MatrixBase<X>>) {
-    using Eigen::IOFormat;
-    constexpr int digits = Eigen::StreamPrecision, flags = Eigen::DontAlignCols;
-    return X::ColsAtCompileTime == 1
-               ? message(x.transpose().format(IOFormat(digits, flags, ", ", "", "", "", "(", ")")))
-               : message(x.format(IOFormat(digits, flags, ", ", "; ", "", "", "[", "]")));
+  } else if constexpr (requires {
+                         X::ColsAtCompileTime;
+                         x(0, 0);
+                       }) {
+    return matrix_text(x, X::ColsAtCompileTime == 1);
   } else if constexpr (requires { x.isCompressed(); }) { // a sparse matrix
     return message(x.rows(), " x ", x.cols(), ", ", x.nonZeros(), " entries");
   } else if constexpr (requires(std::ostream & out) { out << x; }) {

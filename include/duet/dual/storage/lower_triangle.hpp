@@ -120,7 +120,7 @@ private:
     unrolled<packet_count>([&](int k) DUET_INLINE_LAMBDA { packets_[k] = other.packets_[k]; });
   }
 
-  packet packets_[packet_count];
+  packet packets_[std::size_t(packet_count)];
 };
 
 } // namespace duet::detail

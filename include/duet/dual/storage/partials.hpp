@@ -98,7 +98,7 @@ public:
   }
 
 private:
-  std::array<T, N> elements_;
+  std::array<T, std::size_t(N)> elements_;
 };
 
 /// N partials of a built-in floating-point type, in vectors.
@@ -133,13 +133,13 @@ public:
 
   [[nodiscard]] constexpr T get(int i) const {
     if (std::is_constant_evaluated()) {
-      return elements_[i];
+      return elements_[std::size_t(i)];
     }
     return packets_[i / width][i % width];
   }
   constexpr void set(int i, T x) {
     if (std::is_constant_evaluated()) {
-      elements_[i] = x;
+      elements_[std::size_t(i)] = x;
     } else {
       packets_[i / width][i % width] = x;
     }
@@ -170,7 +170,8 @@ public:
                                                                         const Rows&... rows) {
     packed_partials result(uninitialised{});
     if (std::is_constant_evaluated()) {
-      result.fill_elements([&](int i) DUET_INLINE_LAMBDA { return f(rows.elements_[i]...); });
+      result.fill_elements([&](int i)
+                               DUET_INLINE_LAMBDA { return f(rows.elements_[std::size_t(i)]...); });
     } else {
       unrolled<count>([&](int i)
                           DUET_INLINE_LAMBDA { result.packets_[i] = f(rows.packets_[i]...); });
@@ -197,7 +198,7 @@ private:
 
   template <class F>
   constexpr void fill_elements(F&& f) {
-    T filled[size] = {};
+    T filled[std::size_t(size)] = {};
     for (int i = 0; i < N; ++i) {
       filled[i] = f(i);
     }
@@ -212,7 +213,7 @@ private:
   }
 
   union {
-    packet packets_[count];
+    packet packets_[std::size_t(count)];
     std::array<T, std::size_t(size)> elements_;
   };
 };

@@ -139,7 +139,7 @@ private:
   template <int R, int C, class... X>
     requires(Rows == 1 && Columns == 1)
   static constexpr auto of(applied_node<entries<R, C>, X...>) {
-    return std::tuple_element_t<I * C + J, std::tuple<X...>>{};
+    return std::tuple_element_t<std::size_t(I * C + J), std::tuple<X...>>{};
   }
   /// What of the block that is not 0 is in this one.
   template <class S>

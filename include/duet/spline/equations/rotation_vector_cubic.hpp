@@ -88,7 +88,7 @@ public:
           pieces_[i].gradients_by_velocities(x[i], x[(i + 1) % x.size()], rates_of(i));
       for_each_term(i, [&](std::size_t row, int sign, std::size_t end, std::size_t derivative) {
         const std::size_t equation = ends_.is_cyclic && row < i ? i + 1 : row;
-        for (const std::size_t k : {0, 1}) {
+        for (const std::size_t k : {0U, 1U}) {
           // The third block of an equation of the ends has the place of the one outside.
           add_multiple(rows[row].at((4 + i + k - equation) % 3), R(sign),
                        gradients[end][derivative][k]);
@@ -120,7 +120,7 @@ private:
     std::vector<R> lengths(knots, R(0));
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const auto w = pieces_[i].rates(polynomials[i], 2);
-      for (const std::size_t end : {0, 1}) {
+      for (const std::size_t end : {0U, 1U}) {
         const std::size_t knot = (i + end) % knots;
         if (steps_[i] > lengths[knot]) {
           rates[knot] = {w[end][0], w[end][1]};

@@ -38,7 +38,7 @@ struct rotation_vector_ends {
                        const quaternion<T>& last)
       : is_cyclic(ends.kind == end_kind::periodic), equations(equations_of(ends.kind)) {
     for (std::size_t k = 0; k < own; ++k) {
-      for (const std::size_t end : {0, 1}) {
+      for (const std::size_t end : {0U, 1U}) {
         // A third derivative that is given is none: no snap.
         const auto& rates = equations[k].derivative == 0 ? ends.velocity : ends.acceleration;
         given[end][k] = equations[k].derivative < 2

@@ -43,7 +43,7 @@ protected:
 
   bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> rows,
                     const fit_options& options)
-      : rows_(std::move(rows)), length_(options.length),
+      : rows_(std::move(rows)), length_(R(options.length)),
         whitening_(inverse_roots(options.covariances)) {
     first_.reserve(u.size());
     weights_.reserve(u.size());

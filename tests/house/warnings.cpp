@@ -1,0 +1,46 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// What small programs do, compiled with more warnings than the project's own.
+
+#include <duet/derivative/sparse.hpp>
+#include <duet/duet.hpp>
+
+#include <cstddef>
+#include <iostream>
+#include <tuple>
+#include <vector>
+
+int main() {
+  using namespace duet;
+  const auto f = [](const auto& x) { return x[0] * sin(x[1]) * x[1]; };
+  std::cout << to_text(hessian(f, Eigen::Vector2d(1, 2)));
+  std::cout << to_text(gradient(f, std::vector<double>{1, 2}));
+  const auto scaled = [](const auto& x, const auto& k) { return (k * x).eval(); };
+  std::cout << to_text(jacobian(scaled, std::tuple(Eigen::Vector2d(1, 2), 3.0)));
+  Eigen::SparseMatrix<double> structure(2, 2);
+  structure.setIdentity();
+  std::cout << to_text(sparse_hessian([](const auto& x) { return x[0] * x[0] + x[1]; },
+                                      Eigen::Vector2d(1, 2), structure));
+
+  const auto arm = robots::panda();
+  Eigen::Matrix<double, 7, 1> start;
+  start << 0.1, -0.3, 0.2, -1.8, 0.1, 1.6, 0.4;
+  auto end = start;
+  end[3] = -1.5;
+  std::cout << to_text(inverse_kinematics(arm, arm.pose(end), start));
+  std::cout << to_text(plan_screw_motion(arm, start, arm.pose(end)));
+  std::cout << to_text(pose_and_jacobian(arm, start, frame::body));
+
+  const std::vector<double> times{0, 1, 2, 3, 4};
+  std::vector<quaternion<double>> rows;
+  for (const double t : times) {
+    rows.push_back(from_euler<zyx>(t, 0.1 * t, 0));
+  }
+  std::cout << to_text(
+      interpolate<rotation_vector_spline<double>>(times, rows, natural{}).motion(1.2, frame::body));
+  const auto knots = clamped_knots(std::vector<double>{0, 2, 4}, 4);
+  std::cout << to_text(fit<cumulative_bspline<double, 4>>(times, rows, knots));
+
+  const expression::symbol<"t"> t;
+  std::cout << to_latex(expression::derivative(exp(-t * t), t)) << "\n";
+}
