@@ -81,9 +81,9 @@ struct cylinder : rule_by_boost<cylinder<Kind>> {
 
 /// (2n + 1) f_n′ = n f_{n−1} − (n + 1) f_{n+1}
 template <bool IsNeumann>
-struct sphere : rule_by_boost<sphere<IsNeumann>> {
+struct spherical_bessel_rule : rule_by_boost<spherical_bessel_rule<IsNeumann>> {
   unsigned order;
-  constexpr explicit sphere(unsigned n) : order(n) {}
+  constexpr explicit spherical_bessel_rule(unsigned n) : order(n) {}
 
   template <class T>
   T plain(const T& x) const {
@@ -96,11 +96,11 @@ struct sphere : rule_by_boost<sphere<IsNeumann>> {
   template <class T>
   T slope(const T& x, const T&) const {
     using real = real_type_t<T>;
-    const T above = sphere(order + 1).value(x);
+    const T above = spherical_bessel_rule(order + 1).value(x);
     if (order == 0) {
       return -above;
     }
-    return (real(order) * sphere(order - 1).value(x) - real(order + 1) * above) /
+    return (real(order) * spherical_bessel_rule(order - 1).value(x) - real(order + 1) * above) /
            real(2 * order + 1);
   }
 };

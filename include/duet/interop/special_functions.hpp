@@ -45,11 +45,11 @@ concept SpecialArgument = RealInfinitesimal<D> && !Batched<D>;
 }
 /// Spherical Bessel function of the first kind j_n(x).
 [[nodiscard]] auto sph_bessel(unsigned n, const SpecialArgument auto& x) {
-  return detail::sphere<false>(n).value(x);
+  return detail::spherical_bessel_rule<false>(n).value(x);
 }
 /// Spherical Bessel function of the second kind y_n(x).
 [[nodiscard]] auto sph_neumann(unsigned n, const SpecialArgument auto& x) {
-  return detail::sphere<true>(n).value(x);
+  return detail::spherical_bessel_rule<true>(n).value(x);
 }
 
 /// Elliptic integral of the first kind F(φ, k), by φ.

@@ -20,7 +20,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -186,10 +185,9 @@ private:
   [[noreturn]] void fail_at_farthest() const {
     const std::vector<R> sizes = residuals();
     const auto farthest = std::max_element(sizes.begin(), sizes.end());
-    std::ostringstream reason;
-    reason << "is " << *farthest << " from the rows around it, too far for least squares: "
-           << "fit_options::outlier makes the fit robust";
-    throw invalid_row(std::size_t(farthest - sizes.begin()), reason.str());
+    throw invalid_row(std::size_t(farthest - sizes.begin()),
+                      message("is ", *farthest, " from the rows around it, too far for least ",
+                              "squares: fit_options::outlier makes the fit robust"));
   }
 
   [[nodiscard]] R weight_of(std::size_t i) const {
@@ -236,9 +234,8 @@ private:
         flush(last.first);
       }
       const auto [value, slope] = this->linearised(i, controls_, last);
-      const R length = size_of(value);
-      cost += weight_of(i) * loss(length, limits_[i]);
-      const R given = weight_of(i);
+      const R length = size_of(value), given = weight_of(i);
+      cost += given * loss(length, limits_[i]);
       const R weight = length <= limits_[i] ? given : R(given * (limits_[i] / length));
       gradient_.template segment<unknowns>(Eigen::Index(last.first) * dimension) -=
           weight * (slope * value);
@@ -286,10 +283,8 @@ private:
   }
 
   [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
-    std::ostringstream message;
-    message << "duet: fit: the iteration " << what << " after " << iterations_ + iterations
-            << " steps, the last one " << step;
-    throw no_convergence(message.str());
+    throw no_convergence(message("duet: fit: the iteration ", what, " after ",
+                                 iterations_ + iterations, " steps, the last one ", step));
   }
 
   fit_options options_;
