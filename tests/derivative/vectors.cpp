@@ -159,6 +159,28 @@ TEST_CASE("rows, expressions, maps, arrays and integers") {
   CHECK(J == expected);
 }
 
+TEST_CASE("parts of vectors and matrices, references, entries of a matrix") {
+  Eigen::VectorXd x(4);
+  x << 2, 3, 5, 7;
+  const Eigen::MatrixXd m = x * x.transpose();
+  const auto f = [](const auto& v) { return v[0] * v[1]; };
+  const auto check = [&](const auto& at, double first, double second) {
+    CHECK(gradient(f, at).gradient.head(2) == Eigen::Vector2d(second, first));
+    CHECK(hessian(f, at).hessian(0, 1) == 1);
+    CHECK(jacobian([](const auto& v) { return v; }, at).jacobian(1, 1) == 1);
+  };
+  check(x.head(2), 2, 3);
+  check(x.segment<2>(1), 3, 5);
+  check(x.tail<2>(), 5, 7);
+  check(m.col(1), 6, 9);
+  check(m.row(2).head<2>(), 10, 15);
+  check(Eigen::Ref<const Eigen::VectorXd>(x), 2, 3);
+  check(Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>(x), 2, 3);
+  const Eigen::Matrix2d a{{1, 2}, {3, 4}};
+  const auto determinant = [](const auto& v) { return v.reshaped(2, 2).eval().determinant(); };
+  CHECK(gradient(determinant, a.reshaped()).gradient == Eigen::Vector4d(4, -2, -3, 1));
+}
+
 TEST_CASE("results of a size known at run time, from an argument of fixed size") {
   const auto f = [](const auto& x) {
     using T = std::decay_t<decltype(x[0])>;

@@ -4,11 +4,11 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/function.hpp>
+#include <duet/dual/eigen_structure.hpp>
 
 #include <Eigen/Core>
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
@@ -38,7 +38,7 @@ constexpr int fixed_length(int n) {
 }
 
 template <class X>
-  requires std::derived_from<X, Eigen::MatrixBase<X>>
+  requires EigenMatrix<X>
 struct vector_argument<X> {
   static_assert(X::ColsAtCompileTime == 1 || X::IsVectorAtCompileTime,
                 "duet: differentiate with respect to a vector, not to a matrix: x.reshaped()");
@@ -111,7 +111,7 @@ template <class X>
 [[nodiscard]] DUET_ALWAYS_INLINE auto& component(X& x, Eigen::Index i) {
   if constexpr (Scalar<std::remove_const_t<X>>) {
     return x;
-  } else if constexpr (std::derived_from<X, Eigen::EigenBase<std::remove_const_t<X>>>) {
+  } else if constexpr (EigenMatrix<X>) {
     return x.coeffRef(i);
   } else {
     return x[std::size_t(i)];

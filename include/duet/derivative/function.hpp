@@ -26,7 +26,7 @@ struct own {
   using type = X;
 };
 template <class X>
-  requires std::derived_from<X, Eigen::MatrixBase<X>>
+  requires EigenMatrix<X>
 struct own<X> {
   using type = typename X::PlainObject;
 };

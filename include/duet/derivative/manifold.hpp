@@ -5,13 +5,13 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/function.hpp>
+#include <duet/dual/eigen_structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/promotion.hpp>
 
 #include <Eigen/Core>
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
@@ -52,7 +52,7 @@ struct manifold<X> {
 };
 
 template <class X>
-  requires std::derived_from<X, Eigen::MatrixBase<X>>
+  requires detail::EigenMatrix<X>
 struct manifold<X> {
   static constexpr int dimension = X::SizeAtCompileTime;
   using scalar = detail::differentiable_t<typename X::Scalar>;

@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-#include <concepts>
 #include <type_traits>
 
 /// \file
@@ -38,6 +37,16 @@ struct ScalarBinaryOpTraits<T, duet::batch<T, W>, Operation> {
 namespace duet {
 namespace detail {
 
+template <class Derived>
+void take_matrix(const Eigen::MatrixBase<Derived>&);
+
+/// A matrix or vector of Eigen, or an expression of them: parts of vectors among these, which are
+/// not derived from the `MatrixBase` of their own type.
+template <class M>
+concept EigenMatrix = requires(const M& m) {
+  take_matrix(m);
+};
+
 /// A matrix of the size and layout of M over another scalar.
 template <class M, class S>
 using matrix_over =
@@ -48,7 +57,7 @@ using matrix_over =
 
 /// Column by column.
 template <class M>
-  requires std::derived_from<M, Eigen::MatrixBase<M>>
+  requires detail::EigenMatrix<M>
 struct structure<M> {
   using scalar = typename M::Scalar;
   template <class F, class... Rest>
