@@ -4,6 +4,7 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/second_order.hpp>
 
+#include <Eigen/LU>
 #include <doctest/doctest.h>
 
 #include <array>
