@@ -6,8 +6,10 @@
 #include <duet/expression/algebra/power.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
 
 /// \file
 /// Roots, exponentials, logarithms and circular functions of scalar formulas.
@@ -17,9 +19,11 @@ namespace duet::expression {
 namespace op {
 
 struct sqrt : detail::function<sqrt, duet::rule::sqrt> {
-  static constexpr detail::function_name name = {"sqrt", "\\sqrt{#}"};
   static constexpr bool slopes_take_value = true;
   static constexpr auto written_slope(auto x) { return whole<1> / (whole<2> * apply<sqrt>(x)); }
+  static printed print(notation style, const printed& x) {
+    return style == notation::latex ? detail::latex_root(x) : printed{"sqrt(" + x.text + ")"};
+  }
 };
 struct cbrt : detail::function<cbrt, duet::rule::cbrt> {
   static constexpr detail::function_name name = {"cbrt", ""};
@@ -29,8 +33,10 @@ struct cbrt : detail::function<cbrt, duet::rule::cbrt> {
   }
 };
 struct exp : detail::function<exp, duet::rule::exp> {
-  static constexpr detail::function_name name = {"exp", "e^{#}"};
   static constexpr auto differential(auto x, auto dx) { return apply<exp>(x) * dx; }
+  static printed print(notation style, const printed& x) {
+    return style == notation::latex ? detail::latex_exponential(x) : printed{"exp(" + x.text + ")"};
+  }
 };
 struct log : detail::function<log, duet::rule::log> {
   static constexpr detail::function_name name = {"log", "\\log"};

@@ -7,8 +7,11 @@
 #include <duet/expression/algebra/power.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
+#include <duet/expression/tree/latex_text.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/printed.hpp>
 
 #include <utility>
 
@@ -34,7 +37,15 @@ struct atan2 : detail::function<atan2, duet::rule::atan2> {
 
 /// √(x² + y² + …)
 struct hypot : detail::function<hypot, duet::rule::hypot> {
-  static constexpr detail::function_name name = {"hypot", ""};
+  static printed print(notation style, const auto&... x) {
+    if (style == notation::text) {
+      return detail::printed_call(style, {"hypot", ""}, {x...});
+    }
+    const printed two = {"2", precedence::atom, style, factor_place::number};
+    printed squares = {"0", precedence::atom, style, factor_place::number};
+    ((squares = sum::print(style, squares, detail::latex_power(x, two))), ...);
+    return detail::latex_root(squares);
+  }
   template <int I, class... X>
   static constexpr auto written_slope(X... x) {
     return operand<I>(applied_node<hypot, X...>{}) / apply<hypot>(x...);

@@ -135,7 +135,8 @@ struct turn {
   }
   static printed print(notation style, const printed& n, const printed& angle, const printed&,
                        const printed&) {
-    const printed half = quotient::print(style, angle, {"2"});
+    const printed half =
+        quotient::print(style, angle, {"2", precedence::atom, style, factor_place::number});
     return detail::printed_operation<exp_vector>(style, product::print(style, half, n));
   }
 };

@@ -5,6 +5,8 @@
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
+#include <duet/expression/tree/latex_text.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>
 
@@ -117,9 +119,9 @@ namespace detail {
              (digits[e + 1] == '-' ? "-" + digits.substr(digits.find_first_not_of("-0", e + 1))
                                    : digits.substr(exponent)) +
              "}";
-    return {digits, is_negative ? negative : precedence::product, style};
+    return {digits, is_negative ? negative : precedence::product, style, factor_place::number};
   }
-  return {digits, is_negative ? negative : precedence::atom, style};
+  return {digits, is_negative ? negative : precedence::atom, style, factor_place::number};
 }
 
 /// Greek letters by their names, what follows the letters as an index, columns with an
@@ -149,6 +151,10 @@ namespace detail {
   return letters + "_{" + name.substr(name[end] == '_' ? end + 1 : end) + "}";
 }
 
+[[nodiscard]] constexpr factor_place place_of(kind k) {
+  return k == kind::scalar ? factor_place::symbol : factor_place::in_order;
+}
+
 template <class T>
 [[nodiscard]] printed printed_constant(notation style, const T& value) {
   if constexpr (std::floating_point<T>) {
@@ -170,14 +176,15 @@ template <class T>
     } else {
       text << value;
     }
-    return {text.str(), precedence::atom, style};
+    return {text.str(), precedence::atom, style, place_of(constant_traits<T>::kind_of)};
   }
 }
 
 template <kind K, char... Letters>
 [[nodiscard]] printed print(notation style, symbol_node<K, Letters...>, const auto&) {
   const std::string name = {Letters...};
-  return {style == notation::latex ? latex_name(name, K) : name, precedence::atom, style};
+  return {style == notation::latex ? latex_name(name, K) : name, precedence::atom, style,
+          place_of(K)};
 }
 template <kind K, class Tag>
 [[nodiscard]] printed print(notation style, constant_node<K, Tag>, const auto& h) {
@@ -188,17 +195,17 @@ template <std::uint64_t Bits>
   return printed_number(style, duet::to_text(n.value));
 }
 [[nodiscard]] inline printed print(notation style, pi_node, const auto&) {
-  return {style == notation::latex ? "\\pi" : "pi", precedence::atom, style};
+  return {style == notation::latex ? "\\pi" : "pi", precedence::atom, style, factor_place::pi};
 }
 template <kind K>
 [[nodiscard]] printed print(notation style, zero_node<K>, const auto&) {
-  return {"0", precedence::atom, style};
+  return {"0", precedence::atom, style, factor_place::number};
 }
 template <class Operation, class... Operands>
 [[nodiscard]] printed print(notation style, applied_node<Operation, Operands...>, const auto& h) {
   printed result = printed_operation<Operation>(style, print(style, Operands{}, h)...);
-  result.style = style;
-  return result;
+  constexpr kind k = applied_node<Operation, Operands...>::kind_of;
+  return style == notation::latex ? latex_of_kind(std::move(result), k == kind::scalar) : result;
 }
 
 } // namespace detail
@@ -209,12 +216,16 @@ template <Formula F>
   return detail::print(notation::text, detail::written_t<typename F::node_type>{}, f.held()).text;
 }
 
-/// The formula for a paper, to stand in mathematics mode: `2 \cdot x \cos\left(x^{2}\right)`.
+/// The formula for a paper, to stand in mathematics mode: `2 x \cos\left(x^{2}\right)`. It equals
+/// the formula wherever that has a value: equal factors are joined to powers and cancelled, equal
+/// terms are collected, and no fraction stands in another, in an exponent or in an argument.
 /// Symbols with the names of Greek letters are those letters; digits, and what follows _, are an
 /// index.
 template <Formula F>
 [[nodiscard]] std::string to_latex(const F& f) {
-  return detail::print(notation::latex, detail::written_t<typename F::node_type>{}, f.held()).text;
+  const printed whole =
+      detail::print(notation::latex, detail::written_t<typename F::node_type>{}, f.held());
+  return detail::latex_text(detail::latex_terms(whole), detail::fractions::lines).text;
 }
 
 } // namespace duet::expression

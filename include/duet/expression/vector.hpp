@@ -6,6 +6,8 @@
 #include <duet/expression/algebra/product.hpp>
 #include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
+#include <duet/expression/tree/latex_text.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
@@ -51,7 +53,8 @@ template <kind K, int I, class Held>
 [[nodiscard]] printed print(notation style, unit_vector_node<K, I>, const Held&) {
   const std::string axis = std::to_string(I % 3 + 1);
   if (style == notation::latex) {
-    return {std::string(I < 3 ? "" : "\\varepsilon ") + "\\vec{e}_{" + axis + "}"};
+    return {std::string(I < 3 ? "" : "\\varepsilon ") + "\\vec{e}_{" + axis + "}", precedence::atom,
+            style, factor_place::in_order};
   }
   return {std::string(I < 3 ? "" : "epsilon ") + "e" + axis};
 }
@@ -75,10 +78,9 @@ struct dot : bilinear_operation {
     }
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    return style == notation::latex
-               ? printed{a.inside(precedence::product) + " \\cdot " + b.inside(precedence::product),
-                         precedence::product}
-               : printed{"dot(" + a.text + ", " + b.text + ")"};
+    return style == notation::latex ? detail::latex_bilinear(a, " \\cdot ", b, precedence::product,
+                                                             factor_place::function)
+                                    : printed{"dot(" + a.text + ", " + b.text + ")"};
   }
 };
 
@@ -92,10 +94,9 @@ struct cross : bilinear_operation {
     return duet::detail::cross(duet::detail::components(a), duet::detail::components(b)).eigen();
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    return style == notation::latex
-               ? printed{a.inside(precedence::power) + " \\times " + b.inside(precedence::power),
-                         precedence::product}
-               : printed{"cross(" + a.text + ", " + b.text + ")"};
+    return style == notation::latex ? detail::latex_bilinear(a, " \\times ", b, precedence::power,
+                                                             factor_place::in_order)
+                                    : printed{"cross(" + a.text + ", " + b.text + ")"};
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
@@ -163,7 +164,11 @@ struct negative : linear_operation {
     const auto minus = [](const auto& x, const auto&) { return -x; };
     return detail::componentwise(minus, a, a);
   }
-  static printed print(notation, const printed& a) {
+  static printed print(notation style, const printed& a) {
+    if (style == notation::latex) {
+      return detail::latex_product_of(
+          {"-1", precedence::negative_number, style, factor_place::number}, a);
+    }
     return {"-" + a.inside(precedence::product), precedence::sum};
   }
 };
@@ -194,7 +199,10 @@ struct sum {
   static constexpr auto value(const auto& a, const auto& b) {
     return detail::componentwise([](const auto& x, const auto& y) { return x + y; }, a, b);
   }
-  static printed print(notation, const printed& a, const printed& b) {
+  static printed print(notation style, const printed& a, const printed& b) {
+    if (style == notation::latex) {
+      return detail::latex_sum_of(a, 1, b);
+    }
     return {a.inside(precedence::sum) + " + " + b.inside(precedence::sum), precedence::sum};
   }
 };
@@ -223,7 +231,10 @@ struct difference {
   static constexpr auto value(const auto& a, const auto& b) {
     return detail::componentwise([](const auto& x, const auto& y) { return x - y; }, a, b);
   }
-  static printed print(notation, const printed& a, const printed& b) {
+  static printed print(notation style, const printed& a, const printed& b) {
+    if (style == notation::latex) {
+      return detail::latex_sum_of(a, -1, b);
+    }
     return {a.inside(precedence::sum) + " - " + b.inside(precedence::product), precedence::sum};
   }
 };

@@ -6,6 +6,7 @@
 #include <duet/expression/algebra/product.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
@@ -54,8 +55,10 @@ struct whole_power {
   }
   static printed print(notation style, const printed& x) {
     const std::string n = std::to_string(Exponent);
-    return {x.inside(precedence::atom) + "^" + (style == notation::latex ? "{" + n + "}" : n),
-            precedence::power};
+    if (style == notation::latex) {
+      return detail::latex_power(x, {n, precedence::atom, style, factor_place::number});
+    }
+    return {x.inside(precedence::atom) + "^" + n, precedence::power};
   }
 
 private:
@@ -123,9 +126,10 @@ struct power : detail::function<power, duet::rule::pow> {
     }
   }
   static printed print(notation style, const printed& x, const printed& p) {
-    return {x.inside(precedence::atom) + "^" +
-                (style == notation::latex ? "{" + p.text + "}" : p.inside(precedence::atom)),
-            precedence::power};
+    if (style == notation::latex) {
+      return detail::latex_power(x, p);
+    }
+    return {x.inside(precedence::atom) + "^" + p.inside(precedence::atom), precedence::power};
   }
 };
 

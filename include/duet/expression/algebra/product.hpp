@@ -3,6 +3,7 @@
 
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
@@ -158,10 +159,11 @@ struct product {
   }
   static constexpr auto differential(auto a, auto b, auto da, auto db) { return da * b + a * db; }
   static printed print(notation style, const printed& a, const printed& b) {
-    const std::string right = b.inside(precedence::product);
-    const bool is_digit = right[0] >= '0' && right[0] <= '9';
-    const std::string sign = style == notation::text ? " * " : is_digit ? " \\cdot " : " ";
-    return {a.inside(precedence::negative_number) + sign + right, precedence::product};
+    if (style == notation::latex) {
+      return detail::latex_product_of(a, b);
+    }
+    return {a.inside(precedence::negative_number) + " * " + b.inside(precedence::product),
+            precedence::product};
   }
 };
 
@@ -201,7 +203,7 @@ struct quotient {
   }
   static printed print(notation style, const printed& a, const printed& b) {
     if (style == notation::latex) {
-      return {"\\frac{" + a.text + "}{" + b.text + "}", precedence::product};
+      return detail::latex_product_of(a, b, -1);
     }
     return {a.inside(precedence::product) + " / " + b.inside(precedence::power),
             precedence::product};

@@ -8,6 +8,7 @@
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/matrix/product.hpp>
 #include <duet/expression/tree/formula.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
@@ -146,7 +147,9 @@ struct solution {
   }
   static printed print(notation style, const printed& a, const printed& b) {
     return style == notation::latex
-               ? matrix_product::print(style, detail::printed_operation<inverse>(style, a), b)
+               ? matrix_product::print(
+                     style,
+                     detail::latex_of_kind(detail::printed_operation<inverse>(style, a), false), b)
                : printed{"solve(" + a.text + ", " + b.text + ")"};
   }
 };

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/expression/tree/latex_text.hpp>
+
 #include <cstddef>
 #include <initializer_list>
 #include <string>
@@ -17,14 +19,15 @@ enum class notation {
   latex ///< for mathematics mode
 };
 
-/// How strongly a formula holds together.
-enum class precedence { condition, sum, negative_number, product, power, atom };
-
-/// The text of a formula, and what it is outside all parentheses.
+/// The text of a formula, and what it is outside all parentheses. In LaTeX the text is that inside
+/// of other formulas, with slashes for fractions; the terms tell how else it may be written.
 struct printed {
-  std::string text;                        ///< what stands there
-  precedence outermost = precedence::atom; ///< of the operation outside all parentheses
-  notation style = notation::text;         ///< how it is written
+  std::string text;                            ///< what stands there
+  precedence outermost = precedence::atom;     ///< of the operation outside all parentheses
+  notation style = notation::text;             ///< how it is written
+  factor_place place = factor_place::function; ///< in LaTeX, of what has no terms
+  std::size_t name_end = 0;                    ///< of f(x), where f^2(x) has its exponent; else 0
+  std::vector<detail::latex_term> terms = {};  ///< in LaTeX, of what is no single factor
 
   /// In parentheses if it would fall apart beside an operator of that precedence.
   [[nodiscard]] std::string inside(precedence beside) const {
@@ -62,9 +65,15 @@ struct function_name {
     form.replace(at, 1, at == 0 ? operands.begin()->inside(precedence::atom) : arguments);
     return {form, is_power ? precedence::power : precedence::atom};
   }
-  const bool is_high = arguments.find_first_of("^{") != std::string::npos;
-  return {(form.empty() ? "\\operatorname{" + std::string(name.text) + "}" : form) +
-          (is_high ? "\\left(" : "(") + arguments + (is_high ? "\\right)" : ")")};
+  const bool is_high = arguments.find_first_of("^{") != std::string::npos ||
+                       arguments.find("\\left") != std::string::npos;
+  if (form.empty()) {
+    form = "\\operatorname{" + std::string(name.text) + "}";
+  }
+  const bool is_one_name = form.find('\\', 1) == std::string::npos; // unlike \log\Gamma
+  return {form + (is_high ? "\\left(" : "(") + arguments + (is_high ? "\\right)" : ")"),
+          is_one_name ? precedence::atom : precedence::power, style, factor_place::function,
+          is_one_name ? form.size() : 0};
 }
 
 /// An operation as it prints itself, or by its name.
