@@ -225,12 +225,13 @@ TEST_CASE("what cannot be written is found before") {
   };
   CHECK(asked(here.at("a.csv")).empty());
   for (const auto& [path, reason] :
-       {std::pair(here.at(""), "Is a directory"),
-        std::pair(here.at("none/a.csv"), "No such file or directory"),
+       {std::pair(here.at("none/a.csv"), "No such file or directory"),
         std::pair(here.at(std::string(300, 'x')), "File name too long")}) {
     CHECK(asked(path) == message(path));
     CHECK(message(path) == "duet: " + path + ": cannot be written: " + reason);
   }
+  CHECK(asked(here.at("")) == "duet: " + here.at("") + ": is a folder, not a file");
+  CHECK(message(here.at("")) == asked(here.at("")));
   CHECK(here.count() == 0);
   CHECK(message(here.at("none\n\x1b[2J/a.csv")) ==
         "duet: " + here.at("none\\n\\x1b[2J/a.csv") +

@@ -146,7 +146,7 @@ TEST_CASE("bad paths") {
   CHECK_THROWS_WITH_AS(
       (void)follow_path(
           arm, start, [&](double u) { return u > .5 ? first * std::nan("") : first; }, 0, 1),
-      doctest::Contains("is not finite"), invalid_input);
+      doctest::Contains("its rotation is not finite: (nan, nan, nan, nan)"), invalid_input);
   vector outside = start;
   outside[5] = 4;
   CHECK_THROWS_WITH_AS(

@@ -283,7 +283,15 @@ TEST_CASE("bad problems") {
                        "duet: inverse_kinematics: the goal is no unit dual quaternion: |p|^2 = 1, "
                        "p.q = 0.5",
                        invalid_input);
-  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal * std::nan(""), start), invalid_input);
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, at(.1, std::nan(""), .3), start),
+                       "duet: inverse_kinematics: the goal: its translation is not finite: (nan, "
+                       "nan, nan)",
+                       invalid_input);
+  const auto not_turned = pose(quaternion<double>(1, 0, std::nan(""), 0), vector3<double>(1, 2, 3));
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, not_turned, start),
+                       "duet: inverse_kinematics: the goal: its rotation is not finite: (1, 0, "
+                       "nan, 0)",
+                       invalid_input);
   CHECK(inverse_kinematics(arm, at(1e200, 0, 0), start).reason == stop_reason::out_of_reach);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, vector::Zero(6).eval()),
                        "duet: a chain of 7 moving joints, but 6 coordinates", invalid_input);

@@ -239,6 +239,10 @@ TEST_CASE("bad problems") {
   CHECK_THROWS_AS((void)plan_screw_motion(arm, outside, goal), invalid_input);
   CHECK_THROWS_AS((void)plan_screw_motion(arm, start, goal * 2.0), invalid_input);
   CHECK_THROWS_AS((void)printed_screw_plan(arm, start, goal * std::nan("")), invalid_input);
+  const auto nowhere = pose(rotation(goal), vector3<double>(INFINITY, 0, 0));
+  CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, nowhere),
+                       doctest::Contains("duet: plan: the goal: its translation is not finite: ("),
+                       invalid_input);
   CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, goal, {.deviation = 0}),
                        "duet: plan: deviation is 0, not a number above 0", invalid_input);
   CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, goal, {.search_step = 1e-9}),

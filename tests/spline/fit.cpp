@@ -448,7 +448,7 @@ TEST_CASE("bad input is named") {
   };
   const auto u = steps(8, 40);
   const auto rows = rows_of(truth, u);
-  CHECK(message(steps(8, 39), rows) == "duet: fit: 40 parameters and 41 elements");
+  CHECK(message(steps(8, 39), rows) == "duet: fit: 40 parameters, but 41 rows");
   CHECK(message(steps(9, 40), rows) ==
         "duet: row 36: parameter 8.1 is outside the knots' domain, 0 to 8: clamped_knots of "
         "parameters from 0 to 9 hold all rows");

@@ -116,7 +116,10 @@ TEST_CASE("bad rows are named") {
   twists[2][4] = std::numeric_limits<double>::quiet_NaN();
   CHECK(message(twists) == "duet: row 2: the velocity is not finite");
   twists.pop_back();
-  CHECK(message(twists) == "duet: hermite_spline: 6 elements and 5 velocities");
+  CHECK(message(twists) == "duet: hermite_spline: 6 rows, but 5 velocities");
+  r.u.pop_back();
+  CHECK(message(r.twists) == "duet: hermite_spline: 5 parameters, but 6 rows");
+  r.u.push_back(9);
   r.u[3] = r.u[2];
   CHECK(message(r.twists).starts_with("duet: row 3: parameter "));
 }

@@ -76,16 +76,14 @@ TEST_CASE("parameters that do not increase") {
 
 TEST_CASE("too few rows, and columns of different length") {
   using duet::invalid_input;
-  const auto needs = [](const std::string& minimum, const std::string& got) {
-    return "duet: interpolate: needs " + minimum +
-           " rows or more with these ends, each a parameter and an orientation, got " + got;
-  };
-  CHECK(message_of<invalid_input>({}, {}) == needs("2", "0 and 0"));
-  CHECK(message_of<invalid_input>({1}, {one}) == needs("2", "1 and 1"));
-  CHECK(message_of<invalid_input>({1, 2, 3}, {one, one}) == needs("2", "3 and 2"));
+  CHECK(message_of<invalid_input>({}, {}) == "duet: interpolate: needs 2 rows or more, got 0");
+  CHECK(message_of<invalid_input>({1}, {one}) == "duet: interpolate: needs 2 rows or more, got 1");
+  CHECK(message_of<invalid_input>({1, 2, 3, 4}, {one, one, one, one, one}) ==
+        "duet: interpolate: 4 parameters, but 5 rows");
   CHECK(message_of<invalid_input>({1, 2, 3}, {one, one, one}, duet::not_a_knot{}) ==
-        needs("4", "3 and 3"));
-  CHECK(message_of<invalid_input>({1, 2}, {one, one}, duet::periodic{}) == needs("3", "2 and 2"));
+        "duet: interpolate: needs 4 rows or more with these ends, got 3");
+  CHECK(message_of<invalid_input>({1, 2}, {one, one}, duet::periodic{}) ==
+        "duet: interpolate: needs 3 rows or more with these ends, got 2");
 }
 
 TEST_CASE("periodic ends that do not meet") {

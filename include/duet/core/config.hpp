@@ -4,6 +4,17 @@
 /// \file
 /// What duet needs to know of the compiler and its target.
 
+#ifdef _MSVC_LANG
+#define DUET_LANGUAGE _MSVC_LANG
+#else
+#define DUET_LANGUAGE __cplusplus
+#endif
+#if DUET_LANGUAGE < 202002L
+// After an #error compilers go on, with thousands of errors; where a file is missing they stop.
+#include "duet: needs C++20: compile with -std=c++20"
+#endif
+#undef DUET_LANGUAGE
+
 #if (defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)) &&         \
     !defined(DUET_ALLOW_FAST_MATH)
 #error                                                                                             \

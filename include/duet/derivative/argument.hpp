@@ -164,7 +164,14 @@ struct vector_argument<std::tuple<X...>> {
 /// f of x; where x is a tuple of several arguments that f does not take as one, of these.
 template <class F, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE decltype(auto) call(F&& f, const X& x) {
-  if constexpr (is_tuple<X> && !std::is_invocable_v<F&, const X&>) {
+  constexpr bool takes_several = [] {
+    if constexpr (is_tuple<X>) {
+      return !std::is_invocable_v<F&, const X&>;
+    } else {
+      return false; // without a call, so that compilers come to f by f(x) alone
+    }
+  }();
+  if constexpr (takes_several) {
     return std::apply(f, x);
   } else {
     return f(x);

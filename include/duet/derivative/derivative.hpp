@@ -6,7 +6,6 @@
 #include <duet/dual/parts.hpp>
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <utility>
 
@@ -38,31 +37,40 @@ value_and_derivative(Y, DY) -> value_and_derivative<Y, DY>;
 /// \return `value_and_derivative`
 ///
 /// Example: `auto [y, dy] = derivative([](auto x) { return sin(x); }, 0.3);`
-template <class Tag = void, class F, class X>
+template <class Tag = void, detail::FunctionOfAny F, class X>
   requires(Scalar<X> || Arithmetic<X>)
 [[nodiscard]] auto derivative(F&& f, const X& x) {
   using T = detail::differentiable_t<X>;
   using tag = detail::tag_for<Tag, F>;
-  static_assert(std::invocable<F, dual<T, 1, tag>>,
-                "duet: derivative: the function must take any scalar: [](auto x) { ... }");
+  static_assert(
+      requires(dual<T, 1, tag> variable) { std::forward<F>(f)(variable); },
+      "duet: derivative: the function must take any scalar: [](const auto& x) { ... }");
   const auto y = detail::result_of_call(std::forward<F>(f)(dual<T, 1, tag>::variable(T(x))));
   return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};
 }
 
 /// f(x), f′(x), …, f^(K)(x) in one pass over Taylor numbers; element k is the k-th derivative.
 /// \return a `std::array` of K + 1 values, each of the shape of f(x)
-template <int K, class Tag = void, class F, class X>
+template <int K, class Tag = void, detail::FunctionOfAny F, class X>
   requires(Scalar<X> || Arithmetic<X>)
 [[nodiscard]] auto derivatives(F&& f, const X& x) {
   using T = detail::differentiable_t<X>;
   using tag = detail::tag_for<Tag, F>;
-  static_assert(std::invocable<F, taylor<T, K, tag>>,
-                "duet: derivatives: the function must take any scalar: [](auto x) { ... }");
+  static_assert(
+      requires(taylor<T, K, tag> variable) { std::forward<F>(f)(variable); },
+      "duet: derivatives: the function must take any scalar: [](const auto& x) { ... }");
   const auto y = detail::result_of_call(std::forward<F>(f)(taylor<T, K, tag>::variable(T(x))));
   return [&]<int... I>(std::integer_sequence<int, I...>) {
     return std::array{detail::parts<tag>(y, I)...};
   }
   (std::make_integer_sequence<int, K + 1>{});
 }
+
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(derivative)
+value_and_derivative<double, double> derivative(F&&, X&&...);
+template <int K, class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(derivatives)
+std::array<double, std::size_t(K) + 1> derivatives(F&&, X&&...);
 
 } // namespace duet

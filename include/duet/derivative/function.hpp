@@ -2,6 +2,8 @@
 #pragma once
 
 #include <duet/core/own_numbers.hpp>
+#include <duet/core/refused.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual/eigen_structure.hpp>
 #include <duet/dual/promotion.hpp>
@@ -42,6 +44,33 @@ template <class Given, class F>
 using tag_for = std::conditional_t<std::is_void_v<Given>, derivative_tag<std::decay_t<F>>,
                                    derivative_tag<Given>>;
 
+/// A parameter that holds real numbers alone.
+template <class A>
+concept RealParameter = Arithmetic<A> || Real<A> ||(Structured<A>&& requires {
+  requires Arithmetic<typename structure<A>::scalar> || Real<typename structure<A>::scalar>;
+});
+
+template <class R, class... A>
+std::bool_constant<(sizeof...(A) > 0 && (RealParameter<std::decay_t<A>> && ...))>
+    has_real_parameters(R (*)(A...));
+template <class R, class C, class... A>
+std::bool_constant<(sizeof...(A) > 0 && (RealParameter<std::decay_t<A>> && ...))>
+    has_real_parameters(R (C::*)(A...));
+template <class R, class C, class... A>
+std::bool_constant<(sizeof...(A) > 0 && (RealParameter<std::decay_t<A>> && ...))>
+has_real_parameters(R (C::*)(A...) const);
+
+/// A function, or an object with one `operator()`, of real numbers: there is no derivative of it.
+template <class F>
+concept FunctionOfReals = requires(std::decay_t<F> f) {
+  requires decltype(has_real_parameters(f))::value;
+}
+|| requires { requires decltype(has_real_parameters(&std::decay_t<F>::operator()))::value; };
+
+/// Any other: what drivers differentiate.
+template <class F>
+concept FunctionOfAny = !FunctionOfReals<F>;
+
 /// What a function of the caller's returned, as an object of its own. (Its type is deduced, so that
 /// compilers say first of all what is wrong, also where only the type is asked for.)
 template <class X>
@@ -56,3 +85,7 @@ template <class X>
 }
 
 } // namespace duet::detail
+
+/// Said where `driver` is given one.
+#define DUET_REFUSED_FUNCTION(driver)                                                              \
+  DUET_REFUSED(#driver ": the function must take any scalar: [](const auto& x) { ... }")

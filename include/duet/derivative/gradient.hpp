@@ -62,11 +62,12 @@ struct value_gradient_and_hessian {
 /// \throws invalid_input where the sizes do not match or x is empty
 ///
 /// Example: `Eigen::VectorXd g(n); const double y = gradient_into<16>(f, x, g);`
-template <int Chunk = 0, class Tag = void, class F, Variables X, class G>
+template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X, class G>
 [[nodiscard]] auto gradient_into(F&& f, const X& x, G&& gradient) {
   static_assert(Chunk >= 0, "duet: gradient_into<Chunk> needs a number of partials");
   using tag = detail::tag_for<Tag, F>;
-  using output = detail::result_of_pass<tag, Chunk, F, X>;
+  using output = std::decay_t<decltype(detail::result_of_call(
+      detail::call(f, detail::constants_of_pass<tag, Chunk>(x))))>;
   static_assert(Scalar<output>, "duet: gradient_into needs a function that returns a scalar");
   const Eigen::Index size = detail::vector_argument<X>::size(x);
   detail::require(size > 0, "duet: gradient_into of a function of no variables");
@@ -89,11 +90,12 @@ template <int Chunk = 0, class Tag = void, class F, Variables X, class G>
 ///
 /// Up to 32 components known at compile time take one evaluation of f.
 /// \return `value_and_gradient`
-template <class Tag = void, class F, Variables X>
+template <class Tag = void, detail::FunctionOfAny F, Variables X>
 [[nodiscard]] auto gradient(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
-  using output = detail::result_of_pass<tag, 0, F, X>;
+  using output = std::decay_t<decltype(detail::result_of_call(
+      detail::call(f, detail::constants_of_pass<tag, 0>(x))))>;
   static_assert(Scalar<output>, "duet: gradient needs a function that returns a scalar");
   using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
   using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
@@ -170,7 +172,7 @@ void hessian_in_blocks(F&& f, const X& x, Result& result) {
 /// matrix is one of a size known at run time. Where most entries are known to be zero there is
 /// `sparse_hessian`.
 /// \return `value_gradient_and_hessian`
-template <class Tag = void, class F, Variables X>
+template <class Tag = void, detail::FunctionOfAny F, Variables X>
 [[nodiscard]] auto hessian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using T = typename argument::scalar;
@@ -201,5 +203,15 @@ template <class Tag = void, class F, Variables X>
   }
   return result;
 }
+
+template <int Chunk = 0, class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(gradient_into)
+double gradient_into(F&&, X&&...);
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(gradient)
+value_and_gradient<double, Eigen::VectorXd> gradient(F&&, X&&...);
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(hessian)
+value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd> hessian(F&&, X&&...);
 
 } // namespace duet

@@ -43,12 +43,11 @@ struct value_and_jacobian {
 namespace detail {
 
 /// f(x); writes ∂f_i/∂x_j into `jacobian`, once `prepare(rows)` has made it fit.
-template <class Tag, int Chunk, class F, class X, class J, class Prepare>
+template <class Tag, int Chunk, class Output, class F, class X, class J, class Prepare>
 [[nodiscard]] auto write_jacobian(F&& f, const X& x, J& jacobian, const Prepare& prepare) {
-  using output = result_of_pass<Tag, Chunk, F, X>;
-  std::decay_t<decltype(parts<Tag>(std::declval<const output&>(), 0))> value{};
-  for_each_pass<Tag, Chunk>(f, x, [&](const output& y, Eigen::Index first, Eigen::Index count) {
-    const Eigen::Index rows = vector_argument<output>::size(y);
+  std::decay_t<decltype(parts<Tag>(std::declval<const Output&>(), 0))> value{};
+  for_each_pass<Tag, Chunk>(f, x, [&](const Output& y, Eigen::Index first, Eigen::Index count) {
+    const Eigen::Index rows = vector_argument<Output>::size(y);
     if (first == 0) {
       prepare(rows);
       value = parts<Tag>(y, 0);
@@ -79,12 +78,13 @@ void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::
 /// f(x) and the Jacobian, the matrix ∂f_i/∂x_j, m × n. x and f(x) are Eigen vectors, `std::array`s
 /// or `std::vector`s; of several arguments x is a tuple, `jacobian(f, std::tuple(a, b))` of f(a,
 /// b), and the columns are by the components of one after the other. \return `value_and_jacobian`
-template <class Tag = void, class F, Variables X>
+template <class Tag = void, detail::FunctionOfAny F, Variables X>
   requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x) {
   using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
-  using output = detail::result_of_pass<tag, 0, F, X>;
+  using output = std::decay_t<decltype(detail::result_of_call(
+      detail::call(f, detail::constants_of_pass<tag, 0>(x))))>;
   static_assert(VectorLike<output>,
                 "duet: jacobian needs a function that returns a vector; where it returns a "
                 "rotation, say the frame: jacobian(f, x, frame::body)");
@@ -94,24 +94,26 @@ template <class Tag = void, class F, Variables X>
                                           argument::size_at_compile_time>>
       result{};
   detail::require(argument::size(x) > 0, "duet: jacobian of a function of no variables");
-  result.value = detail::write_jacobian<tag, 0>(f, x, result.jacobian, [&](Eigen::Index rows) {
-    result.jacobian.resize(rows, argument::size(x));
-  });
+  result.value =
+      detail::write_jacobian<tag, 0, output>(f, x, result.jacobian, [&](Eigen::Index rows) {
+        result.jacobian.resize(rows, argument::size(x));
+      });
   return result;
 }
 
 /// f(x); writes ∂f_i/∂x_j into `jacobian`, any writable Eigen matrix of as many rows as f(x) has
 /// components and as many columns as x. Everything else as `gradient_into`.
 /// \return f(x)
-template <int Chunk = 0, class Tag = void, class F, Variables X, class J>
+template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X, class J>
 [[nodiscard]] auto jacobian_into(F&& f, const X& x, J&& jacobian) {
   static_assert(Chunk >= 0, "duet: jacobian_into<Chunk> needs a number of partials");
   using tag = detail::tag_for<Tag, F>;
-  using output = detail::result_of_pass<tag, Chunk, F, X>;
+  using output = std::decay_t<decltype(detail::result_of_call(
+      detail::call(f, detail::constants_of_pass<tag, Chunk>(x))))>;
   static_assert(VectorLike<output>, "duet: jacobian_into needs a function that returns a vector");
   const Eigen::Index size = detail::vector_argument<X>::size(x);
   detail::require(size > 0, "duet: jacobian_into of a function of no variables");
-  return detail::write_jacobian<tag, Chunk>(f, x, jacobian, [&](Eigen::Index rows) {
+  return detail::write_jacobian<tag, Chunk, output>(f, x, jacobian, [&](Eigen::Index rows) {
     detail::require_size("jacobian_into", jacobian, rows, size);
   });
 }
@@ -119,7 +121,7 @@ template <int Chunk = 0, class Tag = void, class F, Variables X, class J>
 /// f(x) and d/dt f(x + t v) at t = 0: x and v scalars, or vectors of one size, or
 /// tuples of them; f(x) of any shape.
 /// \return `value_and_derivative`
-template <class Tag = void, class F, class X, class V>
+template <class Tag = void, detail::FunctionOfAny F, class X, class V>
   requires(Variables<X>&& Variables<V>)
 || ((Scalar<X> || Arithmetic<X>)&&(Scalar<V> || Arithmetic<V>))
         [[nodiscard]] auto directional_derivative(F&& f, const X& x, const V& v) {
@@ -137,5 +139,15 @@ template <class Tag = void, class F, class X, class V>
   }();
   return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};
 }
+
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(jacobian)
+value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd> jacobian(F&&, X&&...);
+template <int Chunk = 0, class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(jacobian_into)
+Eigen::VectorXd jacobian_into(F&&, X&&...);
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(directional_derivative)
+value_and_derivative<double, double> directional_derivative(F&&, X&&...);
 
 } // namespace duet

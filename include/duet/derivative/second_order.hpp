@@ -38,7 +38,7 @@ struct value_gradient_and_product {
 /// \param x, v  as of `gradient`, of one size; f returns a scalar
 /// \return `value_gradient_and_product`
 /// \throws invalid_input where the sizes differ or x is empty
-template <class Tag = void, class F, Variables X, Variables V>
+template <class Tag = void, detail::FunctionOfAny F, Variables X, Variables V>
 [[nodiscard]] auto hessian_vector_product(F&& f, const X& x, const V& v) {
   using T = promote_t<typename detail::vector_argument<X>::scalar,
                       typename detail::vector_argument<V>::scalar>;
@@ -73,7 +73,7 @@ struct value_and_mixed_hessian {
 /// \param x, y  Eigen vectors or `std::array`s of sizes known at compile time; f(x, y), over
 ///              different scalars for x and y, returns a scalar
 /// \return `value_and_mixed_hessian`
-template <class Tag = void, class F, VectorLike X, VectorLike Y>
+template <class Tag = void, detail::FunctionOfAny F, VectorLike X, VectorLike Y>
 [[nodiscard]] auto mixed_hessian(F&& f, const X& x, const Y& y) {
   constexpr int n = detail::vector_argument<X>::size_at_compile_time;
   constexpr int m = detail::vector_argument<Y>::size_at_compile_time;
@@ -100,5 +100,12 @@ template <class Tag = void, class F, VectorLike X, VectorLike Y>
   }
   return result;
 }
+
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(hessian_vector_product)
+value_gradient_and_product<double, Eigen::VectorXd> hessian_vector_product(F&&, X&&...);
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(mixed_hessian)
+value_and_mixed_hessian<double, Eigen::MatrixXd> mixed_hessian(F&&, X&&...);
 
 } // namespace duet

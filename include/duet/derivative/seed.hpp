@@ -84,12 +84,11 @@ template <class D, class X, class V>
   return result;
 }
 
-/// What f returns over the duals of one pass over the components of an X.
-template <class Tag, int Chosen, class F, class X>
-using result_of_pass = std::decay_t<decltype(result_of_call(
-    call(std::declval<F&>(),
-         constants<dual<typename vector_argument<X>::scalar, partials_per_pass<X, Chosen>, Tag>>(
-             std::declval<const X&>()))))>;
+/// x over the duals of one pass over its components, every one a constant.
+template <class Tag, int Chosen, class X>
+[[nodiscard]] auto constants_of_pass(const X& x) {
+  return constants<dual<typename vector_argument<X>::scalar, partials_per_pass<X, Chosen>, Tag>>(x);
+}
 
 /// Calls visit(f(x seeded from `first`), first, count) for every pass over the components of x.
 /// From one pass to the next only the partials change that are not zero.

@@ -108,7 +108,7 @@ private:
 /// \return `value_and_jacobian`
 /// \throws invalid_input where the structure is of another size, and where an entry that it does
 /// not have is more than a millionth of its row
-template <class Tag = void, class F, Variables X, class P>
+template <class Tag = void, detail::FunctionOfAny F, Variables X, class P>
 [[nodiscard]] auto sparse_jacobian(F&& f, const X& x, const Eigen::SparseMatrixBase<P>& structure) {
   using argument = detail::vector_argument<X>;
   using tag = detail::tag_for<Tag, F>;
@@ -154,7 +154,7 @@ template <class Tag = void, class F, Variables X, class P>
 /// With k groups of columns, as of `sparse_jacobian`, f is evaluated ⌈n/8⌉ ⌈(k + 1)/4⌉ times.
 /// \return `value_gradient_and_hessian`
 /// \throws invalid_input as `sparse_jacobian`
-template <class Tag = void, class F, Variables X, class P>
+template <class Tag = void, detail::FunctionOfAny F, Variables X, class P>
 [[nodiscard]] auto sparse_hessian(F&& f, const X& x, const Eigen::SparseMatrixBase<P>& structure) {
   using argument = detail::vector_argument<X>;
   using T = typename argument::scalar;
@@ -203,5 +203,13 @@ template <class Tag = void, class F, Variables X, class P>
   result.hessian = groups.matrix("sparse_hessian");
   return result;
 }
+
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(sparse_jacobian)
+value_and_jacobian<Eigen::VectorXd, Eigen::SparseMatrix<double>> sparse_jacobian(F&&, X&&...);
+template <class Tag = void, detail::FunctionOfReals F, class... X>
+DUET_REFUSED_FUNCTION(sparse_hessian)
+value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::SparseMatrix<double>> sparse_hessian(
+    F&&, X&&...);
 
 } // namespace duet

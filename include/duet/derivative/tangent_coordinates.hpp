@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
@@ -64,13 +65,6 @@ void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
   }
 }
 
-/// Said where a rotation, pose or tuple is given without a frame.
-template <class X>
-constexpr void ask_for_frame() {
-  static_assert(!ManifoldPoint<X>, "duet: to differentiate by rotations, poses or tuples say the "
-                                   "frame: jacobian(f, x, frame::body)");
-}
-
 template <class X>
 concept NeedsFrame = ManifoldPoint<X> && !Variables<X> && !Scalar<X> && !Arithmetic<X>;
 
@@ -89,7 +83,7 @@ concept NeedsFrame = ManifoldPoint<X> && !Variables<X> && !Scalar<X> && !Arithme
 /// \return `value_and_jacobian`
 ///
 /// Example: `jacobian([](const auto& q) { return conj(q); }, q, frame::body)` is −R(q).
-template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
   requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x, Frame frame) {
   using tag = detail::tag_for<Tag, F>;
@@ -129,7 +123,7 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
 
 /// f(x) and the gradient in the tangent coordinates of x: gᵀδ is the change of f while x moves by
 /// δ. Arguments as `jacobian`; f returns a scalar. \return `value_and_gradient`
-template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
 [[nodiscard]] auto gradient(F&& f, const X& x, Frame frame) {
   auto [value, row] = jacobian<Tag>(std::forward<F>(f), x, frame);
   static_assert(Scalar<decltype(value)>, "duet: gradient needs a function that returns a scalar");
@@ -144,7 +138,7 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
 /// Where f is not stationary, H depends on how rotations move. In both frames it is the same form
 /// in other axes: H of `frame::body` is Rᵀ H R of `frame::spatial`.
 /// \return `value_gradient_and_hessian`
-template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
 [[nodiscard]] auto hessian(F&& f, const X& x, Frame frame) {
   constexpr int n = manifold<X>::dimension;
   static_assert(n > 0, "duet: a Hessian in tangent coordinates needs vectors of a size known at "
@@ -160,23 +154,20 @@ template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>
 
 template <class Tag = void, class F, class X, FrameConstant Frame>
   requires(!HasOwnJacobian<F> && !ManifoldPoint<X> && requires { sizeof(structure<X>); })
-void jacobian(F&&, const X&, Frame) {
-  static_assert(ManifoldPoint<X>, "duet: no tangent coordinates are known of this type; those of "
-                                  "rotations are in <duet/quaternion/exponential.hpp>, of poses in "
-                                  "<duet/dual_quaternion/twist.hpp>");
-}
+DUET_REFUSED("no tangent coordinates are known of this type; those of rotations are in "
+             "<duet/quaternion/exponential.hpp>, of poses in <duet/dual_quaternion/twist.hpp>")
+value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd> jacobian(F&&, const X&, Frame);
 
-template <class Tag = void, class F, detail::NeedsFrame X>
-void jacobian(F&&, const X&) {
-  detail::ask_for_frame<X>();
-}
-template <class Tag = void, class F, detail::NeedsFrame X>
-void gradient(F&&, const X&) {
-  detail::ask_for_frame<X>();
-}
-template <class Tag = void, class F, detail::NeedsFrame X>
-void hessian(F&&, const X&) {
-  detail::ask_for_frame<X>();
-}
+/// To be said where a rotation, pose or tuple is given without a frame.
+#define DUET_ASKS_FOR_FRAME(driver, ...)                                                           \
+  template <class Tag = void, class F, detail::NeedsFrame X>                                       \
+  DUET_REFUSED("to differentiate by rotations, poses or tuples say the frame: " #driver            \
+               "(f, x, frame::body)")                                                              \
+  __VA_ARGS__                                                                                      \
+  driver(F&&, const X&);
+
+DUET_ASKS_FOR_FRAME(jacobian, value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd>)
+DUET_ASKS_FOR_FRAME(gradient, value_and_gradient<double, Eigen::VectorXd>)
+DUET_ASKS_FOR_FRAME(hessian, value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd>)
 
 } // namespace duet

@@ -5,6 +5,7 @@
 #include <duet/dual/dual.hpp>
 #include <duet/dual/rules/functions.hpp>
 #include <duet/dual/rules/piecewise.hpp>
+#include <duet/dual/standard_names.hpp>
 #include <duet/dual/taylor.hpp>
 
 #include <istream>

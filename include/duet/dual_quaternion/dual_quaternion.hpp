@@ -1,7 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <cmath>
@@ -104,5 +106,8 @@ template <class T>
   return abs(innermost(square.value()) - 1) <= tolerance &&
          abs(innermost(square.epsilon())) <= tolerance;
 }
+
+DUET_REFUSES_FOREIGN(rotation, quaternion<double>)
+DUET_REFUSES_FOREIGN(translation, vector3<double>)
 
 } // namespace duet

@@ -7,6 +7,7 @@
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/twist.hpp> // whoever has poses can differentiate by them
+#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
@@ -124,5 +125,12 @@ template <class T>
   const vector3<T> t = m.template topRightCorner<3, 1>();
   return detail::pose_of_unit(from_rotation_matrix(r), t);
 }
+
+DUET_REFUSES_FOREIGN(pose, dual_quaternion<double>)
+DUET_REFUSES_FOREIGN(transform_point, vector3<double>)
+DUET_REFUSES_FOREIGN(transform_direction, vector3<double>)
+DUET_REFUSES_FOREIGN(transform_line, dual_vector<double>)
+DUET_REFUSES_FOREIGN(transform_matrix, Eigen::Matrix4d)
+DUET_REFUSES_FOREIGN(from_transform_matrix, dual_quaternion<double>)
 
 } // namespace duet

@@ -1,10 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/refused.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -71,12 +73,22 @@ template <class A, Promotable<A> B, FrameConstant Frame>
   }
 }
 
+/// Without a frame it is not clear which is meant.
+template <class A, class B>
+DUET_REFUSED("in which axes? twist(a, a_dot, frame::hybrid), frame::spatial or frame::body")
+vector6<promote_t<A, B>> twist(const dual_quaternion<A>&, const dual_quaternion<B>&);
+
 /// N18: the rate Ȧ of a pose that moves with a twist [v; ω].
 template <class A, Promotable<A> B, FrameConstant Frame>
 [[nodiscard]] dual_quaternion<promote_t<A, B>> pose_rate(const dual_quaternion<A>& a,
                                                          const vector6<B>& twist, Frame frame) {
   return quaternion_rate(a, dual_vector_of(twist), frame);
 }
+
+/// Without a frame it is not clear which is meant.
+template <class A, class B>
+DUET_REFUSED("in which axes? pose_rate(a, twist, frame::spatial) or frame::body")
+dual_quaternion<promote_t<A, B>> pose_rate(const dual_quaternion<A>&, const vector6<B>&);
 
 /// The adjoint [R t̂R; 0 R]: V^s = Ad(A) V^b for twists [v; ω], and twists in a moved frame.
 template <class T>
@@ -146,5 +158,9 @@ template <class T>
 [[nodiscard]] matrix6<T> coad(const vector6<T>& twist) {
   return -ad(twist).transpose();
 }
+
+DUET_REFUSES_FOREIGN(twist, vector6<double>)
+DUET_REFUSES_FOREIGN(pose_rate, dual_quaternion<double>)
+DUET_REFUSES_FOREIGN(Ad, matrix6<double>)
 
 } // namespace duet

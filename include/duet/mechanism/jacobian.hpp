@@ -141,10 +141,7 @@ template <class C, VectorLike X, FrameConstant Frame,
 
 template <class C, VectorLike X>
   requires SerialChain<std::remove_cvref_t<C>>
-void jacobian(C&&, const X&) {
-  static_assert(!SerialChain<std::remove_cvref_t<C>>,
-                "duet: a chain has three Jacobians, say which: jacobian(chain, theta, "
-                "frame::hybrid)");
-}
+      DUET_REFUSED("a chain has three Jacobians, say which: jacobian(chain, theta, frame::hybrid)")
+detail::chain_jacobian<std::remove_cvref_t<C>, X> jacobian(C&&, const X&);
 
 } // namespace duet

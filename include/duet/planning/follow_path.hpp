@@ -170,10 +170,9 @@ template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_o
 follow_path(const C& chain, const Start& start, const Path& path, double first, double last,
             const plan_options& options = {}, const Objective& objective = {},
             const Scene& around = {}) {
-  static_assert(
-      std::convertible_to<std::invoke_result_t<const Path&, double>, dual_quaternion<double>>,
-      "duet: follow_path: the path must return a dual_quaternion<double>: pose(q, t), or "
-      "from_eigen(...) of an Eigen::Isometry3d");
+  static_assert(detail::Becomes<std::invoke_result_t<const Path&, double>, dual_quaternion<double>>,
+                "duet: follow_path: the path must return a dual_quaternion<double>: pose(q, t), or "
+                "from_eigen(...) of an Eigen::Isometry3d");
   detail::require_start(chain, start);
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: follow_path: the path's parameter goes from ", first, " to ", last);

@@ -162,12 +162,16 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
   if (is_unit(a, 1e-6)) {
     return;
   }
+  // A translation that is not finite in one entry is so in none: all are in every entry of p + εq.
+  const auto turn = rotation(a);
+  const auto move = translation(a);
+  require(is_all_finite(turn), "duet: ", caller, ": ", name,
+          ": its rotation is not finite: ", turn);
+  require(move.allFinite(), "duet: ", caller, ": ", name, ": its translation is not finite: (",
+          move[0], ", ", move[1], ", ", move[2], ")");
   const auto square = norm2(a);
-  throw invalid_input(is_all_finite(square)
-                          ? message("duet: ", caller, ": ", name,
-                                    " is no unit dual quaternion: |p|^2 = ", square.value(),
-                                    ", p.q = ", square.epsilon() / 2)
-                          : message("duet: ", caller, ": ", name, " is not finite: ", a));
+  throw invalid_input(message("duet: ", caller, ": ", name, " is no unit dual quaternion: |p|^2 = ",
+                              square.value(), ", p.q = ", square.epsilon() / 2));
 }
 
 /// \throws invalid_input for what is no number above 0, if it is one that is asked for

@@ -10,6 +10,7 @@
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/rules/universal_functions.hpp>
 #include <duet/dual/stumpff.hpp>
+#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>
@@ -284,5 +285,9 @@ struct manifold<quaternion<T>> {
     return angular_velocity(q, rate, frame);
   }
 };
+
+DUET_REFUSES_FOREIGN(exp, quaternion<double>)
+DUET_REFUSES_FOREIGN(log, quaternion<double>)
+DUET_REFUSES_FOREIGN(slerp, quaternion<double>)
 
 } // namespace duet

@@ -6,6 +6,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/storage/structural_zero.hpp>
+#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <algorithm>
@@ -145,5 +146,9 @@ template <class T>
         return detail::scaled_down(conj(near_one) / norm2(near_one), e);
       });
 }
+
+DUET_REFUSES_FOREIGN(norm, double)
+DUET_REFUSES_FOREIGN(normalized, quaternion<double>)
+DUET_REFUSES_FOREIGN(inverse, quaternion<double>)
 
 } // namespace duet

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/promotion.hpp>
+#include <duet/quaternion/foreign.hpp>
 
 #include <Eigen/Core>
 
@@ -31,7 +33,7 @@ using matrix3 = Eigen::Matrix<T, 3, 3>;
 /// \tparam T  any scalar. Over a real number a unit quaternion is a rotation, acting as v ↦ q v q*.
 ///            Over derivative duals it carries its derivatives, over `dual<T, 1, screw_tag>` it is
 ///            a dual quaternion, a rigid motion. There is no other implementation.
-template <Scalar T>
+template <class T>
 class quaternion {
 public:
   using scalar_type = T;
@@ -43,6 +45,9 @@ public:
   /// A scalar as a quaternion: 1 is the identity rotation.
   constexpr explicit quaternion(const T& w) : w_(w), x_(T(0)), y_(T(0)), z_(T(0)) {}
   quaternion(const T& w, const vector3<T>& v) : w_(w), x_(v[0]), y_(v[1]), z_(v[2]) {}
+  template <detail::Foreign X>
+  DUET_REFUSED("a rotation or pose of Eigen: from_eigen(q) of <duet/interop/eigen.hpp>")
+  quaternion(const X&);
   /// This quaternion over another scalar; implicit where no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
@@ -87,6 +92,17 @@ public:
 
 private:
   T w_, x_, y_, z_;
+};
+
+/// Of numbers that cannot be divided there is none.
+template <class T>
+  requires(!Scalar<T>)
+class quaternion<T> {
+public:
+  template <class... X>
+  DUET_REFUSED("a quaternion<T> needs a real number, an infinitesimal or another scalar for T, as "
+               "quaternion<double>: integers cannot be divided")
+  quaternion(const X&...);
 };
 
 template <class T>
@@ -170,6 +186,13 @@ operator/(const quaternion<T>& q, const S& a) {
   const auto divisor = detail::as_constant<promote_t<T, S>>(a);
   return {q.w() / divisor, q.x() / divisor, q.y() / divisor, q.z() / divisor};
 }
+
+template <class T, detail::Foreign X>
+DUET_REFUSED("a product with a rotation or pose of Eigen: q * from_eigen(p)")
+quaternion<T> operator*(const quaternion<T>&, const X&);
+template <class T, detail::Foreign X>
+DUET_REFUSED("a product with a rotation or pose of Eigen: from_eigen(p) * q")
+quaternion<T> operator*(const X&, const quaternion<T>&);
 
 /// Componentwise, by value. q and −q are the same rotation but not the same quaternion.
 template <class A, Promotable<A> B>

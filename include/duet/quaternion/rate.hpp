@@ -2,12 +2,12 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/derivative/frame.hpp>
+#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <Eigen/Core>
-
-#include <concepts>
 
 /// \file
 /// Rates of unit quaternions, angular velocities (N6–N8) and accelerations. ω in rad per unit of
@@ -40,10 +40,8 @@ angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame
 
 /// Without a frame it is not clear which is meant.
 template <class A, class B>
-void angular_velocity(const quaternion<A>&, const quaternion<B>&) {
-  static_assert(!std::same_as<A, A>,
-                "duet: in which axes? angular_velocity(q, q_dot, frame::spatial) or frame::body");
-}
+DUET_REFUSED("in which axes? angular_velocity(q, q_dot, frame::spatial) or frame::body")
+vector3<promote_t<A, B>> angular_velocity(const quaternion<A>&, const quaternion<B>&);
 
 /// N7: the rate of a rotation with an angular velocity, q̇ = ½ ω^s q = ½ q ω^b
 template <class A, Promotable<A> B, class Frame>
@@ -55,10 +53,8 @@ quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_
 
 /// Without a frame it is not clear which is meant.
 template <class A, class B>
-void quaternion_rate(const quaternion<A>&, const vector3<B>&) {
-  static_assert(!std::same_as<A, A>,
-                "duet: in which axes? quaternion_rate(q, omega, frame::spatial) or frame::body");
-}
+DUET_REFUSED("in which axes? quaternion_rate(q, omega, frame::spatial) or frame::body")
+quaternion<promote_t<A, B>> quaternion_rate(const quaternion<A>&, const vector3<B>&);
 
 /// The rate ω̇ of the angular velocity of N7: vec(2 q̈ q*) in spatial axes, vec(2 q* q̈) in body axes;
 /// q of unit norm. (q̇ does not enter, as q̇ q̇* is real.)
@@ -71,10 +67,9 @@ angular_acceleration(const quaternion<A>& q, const quaternion<B>& /*q_dot*/,
 
 /// Without a frame it is not clear which is meant.
 template <class A, class B, class C>
-void angular_acceleration(const quaternion<A>&, const quaternion<B>&, const quaternion<C>&) {
-  static_assert(!std::same_as<A, A>, "duet: in which axes? angular_acceleration(q, q_dot, q_ddot, "
-                                     "frame::spatial) or frame::body");
-}
+DUET_REFUSED("in which axes? angular_acceleration(q, q_dot, q_ddot, frame::spatial) or frame::body")
+vector3<promote_t<A, B>> angular_acceleration(const quaternion<A>&, const quaternion<B>&,
+                                              const quaternion<C>&);
 
 /// q̈ = (½ ω̇ − ¼ |ω|²) q in spatial axes, q (½ ω̇ − ¼ |ω|²) in body axes: of a q whose norm stays 1.
 template <class A, Promotable<A> B, Promotable<A> C, class Frame>
@@ -89,10 +84,10 @@ quaternion_acceleration(const quaternion<A>& q, const vector3<B>& omega, const v
 
 /// Without a frame it is not clear which is meant.
 template <class A, class B, class C>
-void quaternion_acceleration(const quaternion<A>&, const vector3<B>&, const vector3<C>&) {
-  static_assert(!std::same_as<A, A>, "duet: in which axes? quaternion_acceleration(q, omega, "
-                                     "alpha, frame::spatial) or frame::body");
-}
+DUET_REFUSED(
+    "in which axes? quaternion_acceleration(q, omega, alpha, frame::spatial) or frame::body")
+quaternion<promote_t<A, B>> quaternion_acceleration(const quaternion<A>&, const vector3<B>&,
+                                                    const vector3<C>&);
 
 /// N8: the 3×4 matrix with ω = 2 M q̇ in the order (w, x, y, z): E(q) for spatial, G(q) for body
 /// axes. E Gᵀ = R.
@@ -113,9 +108,10 @@ template <class T, class Frame>
 
 /// Without a frame it is not clear which is meant.
 template <class A>
-void rate_matrix(const quaternion<A>&) {
-  static_assert(!std::same_as<A, A>,
-                "duet: in which axes? rate_matrix(q, frame::spatial) or frame::body");
-}
+DUET_REFUSED("in which axes? rate_matrix(q, frame::spatial) or frame::body")
+Eigen::Matrix<A, 3, 4> rate_matrix(const quaternion<A>&);
+
+DUET_REFUSES_FOREIGN(angular_velocity, vector3<double>)
+DUET_REFUSES_FOREIGN(quaternion_rate, quaternion<double>)
 
 } // namespace duet

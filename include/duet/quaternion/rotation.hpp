@@ -5,6 +5,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -184,5 +185,13 @@ template <class T>
 [[nodiscard]] quaternion<T> from_rotation_matrix(const matrix3<T>& r) {
   return detail::by_lane([](const auto& m) { return detail::quaternion_of(m); }, r);
 }
+
+DUET_REFUSES_FOREIGN(rotate, vector3<double>)
+DUET_REFUSES_FOREIGN(from_axis_angle, quaternion<double>)
+DUET_REFUSES_FOREIGN(from_rotation_vector, quaternion<double>)
+DUET_REFUSES_FOREIGN(rotation_vector, vector3<double>)
+DUET_REFUSES_FOREIGN(from_two_vectors, quaternion<double>)
+DUET_REFUSES_FOREIGN(rotation_matrix, matrix3<double>)
+DUET_REFUSES_FOREIGN(from_rotation_matrix, quaternion<double>)
 
 } // namespace duet

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <sstream>
 #include <type_traits>
@@ -89,7 +88,7 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
                const table_options& options = {}) {
   using T = typename Spline::scalar_type;
   using R = typename Spline::real_type;
-  static_assert(std::convertible_to<std::invoke_result_t<const F&, const R&>, quaternion<T>>,
+  static_assert(detail::Becomes<std::invoke_result_t<const F&, const R&>, quaternion<T>>,
                 "duet: adaptive_table: the function must return a rotation, quaternion<T>, or a "
                 "pose, dual_quaternion<T>");
   std::ostringstream message;

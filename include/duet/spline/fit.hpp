@@ -3,6 +3,7 @@
 
 #include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
@@ -103,19 +104,14 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 ///         not follow the row before; invalid_input for counts that differ, too few rows somewhere,
 ///         a length or weight that is not positive, a limit that is negative, a covariance that is
 ///         not positive definite; no_convergence
-template <CurveType Spline, class R, class T>
+template <CurveType Spline, class R, detail::RowOf<Spline> T>
 [[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> rows,
                                      std::vector<R> knots, const fit_options& options = {}) {
   static_assert(std::is_same_v<Spline, cumulative_bspline<T, Spline::order>> &&
                     std::is_same_v<R, real_type_t<T>>,
                 "duet: fit makes cumulative_bspline<T, Order> from quaternion<T>");
   std::ostringstream message;
-  if (parameters.size() != rows.size()) {
-    message << "duet: fit: " << parameters.size() << " parameters and " << rows.size()
-            << " elements";
-    throw invalid_input(message.str());
-  }
-  detail::check_rows(parameters, rows.size(), 0);
+  detail::check_rows("fit", parameters, rows.size(), 0);
   if (!(options.length > 0) || !(options.outlier >= 0)) {
     message << "duet: fit: length " << options.length << " and outlier " << options.outlier
             << ": the length must be positive, the limit not negative";
@@ -156,6 +152,14 @@ template <CurveType Spline, class R, class T>
   const R rms = largest - largest == 0 ? R(largest * sqrt(squares / weights)) : largest;
   return {problem.curve(basis), residuals, rms, iterations, problem.outlier()};
 }
+
+/// Rotations for a curve of poses, or the other way round.
+template <CurveType Spline, class R, class T, class... More>
+  requires(!detail::RowOf<T, Spline>)
+DUET_REFUSED("fit: the curve is over another scalar than the rows: rotations make a "
+             "cumulative_bspline<double>, poses a cumulative_bspline<dual<double, 1, screw_tag>>")
+fit_result<Spline> fit(const std::vector<R>&, const std::vector<quaternion<T>>&,
+                       const std::vector<R>&, const More&...);
 
 #ifdef DUET_COMPILED
 DUET_COMPILED_TEMPLATE fit_result<cumulative_bspline<double>>

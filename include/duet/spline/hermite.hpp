@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/rotation.hpp>
@@ -33,8 +34,9 @@ template <class Q, class V, FrameConstant Frame>
                                   const std::vector<quaternion<Q>>& rows,
                                   const std::vector<V>& velocities, Frame frame) {
   using T = promote_t<Q, typename V::Scalar>;
+  detail::check_rows("hermite_spline", parameters, rows.size(), 2);
   detail::require(velocities.size() == rows.size(), "duet: hermite_spline: ", rows.size(),
-                  " elements and ", velocities.size(), " velocities");
+                  " rows, but ", velocities.size(), " velocities");
   auto elements = aligned_orientations(std::vector<quaternion<T>>(rows.begin(), rows.end()));
   std::vector<std::array<vector3<T>, 1>> rates;
   rates.reserve(velocities.size());
@@ -51,5 +53,13 @@ template <class Q, class V, FrameConstant Frame>
   }
   return rotation_vector_spline<T, 4>(parameters, std::move(elements), rates);
 }
+
+/// Without a frame it is not clear which is meant.
+template <class T, class V>
+DUET_REFUSED("in which axes? hermite_spline(parameters, elements, velocities, frame::spatial) or "
+             "frame::body")
+rotation_vector_spline<T, 4> hermite_spline(const std::vector<real_type_t<T>>&,
+                                            const std::vector<quaternion<T>>&,
+                                            const std::vector<V>&);
 
 } // namespace duet

@@ -3,6 +3,7 @@
 
 #include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/spline/blocks/products.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
@@ -115,22 +116,18 @@ struct scalar_of_curve<Spline, T> {
 template <class Spline, class T>
 using scalar_of_curve_t = typename scalar_of_curve<Spline, T>::type;
 
-/// Rows that are constants for a curve over numbers with derivatives.
+/// Rows over T are those of a curve of type `Spline`, or constants for its numbers with
+/// derivatives.
+template <class T, class Spline>
+concept RowOf =
+    std::same_as<promote_t<scalar_of_curve_t<Spline, T>, T>, scalar_of_curve_t<Spline, T>> &&
+    contains_tag<scalar_of_curve_t<Spline, T>, screw_tag>()
+== contains_tag<T, screw_tag>() &&
+    std::same_as<real_type_t<scalar_of_curve_t<Spline, T>>, real_type_t<T>>;
+
 template <class Spline, class T>
 [[nodiscard]] auto over_scalar_of_curve(const std::vector<quaternion<T>>& rows) {
-  using S = scalar_of_curve_t<Spline, T>;
-  constexpr bool are_constants = std::same_as<promote_t<S, T>, S> &&
-                                 contains_tag<S, screw_tag>() == contains_tag<T, screw_tag>() &&
-                                 std::same_as<real_type_t<S>, real_type_t<T>>;
-  static_assert(are_constants,
-                "duet: interpolate: the curve is over another scalar than the rows: rotations make "
-                "a cumulative_bspline<double>, poses a "
-                "cumulative_bspline<dual<double, 1, screw_tag>>");
-  if constexpr (are_constants) {
-    return std::vector<quaternion<S>>(rows.begin(), rows.end());
-  } else {
-    return std::vector<quaternion<S>>{};
-  }
+  return std::vector<quaternion<scalar_of_curve_t<Spline, T>>>(rows.begin(), rows.end());
 }
 
 /// The curve of type `Spline` through the rows.
@@ -149,7 +146,7 @@ template <CurveType Spline, class T>
       throw invalid_input(
           "duet: interpolate: a cubic's ends take velocities or accelerations, not both");
     }
-    check_rows(parameters, q.size(), equations::least_rows(ends.kind));
+    check_rows("interpolate", parameters, q.size(), equations::least_rows(ends.kind));
     q = aligned_orientations(std::move(q));
     if (ends.kind == end_kind::periodic) {
       q = closed(std::move(q));
@@ -233,7 +230,7 @@ curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<doub
 /// few rows (not_a_knot takes as many as the order, periodic ends three, clamped and accelerated
 /// quintics four), the counts differ or an end rate is not finite; no_convergence where no curve
 /// was found: neighbours very far apart, or parameters too uneven for the ends
-template <CurveType Spline, class T>
+template <CurveType Spline, detail::RowOf<Spline> T>
 [[nodiscard]] Spline
 interpolate(const std::vector<real_type_t<T>>& parameters,
             const std::vector<quaternion<T>>& orientations,
@@ -243,7 +240,7 @@ interpolate(const std::vector<real_type_t<T>>& parameters,
       parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, nullptr);
 }
 /// The curve with S(u_i) = Q_i, and how it went.
-template <CurveType Spline, class T>
+template <CurveType Spline, detail::RowOf<Spline> T>
 [[nodiscard]] Spline
 interpolate(const std::vector<real_type_t<T>>& parameters,
             const std::vector<quaternion<T>>& orientations,
@@ -252,5 +249,13 @@ interpolate(const std::vector<real_type_t<T>>& parameters,
   return detail::curve_through<Spline>(
       parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, &report);
 }
+
+/// Rotations for a curve of poses, or the other way round.
+template <CurveType Spline, class T, class... More>
+  requires(!detail::RowOf<T, Spline>)
+DUET_REFUSED("interpolate: the curve is over another scalar than the rows: rotations make a "
+             "cumulative_bspline<double>, poses a cumulative_bspline<dual<double, 1, screw_tag>>")
+Spline interpolate(const std::vector<real_type_t<T>>&, const std::vector<quaternion<T>>&,
+                   const More&...);
 
 } // namespace duet

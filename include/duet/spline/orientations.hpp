@@ -40,10 +40,12 @@ namespace detail {
 /// \throws invalid_input unless there are as many parameters as elements, and enough; invalid_row
 /// unless the parameters are finite and increase
 template <Real R>
-void check_rows(const std::vector<R>& parameters, std::size_t elements, std::size_t minimum) {
-  require(parameters.size() == elements && elements >= minimum, "duet: interpolate: needs ",
-          minimum, " rows or more with these ends, each a parameter and an orientation, got ",
-          parameters.size(), " and ", elements);
+void check_rows(const char* caller, const std::vector<R>& parameters, std::size_t elements,
+                std::size_t minimum) {
+  require(parameters.size() == elements, "duet: ", caller, ": ", parameters.size(),
+          " parameters, but ", elements, " rows");
+  require(elements >= minimum, "duet: ", caller, ": needs ", minimum, " rows or more",
+          minimum > 2 ? " with these ends" : "", ", got ", elements);
   for (std::size_t i = 0; i < elements; ++i) {
     const R& u = parameters[i];
     if (!(u - u == 0)) {

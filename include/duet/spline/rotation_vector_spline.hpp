@@ -121,7 +121,7 @@ private:
   static const std::vector<real_type>& checked(const std::vector<real_type>& parameters,
                                                const Elements& elements, const Parts& parts,
                                                const char* what, std::size_t missing) {
-    detail::check_rows(parameters, elements.size(), 2);
+    detail::check_rows("rotation_vector_spline", parameters, elements.size(), 2);
     detail::require(parts.size() + missing == elements.size(),
                     "duet: rotation_vector_spline: ", elements.size(), " rows need ",
                     elements.size() - missing, " ", what, ", got ", parts.size());

@@ -1,17 +1,31 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: interpolate: the curve is over another scalar than the rows
+// expect: duet: [a-z]*: the curve is over another scalar than the rows
+// within: 5
+// forms: 4
 
-#include <duet/spline/interpolate.hpp>
+#include <duet/spline/fit.hpp>
 
+#include <iostream>
 #include <vector>
 
+using namespace duet;
+
 int main() {
-  const std::vector<duet::dual_quaternion<double>> poses(3);
-#ifdef DUET_MUST_FAIL
-  using curve = duet::cumulative_bspline<double>;
+  const std::vector<double> u{0, 1, 2};
+  const std::vector<dual_quaternion<double>> poses(3);
+  using of_rotations = cumulative_bspline<double>;
+  using of_poses = cumulative_bspline<screw_dual<double>>;
+#if DUET_MUST_FAIL == 1
+  const auto s = interpolate<of_rotations>({0, 1, 2}, poses);
+#elif DUET_MUST_FAIL == 2
+  std::cout << interpolate<of_rotations>(u, poses).controls().size() << "\n";
+#elif DUET_MUST_FAIL == 3
+  std::cout << interpolate<of_poses>(u, std::vector<quaternion<double>>(3)).controls().size();
+#elif DUET_MUST_FAIL == 4
+  std::cout << fit<of_rotations>(u, poses, u).rms << "\n";
 #else
-  using curve = duet::cumulative_bspline<duet::dual<double, 1, duet::screw_tag>>;
+  std::cout << interpolate<of_poses>({0, 1, 2}, poses).controls().size() << "\n"
+            << interpolate<of_rotations>(u, std::vector<quaternion<double>>(3)).controls().size()
+            << fit<of_poses>(u, poses, u).rms << "\n";
 #endif
-  const auto s = duet::interpolate<curve>({0, 1, 2}, poses);
-  return s.controls().empty() ? 1 : 0;
 }

@@ -1,8 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch/packets.hpp>
+// First, as it says which C++ is needed.
 #include <duet/core/config.hpp>
+
+#include <duet/core/batch/packets.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 

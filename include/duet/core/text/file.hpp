@@ -101,7 +101,8 @@ private:
   }
   if (exists(status)) {
     if (!is_regular_file(status)) {
-      throw cannot_write(path, is_directory(status) ? EISDIR : EINVAL);
+      throw is_directory(status) ? file_error(path, "is a folder, not a file")
+                                 : cannot_write(path, EINVAL);
     }
     if (!c_file(result.string(), "r+b").is_open()) { // changes nothing
       throw cannot_write(path, errno);

@@ -1,0 +1,56 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/refused.hpp>
+#include <duet/core/scalar_traits.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+/// \file
+/// What is given for a rotation, a pose or a vector of three, but is none of duet's: functions of
+/// these say what to write instead.
+
+namespace duet::detail {
+
+template <class Derived, int Dim>
+void as_foreign(const Eigen::RotationBase<Derived, Dim>&);
+template <class T, int Dim, int Mode, int Options>
+void as_foreign(const Eigen::Transform<T, Dim, Mode, Options>&);
+/// All but columns and matrices of a size known at compile time.
+template <class Derived>
+  requires(!std::same_as<Derived, typename Derived::PlainObject> ||
+           Derived::RowsAtCompileTime <= 1 || Derived::ColsAtCompileTime < 1)
+void as_foreign(const Eigen::MatrixBase<Derived>&);
+template <class T>
+  requires(Scalar<T> || Arithmetic<T>)
+void as_foreign(const std::vector<T>&);
+template <class T, std::size_t N>
+  requires(Scalar<T> || Arithmetic<T>)
+void as_foreign(const std::array<T, N>&);
+
+template <class X>
+concept Foreign = requires(const X& x) {
+  as_foreign(x);
+};
+
+/// X is a Q or becomes one by itself. (What is foreign seems to, as it is refused by a
+/// constructor.)
+template <class X, class Q>
+concept Becomes = std::convertible_to<X, Q> && !Foreign<std::remove_cvref_t<X>>;
+
+} // namespace duet::detail
+
+/// What `function`, of rotations, poses or vectors, does not take; then the type of its result.
+#define DUET_REFUSES_FOREIGN(function, ...)                                                        \
+  template <class... X>                                                                            \
+    requires(detail::Foreign<X> || ...)                                                            \
+  DUET_REFUSED(#function " takes rotations, poses and vectors of duet: from_eigen(q) of those of " \
+                         "Eigen, (a + b).eval() of an expression, vector3<double>(v[0], v[1], "    \
+                         "v[2]) of standard vectors")                                              \
+  __VA_ARGS__ function(const X&...);
