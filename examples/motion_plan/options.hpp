@@ -49,15 +49,26 @@ inline std::optional<std::vector<double>> usual_posture(const std::string& robot
   return std::nullopt;
 }
 
-/// A capsule along each link, from its frame to that of the next one.
+/// A capsule along each link, from its frame to that of the next one; along the next one where its
+/// frame is at its far end, as in the first of Denavit and Hartenberg's conventions.
 inline std::vector<duet::link_body> bodies(const example::arm_chain& arm, double radius) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.size());
+  const Eigen::VectorXd moved = Eigen::VectorXd::Constant(arm.size(), .5);
+  const auto pose_at = [&](const Eigen::VectorXd& theta, int link) -> pose_type {
+    return link <= arm.size() ? arm.pose(theta, link) : arm.pose(theta);
+  };
+  // Where one link's frame is, seen from another's.
+  const auto seen = [&](const Eigen::VectorXd& theta, int from, int link) -> point {
+    return duet::transform_point(conj(pose_at(theta, from)),
+                                 point(duet::translation(pose_at(theta, link))));
+  };
   std::vector<duet::link_body> result;
   for (int link = 1; link <= arm.size(); ++link) {
-    const pose_type here = arm.pose(zero, link);
-    const pose_type next = link < arm.size() ? arm.pose(zero, link + 1) : arm.pose(zero);
-    const point end = duet::transform_point(conj(here), point(duet::translation(next)));
-    result.push_back({link, duet::capsule<>(point(0, 0, 0), end, radius)});
+    const bool turns_next =
+        (seen(zero, link, link + 1) - seen(moved, link, link + 1)).norm() > 1e-9;
+    const int on = turns_next ? link + 1 : link;
+    const point end = seen(zero, on, turns_next ? link : link + 1);
+    result.push_back({on, duet::capsule<>(point(0, 0, 0), end, radius)});
   }
   return result;
 }

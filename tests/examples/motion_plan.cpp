@@ -1,0 +1,40 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// The bodies that the example takes for an arm's links.
+
+#include "../../examples/motion_plan/options.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace test_examples_motion_plan {
+
+// Whatever the joints, each body reaches from one frame to the next, the last one to the tip: of
+// the UR5e, by the first of Denavit and Hartenberg's conventions, as of the Panda, by the second.
+TEST_CASE("the bodies of links reach from frame to frame") {
+  const example::arm_chain arms[] = {duet::robots::ur5e().table(), duet::robots::panda().table()};
+  for (const example::arm_chain& arm : arms) {
+    const auto bodies = motion_plan_example::bodies(arm, .05);
+    REQUIRE(bodies.size() == std::size_t(arm.size()));
+    Eigen::VectorXd theta(arm.size());
+    for (int i = 0; i < arm.size(); ++i) {
+      theta[i] = .3 + .4 * i;
+    }
+    for (int i = 0; i < arm.size(); ++i) {
+      const duet::link_body& body = bodies[std::size_t(i)];
+      const auto here = duet::transformed(arm.pose(theta, body.link), body.shape);
+      const Eigen::Vector3d from = duet::translation(arm.pose(theta, i + 1));
+      const Eigen::Vector3d to =
+          duet::translation(i + 1 < arm.size() ? arm.pose(theta, i + 2) : arm.pose(theta));
+      const auto ends = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+        return (here.from - a).norm() + (here.to - b).norm();
+      };
+      CHECK(std::min(ends(from, to), ends(to, from)) < 1e-12);
+      CHECK(here.radius == .05);
+    }
+  }
+}
+
+} // namespace test_examples_motion_plan
