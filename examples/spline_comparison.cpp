@@ -3,6 +3,7 @@
 // Every curve of duet through the same rows of a smooth motion: errors of orientation and angular
 // velocity against the number of rows. Writes spline_comparison.csv and, with gnuplot, a picture.
 
+#include "support/curves.hpp"
 #include "support/folder.hpp"
 #include "support/gnuplot.hpp"
 #include "support/program.hpp"
@@ -162,22 +163,38 @@ std::array<double, 2> largest_errors(const curve& c, int count) {
   return largest;
 }
 
-std::string picture_script() {
-  std::string text = "set datafile separator ','\nset grid\nset logscale xy\nset format y "
-                     "'10^{%T}'\nset multiplot layout 1,2\nset xlabel 'rows'\n"
-                     "set xrange [8:300]\nset xtics (9, 17, 33, 65, 129, 257)\n"
-                     "set key bottom left Left reverse samplen 2\n";
+/// Five of the curves: SLERP and natural ends are near squad.
+std::string picture_script(const std::vector<std::vector<std::array<double, 2>>>& errors) {
+  using enum example::beside;
+  const auto gain = [&](std::size_t curve) {
+    const auto& e = errors[curve];
+    return example::two_digits(e[e.size() - 2][0] / e.back()[0]);
+  };
+  struct drawn {
+    std::size_t curve;
+    const char *colour, *name;
+  };
+  const drawn all[] = {{1, "grey", "squad"},
+                       {3, "vermillion", "cumulative cubic"},
+                       {5, "blue", "rotation-vector cubic"},
+                       {4, "orange", "Hermite"},
+                       {6, "green", "quintic"}};
+  std::string text = "set multiplot layout 1,2 title " +
+                     example::title("Twice the rows divide the error of squad by " + gain(1) +
+                                    ", that of the quintic by " + gain(6)) +
+                     "\nset logscale xy\nset format y '10^{%T}'\nset ytics 100\n"
+                     "set xlabel 'rows'\nset xrange [8:290]\nset xtics (9, 33, 129)\n";
   for (const std::size_t what : {std::size_t(0), std::size_t(1)}) {
-    text += what == 0
-                ? "set yrange [1e-17:0.1]\nset ylabel 'orientation, largest error / rad'\nplot "
-                : "set yrange [1e-10:1]\nset ylabel 'angular velocity, largest error / (rad per "
-                  "unit)'\n"
-                  "unset key\nplot ";
-    for (std::size_t k = 0; k < curves().size(); ++k) {
-      text += "'spline_comparison.csv' using 1:" + std::to_string(2 * k + 2 + what) +
-              " skip 1 with linespoints pt 7 ps 0.5 lw 1.5 lc rgb '" + curves()[k].colour +
-              "' title '" + curves()[k].name + (k + 1 < curves().size() ? "', " : "'\n");
+    std::vector<example::named_line> lines;
+    for (const drawn& each : all) {
+      lines.push_back({"1:" + std::to_string(2 * each.curve + 2 + what), each.colour,
+                       what == 1 ? each.name : "", 5, right, "linespoints pt 7 ps .6 lw 2"});
     }
+    text += std::string(what == 0 ? "set lmargin at screen .1\nset rmargin at screen .4\n"
+                                    "set ylabel 'largest error of orientation / rad'\n"
+                                  : "set lmargin at screen .52\nset rmargin at screen .8\n"
+                                    "set ylabel 'of angular velocity / (rad per unit)'\n") +
+            example::plot_command("spline_comparison.csv", lines);
   }
   return text + "unset multiplot\n";
 }
@@ -209,7 +226,7 @@ void run() {
                 std::log2(before[0] / last[0]), last[1], std::log2(before[1] / last[1]));
   }
   duet::write_file("spline_comparison.csv", csv);
-  if (!example::draw(".", "spline_comparison", "1200,560", picture_script())) {
+  if (!example::draw(".", "spline_comparison", 420, picture_script(errors))) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
 }

@@ -7,6 +7,7 @@
 
 #include "support/arms.hpp"
 #include "support/command_line.hpp"
+#include "support/curves.hpp"
 #include "support/folder.hpp"
 #include "support/gnuplot.hpp"
 #include "support/program.hpp"
@@ -149,15 +150,18 @@ std::string map(const std::vector<sample>& samples) {
   return csv;
 }
 
-const char* const picture = "set datafile separator ','\nset multiplot layout 1,2\nset grid\n"
-                            "set xlabel 'distance from the axis / m'\nset ylabel 'height / m'\n"
-                            "set size ratio -1\nset cblabel 'largest manipulability'\n"
-                            "plot 'workspace_sweep_map.csv' skip 1 using 1:2:3 with points pt 5 "
-                            "ps 0.55 palette notitle\nset size noratio\n"
-                            "set xlabel 'manipulability'\nset ylabel 'share of configurations'\n"
-                            "set style fill solid 0.6\n"
-                            "plot 'workspace_sweep_histogram.csv' skip 1 using 1:2 with boxes "
-                            "lc rgb '#1f77b4' notitle\nunset multiplot\n";
+std::string picture_script() {
+  return "set multiplot layout 1,2 title " +
+         example::title("Where the arm moves well, and how often it does") +
+         "\nset xtics .2\nset xlabel 'distance from the axis / m'\nset ylabel 'height / m'\n"
+         "set size ratio -1\nset palette defined (0 '#f0f4f8', .5 '#56b4e9', 1 '#003a5c')\n"
+         "set cblabel 'largest manipulability' textcolor rgb ink\n"
+         "plot 'workspace_sweep_map.csv' skip 1 using 1:2:3 with points pt 5 ps .5 palette\n"
+         "set size noratio\nset xtics .04\nset xlabel 'manipulability'\n"
+         "set ylabel 'share of configurations / %'\nset boxwidth .9 relative\n"
+         "plot 'workspace_sweep_histogram.csv' skip 1 using 1:(100*$2) with boxes lc rgb blue\n"
+         "unset multiplot\n";
+}
 
 void run(const chain& arm, std::size_t wanted, const std::string& folder) {
   example::require_folder(folder);
@@ -182,7 +186,7 @@ void run(const chain& arm, std::size_t wanted, const std::string& folder) {
   std::printf("\nworkspace sweep: configurations=%zu mean_manipulability=%.6g "
               "largest_manipulability=%.6g\n",
               count, sum / double(count), largest);
-  if (!example::draw(folder, "workspace_sweep", "1200,620", picture)) {
+  if (!example::draw(folder, "workspace_sweep", 430, picture_script())) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
 }

@@ -8,6 +8,7 @@
 #include "ride.hpp"
 
 #include "../support/command_line.hpp"
+#include "../support/curves.hpp"
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
@@ -88,30 +89,50 @@ std::string ride_csv(const vehicle& v, const std::vector<result>& results) {
   return text;
 }
 
+/// Above the ride; below how far the tables are from the mechanism, and energy from what it was.
 std::string picture_script(const std::vector<result>& results) {
-  const char* const colours[] = {"black", "#1f77b4", "#2ca02c", "#d62728"};
-  std::string text =
-      "set datafile separator ','\nset grid\nunset logscale\nset format y\n"
-      "unset xlabel\nset multiplot layout 4,1\nset lmargin 12\nset rmargin 30\n"
-      "set key outside right\nset ylabel 'height / m'\n"
-      "plot 'ride.csv' using 1:2 skip 1 with lines lw 1.5 dt 2 lc rgb '#888888' title "
-      "'road', 'ride.csv' using 1:3 skip 1 with lines lw 1.5 lc rgb 'black' title "
-      "'wheel centre'\nset ylabel 'toe-in / degrees'\n"
-      "plot 'ride.csv' using 1:4 skip 1 with lines lw 1.5 lc rgb 'black' title "
-      "'carrier'\nset logscale y\nset format y '10^{%T}'\n"
-      "set ylabel 'difference / m'\nplot ";
-  for (std::size_t k = 1; k < results.size(); ++k) {
-    const std::string column = std::to_string(3 * k + 3);
-    text += "'ride.csv' using 1:(abs($" + column + "-$3)) skip 1 with lines lw 1.2 lc rgb '" +
-            colours[k] + "' title '" + results[k].name + (k + 1 < results.size() ? "', " : "'\n");
-  }
-  text += "set ylabel 'energy error / J'\nset xlabel 'time / s'\nplot ";
+  const char* const colours[] = {"ink", "vermillion", "blue", "purple"};
+  using enum example::beside;
+  const std::size_t rows = results.front().samples.size();
+  const auto column = [](std::size_t result, std::size_t of_result) {
+    return "$" + std::to_string(3 + 3 * result + of_result);
+  };
+  std::string names;
+  std::vector<example::named_line> differences, energies;
   for (std::size_t k = 0; k < results.size(); ++k) {
-    const std::string column = std::to_string(3 * k + 5);
-    text += "'ride.csv' using 1:(abs($" + column + ")) skip 1 with lines lw 1.2 lc rgb '" +
-            colours[k] + "' title '" + results[k].name + (k + 1 < results.size() ? "', " : "'\n");
+    const auto place = k == 2 || k == 0 ? below : above;
+    if (k > 0) {
+      differences.push_back(
+          {"1:(1000*abs(" + column(k, 0) + "-$3))", colours[k], "", 0, right, "lines lw 1.5"});
+      const char* const heights[] = {"", ".485", ".13", ".94"};
+      names += "set label " + example::in_quotes(results[k].name) + " at graph .98," + heights[k] +
+               " right front tc rgb " + colours[k] + "\n";
+    }
+    // The ride without a table is as good as by the rotation-vector spline.
+    energies.push_back({"1:(abs(" + column(k, 2) + "))", colours[k],
+                        k == 0 ? "" : results[k].name + (k == 2 ? ", constraints" : ""),
+                        3 * rows / 5, place});
   }
-  return text + "unset multiplot\n";
+  return "set multiplot layout 2,2 title " +
+         example::title("Splines of a table ride within " +
+                        example::two_digits(1e9 * height_difference(results[1], results[0])) +
+                        " nm of the mechanism, screws within " +
+                        example::two_digits(1e3 * height_difference(results[3], results[0])) +
+                        " mm") +
+         "\nset lmargin 9\nset rmargin 3\nset xrange [*:*] noextend\nset xtics .2\n"
+         "set ylabel 'height / mm'\nset ytics 20\n" +
+         example::plot_command(
+             "ride.csv",
+             {{"1:(1000*$3)", "blue", "wheel centre", rows / 5, above_right, "lines lw 3"},
+              {"1:(1000*$2)", "ink", "road", rows / 8, above_left, "lines lw 2 dt 2"}}) +
+         "set ylabel 'toe-in / degrees'\nset ytics .05\n" +
+         example::plot_command("ride.csv",
+                               {{"1:4", "blue", "carrier", rows / 5, above_right, "lines lw 3"}}) +
+         "set xlabel 'time / s'\nset logscale y\nset format y '10^{%T}'\nset ytics 1e3\n"
+         "set ylabel 'height, difference / mm'\nset yrange [1e-16:1e2]\n" +
+         names + example::plot_command("ride.csv", differences) +
+         "unset label\nset ylabel 'energy, difference / J'\nset yrange [1e-10:1e3]\n" +
+         example::plot_command("ride.csv", energies) + "unset multiplot\n";
 }
 
 void run(const options& given) {
@@ -137,7 +158,7 @@ void run(const options& given) {
   }
   std::filesystem::create_directories(given.out);
   duet::write_file(given.out + "/ride.csv", ride_csv(v, results));
-  const bool drawn = example::draw(given.out, "ride", "1000,900", picture_script(results));
+  const bool drawn = example::draw(given.out, "ride", 520, picture_script(results));
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {

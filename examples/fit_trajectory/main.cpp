@@ -63,9 +63,9 @@ void run(const options& given) {
   std::filesystem::create_directories(given.out);
   duet::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, rate));
   duet::write_file(given.out + "/rows.csv", rows_csv(r, s));
-  const bool drawn = example::draw(
-      given.out, "fit", "1000,900",
-      picture_script(r.start, duration, s.outlier, rows, std::size_t(duration * rate)));
+  const bool drawn =
+      example::draw(given.out, "fit", 520,
+                    picture_script(r.start, duration, s, rows, std::size_t(duration * rate)));
   std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {

@@ -3,6 +3,8 @@
 
 #include "trajectory.hpp"
 
+#include "../support/curves.hpp"
+
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/frame.hpp>
@@ -15,6 +17,7 @@
 #include <duet/spline/knots.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
@@ -120,47 +123,76 @@ inline std::string picture_data(const std::string& name, std::size_t lines,
          std::to_string(lines / most + 1) + " using " + columns + " with table\nunset table\n";
 }
 
-/// \param rows, poses  their numbers: more rows than some thousand would hide the curve, so they
-/// are
-///                     left out
-inline std::string picture_script(double start, double duration, double outlier, std::size_t rows,
-                                  std::size_t poses) {
-  const std::string first = "-(" + duet::to_text(start) + ")";
-  std::string text = "if (!exists('is_read')) {\nset datafile separator ','\n" +
-                     picture_data("trajectory", poses, "($1" + first + "):2:3:4:9:10:11:12:13:14") +
-                     picture_data("rows", rows, "($2" + first + "):3:4:5:6") +
-                     "set datafile separator whitespace\nis_read = 1\n}\n"
-                     "set grid\nunset logscale\nset format y\nunset xlabel\n"
-                     "set multiplot layout 4,1\n"
-                     "set lmargin 11\nset rmargin 14\nset key outside right\nset xrange [0:" +
-                     duet::to_text(duration) + "]\nset ylabel 'position / m'\nplot ";
-  const char* const colours[] = {"#d62728", "#2ca02c", "#1f77b4"};
-  const char* const axes[] = {"x", "y", "z"};
-  if (rows <= 5000) {
-    for (int k = 0; k < 3; ++k) {
-      text += "$rows using 1:" + std::to_string(2 + k) +
-              " with points pt 7 ps 0.5 lc rgb '#888888' " +
-              (k < 2 ? "notitle, \\\n" : "title 'rows', \\\n");
+/// When the three coordinates of a position, or of one of its velocities, are most apart: there
+/// their names can be read.
+/// \param group  0 position, 1 velocity, 2 angular velocity
+inline std::pair<double, vector3<double>> most_apart(const curve& s, std::size_t group) {
+  std::pair<double, vector3<double>> result{};
+  double widest = -1;
+  for (int i = 4; i <= 96; ++i) {
+    const double t = s.basis().back() * i / 100;
+    const auto m = s.motion(t, duet::frame::hybrid);
+    const vector3<double> x = group == 0   ? vector3<double>(duet::translation(m.value))
+                              : group == 1 ? vector3<double>(m.velocity.template head<3>())
+                                           : vector3<double>(m.velocity.template tail<3>());
+    const double apart =
+        std::min({std::abs(x[0] - x[1]), std::abs(x[1] - x[2]), std::abs(x[2] - x[0])});
+    if (apart > widest) {
+      widest = apart;
+      result = {t, x};
     }
   }
-  const auto curves = [&](int column) {
-    for (int k = 0; k < 3; ++k) {
-      text += "$trajectory using 1:" + std::to_string(column + k) + " with lines lw 1.5 lc rgb '" +
-              colours[k] + "' title '" + axes[k] + "'" + (k < 2 ? ", \\\n" : "\n");
+  return result;
+}
+
+/// Position with the rows far off, velocities, and how far rows are from the curve.
+/// \param rows, poses  their numbers: of more rows than some thousand those far off are left out
+/// too
+inline std::string picture_script(double start, double duration, const smoothed& s,
+                                  std::size_t rows, std::size_t poses) {
+  const std::string first = "-(" + duet::to_text(start) + ")";
+  const char* const colours[] = {"vermillion", "green", "blue"};
+  const char* const axes[] = {"x", "y", "z"};
+  std::string far;
+  if (rows <= 5000) {
+    for (int k = 2; k < 5; ++k) {
+      far += "$rows using 1:($6 > 0 ? $" + std::to_string(k) +
+             " : 1/0) with points pt 7 ps .5 lc rgb grey, \\\n     ";
     }
+  }
+  const auto curves = [&](std::size_t group) {
+    std::string names, text = "plot ";
+    if (group == 0) {
+      text += far;
+    }
+    const auto [t, values] = most_apart(s.fit.curve, group);
+    for (std::size_t k = 0; k < 3; ++k) {
+      names += std::string("set label '") + axes[k] + "' at " + duet::to_text(t) + "," +
+               duet::to_text(values[Eigen::Index(k)]) + " center offset 0,.7 front tc rgb " +
+               colours[k] + "\n";
+      text += "$trajectory using 1:" + std::to_string(2 + 3 * group + k) +
+              " with lines lw 2 lc rgb " + colours[k] + (k < 2 ? ", \\\n     " : "\n");
+    }
+    return names + text + "unset label\n";
   };
-  curves(2);
-  const auto panel = [&](const char* label, int column) {
-    text += std::string("set ylabel '") + label + "'\nplot ";
-    curves(column);
-  };
-  panel("velocity / (m/s)", 5);
-  panel("angular velocity / (rad/s)", 8);
-  text += "set ylabel 'residual'\nset xlabel 'time / s'\nset logscale y\nset format y '10^{%T}'\n"
-          "plot $rows using 1:5 with points pt 7 ps 0.25 lc rgb '#444444' title 'rows', \\\n" +
-          duet::to_text(outlier) +
-          " with lines lw 1.5 lc rgb '#d62728' title 'outliers'\nunset multiplot\n";
-  return text;
+  std::string text =
+      "if (!exists('is_read')) {\n" +
+      picture_data("trajectory", poses, "($1" + first + "):2:3:4:9:10:11:12:13:14") +
+      picture_data("rows", rows, "($2" + first + "):3:4:5:6:7") +
+      "is_read = 1\n}\nset datafile separator whitespace\n"
+      "set multiplot layout 2,2 title " +
+      example::title(std::to_string(outliers(s)) + " of " + std::to_string(rows) +
+                     " rows are far off, and do not pull the curve") +
+      "\nset lmargin 10\nset rmargin 3\nset offsets 0,0,graph .15,0\nset xrange [0:" +
+      duet::to_text(duration) + "]\nset ytics .5\nset ylabel 'position / m'\n" + curves(0) +
+      "set ylabel 'velocity / (m/s)'\n" + curves(1) +
+      "set xlabel 'time / s'\nset ylabel 'angular velocity / (rad/s)'\n" + curves(2);
+  const std::string limit = duet::to_text(s.outlier);
+  return text +
+         "set ylabel 'residual / rad'\nset offsets 0,0,0,0\nset logscale y\nset ytics 10\n"
+         "set format y '10^{%T}'\nset label 'far off' at graph .98,.75 right tc rgb ink\n"
+         "plot $rows using 1:5 with points pt 5 ps .15 lc rgb grey, \\\n     " +
+         limit + " with lines lw 2 dt 2 lc rgb ink\nunset multiplot\n";
 }
 
 } // namespace fit_trajectory

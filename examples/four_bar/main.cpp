@@ -6,6 +6,7 @@
 #include "linkage.hpp"
 
 #include "../support/command_line.hpp"
+#include "../support/curves.hpp"
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
@@ -175,20 +176,34 @@ std::string links_csv(const options& given, const std::vector<sample>& samples) 
   return text;
 }
 
-std::string picture_script() {
-  return "set datafile separator ','\nset autoscale\nset grid\nset multiplot layout 1,2\n"
-         "set size ratio -1\nset xlabel 'x / m'\nset ylabel 'y / m'\nset key top left\n"
-         "plot 'motion.csv' using 8:9 skip 1 with lines lw 2.5 lc rgb '#1f77b4' title "
-         "'coupler point', 'links.csv' using 1:2 skip 1 with linespoints lw 1.2 pt 7 ps 0.5 "
-         "lc rgb '#888888' title 'links'\n"
-         "set size noratio\nset xlabel 'crank / degrees'\nset ylabel 'rad/s, rad/s^2'\nset "
-         "autoscale xfix\n"
-         "plot 'motion.csv' using 1:4 skip 1 with lines lw 2 lc rgb '#2ca02c' title "
-         "'angular velocity of the rocker', 'motion.csv' using 1:6 skip 1 with lines lw 2 lc rgb "
-         "'#d62728' title 'angular acceleration', 'motion.csv' using 1:5 every 15 skip 1 with "
-         "points "
-         "pt 6 lc rgb 'black' title 'closed form', 'motion.csv' using 1:7 every 15 skip 1 with "
-         "points pt 6 lc rgb 'black' notitle\nunset multiplot\n";
+/// Left the linkage and the way of its coupler point, right the rates of its rocker.
+std::string picture_script(const std::vector<sample>& samples) {
+  const std::size_t rows = samples.size();
+  const auto top =
+      std::max_element(samples.begin(), samples.end(),
+                       [](const sample& a, const sample& b) { return a.point[1] < b.point[1]; });
+  using enum example::beside;
+  const char* const circles = "points pt 6 ps .9";
+  return "set multiplot layout 1,2 title " +
+         example::title("The loop's rates of the rocker (lines) are those of the closed form "
+                        "(circles)") +
+         "\nset xtics .1\nset ytics .1\nset size ratio -1\nset xlabel 'x / m'\nset ylabel 'y / m'\n"
+         "set offsets .03,.03,.03,.03\nplot " +
+         example::plot_element("motion.csv",
+                               {"8:9", "blue", "coupler point", std::size_t(top - samples.begin()),
+                                above, "lines lw 3"}) +
+         ", \\\n     " +
+         example::plot_element("links.csv",
+                               {"1:2", "grey", "links", 0, right, "linespoints lw 2 pt 7 ps .8"}) +
+         "\nset offsets 0,0,0,0\nset size noratio\nset xlabel 'crank / degrees'\n"
+         "set ylabel 'of the rocker'\nset xtics 60\nset ytics .4\nset autoscale xfix\n" +
+         example::plot_command("motion.csv", {{"1:5 every 15", "ink", "", 0, right, circles},
+                                              {"1:7 every 15", "ink", "", 0, right, circles},
+                                              {"1:4", "blue", "velocity / (rad/s)", 4 * rows / 10,
+                                               above_right, "lines lw 3"},
+                                              {"1:6", "vermillion", "acceleration / (rad/s²)",
+                                               rows / 12, above_right, "lines lw 3"}}) +
+         "unset multiplot\n";
 }
 
 void run(const options& given) {
@@ -207,7 +222,7 @@ void run(const options& given) {
   std::filesystem::create_directories(given.out);
   duet::write_file(given.out + "/motion.csv", motion_csv(samples));
   duet::write_file(given.out + "/links.csv", links_csv(given, samples));
-  const bool drawn = example::draw(given.out, "four_bar", "1100,520", picture_script());
+  const bool drawn = example::draw(given.out, "four_bar", 400, picture_script(samples));
   std::cout << "\nTables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {

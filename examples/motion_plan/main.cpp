@@ -6,6 +6,7 @@
 
 #include "options.hpp"
 #include "pictures.hpp"
+#include "scene_drawing.hpp"
 #include "tables.hpp"
 
 #include "../support/folder.hpp"
@@ -20,6 +21,7 @@
 #include <future>
 #include <iostream>
 #include <string>
+#include <vector>
 
 namespace motion_plan_example {
 namespace {
@@ -49,14 +51,13 @@ Eigen::VectorXd velocities(const problem& p) {
   return result;
 }
 
-std::string tip_csv(const problem& p, const duet::joint_trajectory<-16>& trajectory) {
-  std::string text = "x,y,z\n";
+std::vector<point> tip_path(const problem& p, const duet::joint_trajectory<-16>& trajectory) {
+  std::vector<point> result;
   for (int i = 0; i <= 200; ++i) {
-    const double t = trajectory.duration() * i / 200;
-    const auto x = duet::translation(p.arm.pose(trajectory(t).value));
-    text += duet::csv_line({x[0], x[1], x[2]});
+    result.emplace_back(
+        duet::translation(p.arm.pose(trajectory(trajectory.duration() * i / 200).value)));
   }
-  return text;
+  return result;
 }
 
 /// Whether the goal was reached.
@@ -72,9 +73,10 @@ bool run(const problem& p) {
   duet::save_trajectory(p.out + "/trajectory.csv", trajectory,
                         trajectory.duration() > 0 ? trajectory.duration() / 500 : 1);
   duet::write_file(p.out + "/deviations.csv", deviations);
-  duet::write_file(p.out + "/arms.csv", arms_csv(p, found));
-  duet::write_file(p.out + "/tip.csv", tip_csv(p, trajectory));
-  duet::write_file(p.out + "/obstacles.csv", obstacles_csv(p));
+  const std::vector<point> tip = tip_path(p, trajectory);
+  const auto nearest = closest(p, found);
+  const example::drawing arm = drawing_of(p, found, tip, nearest);
+  duet::write_file(p.out + "/arm_shapes.csv", arm.csv());
 
   const bool has_obstacles = !p.around.obstacles.empty();
   std::printf("%s: %zu waypoints, %d iterations\n", duet::to_text(found.reason),
@@ -87,11 +89,13 @@ bool run(const problem& p) {
     std::printf("nearest to an obstacle       %.4g m\n", worst.clearance);
   }
   std::printf("duration                     %.3f s\n", trajectory.duration());
+  const std::size_t rows = 11 * (found.joints.size() - 1); // of deviations.csv
   const bool drawn =
       found.joints.size() > 1 &&
-      example::draw(p.out, "joints", "900,900", joints_script(p.arm.size())) &&
-      example::draw(p.out, "deviation", "900,600", deviation_script(has_obstacles)) &&
-      example::draw(p.out, "arm", "900,800", arm_script(has_obstacles));
+      example::draw(p.out, "joints", 640, joints_script(p, found, velocities(p), 500)) &&
+      example::draw(p.out, "deviation", 480,
+                    deviation_script(has_obstacles, p.around.margin, rows)) &&
+      example::draw(p.out, "arm", 440, arm_script(arm, p, found, tip, nearest, rows));
   std::cout << "Tables" << (drawn ? " and pictures (SVG, PNG)" : "") << " are in "
             << duet::printable(p.out) << "\n";
   if (!drawn) {

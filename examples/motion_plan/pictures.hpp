@@ -1,61 +1,124 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "scene_drawing.hpp"
+
+#include "../support/curves.hpp"
+#include "../support/joint_curves.hpp"
+
+#include <duet/duet.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <optional>
 #include <string>
+#include <vector>
 
 /// \file
 /// Scripts for gnuplot.
 
 namespace motion_plan_example {
 
-inline std::string series(const std::string& file, int joints, int first, const std::string& name) {
-  std::string text = "plot ";
+/// 19.98 for 0.019983.
+inline std::string millimetres(double length) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g mm", 1000 * length);
+  return text;
+}
+
+/// Above and in the middle the joints that move most in colours, the others grey; below how much of
+/// its limit the joint takes that takes most.
+/// \param rows  of trajectory.csv
+inline std::string joints_script(const problem& p, const plan_type& plan,
+                                 const Eigen::VectorXd& velocities, std::size_t rows) {
+  const int joints = p.arm.size();
+  const example::joint_curves curves(plan.joints);
+  const auto panel = [&](int group) { return curves.plot("trajectory.csv", 2 + group * joints); };
+  const auto share = [&](int group, const auto& limit) {
+    std::string largest = "0";
+    for (int i = 0; i < joints; ++i) {
+      largest = "max(" + largest + ", abs($" + std::to_string(2 + group * joints + i) + ")/" +
+                duet::to_text(limit(i)) + ")";
+    }
+    return "1:(100*" + largest + ")";
+  };
+  bool turns = true;
   for (int i = 0; i < joints; ++i) {
-    text += (i == 0 ? "'" : ", '") + file + "' using 1:" + std::to_string(first + i) +
-            " skip 1 with lines lw 1.6 lt " + std::to_string(i + 1) + " title '" + name + " " +
-            std::to_string(i) + "'";
+    turns = turns && p.arm.kind(i) != duet::joint_kind::prismatic;
   }
-  return text + "\n";
+  const std::string unit = turns ? "rad" : "(rad or m)";
+  using enum example::beside;
+  return "max(a, b) = a > b ? a : b\nset multiplot layout 3,1 title " +
+         example::title("At nearly every moment one joint is at a limit") +
+         "\nset lmargin 11\nset rmargin 12\nset xrange [*:*] noextend\n"
+         "set format x ''\nset ylabel 'coordinate / " +
+         unit + "'\n" + curves.names() + panel(0) + "unset label\nset ylabel 'rate / (" + unit +
+         "/s)'\n" + panel(1) +
+         "set format x '%g'\nset xlabel 'time / s'\nset ylabel 'share of a limit / %'\n"
+         "set yrange [0:109]\n" +
+         example::plot_command("trajectory.csv", {{share(1, [&](int i) { return velocities[i]; }),
+                                                   "vermillion", "rate", rows - 1, right},
+                                                  {share(2, [&](int) { return p.acceleration; }),
+                                                   "blue", "acceleration", rows - 1, right}}) +
+         "unset multiplot\n";
 }
 
-inline std::string joints_script(int joints) {
-  const auto column = [&](int group) { return 2 + group * joints; };
-  return "set datafile separator ','\nset grid\nset multiplot layout 3,1\nset lmargin 12\n"
-         "set rmargin 16\nset key outside right\nset ylabel 'coordinate / rad or m'\n" +
-         series("trajectory.csv", joints, column(0), "joint") + "set ylabel 'rate / (1/s)'\n" +
-         series("trajectory.csv", joints, column(1), "joint") +
-         "set xlabel 'time / s'\nset ylabel 'acceleration / (1/s^2)'\n" +
-         series("trajectory.csv", joints, column(2), "joint") + "unset multiplot\n";
-}
-
-inline std::string deviation_script(bool has_obstacles) {
+/// \param rows  of deviations.csv, eleven between two waypoints
+inline std::string deviation_script(bool has_obstacles, double margin, std::size_t rows) {
+  using enum example::beside;
   const std::string both =
-      "set format y '10^{%T}'\nset logscale y\nset ylabel 'deviation from the screw'\n"
-      "plot [0:1][1e-9:1e-4] 'deviations.csv' using 1:2 skip 1 with lines lw 1.6 lc rgb '#1f77b4' "
-      "title 'metres', 'deviations.csv' using 1:3 skip 1 with lines lw 1.6 lc rgb '#d62728' title "
-      "'radians', 1e-5 with lines lw 1.2 dt 2 lc rgb 'black' title 'allowed'\n";
-  return "set datafile separator ','\nset grid\nset lmargin 12\nset rmargin 16\n"
-         "set key outside right\nset xlabel 'tau'\n" +
+      "set ylabel 'off the screw / (µm, µrad)'\nset xrange [0:1]\nset yrange [0:12]\n" +
+      example::plot_command("deviations.csv",
+                            {{"1:(1e6*$2)", "blue", "position", rows - 6, right},
+                             {"1:(1e6*$3)", "vermillion", "orientation", rows - 6, right},
+                             {"1:(10)", "ink", "allowed", rows - 1, right, "lines lw 2 dt 2"}});
+  const std::string way = "set xlabel 'share of the way'\n";
+  return "set lmargin 9\nset rmargin 12\n" +
          (has_obstacles
-              ? "set multiplot layout 2,1\n" + both +
-                    "unset logscale y\nset format y '%g'\nset ylabel 'clearance / m'\n"
-                    "plot [0:1][0:*] 'deviations.csv' using 1:4 skip 1 with lines lw 1.6 lc rgb "
-                    "'#2ca02c' title 'clearance'\nunset multiplot\n"
-              : both);
+              ? "set multiplot layout 2,1 title " +
+                    example::title("The tip keeps to its screw motion, the arm off the obstacles") +
+                    "\n" + both + way + "set ylabel 'distance / mm'\nset yrange [0:*]\n" +
+                    example::plot_command("deviations.csv",
+                                          {{"1:(1000*$4)", "blue", "from the nearest obstacle",
+                                            rows / 6, above_right},
+                                           {"1:(" + duet::to_text(1000 * margin) + ")", "ink",
+                                            "margin", rows - 1, right, "lines lw 2 dt 2"}}) +
+                    "unset multiplot\n"
+              : way + both);
 }
 
-inline std::string arm_script(bool has_obstacles) {
-  return "set datafile separator ','\nset grid\nset view equal xyz\nset view 66,128,1.15\n"
-         "set xyplane relative 0\nset xtics .2\nset ytics .2\nset ztics .2\nset xlabel 'x / "
-         "m'\nset ylabel 'y / m'\nset zlabel 'z / m'\n"
-         "set palette defined (0 '#9ecae1', 1 '#08306b')\nset cbrange [0:1]\n"
-         "set colorbox user origin 0.9,0.25 size 0.02,0.5\nset cblabel 'from start to goal'\nset "
-         "key at screen 0.3,0.97\nsplot " +
-         std::string(has_obstacles ? "'obstacles.csv' using 1:2:3 skip 1 with lines lw 1 lc rgb "
-                                     "'#e0a060' title 'obstacles', "
-                                   : "") +
-         "'arms.csv' using 1:2:3:4 skip 1 with linespoints lw 3 pt 7 ps 0.6 lc palette title "
-         "'arm', 'tip.csv' using 1:2:3 skip 1 with lines lw 3 lc rgb '#d62728' title 'tip'\n";
+/// The drawing, and beside it how near the arm is to obstacles on the way.
+/// \param rows  of deviations.csv
+inline std::string arm_script(const example::drawing& d, const problem& p, const plan_type& plan,
+                              const std::vector<point>& tip,
+                              const std::optional<closest_approach>& nearest, std::size_t rows) {
+  const auto label = [](const std::string& text, const std::string& at, const std::string& style) {
+    return "set label " + example::in_quotes(text) + " at " + at + " front tc rgb ink " + style +
+           "\n";
+  };
+  const std::string ends = label("start", d.at(tip.front()), "left offset 1,0") +
+                           label("goal", d.at(tip.back()), "center offset 0,.8");
+  if (!nearest) {
+    return ends + d.script("arm_shapes.csv");
+  }
+  const auto& gap = nearest->clearance.points;
+  using enum example::beside;
+  return "set multiplot title " +
+         example::title("The arm keeps " + millimetres(plan.smallest_clearance) +
+                        " or more from obstacles; the margin is " + millimetres(p.around.margin)) +
+         "\nset lmargin at screen .62\nset rmargin at screen .96\nset tmargin at screen .8\n"
+         "set bmargin at screen .2\nset xrange [0:1]\nset yrange [0:*]\n"
+         "set xlabel 'share of the way'\nset ylabel 'distance to obstacles / mm'\n" +
+         example::plot_command("deviations.csv",
+                               {{"1:(1000*$4)", "blue", "arm", rows / 5, above_right, "lines lw 3"},
+                                {"1:(" + duet::to_text(1000 * p.around.margin) + ")", "ink",
+                                 "margin", rows / 20, above_right, "lines lw 2 dt 2"}}) +
+         "unset xlabel\nunset ylabel\nset lmargin at screen .02\nset rmargin at screen .5\n"
+         "set tmargin at screen .9\nset bmargin at screen .03\n" +
+         ends + "set arrow from " + d.at(gap.on_body) + " to " + d.at(gap.on_obstacle) +
+         " heads size screen .004,25 filled lc rgb ink front\n" + d.script("arm_shapes.csv") +
+         "unset multiplot\n";
 }
 
 } // namespace motion_plan_example

@@ -11,11 +11,10 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <variant>
 #include <vector>
 
 /// \file
-/// What is drawn, as CSV.
+/// What is found, as CSV.
 
 namespace motion_plan_example {
 
@@ -46,79 +45,6 @@ inline worst_case deviations_csv(const problem& p, const plan_type& plan, std::s
     }
   }
   return worst;
-}
-
-/// The arm at about ten waypoints, as lines from joint to joint: x, y, z, which; an empty line
-/// after each.
-inline std::string arms_csv(const problem& p, const plan_type& plan) {
-  std::string text = "x,y,z,tau\n";
-  const int count = 9;
-  for (int i = 0; i < count; ++i) {
-    const std::size_t k = (plan.joints.size() - 1) * std::size_t(i) / (count - 1);
-    const auto add = [&](const point& x) {
-      text += duet::csv_line({x[0], x[1], x[2], double(i) / (count - 1)});
-    };
-    add(point(0, 0, 0));
-    for (int link = 1; link <= p.arm.size(); ++link) {
-      add(duet::translation(p.arm.pose(plan.joints[k], link)));
-    }
-    add(duet::translation(p.arm.pose(plan.joints[k])));
-    text += "\n\n";
-  }
-  return text;
-}
-
-/// Wire frames: a ball as meridians and parallels, a box as its edges, a half-space as a grid
-/// around the base.
-inline std::string obstacles_csv(const problem& p) {
-  std::string text = "x,y,z\n";
-  const auto line = [&](const std::vector<point>& points) {
-    for (const point& x : points) {
-      text += duet::csv_line({x[0], x[1], x[2]});
-    }
-    text += "\n";
-  };
-  const auto curve = [&](const auto& f) {
-    std::vector<point> points;
-    for (int i = 0; i <= 36; ++i) {
-      points.push_back(f(i * std::acos(-1.0) / 18));
-    }
-    line(points);
-  };
-  const auto draw = [&](const auto& o) {
-    if constexpr (requires { o.centre; }) {
-      for (int i = 0; i < 6; ++i) {
-        const double a = i * std::acos(-1.0) / 6, z = std::cos(a + .26), r = std::sin(a + .26);
-        curve([&](double t) {
-          return point(o.centre + o.radius * point(std::cos(t) * std::cos(a),
-                                                   std::cos(t) * std::sin(a), std::sin(t)));
-        });
-        curve([&](double t) {
-          return point(o.centre + o.radius * point(r * std::cos(t), r * std::sin(t), z));
-        });
-      }
-    } else if constexpr (requires { o.placed; }) {
-      for (int axis = 0; axis < 3; ++axis) {
-        for (int corner = 0; corner < 4; ++corner) {
-          point from = o.half_sizes;
-          from[(axis + 1) % 3] *= corner % 2 == 0 ? 1 : -1;
-          from[(axis + 2) % 3] *= corner / 2 == 0 ? 1 : -1;
-          point to = from;
-          to[axis] = -to[axis];
-          line({duet::transform_point(o.placed, from), duet::transform_point(o.placed, to)});
-        }
-      }
-    } else {
-      for (int i = -4; i <= 4; ++i) {
-        line({point(.1 * i, -.4, o.offset), point(.1 * i, .4, o.offset)});
-        line({point(-.4, .1 * i, o.offset), point(.4, .1 * i, o.offset)});
-      }
-    }
-  };
-  for (const duet::obstacle& each : p.around.obstacles) {
-    std::visit(draw, each);
-  }
-  return text;
 }
 
 } // namespace motion_plan_example

@@ -33,9 +33,9 @@ void run(const options& given) {
 
   std::filesystem::create_directories(given.out);
   duet::write_file(given.out + "/path.csv", path_csv(plan));
-  duet::write_file(given.out + "/arm.csv", arm_csv(given.arm, plan));
-  duet::write_file(given.out + "/helix.csv", helix_csv(helix, given.turns));
-  const bool drawn = example::draw(given.out, "path", "1000,760", picture_script(given.arm.size()));
+  const example::drawing drawing = drawing_of(given.arm, plan, helix, given.turns);
+  duet::write_file(given.out + "/path_shapes.csv", drawing.csv());
+  const bool drawn = example::draw(given.out, "path", 480, picture_script(drawing, plan));
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {

@@ -3,10 +3,15 @@
 
 #include "options.hpp"
 
+#include "../support/curves.hpp"
+#include "../support/drawing.hpp"
+#include "../support/joint_curves.hpp"
+
 #include <duet/core/text/csv.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/planning/motion_plan.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -34,56 +39,73 @@ std::string path_csv(const duet::motion_plan<N>& plan) {
   return text;
 }
 
-/// The joints and the tip from the base on, at a few waypoints; empty lines between.
-template <class Arm, int N>
-std::string arm_csv(const Arm& arm, const duet::motion_plan<N>& plan) {
-  std::string text = "x,y,z\n";
-  constexpr std::size_t pictures = 5;
-  for (std::size_t p = 0; p < pictures; ++p) {
-    const auto& theta = plan.joints[p * (plan.joints.size() - 1) / (pictures - 1)];
-    text += duet::csv_line({0, 0, 0});
-    for (int i = 1; i <= arm.size(); ++i) {
-      const Eigen::Vector3d x = duet::translation(arm.pose(theta, i));
-      text += duet::csv_line({x[0], x[1], x[2]});
+/// The arm at the start, pale, and at the end, as thick lines from joint to joint, and the ways of
+/// the path and of its tip.
+template <class Arm, int N, class Path>
+example::drawing drawing_of(const Arm& arm, const duet::motion_plan<N>& plan, const Path& path,
+                            double turns) {
+  example::drawing d(example::point(.7, -1, .5));
+  const auto add_arm = [&](const auto& theta, const std::string& colour, double shift) {
+    example::point from = example::point::Zero();
+    for (int i = 1; i <= arm.size() + 1; ++i) {
+      const example::point to =
+          duet::translation(i <= arm.size() ? arm.pose(theta, i) : arm.pose(theta));
+      d.capsule(from, to, .03, i == 1 ? "#9aa5b1" : colour, shift);
+      from = to;
     }
-    const Eigen::Vector3d tip = duet::translation(arm.pose(theta));
-    text += duet::csv_line({tip[0], tip[1], tip[2]}) + "\n";
+  };
+  constexpr double behind = -10, before = 10;
+  add_arm(plan.joints.front(), "#dfe5ea", behind);
+  add_arm(plan.joints.back(), "#0072b2", 0);
+  for (int i = -3; i <= 3; ++i) {
+    const double x = .1 * i;
+    d.line({{x, -.3, 0}, {x, .3, 0}}, "#c4ccd4", "lw 1", 2 * behind);
+    d.line({{-.3, x, 0}, {.3, x, 0}}, "#c4ccd4", "lw 1", 2 * behind);
   }
-  return text;
-}
-
-template <class Helix>
-std::string helix_csv(const Helix& helix, double turns) {
-  std::string text = "x,y,z\n";
+  std::vector<example::point> asked, gone;
   const int steps = int(60 * turns) + 1;
   for (int i = 0; i <= steps; ++i) {
-    const Eigen::Vector3d x = duet::translation(helix(turns * i / steps));
-    text += duet::csv_line({x[0], x[1], x[2]});
+    asked.push_back(duet::translation(path(turns * i / steps)));
   }
-  return text;
+  for (const auto& theta : plan.joints) {
+    gone.push_back(duet::translation(arm.pose(theta)));
+  }
+  d.line(asked, "#f0c060", "lw 6", before);
+  d.line(gone, "#d55e00", "lw 2", 2 * before);
+  return d;
 }
 
-inline std::string picture_script(int joints) {
-  return "reset\nset datafile separator ','\nset multiplot\n"
-         "set size .56,1\nset origin 0,0\nset view equal xyz\nset view 65,35\nset xyplane at 0\n"
-         "set xlabel 'x in m'\nset ylabel 'y in m'\nset zlabel 'z in m' rotate\n"
-         "set xtics .2\nset ytics .2\nset ztics .2\nset key at screen .3,.98 center\n"
-         "splot 'arm.csv' using 1:2:3 skip 1 with linespoints lw 2 pt 7 ps .6 lc rgb '#9aa5b1' "
-         "title 'arm', "
-         "'helix.csv' using 1:2:3 skip 1 with lines lw 5 lc rgb '#f6c85f' title 'helix', "
-         "'path.csv' using 2:3:4 skip 1 with lines lw 1.5 lc rgb '#20639b' title 'tip'\n"
-         "unset xtics\nunset ytics\nset xtics\nset ytics\nset grid\n"
-         "set size .44,.5\nset origin .56,.5\nset key outside bottom center horizontal\n"
-         "set xlabel 'turns'\nset ylabel 'joints'\nset ytics 1\n"
-         "plot for [i=0:" +
-         std::to_string(joints - 1) +
-         "] 'path.csv' using 1:(column(11+i)) skip 1 with lines lw 2 title sprintf('%d', i)\n"
-         "set origin .56,0\nset ytics autofreq\nset ylabel 'deviation of waypoints'\nset logscale "
-         "y\n"
-         "set format y '%.0e'\n"
-         "plot 'path.csv' using 1:($9 > 1e-13 ? $9 : 1e-13) skip 1 with lines lw 2 title 'm', "
-         "'' using 1:($10 > 1e-13 ? $10 : 1e-13) skip 1 with lines lw 2 title 'rad'\n"
-         "unset multiplot\n";
+/// Left the drawing, right the joints, and how far waypoints are from the path.
+template <int N>
+std::string picture_script(const example::drawing& d, const duet::motion_plan<N>& plan) {
+  const example::joint_curves curves(plan.joints);
+  const std::size_t last = plan.joints.size() - 1;
+  duet::pose_deviation off;
+  for (const duet::pose_deviation& each : plan.deviations) {
+    off = {std::max(off.length, each.length), std::max(off.angle, each.angle)};
+  }
+  const auto within = [](const char* left, const char* right, const char* bottom, const char* top) {
+    return std::string("set lmargin at screen ") + left + "\nset rmargin at screen " + right +
+           "\nset bmargin at screen " + bottom + "\nset tmargin at screen " + top + "\n";
+  };
+  using enum example::beside;
+  return "set multiplot title " +
+         example::title("The tip stays on the helix, within " +
+                        example::two_digits(1e9 * off.length) + " nm and " +
+                        example::two_digits(1e9 * off.angle) + " nrad") +
+         "\n" + within(".53", ".9", ".56", ".91") +
+         "set xrange [*:*] noextend\nset format x ''\nset xtics .5\nset ytics 1\n"
+         "set ylabel 'coordinate / (rad or m)'\n" +
+         curves.names() + curves.plot("path.csv", 11) + "unset label\n" +
+         within(".53", ".9", ".14", ".49") +
+         "set format x '%g'\nset xlabel 'turns'\nset ylabel 'off the helix / (m, rad)'\n"
+         "set logscale y\nset format y '10^{%T}'\nset ytics 10\nset yrange [1e-13:*]\n" +
+         example::plot_command(
+             "path.csv",
+             {{"1:($9 > 1e-13 ? $9 : 1e-13)", "blue", "m", 3 * last / 5, below},
+              {"1:($10 > 1e-13 ? $10 : 1e-13)", "vermillion", "rad", last / 3, above}}) +
+         "unset logscale\nunset xlabel\nunset ylabel\n" + within(".02", ".42", ".03", ".91") +
+         d.script("path_shapes.csv") + "unset multiplot\n";
 }
 
 } // namespace path_following

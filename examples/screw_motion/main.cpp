@@ -34,7 +34,7 @@ void run(const options& given) {
   std::filesystem::create_directories(given.out);
   duet::write_file(given.out + "/path.csv", path_csv(path));
   duet::write_file(given.out + "/frames.csv", frames_csv(path, between));
-  const bool drawn = example::draw(given.out, "path", "900,760", path_script());
+  const bool drawn = example::draw(given.out, "path", 520, path_script(between, path));
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
             << duet::printable(given.out) << "\n";
   if (!drawn) {

@@ -3,6 +3,8 @@
 
 #include "options.hpp"
 
+#include "../support/curves.hpp"
+
 #include <duet/core/constants.hpp>
 #include <duet/core/text/csv.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -127,21 +130,28 @@ inline std::string path_csv(const std::vector<sample>& path) {
   return text;
 }
 
+/// A sixth of how far the origin goes.
+inline double axis_length(const std::vector<sample>& path) {
+  double size = 0;
+  for (const sample& p : path) {
+    const vector3<double> way = duet::translation(p.pose) - duet::translation(path.front().pose);
+    size = std::max(size, way.norm());
+  }
+  return size > 0 ? size / 6 : 1;
+}
+
 /// Arrows of about ten frames on the way, and the axis: start, direction, which (0 to 2, 3 the
 /// axis).
 inline std::string frames_csv(const std::vector<sample>& path, const screw& s) {
   std::string text = "x,y,z,dx,dy,dz,arrow\n";
-  double size = 0;
   double low = 0;
   double high = 0;
   for (const sample& p : path) {
-    const vector3<double> way = duet::translation(p.pose) - duet::translation(path.front().pose);
-    size = std::max(size, way.norm());
     const double along = s.axis.dot(duet::translation(p.pose));
     low = &p == &path.front() ? along : std::min(low, along);
     high = &p == &path.front() ? along : std::max(high, along);
   }
-  const double length = size > 0 ? size / 6 : 1;
+  const double length = axis_length(path);
   const std::size_t stride = std::max<std::size_t>(1, (path.size() - 1) / 10);
   const auto add = [&](const vector3<double>& from, const vector3<double>& arrow, int which) {
     text +=
@@ -159,19 +169,60 @@ inline std::string frames_csv(const std::vector<sample>& path, const screw& s) {
   return text;
 }
 
-inline const char* path_script() {
-  return "set datafile separator ','\nset grid\nset view equal xyz\nset view 62,35,1.2\n"
-         "set xyplane relative 0.05\n"
-         "set xlabel 'x'\nset ylabel 'y'\nset zlabel 'z'\nset key top left\n"
-         "splot 'path.csv' using 2:3:4 skip 1 with lines lw 2 lc rgb '#444444' title 'origin', \\\n"
-         "  'frames.csv' using ($7==0?$1:1/0):2:3:4:5:6 skip 1 with vectors lw 2 lc rgb '#d62728' "
-         "title 'x axis', \\\n"
-         "  'frames.csv' using ($7==1?$1:1/0):2:3:4:5:6 skip 1 with vectors lw 2 lc rgb '#2ca02c' "
-         "title 'y axis', \\\n"
-         "  'frames.csv' using ($7==2?$1:1/0):2:3:4:5:6 skip 1 with vectors lw 2 lc rgb '#1f77b4' "
-         "title 'z axis', \\\n"
-         "  'frames.csv' using ($7==3?$1:1/0):2:3:4:5:6 skip 1 with vectors nohead lw 1.5 dt 2 lc "
-         "rgb 'black' title 'screw axis'\n";
+inline std::string path_title(const screw& s) {
+  std::ostringstream degrees;
+  degrees << std::setprecision(3) << std::abs(s.angle) * 180 / duet::constant::pi<double>();
+  const std::string angle = degrees.str();
+  switch (s.kind) {
+  case duet::screw_kind::none:
+    return "The poses are the same";
+  case duet::screw_kind::translation:
+    return "From pose to pose: a shift by " + example::two_digits(s.translation);
+  case duet::screw_kind::rotation:
+    return "From pose to pose: a turn by " + angle + " degrees about one axis";
+  default:
+    return "From pose to pose: a turn by " + angle + " degrees about one axis, and a shift by " +
+           example::two_digits(s.translation) + " along it";
+  }
+}
+
+/// Frames on the way and the axis of the screw, with their names; lengths are in the unit of the
+/// poses.
+inline std::string path_script(const screw& s, const std::vector<sample>& path) {
+  const auto label = [](const std::string& text, const vector3<double>& at, const char* style) {
+    return "set label " + example::in_quotes(text) + " at " + duet::to_text(at[0]) + "," +
+           duet::to_text(at[1]) + "," + duet::to_text(at[2]) + " front " + style + "\n";
+  };
+  const double length = axis_length(path);
+  std::string labels;
+  const duet::matrix3<double> r = duet::rotation_matrix(duet::rotation(path.front().pose));
+  const char* const colours[] = {"vermillion", "green", "blue"};
+  const char* const names[] = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    labels +=
+        label(names[axis],
+              vector3<double>(duet::translation(path.front().pose)) + 1.3 * length * r.col(axis),
+              (std::string("center tc rgb ") + colours[axis]).c_str());
+  }
+  labels += label("from", duet::translation(path.front().pose), "right offset -.8,-.6 tc rgb ink") +
+            label("to", duet::translation(path.back().pose), "right offset -.5,-1 tc rgb ink");
+  if (s.kind == duet::screw_kind::rotation || s.kind == duet::screw_kind::screw) {
+    const double along = s.axis.dot(duet::translation(path.front().pose));
+    labels += label("screw axis", place(s) + along * s.axis, "right offset -1,0 tc rgb ink");
+  }
+  const auto arrows = [](int which, const char* style) {
+    return "'frames.csv' using ($7==" + std::to_string(which) +
+           "?$1:1/0):2:3:4:5:6 skip 1 with vectors " + style;
+  };
+  return "set border 31 lc rgb pale\nset view equal xyz\nset view 62,35,1.25\n"
+         "set xyplane relative 0\nset xtics .5 offset 0,-.2\nset ytics .5 offset .5,0\n"
+         "set ztics .5\nset format '%.1f'\nset xlabel 'x'\nset ylabel 'y'\nset zlabel 'z'\n"
+         "set label " +
+         example::title(path_title(s)) + " at screen .5,.95 center tc rgb ink\n" + labels +
+         "splot 'path.csv' using 2:3:4 skip 1 with lines lw 3 lc rgb ink, \\\n  " +
+         arrows(0, "lw 2 lc rgb vermillion") + ", \\\n  " + arrows(1, "lw 2 lc rgb green") +
+         ", \\\n  " + arrows(2, "lw 2 lc rgb blue") + ", \\\n  " +
+         arrows(3, "nohead lw 2 dt 2 lc rgb ink") + "\n";
 }
 
 } // namespace screw_motion

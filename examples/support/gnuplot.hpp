@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "style.hpp"
+
 #include <duet/core/text/file.hpp>
 
 #include <csignal>
@@ -43,22 +45,29 @@ inline int run_command(const std::string& command) {
   return status;
 }
 
-/// Draws folder/name.svg and folder/name.png, both or neither; false where gnuplot is not
-/// installed.
+/// Draws folder/name.svg and folder/name.png in the one style, both or neither; false where gnuplot
+/// is not installed. The script is left in folder/name.gnuplot, to be changed and run there.
+/// \param height  in pixels of a page, on which the picture is `picture_width` wide
 /// \throws std::runtime_error where it fails, duet::file_error
-inline bool draw(const std::string& folder, const std::string& name, const std::string& size,
+inline bool draw(const std::string& folder, const std::string& name, int height,
                  const std::string& script) {
   // By itself the script draws to these names; here it is given those of drafts.
   const auto output = [&](const std::string& kind) {
     const std::string variable = kind + "_file";
     return "if (!exists('" + variable + "')) " + variable + " = '" + name + "." + kind +
-           "'\nset output " + variable + "\n";
+           "'\nset output " + variable + "\n" + picture_style + script + "set output\n";
+  };
+  const auto size = [&](int scale) {
+    return std::to_string(scale * picture_width) + "," + std::to_string(scale * height);
   };
   const std::string path = folder + "/" + name;
-  duet::write_file(path + ".gnuplot", "set terminal svg size " + size +
-                                          " background rgb 'white'\n" + output("svg") + script +
-                                          "set output\nset terminal pngcairo size " + size + "\n" +
-                                          output("png") + script);
+  duet::write_file(path + ".gnuplot",
+                   "set terminal svg size " + size(1) +
+                       " font 'sans-serif,14' background rgb 'white'\n" + output("svg") +
+                       "set terminal pngcairo size " + size(2) +
+                       " font 'sans-serif,10.5' fontscale 2 linewidth 2 pointscale 2 "
+                       "background rgb 'white'\n" +
+                       output("png"));
   duet::file_draft svg(path + ".svg"), png(path + ".png");
   const auto absolute = [](const std::string& relative) {
     return std::filesystem::absolute(relative).string();

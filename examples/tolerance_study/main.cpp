@@ -74,8 +74,7 @@ void summarise(const options& given, const hardpoints& points, const toleranced_
   print(r, points);
   duet::write_file(given.out + "/summary.csv", summary_csv(r));
   duet::write_file(given.out + "/sensitivities.csv", sensitivities_csv(r, points));
-  const bool drawn =
-      example::draw(given.out, "tolerance_study", "1100,800", picture_script(r, points));
+  const bool drawn = example::draw(given.out, "tolerance_study", 600, picture_script(r, points));
   std::printf("Tables%s are in %s\n", drawn ? " and a picture (SVG, PNG)" : "",
               duet::printable(given.out).c_str());
   if (!drawn) {

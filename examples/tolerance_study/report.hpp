@@ -5,6 +5,8 @@
 #include "samples.hpp"
 #include "toleranced_carrier.hpp"
 
+#include "../support/curves.hpp"
+
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/number_text.hpp>
 
@@ -148,46 +150,57 @@ inline void print(const results& r, const hardpoints& points) {
 
 /// Above: toe-in and camber over the travel. Below: what moves them most.
 [[nodiscard]] inline std::string picture_script(const results& r, const hardpoints& points) {
-  std::string text = "set datafile separator ','\nset multiplot layout 2,2\nset grid\n"
-                     "set key above\nset xlabel 'wheel height u [m]'\nset yrange [*:*]\n"
-                     "set xrange [" +
-                     duet::to_text(r.heights.front()) + ":" + duet::to_text(r.heights.back()) +
-                     "]\n";
+  std::string text =
+      "set multiplot layout 2,2 title " +
+      example::title("Sensitivities foretell the spread of the samples to " +
+                     example::two_digits(100 * largest_difference(r)) + " %") +
+      "\nset lmargin 10\nset rmargin 3\nset xlabel 'wheel height u / m'\nset xtics .05\n"
+      "set yrange [*:*]\nset xrange [" +
+      duet::to_text(r.heights.front()) + ":" + duet::to_text(r.heights.back()) + "]\n";
+  using enum example::beside;
+  const std::size_t middle = r.heights.size() / 2;
   for (std::size_t angle = 0; angle < 2; ++angle) {
     const auto column = [angle](std::size_t i) { return std::to_string(i + 6 * angle); };
     const auto bound = [&](const char* factor) {
-      return "'' using 1:($" + column(2) + factor + "*$" + column(3) +
-             ") skip 1 with lines lw 1.5 dt 2 lc rgb '#d62728' ";
+      return "1:($" + column(2) + factor + "*$" + column(3) + ")";
     };
-    text += std::string("set ylabel '") + angle_names[angle] +
-            " [degrees]'\nplot 'summary.csv' using 1:" + column(6) + ":" + column(7) +
-            " skip 1 with filledcurves fs solid 0.3 lc rgb '#1f77b4' title '95 % of samples', "
-            "'' using 1:" +
-            column(2) + " skip 1 with lines lw 2 lc rgb 'black' title 'design', " + bound("+1.96") +
-            "title 'first order', " + bound("-1.96") + "notitle\n";
+    const auto name = [&](const char* words) { return angle == 0 ? std::string(words) : ""; };
+    text +=
+        (angle == 0 ? "set label '95 % of the samples' at graph .5,.3 center front tc rgb blue\n"
+                    : "unset label\n") +
+        std::string("set ylabel '") + angle_names[angle] + " / degrees'\n" +
+        "plot 'summary.csv' using 1:" + column(6) + ":" + column(7) +
+        " skip 1 with filledcurves fc rgb '#cfe3f1', \\\n     " +
+        example::plot_element(
+            "summary.csv", {"1:" + column(2), "ink", name("design"), middle, above, "lines lw 3"}) +
+        ", \\\n     " +
+        example::plot_element("summary.csv", {bound("+1.96"), "vermillion", name("first order"),
+                                              middle, above, "lines lw 2 dt 2"}) +
+        ", \\\n     " +
+        example::plot_element("summary.csv",
+                              {bound("-1.96"), "vermillion", "", 0, above, "lines lw 2 dt 2"}) +
+        "\n";
   }
-  text += "unset key\nunset ylabel\nset yrange [5.6:0.4]\nset xlabel 'root mean square [degrees "
-          "per mm]'\n";
+  text += "unset ylabel\nset lmargin 20\nset yrange [5.6:0.4]\nset xtics .1\n"
+          "set xlabel 'degrees per mm'\n";
   for (std::size_t angle = 0; angle < 2; ++angle) {
     std::string labels, boxes;
     int place = 1;
     for (const int j : most_influential(r, angle)) {
-      std::string name = coordinate_name(points, j);
-      for (char& c : name) {
-        c = c == '\'' ? ' ' : c;
-      }
-      labels += (place > 1 ? ", '" : "'") + name + "' " + std::to_string(place);
+      labels += (place > 1 ? ", " : "") + example::in_quotes(coordinate_name(points, j)) + " " +
+                std::to_string(place);
       const std::string y = std::to_string(place);
       boxes += "set object " + y + " rectangle from 0," + y + "-0.35 to " +
                duet::to_text(r.influence[angle][std::size_t(j)] / 1000) + "," + y +
-               "+0.35 fc rgb '#1f77b4' fs solid 0.6 noborder\n";
+               "+0.35 fc rgb blue fs solid noborder\n";
       ++place;
     }
     const double most = r.influence[angle][std::size_t(most_influential(r, angle)[0])] / 1000;
-    text += boxes + "set ytics (" + labels + ")\nset xrange [0:" + duet::to_text(1.1 * most) +
+    text += boxes + "set ytics (" + labels +
+            ") noenhanced\nset xrange [0:" + duet::to_text(1.1 * most) +
             "]\nset title 'what moves " + angle_names[angle] + " most'\nplot 1/0\n";
   }
-  return text + "unset multiplot\nunset object\nunset title\nset ytics autofreq\n";
+  return text + "unset multiplot\nunset object\n";
 }
 
 } // namespace tolerance_study

@@ -7,13 +7,14 @@
 
 #include "comparison.hpp"
 #include "configuration.hpp"
-#include "figures.hpp"
 #include "hardpoints_file.hpp"
 #include "hermite.hpp"
 #include "options.hpp"
+#include "pictures.hpp"
 #include "report.hpp"
 #include "splines.hpp"
 #include "table.hpp"
+#include "tables.hpp"
 
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
@@ -25,6 +26,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace wheel_carrier {
@@ -242,9 +244,10 @@ void run(const options& given) {
               ends.c_str());
   std::vector<std::pair<std::string, std::string>> files{{"table.csv", table_csv(t)},
                                                          {"rates.csv", rates_csv(chosen, samples)}};
-  std::vector<named_curve> curves, splines;
+  std::vector<named_curve> curves, splines, largest;
+  std::vector<double> heights;
+  const std::string others = paper_ends == "natural" ? "clamped" : "natural";
   if (has_reference) {
-    const std::string others = paper_ends == "natural" ? "clamped" : "natural";
     curves = compare_ways(samples, states, paper, paper_ends, cumulative_curve(t, others, known),
                           others);
     const auto configuration_files = configurations(mechanism, samples, states, t, paper);
@@ -252,6 +255,10 @@ void run(const options& given) {
     splines = compare_splines(mechanism, samples, states, t);
     files.emplace_back("errors.csv", errors_csv(samples, curves));
     files.emplace_back("splines.csv", errors_csv(samples, splines));
+    std::tie(heights, largest) = largest_between_rows(samples, curves, t.u);
+    files.emplace_back("errors_between_rows.csv", errors_csv(heights, largest));
+    files.emplace_back("splines_between_rows.csv",
+                       errors_csv(heights, largest_between_rows(samples, splines, t.u).second));
     files.emplace_back("path.csv", path_csv(states, mechanism.points().wheel_centre));
   }
   if (arcs) {
@@ -265,10 +272,11 @@ void run(const options& given) {
   }
   bool drawn = true;
   if (has_reference) {
-    drawn = example::draw(given.out, "errors", "1150,720", errors_script(curves)) &&
-            example::draw(given.out, "path", "1000,420", path_script()) &&
-            (!arcs || splines.size() <= std::size(all_curves) ||
-             example::draw(given.out, "splines", "1000,900", splines_script(splines)));
+    drawn =
+        example::draw(given.out, "errors", 620, errors_script(curves, heights, largest, others)) &&
+        example::draw(given.out, "path", 380, path_script(states)) &&
+        (!arcs || splines.size() <= std::size(all_curves) ||
+         example::draw(given.out, "splines", 700, splines_script(splines, heights.size())));
   }
   std::printf("\nTables%s are in %s\n", has_reference && drawn ? " and pictures (SVG, PNG)" : "",
               duet::printable(given.out).c_str());

@@ -6,6 +6,7 @@
 #include "../../examples/wheel_carrier/carrier.hpp"
 #include "../../examples/wheel_carrier/comparison.hpp"
 #include "../../examples/wheel_carrier/configuration.hpp"
+#include "../../examples/wheel_carrier/pictures.hpp"
 #include "../../examples/wheel_carrier/table.hpp"
 
 #include <doctest/doctest.h>
@@ -168,6 +169,26 @@ TEST_CASE("rods that cannot close are reported") {
   } catch (const duet::cannot_close& error) {
     CHECK(error.parameter().front() == doctest::Approx(-0.1334868).epsilon(1e-6));
   }
+}
+
+// Samples on a row count for the interval before it; the interval (3, 3.5] has none.
+TEST_CASE("the largest errors between two rows") {
+  const std::vector<double> samples{0, .5, 1, 1.5, 2, 3, 4};
+  const std::vector<named_curve> curves{{"a", {{1, 3, 2, 5, 4, 0, 6}, {7, 1, 1, 2, 9, 3, 8}}}};
+  const auto [heights, largest] = largest_between_rows(samples, curves, {0, 1, 3, 3.5, 4});
+  CHECK(heights == std::vector<double>{.5, 2, 3.75});
+  REQUIRE(largest.size() == 1);
+  CHECK(largest[0].first == "a");
+  CHECK(largest[0].second.delta == std::vector<double>{3, 5, 6});
+  CHECK(largest[0].second.delta_first == std::vector<double>{7, 9, 8});
+}
+
+TEST_CASE("numbers of titles have two digits") {
+  CHECK(example::two_digits(.0051768) == "0.0052");
+  CHECK(example::two_digits(99.4) == "99");
+  CHECK(example::two_digits(2634.) == "2600");
+  CHECK(example::two_digits(457123.) == "460 000");
+  CHECK(example::two_digits(1234567.) == "1 200 000");
 }
 
 } // namespace test_examples_wheel_carrier
