@@ -1,0 +1,172 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// A point of a turning body draws a curve on the sphere. Its velocity must touch that curve: by the
+// true derivative of the quaternion B-spline (P3) it does, by the formula as printed, which sums
+// rotations as if they commuted, it does not. Writes printed_velocity.csv and, with gnuplot, a
+// picture.
+
+#include "support/curves.hpp"
+#include "support/drawing.hpp"
+#include "support/folder.hpp"
+#include "support/gnuplot.hpp"
+#include "support/program.hpp"
+
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/quaternion/euler.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/printed.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <iostream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace {
+
+using rotation = duet::quaternion<double>;
+using spline = duet::cumulative_bspline<double>;
+using duet::vector3;
+
+const vector3<double> mark(1, 0, 0); // the point, on the body
+
+/// Through six orientations about one radian apart.
+spline motion() {
+  const std::vector<double> u{0, 1, 2, 3, 4, 5};
+  const std::vector<rotation> rows{duet::from_euler<duet::zyx>(-1.15, 0.35, 0.0),
+                                   duet::from_euler<duet::zyx>(-0.75, -0.45, 0.9),
+                                   duet::from_euler<duet::zyx>(-0.15, -0.65, 1.7),
+                                   duet::from_euler<duet::zyx>(0.35, 0.1, 2.2),
+                                   duet::from_euler<duet::zyx>(0.7, 0.5, 3.0),
+                                   duet::from_euler<duet::zyx>(1.2, -0.1, 3.8)};
+  return duet::interpolate<spline>(u, rows, duet::not_a_knot{});
+}
+
+struct sample {
+  double u;
+  vector3<double> place, velocity, printed;
+  /// Between both velocities, degrees.
+  [[nodiscard]] double angle() const {
+    return std::atan2(velocity.cross(printed).norm(), velocity.dot(printed)) * 180 /
+           std::numbers::pi;
+  }
+};
+
+sample sample_at(const spline& s, double u) {
+  const rotation q = s(u);
+  const auto velocity = [&](const rotation& rate) -> vector3<double> {
+    return duet::angular_velocity(q, rate, duet::frame::spatial).cross(duet::rotate(q, mark));
+  };
+  return {u, duet::rotate(q, mark), velocity(s.derivatives(u)[1]),
+          velocity(duet::printed_derivative(s, u).from_zero_first)};
+}
+
+/// Meridians and parallels, where they are on the near side.
+void add_grid(example::drawing& d) {
+  const double step = std::numbers::pi / 6;
+  const auto add = [&](const auto& circle) {
+    std::vector<vector3<double>> part;
+    for (int i = 0; i <= 120; ++i) {
+      part.push_back(circle(i * std::numbers::pi / 60));
+      if (d.seen(part.back())[2] < 0 || i == 120) {
+        part.pop_back();
+        if (part.size() > 1) {
+          d.line(part, "#a9bccd", "lw 1");
+        }
+        part.clear();
+      }
+    }
+  };
+  for (int k = -2; k < 4; ++k) {
+    const double angle = k * step;
+    add([&](double t) {
+      return vector3<double>(std::sin(t) * std::cos(angle), std::sin(t) * std::sin(angle),
+                             std::cos(t));
+    });
+    add([&](double t) {
+      return vector3<double>(-std::cos(angle) * std::cos(t), -std::cos(angle) * std::sin(t),
+                             std::sin(angle));
+    });
+  }
+}
+
+/// The ball with the curve, the rows, and both velocities at even parameters.
+example::drawing drawing_of(const spline& s, const std::vector<sample>& samples) {
+  example::drawing d(vector3<double>(1, .12, .2));
+  d.ball(vector3<double>::Zero(), 1, "#c9d7e4");
+  add_grid(d);
+  std::vector<vector3<double>> curve;
+  for (const sample& each : samples) {
+    curve.push_back(each.place);
+  }
+  d.line(curve, "#24292f", "lw 4");
+  for (const double u : {0., 1., 2., 3., 4., 5.}) {
+    d.ball(1.01 * duet::rotate(s(u), mark), .022, "#24292f");
+  }
+  constexpr double length = .5;
+  for (std::size_t i = 38; i < samples.size(); i += 38) {
+    const auto& [u, place, velocity, printed] = samples[i];
+    d.arrow(place, place + length * printed, "#d55e00", "lw 3");
+    d.arrow(place, place + length * velocity, "#0072b2", "lw 3");
+  }
+  return d;
+}
+
+std::string picture_script(const example::drawing& d, double worst) {
+  const auto label = [](const std::string& text, double y, const char* colour) {
+    return "set label " + text + " at screen .56," + duet::to_text(y) + " front tc rgb " + colour +
+           "\n";
+  };
+  char angle[20];
+  std::snprintf(angle, sizeof angle, "%.0f", worst);
+  return label(example::title("A point of a turning body"), .87, "ink") +
+         label("'draws this curve; its velocity'", .81, "ink") +
+         label("'must be tangent to the curve.'", .75, "ink") +
+         label(example::title("True formula:"), .6, "blue") +
+         label("'tangent everywhere.'", .54, "blue") +
+         label(example::title("Printed formula:"), .39, "vermillion") +
+         label("'off by up to " + std::string(angle) + " degrees: it adds rotations'", .33,
+               "vermillion") +
+         label("'as if they commuted.'", .27, "vermillion") +
+         "set lmargin at screen .02\nset rmargin at screen .52\nset tmargin 1\nset bmargin 1\n" +
+         d.script("printed_velocity_shapes.csv");
+}
+
+void run() {
+  example::require_folder(".");
+  const spline s = motion();
+  std::vector<sample> samples;
+  std::string csv = "u,x,y,z,vx,vy,vz,printed_vx,printed_vy,printed_vz\n";
+  for (int i = 0; i <= 300; ++i) {
+    samples.push_back(sample_at(s, i / 60.0));
+    const auto& [u, x, v, p] = samples.back();
+    csv += duet::csv_line({u, x[0], x[1], x[2], v[0], v[1], v[2], p[0], p[1], p[2]});
+  }
+  const auto worst =
+      std::max_element(samples.begin(), samples.end(),
+                       [](const sample& a, const sample& b) { return a.angle() < b.angle(); });
+  std::printf("The printed formula's velocity is off by up to %.1f degrees, at u = %.3f\n",
+              worst->angle(), worst->u);
+  duet::write_file("printed_velocity.csv", csv);
+  const example::drawing d = drawing_of(s, samples);
+  duet::write_file("printed_velocity_shapes.csv", d.csv());
+  if (!example::draw(".", "printed_velocity", 420, picture_script(d, worst->angle()))) {
+    std::cout << "No picture: gnuplot is not installed\n";
+  }
+}
+
+} // namespace
+
+int main() {
+  return example::run_program("printed_velocity", [] {
+    run();
+    return 0;
+  });
+}
