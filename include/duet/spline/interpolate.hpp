@@ -176,6 +176,12 @@ template <CurveType Spline, class T>
 }
 
 #ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE class cubic_equations<double>;
+DUET_COMPILED_TEMPLATE class rotation_vector_cubic_equations<double>;
+DUET_COMPILED_TEMPLATE class rotation_vector_quintic_equations<double>;
+DUET_COMPILED_TEMPLATE class spline_newton<cubic_equations<double>>;
+DUET_COMPILED_TEMPLATE class spline_newton<rotation_vector_cubic_equations<double>>;
+DUET_COMPILED_TEMPLATE class spline_newton<rotation_vector_quintic_equations<double>>;
 DUET_COMPILED_TEMPLATE cumulative_bspline<double> curve_through(const std::vector<double>&,
                                                                 std::vector<quaternion<double>>,
                                                                 const curve_ends<double>&,
