@@ -19,9 +19,16 @@
 namespace duet::detail {
 
 template <class Derived, int Dim>
-void as_foreign(const Eigen::RotationBase<Derived, Dim>&);
+void as_foreign_motion(const Eigen::RotationBase<Derived, Dim>&);
 template <class T, int Dim, int Mode, int Options>
-void as_foreign(const Eigen::Transform<T, Dim, Mode, Options>&);
+void as_foreign_motion(const Eigen::Transform<T, Dim, Mode, Options>&);
+
+/// A rotation or pose of Eigen.
+template <class X>
+concept ForeignMotion = requires(const X& x) {
+  as_foreign_motion(x);
+};
+
 /// All but columns and matrices of a size known at compile time.
 template <class Derived>
   requires(!std::same_as<Derived, typename Derived::PlainObject> ||
@@ -35,14 +42,13 @@ template <class T, std::size_t N>
 void as_foreign(const std::array<T, N>&);
 
 template <class X>
-concept Foreign = requires(const X& x) {
+concept Foreign = ForeignMotion<X> || requires(const X& x) {
   as_foreign(x);
 };
 
-/// X is a Q or becomes one by itself. (What is foreign seems to, as it is refused by a
-/// constructor.)
+/// X is a Q or becomes one by itself. (What is Eigen's seems to, as a constructor refuses it.)
 template <class X, class Q>
-concept Becomes = std::convertible_to<X, Q> && !Foreign<std::remove_cvref_t<X>>;
+concept Becomes = std::convertible_to<X, Q> && !ForeignMotion<std::remove_cvref_t<X>>;
 
 } // namespace duet::detail
 

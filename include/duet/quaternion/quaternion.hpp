@@ -45,7 +45,7 @@ public:
   /// A scalar as a quaternion: 1 is the identity rotation.
   constexpr explicit quaternion(const T& w) : w_(w), x_(T(0)), y_(T(0)), z_(T(0)) {}
   quaternion(const T& w, const vector3<T>& v) : w_(w), x_(v[0]), y_(v[1]), z_(v[2]) {}
-  template <detail::Foreign X>
+  template <detail::ForeignMotion X>
   DUET_REFUSED("a rotation or pose of Eigen: from_eigen(q) of <duet/interop/eigen.hpp>")
   quaternion(const X&);
   /// This quaternion over another scalar; implicit where no precision or level is lost.
@@ -187,10 +187,10 @@ operator/(const quaternion<T>& q, const S& a) {
   return {q.w() / divisor, q.x() / divisor, q.y() / divisor, q.z() / divisor};
 }
 
-template <class T, detail::Foreign X>
+template <class T, detail::ForeignMotion X>
 DUET_REFUSED("a product with a rotation or pose of Eigen: q * from_eigen(p)")
 quaternion<T> operator*(const quaternion<T>&, const X&);
-template <class T, detail::Foreign X>
+template <class T, detail::ForeignMotion X>
 DUET_REFUSED("a product with a rotation or pose of Eigen: from_eigen(p) * q")
 quaternion<T> operator*(const X&, const quaternion<T>&);
 
