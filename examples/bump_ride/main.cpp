@@ -104,9 +104,9 @@ std::string picture_script(const std::vector<result>& results) {
     if (k > 0) {
       differences.push_back(
           {"1:(1000*abs(" + column(k, 0) + "-$3))", colours[k], "", 0, right, "lines lw 1.5"});
-      const char* const heights[] = {"", ".485", ".13", ".94"};
-      names += "set label " + example::in_quotes(results[k].name) + " at graph .98," + heights[k] +
-               " right front tc rgb " + colours[k] + "\n";
+      const char* const places[] = {"", ".02,.06 left", ".98,.13 right", ".98,.94 right"};
+      names += "set label " + example::in_quotes(results[k].name) + " at graph " + places[k] +
+               " front tc rgb " + colours[k] + "\n";
     }
     // The ride without a table is as good as by the rotation-vector spline.
     energies.push_back({"1:(abs(" + column(k, 2) + "))", colours[k],

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
@@ -165,10 +166,12 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
   // A translation that is not finite in one entry is so in none: all are in every entry of p + εq.
   const auto turn = rotation(a);
   const auto move = translation(a);
-  require(is_all_finite(turn), "duet: ", caller, ": ", name,
-          ": its rotation is not finite: ", turn);
+  const auto entry = [](double x) { return x == x ? to_text(x) : "nan"; }; // whatever its sign
+  require(is_all_finite(turn), "duet: ", caller, ": ", name, ": its rotation is not finite: (",
+          entry(turn.w()), ", ", entry(turn.x()), ", ", entry(turn.y()), ", ", entry(turn.z()),
+          ")");
   require(move.allFinite(), "duet: ", caller, ": ", name, ": its translation is not finite: (",
-          move[0], ", ", move[1], ", ", move[2], ")");
+          entry(move[0]), ", ", entry(move[1]), ", ", entry(move[2]), ")");
   const auto square = norm2(a);
   throw invalid_input(message("duet: ", caller, ": ", name, " is no unit dual quaternion: |p|^2 = ",
                               square.value(), ", p.q = ", square.epsilon() / 2));
