@@ -10,6 +10,7 @@
 
 #include <istream>
 #include <limits>
+#include <math.h>
 #include <ostream>
 #include <sstream>
 
@@ -20,6 +21,9 @@
 /// `value[partial, …]`, a Taylor number its coefficients `(x0 + x1 e + x2 e^2)`; what is read is a
 /// constant's value. Digits, decimal point and width are the stream's own; the width counts for the
 /// whole number, as for `std::complex`.
+///
+/// With <math.h> the functions of `float` and `long double` are in the global namespace, too, not
+/// only C's of `double`: in a formula over any scalar `sqrt(x)` is then right for all of them.
 
 namespace duet {
 
