@@ -51,6 +51,12 @@ TEST_CASE("numbers, vectors and matrices") {
         "value: (1, 4)\njacobian: 2 x 2, 2 entries\n");
 }
 
+TEST_CASE("vectors and matrices by themselves") {
+  CHECK(to_text(Eigen::Vector3d(1, 2.5, -3)) == "(1, 2.5, -3)");
+  CHECK(to_text(Eigen::RowVector2d(1, 2)) == "[1, 2]");
+  CHECK(to_text(Eigen::Matrix2d::Identity()) == "[1, 0; 0, 1]");
+}
+
 TEST_CASE("enumerations, lists of results, results in results") {
   CHECK(to_text(duet::screw_motion<double>{duet::vector3<double>(0, 0, 1),
                                            duet::vector3<double>::Zero(), 0.5, 2,

@@ -327,6 +327,8 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
   CHECK((duet::translation(a) - vector3<double>(1, 2, 3)).norm() < 1e-15);
   write("t_s,t_x,t_y,t_z,q_w,q_x,q_y,q_z\n0,1,2,3,.1,.3,.9,.3\n");
   CHECK(duet::load_table<screw>(path).elements.at(0) == a);
+  write("\"t\",\"tx\",\"ty\",\"tz\",\"qw\",\"qx\",\"qy\",\"qz\"\n0,1,2,3,.1,.3,.9,.3\n");
+  CHECK(duet::load_table<screw>(path).elements.at(0) == a);
 
   const auto complaint = [&](const std::string& text) {
     write(text);
@@ -351,6 +353,9 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
   CHECK(is_told(complaint("# t q0 q1 q2 q3\n0 .1 .3 .9 .3\n")));
   CHECK(complaint("qw,qx,qy,qz\n.1,.3,.9,.3\n")
             .starts_with("duet: " + path + ":1: the header names no column u"));
+  CHECK(complaint("t;qw;qx;qy;qz\n0;.1;.3;.9;.3\n") ==
+        "duet: " + path +
+            ":1: the header is one cell, as cells are apart by commas or blanks, not by ';'");
   CHECK(complaint("t,u,qw,qx,qy,qz\n0,0,.1,.3,.9,.3\n") ==
         "duet: " + path + ":1: the header has both 't' and 'u'");
   CHECK(complaint("# t qx qy qz qw norm\n0 .3 .9 .3 .1\n") ==
@@ -404,7 +409,7 @@ TEST_CASE("bad files are named, with line, column and value") {
   CHECK(complaint(header_of_euroc + "1,1,2,3,0,5,0,0,1\n") ==
         "1: the comment names 8 columns, the rows have 9");
   CHECK(complaint("u;x;y;z;qw;qx;qy;qz\n0;1;2;3;1;0;0;0\n")
-            .starts_with("1: the header names no column u: "));
+            .starts_with("1: the header is one cell, as cells "));
 
   const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
   CHECK(complaint(identity + "1 0 0 0 0 1 0 0 0 0 -1 0\n") ==

@@ -122,4 +122,12 @@ template <Result X>
   return text;
 }
 
+/// A vector of Eigen as (x, y, z), a matrix as [a, b; c, d].
+template <class M>
+  requires requires(const M& m) {
+    M::ColsAtCompileTime;
+    m(0, 0);
+  }
+[[nodiscard]] std::string to_text(const M& m) { return detail::field_text(m); }
+
 } // namespace duet

@@ -34,6 +34,9 @@ struct column_name {
   std::string unit; ///< as written, empty where none is
 
   explicit column_name(std::string_view cell) {
+    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') { // as spreadsheets write
+      cell = cell.substr(1, cell.size() - 2);
+    }
     const std::size_t bracket = std::min(cell.find_first_of("[("), cell.size());
     name = lower(trimmed(cell.substr(0, bracket)));
     if (bracket < cell.size()) {
@@ -137,6 +140,9 @@ struct table_layout {
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < 8; ++k) {
       if (at[k] == absent && (k == 0 ? has_u : k >= 4 || has_place)) {
+        if (columns == 1 && header[0].find(';') != std::string_view::npos) {
+          return "the header is one cell, as cells are apart by commas or blanks, not by ';'";
+        }
         return std::string("the header names no column ") + short_names[k] + ": " + known_columns;
       }
     }
