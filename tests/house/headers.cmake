@@ -23,6 +23,8 @@ foreach(header IN LISTS headers)
   list(APPEND outside ${includes})
 endforeach()
 list(REMOVE_DUPLICATES outside)
+# There are two of that name, C's with macros and C++'s; the compiler knows which is meant.
+list(FILTER outside EXCLUDE REGEX "<math[.]h>")
 
 # Where compilers find the latter.
 list(JOIN outside "\n" lines)
