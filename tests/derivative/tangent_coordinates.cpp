@@ -55,6 +55,7 @@ TEST_CASE("a vector turned by a rotation") {
   CHECK(gap(y, R * v) < 1e-15);
   CHECK(gap(J, -hat(R * v)) < 1e-15);
   CHECK(gap(jacobian(turn, q, body).jacobian, -R * hat(v)) < 1e-15);
+  CHECK(jacobian(turn, q, duet::frame::hybrid).jacobian == J);
 }
 
 TEST_CASE("rotations to rotations") {

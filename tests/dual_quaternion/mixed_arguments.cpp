@@ -44,6 +44,9 @@ TEST_CASE("constants mix with derivatives: poses") {
   check(
       "pose_rate", [](const auto& a, const auto& t) { return pose_rate(a, t, frame::spatial); }, A,
       xi);
+  check(
+      "pose_rate", [](const auto& a, const auto& t) { return pose_rate(a, t, frame::hybrid); }, A,
+      xi);
   DUET_CHECK_MIXED(pose_coordinates_rate, A, xi);
   check(
       "distance", [](const auto& a, const auto& b) { return distance(a, b, 0.5); }, A, B);

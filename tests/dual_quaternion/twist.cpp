@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <tuple>
 
 // N18: twists in three frames, Ad and ad, and Jacobians of and into poses.
 
@@ -28,6 +29,10 @@ namespace {
 
 const vector6<double> v_body = (vector6<double>() << 0.3, -1, 2, 0.5, 0.7, -0.2).finished();
 const vector point(0.7, -1.9, 0.4);
+
+duet::matrix3<double> hat(const vector& w) {
+  return duet::ad<double>((vector6<double>() << 0, 0, 0, w).finished()).topLeftCorner<3, 3>();
+}
 
 } // namespace
 
@@ -60,6 +65,7 @@ TEST_CASE("pose_rate undoes twist, Ad changes the frame") {
     const vector6<double> v_spatial = twist(a, rate, frame::spatial);
     CHECK(gap(v_spatial, Ad(a) * v_body) < 4e-14);
     CHECK(gap(duet::pose_rate(a, v_spatial, frame::spatial), rate) < 4e-14);
+    CHECK(gap(duet::pose_rate(a, twist(a, rate, frame::hybrid), frame::hybrid), rate) < 4e-14);
     // Twists are lines with a pitch: Ad is A V A*.
     CHECK(gap(duet::twist_of(duet::transform_line(a, duet::dual_vector_of(v_body))), v_spatial) <
           4e-14);
@@ -95,6 +101,96 @@ TEST_CASE("Jacobians of and into poses") {
 
     const auto inverse = [](const auto& x) { return conj(x); };
     CHECK(gap(duet::jacobian(inverse, a, frame::body).jacobian, -Ad(a)) < 1e-14);
+  }
+}
+
+TEST_CASE("Jacobians of and into poses whose origins move apart from their rotations") {
+  for (const auto& a : poses()) {
+    const duet::matrix3<double> R = duet::rotation_matrix(duet::rotation(a));
+    const vector t = duet::translation(a);
+    const auto with_turn = [](const duet::matrix3<double>& by_v,
+                              const duet::matrix3<double>& by_w) {
+      Eigen::Matrix<double, 3, 6> m;
+      m << by_v, by_w;
+      return m;
+    };
+    const duet::matrix3<double> one = duet::matrix3<double>::Identity();
+    const duet::matrix3<double> zero = duet::matrix3<double>::Zero();
+
+    const auto place = [](const auto& x) { return duet::transform_point(x, point); };
+    CHECK(gap(duet::jacobian(place, a, frame::hybrid).jacobian, with_turn(one, -hat(R * point))) <
+          1e-14);
+
+    const auto same = [](const auto& x) { return x; };
+    const auto [value, J] = duet::jacobian(same, a, frame::hybrid);
+    CHECK(value == a);
+    CHECK(gap(J, duet::matrix6<double>::Identity()) < 4e-14);
+
+    // (R, t) ↦ (Rᵀ, −Rᵀt)
+    const auto inverse = [](const auto& x) { return conj(x); };
+    const auto of_inverse = duet::jacobian(inverse, a, frame::hybrid).jacobian;
+    CHECK(gap(of_inverse.topRows<3>(), with_turn(-R.transpose(), -R.transpose() * hat(t))) < 4e-14);
+    CHECK(gap(of_inverse.bottomRows<3>(), with_turn(zero, -R.transpose())) < 1e-14);
+  }
+}
+
+TEST_CASE("a pose, a rotation and a number in the hybrid frame") {
+  const auto a = poses().front();
+  const auto q = duet::from_rotation_vector(vector(0.2, 0.5, -1));
+  const auto f = [](const auto& x, const auto& r, const auto& s) {
+    return (duet::translation(x) + duet::rotate(r * duet::rotation(x), point) * s).eval();
+  };
+  const auto J = duet::jacobian(f, std::tuple(a, q, 2.0), frame::hybrid).jacobian;
+  const vector turned = duet::rotate(q * duet::rotation(a), point);
+  CHECK(gap(J.leftCols<3>(), duet::matrix3<double>::Identity()) < 1e-15);
+  CHECK(gap(J.middleCols<3>(3), -2 * hat(turned) * duet::rotation_matrix(q)) < 4e-14);
+  CHECK(gap(J.middleCols<3>(6), -2 * hat(turned)) < 4e-14);
+  CHECK(gap(J.col(9), turned) < 1e-14);
+}
+
+TEST_CASE("gradients and Hessians by poses: half the squared distance of a point") {
+  const vector goal(2, -0.5, 1.5);
+  const auto f = [&](const auto& x) {
+    return ((duet::transform_point(x, point) - goal).squaredNorm() / 2);
+  };
+  for (const auto& a : poses()) {
+    const auto [value, g, H] = duet::hessian(f, a, frame::hybrid);
+    const vector r = duet::rotate(duet::rotation(a), point);
+    const vector d = duet::translation(a) + r - goal;
+    const double scale = 1 + d.squaredNorm();
+    vector6<double> slope;
+    slope << d, r.cross(d);
+    CHECK(gap(g, slope) < 1e-14 * scale);
+    CHECK(gap(duet::gradient(f, a, frame::hybrid).gradient, slope) < 1e-14 * scale);
+    // ½|d + v + ω × r + ½ ω × (ω × r)|² to second order
+    duet::matrix6<double> expected;
+    expected.topLeftCorner<3, 3>().setIdentity();
+    expected.topRightCorner<3, 3>() = -hat(r);
+    expected.bottomLeftCorner<3, 3>() = hat(r);
+    expected.bottomRightCorner<3, 3>() = hat(r).transpose() * hat(r) +
+                                         (d * r.transpose() + r * d.transpose()) / 2 -
+                                         r.dot(d) * duet::matrix3<double>::Identity();
+    CHECK(gap(H, expected) < 1e-14 * scale);
+    // Along screws: one form in two axes.
+    const duet::matrix6<double> spatial = duet::hessian(f, a, frame::spatial).hessian;
+    CHECK(gap(Ad(a).transpose() * spatial * Ad(a), duet::hessian(f, a, frame::body).hessian) <
+          1e-13 * scale * scale);
+  }
+}
+
+TEST_CASE("a pose far from the origin, moved in the hybrid frame, is itself") {
+  const auto a =
+      duet::pose(duet::from_rotation_vector(vector(0.3, -0.2, 1.1)), vector(1e8, 3e8, -1e8));
+  const vector6<double> none = vector6<double>::Zero();
+  CHECK(duet::manifold<duet::dual_quaternion<double>>::plus(a, none, frame::hybrid) == a);
+  // Moved by much it is where it should be.
+  const vector6<double> much = (vector6<double>() << 1, 2, 3, 2.5, -0.4, 1.3).finished();
+  for (const auto& b : poses()) {
+    const auto moved = duet::manifold<duet::dual_quaternion<double>>::plus(b, much, frame::hybrid);
+    CHECK(gap(duet::translation(moved), duet::translation(b) + vector(1, 2, 3)) < 4e-15);
+    CHECK(gap(duet::rotation_matrix(duet::rotation(moved)),
+              duet::rotation_matrix(duet::from_rotation_vector(vector(2.5, -0.4, 1.3)) *
+                                    duet::rotation(b))) < 4e-15);
   }
 }
 

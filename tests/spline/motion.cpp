@@ -133,6 +133,11 @@ TEST_CASE("each rate is the derivative of the one before, in its own axes") {
   };
   check(duet::frame::body);
   check(duet::frame::spatial);
+  const auto hybrid = s.motion(1.5, duet::frame::hybrid);
+  const auto spatial = s.motion(1.5, duet::frame::spatial);
+  CHECK(hybrid.velocity == spatial.velocity);
+  CHECK(hybrid.acceleration == spatial.acceleration);
+  CHECK(hybrid.jerk == spatial.jerk);
 }
 
 TEST_CASE("body and spatial rates are the same vectors in other axes, but for the jerk") {

@@ -36,6 +36,16 @@ concept FrameConstant = std::same_as<Frame, spatial_frame> || std::same_as<Frame
 
 namespace detail {
 
+/// The frame of ω alone: rotations have no origin, and the axes of `frame::hybrid` are fixed.
+template <class Frame>
+[[nodiscard]] constexpr auto frame_of_turning(Frame frame) {
+  if constexpr (std::is_same_v<Frame, hybrid_frame>) {
+    return frame::spatial;
+  } else {
+    return frame;
+  }
+}
+
 /// Spatial or body; what turns only knows these two.
 template <class Frame>
 [[nodiscard]] constexpr bool is_spatial(Frame) {

@@ -75,8 +75,10 @@ concept NeedsFrame = ManifoldPoint<X> && !Variables<X> && !Scalar<X> && !Arithme
 ///
 /// \param x      a scalar, fixed-size vector, rotation (three coordinates), pose (six), array or
 ///               `std::tuple` of them, which f takes as one argument or as several
-/// \param frame  axes of the tangent coordinates of rotations, on both sides: `frame::spatial`,
-///               where x moves as exp(δ/2) x, or `frame::body`, where it moves as x exp(δ/2)
+/// \param frame  axes of the tangent coordinates of rotations and poses, on both sides:
+///               `frame::spatial`, where x moves as exp(δ/2) x, `frame::body`, where it moves as
+///               x exp(δ/2), or `frame::hybrid`, fixed axes too, but δ = [v; ω] moves a pose's
+///               origin by v and turns it by ω, neither by the other's
 ///
 /// f may return any of these too, and vectors of a size known at run time. Vectors do not care for
 /// the frame.
@@ -136,8 +138,9 @@ template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConst
 /// f + gᵀδ + ½ δᵀHδ + O(δ³), where a rotation moves by exp(δ/2), along geodesics.
 ///
 /// Where f is not stationary, H depends on how rotations move. In both frames it is the same form
-/// in other axes: H of `frame::body` is Rᵀ H R of `frame::spatial`.
-/// \return `value_gradient_and_hessian`
+/// in other axes: H of `frame::body` is Rᵀ H R of `frame::spatial`, of poses Adᵀ H Ad. Of poses
+/// that of `frame::hybrid` is another, as their origins move along straight lines, not along
+/// screws. \return `value_gradient_and_hessian`
 template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
 [[nodiscard]] auto hessian(F&& f, const X& x, Frame frame) {
   constexpr int n = manifold<X>::dimension;

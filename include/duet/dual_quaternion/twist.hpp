@@ -55,6 +55,15 @@ template <class A, class T>
   spatial.template head<3>() += cross(omega, components(translation(a))).eigen();
   return spatial;
 }
+/// And back: v + t × ω.
+template <class A, class T>
+[[nodiscard]] vector6<promote_t<A, T>> spatial_twist(const dual_quaternion<A>& a,
+                                                     const vector6<T>& hybrid) {
+  const three_vector<T> omega{hybrid[3], hybrid[4], hybrid[5]};
+  vector6<promote_t<A, T>> spatial = hybrid.template cast<promote_t<A, T>>();
+  spatial.template head<3>() += cross(components(translation(a)), omega).eigen();
+  return spatial;
+}
 
 } // namespace detail
 
@@ -78,16 +87,21 @@ template <class A, class B>
 DUET_REFUSED("in which axes? twist(a, a_dot, frame::hybrid), frame::spatial or frame::body")
 vector6<promote_t<A, B>> twist(const dual_quaternion<A>&, const dual_quaternion<B>&);
 
-/// N18: the rate Ȧ of a pose that moves with a twist [v; ω].
+/// N18: the rate Ȧ of a pose that moves with a twist [v; ω], Ȧ = ½ V^s A = ½ A V^b; in
+/// `frame::hybrid` V^s = [v + t × ω; ω].
 template <class A, Promotable<A> B, FrameConstant Frame>
 [[nodiscard]] dual_quaternion<promote_t<A, B>> pose_rate(const dual_quaternion<A>& a,
                                                          const vector6<B>& twist, Frame frame) {
-  return quaternion_rate(a, dual_vector_of(twist), frame);
+  if constexpr (std::same_as<Frame, hybrid_frame>) {
+    return pose_rate(a, detail::spatial_twist(a, twist), frame::spatial);
+  } else {
+    return quaternion_rate(a, dual_vector_of(twist), frame);
+  }
 }
 
 /// Without a frame it is not clear which is meant.
 template <class A, class B>
-DUET_REFUSED("in which axes? pose_rate(a, twist, frame::spatial) or frame::body")
+DUET_REFUSED("in which axes? pose_rate(a, twist, frame::hybrid), frame::spatial or frame::body")
 dual_quaternion<promote_t<A, B>> pose_rate(const dual_quaternion<A>&, const vector6<B>&);
 
 /// The adjoint [R t̂R; 0 R]: V^s = Ad(A) V^b for twists [v; ω], and twists in a moved frame.
@@ -120,7 +134,8 @@ template <class T>
 }
 
 /// A pose is moved by a small twist δ = [v; ω]: exp(δ/2) A in `frame::spatial`, A exp(δ/2) in
-/// `frame::body`. Its rate is told as a twist.
+/// `frame::body`; in `frame::hybrid` its origin moves by v and its rotation by exp(ω/2) from the
+/// left, neither by the other's. Its rate is told as a twist.
 template <class T>
 struct manifold<quaternion<dual<T, 1, screw_tag>>> {
   static constexpr int dimension = 6;
@@ -129,9 +144,20 @@ struct manifold<quaternion<dual<T, 1, screw_tag>>> {
   [[nodiscard]] static auto plus(const dual_quaternion<T>& a, const Delta& delta,
                                  Frame frame = {}) {
     using S = std::decay_t<decltype(delta[0])>;
-    const auto step =
-        duet::exp(dual_vector<S>(dual_vector_of(vector6<S>(delta)) * real_type_t<S>(0.5)));
-    return detail::composed_in(frame, step, a);
+    if constexpr (std::is_same_v<Frame, hybrid_frame>) {
+      // (1 + ½εv)(1 + ½εt) e (1 − ½εt), where t e − e t = 2 t × e⃗
+      const auto e = duet::exp(vector3<S>(delta[3] / 2, delta[4] / 2, delta[5] / 2));
+      const detail::three_vector<S> axis{e.x(), e.y(), e.z()};
+      const vector3<S> across = detail::cross(detail::components(translation(a)), axis);
+      const vector3<S> half(delta[0] / 2, delta[1] / 2, delta[2] / 2);
+      const auto step =
+          make_dual_quaternion(e, quaternion<S>(S(0), across) + quaternion<S>(S(0), half) * e);
+      return step * a;
+    } else {
+      const auto step =
+          duet::exp(dual_vector<S>(dual_vector_of(vector6<S>(delta)) * real_type_t<S>(0.5)));
+      return detail::composed_in(frame, step, a);
+    }
   }
   static constexpr bool takes_rates_of_any_scalar = true;
   template <class R, class Frame>

@@ -264,9 +264,9 @@ template <class A, class B, class S>
   return a * duet::exp(vector3<R>(v[0] * t, v[1] * t, v[2] * t));
 }
 
-/// A unit quaternion is moved by a small rotation vector δ: exp(δ/2) q in spatial axes, q exp(δ/2)
-/// in those of the body. Its rate is told as the angular velocity (N7). (It stands here so that
-/// whoever can form a rotation can differentiate by it.)
+/// A unit quaternion is moved by a small rotation vector δ: exp(δ/2) q in spatial and hybrid axes,
+/// q exp(δ/2) in those of the body. Its rate is told as the angular velocity (N7). (It stands here
+/// so that whoever can form a rotation can differentiate by it.)
 template <class T>
   requires(!detail::contains_tag<T, screw_tag>())
 struct manifold<quaternion<T>> {
@@ -276,13 +276,13 @@ struct manifold<quaternion<T>> {
   [[nodiscard]] static auto plus(const quaternion<T>& q, const Delta& delta, Frame frame = {}) {
     using S = std::decay_t<decltype(delta[0])>;
     const auto turn = duet::exp(vector3<S>(delta[0] / 2, delta[1] / 2, delta[2] / 2));
-    return detail::composed_in(frame, turn, q);
+    return detail::composed_in(detail::frame_of_turning(frame), turn, q);
   }
   static constexpr bool takes_rates_of_any_scalar = true;
   template <class R, class Frame>
   [[nodiscard]] static vector3<promote_t<T, R>> velocity(const quaternion<T>& q,
                                                          const quaternion<R>& rate, Frame frame) {
-    return angular_velocity(q, rate, frame);
+    return angular_velocity(q, rate, detail::frame_of_turning(frame));
   }
 };
 

@@ -214,7 +214,7 @@ template <class T, class Frame>
     if constexpr (is_hybrid) {
       return false; // but by the rotation alone, below
     } else {
-      return is_spatial(Frame{});
+      return is_spatial(frame_of_turning(Frame{}));
     }
   }();
   const real_type_t<T> two(2);

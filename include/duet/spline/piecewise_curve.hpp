@@ -48,8 +48,8 @@ public:
   }
 
   /// Value, velocity, acceleration and jerk with respect to u, in `frame::body` or
-  /// `frame::spatial`; of poses as twists [v; ω] and their derivatives, and in `frame::hybrid` with
-  /// the derivatives of translation(Q) as linear parts.
+  /// `frame::spatial`; of poses as twists [v; ω] and their derivatives, in `frame::hybrid` with the
+  /// derivatives of translation(Q) as linear parts. (Of rotations hybrid is spatial.)
   /// \throws invalid_input outside the domain, unless told otherwise
   template <class S, FrameConstant Frame>
   [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame) const {
