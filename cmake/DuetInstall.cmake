@@ -4,26 +4,43 @@ include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
 # Headers do not depend on the architecture, so their package files belong in share/; a library does.
-set(destination ${CMAKE_INSTALL_DATADIR}/cmake/duet)
+set(duet_has_compiled FALSE)
+set(destination ${CMAKE_INSTALL_DATADIR})
 set(architecture ARCH_INDEPENDENT)
 if(TARGET duet_compiled)
-  set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/duet)
+  set(duet_has_compiled TRUE)
+  set(destination ${CMAKE_INSTALL_LIBDIR})
   set(architecture "")
   install(TARGETS duet_compiled EXPORT duetTargets)
 endif()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/duet DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS duet EXPORT duetTargets)
-install(EXPORT duetTargets NAMESPACE duet:: DESTINATION ${destination})
+install(EXPORT duetTargets NAMESPACE duet:: DESTINATION ${destination}/cmake/duet)
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/duetConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/duetConfig.cmake INSTALL_DESTINATION ${destination})
-# SameMinorVersion: until 1.0 every minor version may break the one before.
+  ${PROJECT_BINARY_DIR}/duetConfig.cmake INSTALL_DESTINATION ${destination}/cmake/duet)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/duetConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion ${architecture})
+  COMPATIBILITY SameMajorVersion ${architecture})
 install(FILES
   ${PROJECT_BINARY_DIR}/duetConfig.cmake
   ${PROJECT_BINARY_DIR}/duetConfigVersion.cmake
   ${CMAKE_CURRENT_LIST_DIR}/DuetDependencies.cmake
-  DESTINATION ${destination})
+  DESTINATION ${destination}/cmake/duet)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/licenses/duet)
+
+# For pkg-config. All paths in there are relative to the file, so that it may be moved with what it names.
+set(pkgconfig_folder ${destination}/pkgconfig)
+cmake_path(ABSOLUTE_PATH pkgconfig_folder BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX} OUTPUT_VARIABLE full_folder)
+file(RELATIVE_PATH from_pkgconfig_to_prefix ${full_folder} ${CMAKE_INSTALL_PREFIX})
+string(REGEX REPLACE "/$" "" from_pkgconfig_to_prefix ${from_pkgconfig_to_prefix})
+file(RELATIVE_PATH from_prefix_to_headers ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+file(RELATIVE_PATH from_prefix_to_library ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_LIBDIR})
+set(pkgconfig_names duet)
+if(TARGET duet_compiled)
+  list(APPEND pkgconfig_names duet-compiled)
+endif()
+foreach(name IN LISTS pkgconfig_names)
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${pkgconfig_folder})
+endforeach()

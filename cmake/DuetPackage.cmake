@@ -1,0 +1,27 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# `cpack -G DEB` in a build folder makes the Debian package libduet-dev.
+
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_GENERATOR DEB)
+set(CPACK_SOURCE_GENERATOR "") # scripts/release makes the archive of the sources
+set(CPACK_PACKAGE_CONTACT "the duet authors <duet@placeholder.invalid>" CACHE STRING
+  "Who makes a package: a name and an <address>")
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_NAME libduet-dev)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libboost-dev (>= 1.74)")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"A library of C++20 templates for those who derive formulas of motion, in
+robotics, multibody dynamics and computer vision: quaternions, dual
+quaternions, curves and robot arms over any scalar, with exact derivatives of
+every order by dual numbers, and a judge of closed forms.")
+if(NOT TARGET duet_compiled)
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
+endif()
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian_documents.cmake)
+set(CPACK_duet_CHANGELOG ${PROJECT_SOURCE_DIR}/CHANGELOG.md) # read there
+
+include(CPack)

@@ -1,0 +1,55 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# What pkg-config says of duet below `prefix`, and of the library, is what a program compiles with.
+
+include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
+
+find_program(pkg_config NAMES pkgconf pkg-config)
+if(NOT pkg_config)
+  message("SKIPPED: there is no pkg-config (sh scripts/setup pkgconf)")
+  return()
+endif()
+file(GLOB_RECURSE files ${prefix}/*/pkgconfig/duet.pc)
+if(NOT files MATCHES "^[^;]+$")
+  message(FATAL_ERROR "not one duet.pc below ${prefix}: ${files}")
+endif()
+cmake_path(GET files PARENT_PATH pkgconfig_folder)
+
+function(ask result)
+  set(ENV{PKG_CONFIG_PATH} ${pkgconfig_folder})
+  execute_process(COMMAND ${pkg_config} ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output
+    OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE status)
+  set(${result} ${output} PARENT_SCOPE)
+  set(status ${status} PARENT_SCOPE)
+endfunction()
+
+set(names duet)
+if(has_compiled)
+  list(APPEND names duet-compiled)
+endif()
+foreach(name IN LISTS names)
+  ask(said --modversion ${name})
+  if(NOT said STREQUAL version)
+    message(FATAL_ERROR "${name} is of version ${said}, not ${version}")
+  endif()
+  ask(said --exists --print-errors "${name} > ${version}")
+  if(status EQUAL 0 OR NOT said MATCHES "${name}.*> ${version}")
+    message(FATAL_ERROR "a later ${name} is not refused: ${status}, ${said}")
+  endif()
+  ask(flags --cflags --libs ${name})
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  set(program ${folder}/${name})
+  run(${compiler} -std=c++20 ${CMAKE_CURRENT_LIST_DIR}/main.cpp ${flags} -o ${program})
+  run(${program})
+endforeach()
+
+# Moved with its headers, the file still says where they are.
+file(COPY ${pkgconfig_folder} DESTINATION ${folder}/moved/share)
+set(pkgconfig_folder ${folder}/moved/share/pkgconfig)
+ask(said --cflags-only-I duet)
+file(REAL_PATH ${folder}/moved moved)
+string(REGEX MATCH "-I([^ ]*)" said "${said}")
+cmake_path(NORMAL_PATH CMAKE_MATCH_1 OUTPUT_VARIABLE said)
+if(NOT said STREQUAL "${moved}/include")
+  message(FATAL_ERROR "moved to ${moved}, duet.pc says ${said}")
+endif()
