@@ -1,0 +1,157 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+"""Conan's recipe and the test of its package, run as Conan 2 runs them, by stand-ins for what they import of it:
+without Conan, which cannot be had everywhere.
+
+usage: conan.py <top of the project> <folder for what it makes> <CMake's generator> <compiler> <version>
+"""
+
+import fnmatch
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+TOP, FOLDER = Path(sys.argv[1]), Path(sys.argv[2])
+GENERATOR, COMPILER, VERSION = sys.argv[3:]
+BUILD_IS_RUN = True  # not for the library, which takes long to compile
+
+
+def check(is_so, what):
+    if not is_so:
+        sys.exit(f"conan: not so: {what}")
+
+
+class ConanFile:
+    """What a recipe finds in itself."""
+
+    def __init__(self, folder, **options):
+        self.folder = folder
+        self.recipe_folder = str(folder / "recipe")
+        self.export_sources_folder = self.source_folder = str(folder / "source")
+        self.build_folder = str(folder / "build")
+        self.package_folder = str(folder / "package")
+        self.options = SimpleNamespace(**options)
+        self.info = SimpleNamespace(options=self.options, clear=lambda: setattr(self, "is_same_for_all", True))
+        self.is_same_for_all = False
+        self.settings = SimpleNamespace(get_safe=lambda name: {"os": "Linux"}.get(name))
+        self.cpp_info = SimpleNamespace(bindirs=["bin"], libdirs=["lib"], includedirs=["include"], libs=[], defines=[],
+                                        builddirs=[], system_libs=[], properties={})
+        self.cpp_info.set_property = self.cpp_info.properties.__setitem__
+        self.cpp = SimpleNamespace(build=SimpleNamespace(bindir="."))
+        self.required, self.cache, self.generated, self.least_standard = [], {}, [], None
+
+    def requires(self, reference, transitive_headers=False):
+        self.required.append((reference, transitive_headers))
+
+    def run(self, command, env):
+        check(env == "conanrun", "programs run in the environment of the package")
+        subprocess.run(command, shell=True, check=True, cwd=self.build_folder)
+
+
+class CMakeDeps:
+    def __init__(self, recipe):
+        self.generate = lambda: recipe.generated.append("CMakeDeps")
+
+
+class CMakeToolchain:
+    def __init__(self, recipe):
+        self.cache_variables = recipe.cache
+        self.generate = lambda: recipe.generated.append("CMakeToolchain")
+
+
+class CMake:
+    def __init__(self, recipe):
+        self.recipe = recipe
+
+    def cmake(self, *arguments):
+        subprocess.run(["cmake", *arguments], check=True, stdout=subprocess.DEVNULL)
+
+    def configure(self):
+        cache = {name: "ON" if value is True else "OFF" if value is False else value
+                 for name, value in self.recipe.cache.items()}
+        self.cmake("-S", self.recipe.source_folder, "-B", self.recipe.build_folder, "-G", GENERATOR,
+                   f"-DCMAKE_CXX_COMPILER={COMPILER}", *(f"-D{name}={value}" for name, value in cache.items()))
+
+    def build(self):
+        if BUILD_IS_RUN:
+            self.cmake("--build", self.recipe.build_folder)
+
+    def install(self):
+        if BUILD_IS_RUN:
+            self.cmake("--install", self.recipe.build_folder, "--prefix", self.recipe.package_folder)
+
+
+def copy(recipe, pattern, src, dst):
+    names = [str(path.relative_to(src)) for path in Path(src).rglob("*") if path.is_file()]
+    names = fnmatch.filter(names, pattern)
+    check(names, f"there is {pattern} in {src}")
+    for name in names:
+        (Path(dst) / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(Path(src) / name, Path(dst) / name)
+
+
+def module(name, **contents):
+    sys.modules[name] = ModuleType(name)
+    vars(sys.modules[name]).update(contents)
+
+
+module("conan", ConanFile=ConanFile)
+module("conan.tools")
+module("conan.tools.build", can_run=lambda recipe: True,
+       check_min_cppstd=lambda recipe, standard: setattr(recipe, "least_standard", standard))
+module("conan.tools.cmake", CMake=CMake, CMakeDeps=CMakeDeps, CMakeToolchain=CMakeToolchain,
+       cmake_layout=lambda recipe: setattr(recipe, "has_layout", True))
+module("conan.tools.files", copy=copy, rmdir=lambda recipe, path: shutil.rmtree(path, ignore_errors=True))
+
+
+def recipe_class(path):
+    spec = importlib.util.spec_from_file_location("recipe", path)
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return next(c for c in vars(loaded).values() if isinstance(c, type) and issubclass(c, ConanFile) and c is not ConanFile)
+
+
+sys.dont_write_bytecode = True
+shutil.rmtree(FOLDER, ignore_errors=True)
+DuetRecipe = recipe_class(TOP / "packaging/conan/conanfile.py")
+check(DuetRecipe.version == VERSION, f"the recipe is of version {VERSION}")
+check(DuetRecipe.options["compiled"] == [True, False] and DuetRecipe.default_options["compiled"] is False,
+      "headers alone are the default")
+
+made = {}
+for compiled in (False, True):
+    BUILD_IS_RUN = not compiled
+    made[compiled] = recipe = DuetRecipe(FOLDER / ("compiled" if compiled else "headers"), compiled=compiled)
+    recipe.recipe_folder = str(TOP / "packaging/conan")
+    for step in ("export_sources", "configure", "layout", "requirements", "validate", "generate", "build", "package",
+                 "package_id", "package_info"):
+        getattr(recipe, step)()
+    check(sorted(recipe.required) == [("boost/[>=1.74 <2]", True), ("eigen/[>=3.4 <6]", True)], "what it requires")
+    check(recipe.least_standard == 20 and recipe.generated == ["CMakeDeps", "CMakeToolchain"], "C++20, by CMake")
+    check(recipe.is_same_for_all == (not compiled), "headers are the same for all settings, the library is not")
+    cache = (Path(recipe.build_folder) / "CMakeCache.txt").read_text()
+    check(f"DUET_BUILD_COMPILED:UNINITIALIZED={'ON' if compiled else 'OFF'}" in cache or
+          f"DUET_BUILD_COMPILED:BOOL={'ON' if compiled else 'OFF'}" in cache, "CMake is told of the library")
+
+headers, library = made[False], made[True]
+check(headers.package_type == "header-library" and library.package_type == "static-library", "kinds of packages")
+check(headers.cpp_info.libdirs == [] and headers.cpp_info.libs == [], "headers have no library")
+check(library.cpp_info.libs == ["duet_compiled"] and library.cpp_info.defines == ["DUET_COMPILED"], "the library")
+package = Path(headers.package_folder)
+check((package / "include/duet/duet.hpp").exists() and (package / "licenses/LICENSE").exists(), "headers and licence")
+check(sorted(os.listdir(package)) == ["include", "licenses", "share"], "nothing else is packed")
+check(headers.cpp_info.builddirs == ["share/cmake/duet"] and library.cpp_info.builddirs == ["lib/cmake/duet"] and
+      (package / "share/cmake/duet/duetConfig.cmake").exists(), "CMake's package is where it is said to be")
+
+BUILD_IS_RUN = True
+test = recipe_class(TOP / "packaging/conan/test_package/conanfile.py")(FOLDER / "test")
+test.source_folder = str(TOP / "packaging/conan/test_package")
+test.tested_reference_str = f"duet/{VERSION}"
+test.cache["duet_DIR"] = str(package / headers.cpp_info.builddirs[0])
+for step in ("requirements", "layout", "build", "test"):
+    getattr(test, step)()
+check(test.required == [(f"duet/{VERSION}", False)], "what is tested")

@@ -1,0 +1,108 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# The port of vcpkg, run as vcpkg runs it, with stand-ins for vcpkg's functions that do what its manual says: without
+# vcpkg, which cannot be had everywhere.
+
+cmake_minimum_required(VERSION 3.22)
+include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
+
+set(PORT duet)
+set(CURRENT_PORT_DIR ${source}/packaging/vcpkg/duet)
+set(CURRENT_PACKAGES_DIR ${folder}/packages/duet)
+
+# The manifest names its version, and each library of Boost that a header includes.
+file(READ ${CURRENT_PORT_DIR}/vcpkg.json manifest)
+string(JSON value GET "${manifest}" version)
+if(NOT value STREQUAL version)
+  message(FATAL_ERROR "vcpkg.json is of version ${value}, not ${version}")
+endif()
+set(dependencies "")
+string(JSON count LENGTH "${manifest}" dependencies)
+math(EXPR last "${count} - 1")
+foreach(i RANGE ${last})
+  string(JSON name ERROR_VARIABLE is_plain GET "${manifest}" dependencies ${i} name)
+  if(is_plain)
+    string(JSON name GET "${manifest}" dependencies ${i})
+  endif()
+  list(APPEND dependencies ${name})
+endforeach()
+file(GLOB_RECURSE headers ${source}/include/duet/*.hpp)
+foreach(header IN LISTS headers)
+  file(STRINGS ${header} includes REGEX "^#include <(boost|Eigen)/")
+  foreach(include IN LISTS includes)
+    string(REGEX REPLACE "^#include <([A-Za-z]+)/(numeric/)?([A-Za-z0-9_]+).*" "\\1-\\3" library ${include})
+    string(REGEX REPLACE "Eigen-.*" "eigen3" library ${library})
+    string(REPLACE "_" "-" library ${library})
+    if(NOT library IN_LIST dependencies)
+      message(FATAL_ERROR "${header} includes what vcpkg.json does not name, ${library}")
+    endif()
+  endforeach()
+endforeach()
+
+function(vcpkg_check_features)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "OUT_FEATURE_OPTIONS" "FEATURES")
+  set(result "")
+  while(arg_FEATURES)
+    list(POP_FRONT arg_FEATURES feature option)
+    string(JSON unused GET "${manifest}" features ${feature}) # fails where there is none
+    set(is_on OFF)
+    if(feature IN_LIST FEATURES)
+      set(is_on ON)
+    endif()
+    list(APPEND result -D${option}=${is_on})
+  endwhile()
+  set(${arg_OUT_FEATURE_OPTIONS} ${result} PARENT_SCOPE)
+endfunction()
+
+function(vcpkg_cmake_configure)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "SOURCE_PATH" "OPTIONS")
+  run(${CMAKE_COMMAND} -S ${arg_SOURCE_PATH} -B ${folder}/build -G ${generator} -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_CXX_COMPILER=${compiler} -DCMAKE_INSTALL_PREFIX=${CURRENT_PACKAGES_DIR} ${arg_OPTIONS})
+endfunction()
+
+function(vcpkg_cmake_install)
+  run(${CMAKE_COMMAND} --build ${folder}/build --target install)
+endfunction()
+
+# To share/<port>, where the prefix is two folders up.
+function(vcpkg_cmake_config_fixup)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "CONFIG_PATH" "")
+  file(GLOB files ${CURRENT_PACKAGES_DIR}/${arg_CONFIG_PATH}/*)
+  if(files STREQUAL "")
+    message(FATAL_ERROR "nothing in ${CURRENT_PACKAGES_DIR}/${arg_CONFIG_PATH}")
+  endif()
+  file(COPY ${files} DESTINATION ${CURRENT_PACKAGES_DIR}/share/${PORT})
+  cmake_path(GET arg_CONFIG_PATH PARENT_PATH parent)
+  file(REMOVE_RECURSE ${CURRENT_PACKAGES_DIR}/${parent})
+  set(targets ${CURRENT_PACKAGES_DIR}/share/${PORT}/duetTargets.cmake)
+  file(READ ${targets} text)
+  set(step "get_filename_component(_IMPORT_PREFIX \"\${_IMPORT_PREFIX}\" PATH)\n")
+  string(REPLACE "${step}${step}${step}" "${step}${step}" text "${text}")
+  file(WRITE ${targets} "${text}")
+endfunction()
+
+function(vcpkg_fixup_pkgconfig)
+  if(NOT EXISTS ${CURRENT_PACKAGES_DIR}/share/pkgconfig/duet.pc)
+    message(FATAL_ERROR "there is no duet.pc")
+  endif()
+endfunction()
+
+function(vcpkg_install_copyright)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "FILE_LIST")
+  file(COPY_FILE ${arg_FILE_LIST} ${CURRENT_PACKAGES_DIR}/share/${PORT}/copyright)
+endfunction()
+
+set(FEATURES core)
+include(${CURRENT_PORT_DIR}/portfile.cmake)
+use_duet(${CURRENT_PACKAGES_DIR})
+
+# Nothing is where vcpkg's checks do not want it.
+file(GLOB folders RELATIVE ${CURRENT_PACKAGES_DIR} ${CURRENT_PACKAGES_DIR}/* ${CURRENT_PACKAGES_DIR}/share/*)
+if(NOT folders STREQUAL "include;share;share/duet;share/pkgconfig")
+  message(FATAL_ERROR "the package has ${folders}")
+endif()
+foreach(name IN ITEMS copyright usage duetConfig.cmake duetConfigVersion.cmake)
+  if(NOT EXISTS ${CURRENT_PACKAGES_DIR}/share/duet/${name})
+    message(FATAL_ERROR "the package has no share/duet/${name}")
+  endif()
+endforeach()
