@@ -3,6 +3,7 @@
 #include "support/message.hpp"
 
 #include <duet/core/text/file.hpp>
+#include <duet/core/text/file_pair.hpp>
 
 #include <doctest/doctest.h>
 
@@ -236,6 +237,57 @@ TEST_CASE("what cannot be written is found before") {
   CHECK(message(here.at("none\n\x1b[2J/a.csv")) ==
         "duet: " + here.at("none\\n\\x1b[2J/a.csv") +
             ": cannot be written: No such file or directory");
+}
+
+TEST_CASE("two files are written, or neither") {
+  const playground here("pair");
+  const std::string a = here.at("a.csv"), b = here.at("b.csv");
+  const auto complaint = [](const std::string& first, const std::string& second) {
+    return duet_test::message_of<duet::file_error>(
+        [&] { duet::write_files(first, "1\n", second, "2\n"); });
+  };
+  CHECK(complaint(a, b).empty());
+  CHECK(content_of(a) == "1\n");
+  CHECK(content_of(b) == "2\n");
+  write_file(a, "before\n");
+  const std::string far = here.at("none/b.csv");
+  CHECK(complaint(a, far) == "duet: " + far + ": cannot be written: No such file or directory");
+  CHECK(complaint(far, a) == complaint(a, far));
+  CHECK(complaint(a, here.at("./a.csv")) ==
+        "duet: " + here.at("./a.csv") + ": is the same file as " + a);
+  fs::create_symlink("a.csv", here.at("link"));
+  CHECK(complaint(here.at("link"), a) == "duet: " + a + ": is the same file as " + here.at("link"));
+  const std::string none = here.at("new.csv"); // not there yet
+  CHECK(complaint(none, here.at("./new.csv")).ends_with(": is the same file as " + none));
+  CHECK(content_of(a) == "before\n");
+  CHECK(here.count() == 3);
+
+  // The second finds a folder in its place at last.
+  for (const std::string& first : {a, none, here.at("link")}) {
+    const std::string second = here.at("late.csv");
+    {
+      duet::file_draft one(first), two(second);
+      one.write("1\n");
+      two.write("2\n");
+      fs::create_directory(second);
+      CHECK(duet_test::message_of<duet::file_error>([&] {
+              duet::detail::commit_both(first, one, two);
+            }) == "duet: " + second + ": cannot be written: Is a directory");
+    }
+    fs::remove(second);
+    CHECK(content_of(a) == "before\n");
+    CHECK(fs::is_symlink(here.at("link")));
+    CHECK(here.count() == 3);
+  }
+
+  if (fs::is_character_file("/dev/full") && fs::is_character_file("/dev/null")) {
+    CHECK(complaint("/dev/full", a) == message("/dev/full"));
+    CHECK(complaint(a, "/dev/full") == message("/dev/full"));
+    CHECK(content_of(a) == "before\n");
+    CHECK(complaint("/dev/null", "/dev/null").empty());
+    CHECK(complaint("/dev/null", a).empty());
+    CHECK(content_of(a) == "2\n");
+  }
 }
 
 TEST_CASE("files and folders without permission") {

@@ -45,9 +45,24 @@ TEST_CASE("headers, names, blanks, line ends and byte order marks") {
   CHECK(csv_file(path).header().empty());
 }
 
+TEST_CASE("cells apart by semicolons") {
+  write("name; a [m, above];b;\r\nfirst; 1 ;-2e3;\nsecond, the last;3;4\n");
+  const csv_file file(path);
+  CHECK(file.header() == std::vector<std::string>{"name", "a [m, above]", "b"});
+  REQUIRE(file.rows().size() == 2);
+  CHECK(file.rows()[0].name == "first");
+  CHECK(file.rows()[0].numbers == std::vector<double>{1, -2e3});
+  CHECK(file.rows()[1].name == "second, the last");
+  CHECK(file.rows()[1].numbers == std::vector<double>{3, 4});
+}
+
 TEST_CASE("headers are read as headers, with as many columns as were written") {
-  for (const std::vector<std::string>& names :
-       {std::vector<std::string>{"#", "a"}, {"", ""}, {"a", " "}, {"1", "inf"}, {"1e400", "+2"}}) {
+  for (const std::vector<std::string>& names : {std::vector<std::string>{"#", "a"},
+                                                {"", ""},
+                                                {"a", " "},
+                                                {"1", "inf"},
+                                                {"1e400", "+2"},
+                                                {"a;b", ";"}}) {
     write(duet::csv_header(names) + "3,4\n");
     CAPTURE(duet::csv_header(names));
     const csv_file file(path);
@@ -78,8 +93,14 @@ TEST_CASE("what is no file of rows says why") {
   CHECK(complaint(path) == "duet: " + path + ":1: column 2 is inf");
   write("1,2\n1,2,3\n");
   CHECK(complaint(path, 2) == "duet: " + path + ":2: 2 numbers expected, got 3");
-  write("1,2;3\n");
-  CHECK(complaint(path) == "duet: " + path + ":1: column 2 is not a number: '2;3'");
+  // Decimal commas, which are neither names nor a header.
+  for (const char* text : {"1,2;3\n", "1,5;2,5\n", "+1,5e3;1\n"}) {
+    write(text);
+    CHECK(complaint(path).starts_with("duet: " + path + ":1: column 1 is not a number: '"));
+    CHECK(complaint(path).ends_with("': decimals come after a point"));
+  }
+  write("1;2\n3;1,2,3\n");
+  CHECK(complaint(path) == "duet: " + path + ":2: column 2 is not a number: '1,2,3'");
   std::remove(path.c_str());
 }
 

@@ -57,6 +57,16 @@ TEST_CASE("a recording without faults is its table, from 0 on") {
   std::remove(path.c_str());
 }
 
+TEST_CASE("a recording of rostopic keeps its nanoseconds") {
+  write("%time,field.header.stamp,field.pose.orientation.x,field.pose.orientation.y,"
+        "field.pose.orientation.z,field.pose.orientation.w\n"
+        "0,1403636580838555648,0,0,0,1\n0,1403636580843555649,0,0,0.6,0.8\n");
+  const auto r = duet::load_recording<double>(path);
+  CHECK(std::abs(r.table.parameters[1] - 0.005000001) < 1e-16);
+  CHECK(r.remark == "field.header.stamp as rostopic writes it, in nanoseconds");
+  std::remove(path.c_str());
+}
+
 TEST_CASE("bad rows are left out, late ones sorted in, and all are named") {
   write("3 1 2 3 0 0 0 1\n" // 1
         "1 1 2 3 0 0 0.6 0.8\n"

@@ -170,6 +170,10 @@ TEST_CASE("what cannot be saved says why, and nothing is written") {
   poses table = random_poses(3, 0, 1);
   CHECK(complaint(rotations{{0}, {rotation(1)}}, table_format::tum) ==
         "duet: save_table: TUM, EuRoC and KITTI files hold poses, not rotations alone");
+  CHECK(complaint(table, table_format::kitti, "no/times.txt") ==
+        "duet: no/times.txt: cannot be written: No such file or directory");
+  CHECK(complaint(table, table_format::kitti, file.path.c_str()) ==
+        "duet: " + file.path + ": is the same file as " + file.path);
   CHECK(complaint(table, table_format::tum, "times.txt") ==
         "duet: save_table: only KITTI files have times in a file of their own");
   table.parameters = {0, 1e-3, 1.0000002e-3};
@@ -242,6 +246,70 @@ TEST_CASE("files of others: blanks, line ends, byte order marks, comments, comma
       times("kitti_times.txt", "0.000000e+00\r\n1.037359e-01\r\n");
   CHECK(duet::load_table<screw>(file.path, times.path).parameters ==
         std::vector<double>{0, 0.1037359});
+}
+
+TEST_CASE("columns apart by semicolons") {
+  const auto expected = loaded<screw>("u,x,y,z,qw,qx,qy,qz\n0.5,1,2,3,0.6,0,0,0.8\n");
+  for (const char* text :
+       {"u;x;y;z;qw;qx;qy;qz\r\n0.5;1;2;3;0.6;0;0;0.8\r\n",
+        "\"u\"; \"x\" ;\"y\";\"z\";\"qw\";\"qx\";\"qy\";\"qz\";\n0.5; 1;2 ;3;0.6;0;0;0.8;\n",
+        "# u; x [m]; y [m]; z [m]; qw; qx; qy; qz\n0.5;1;2;3;0.6;0;0;0.8\n",
+        "note;u;z;y;x;qw;qx;qy;qz\nby hand, twice;0.5;3;2;1;0.6;0;0;0.8\n"}) {
+    const poses table = loaded<screw>(text);
+    CHECK(table.parameters == expected.parameters);
+    CHECK(table.elements == expected.elements);
+  }
+  const poses euroc = loaded<screw>("1403636580868555648;1;2;3;0.6;0;0;0.8\n");
+  CHECK(euroc.parameters == std::vector<double>{1403636580.868555648});
+  CHECK(euroc.elements == expected.elements);
+}
+
+TEST_CASE("what rostopic echo -p writes") {
+  const std::string pose = "field.pose.position.x,field.pose.position.y,field.pose.position.z,"
+                           "field.pose.orientation.x,field.pose.orientation.y,"
+                           "field.pose.orientation.z,field.pose.orientation.w\n";
+  const std::string header =
+      "%time,field.header.seq,field.header.stamp,field.header.frame_id," + pose;
+  // Of PoseStamped: the message's own time, whatever its size, in the file's digits.
+  const poses a = loaded<screw>(header + "1403636580900000000,7,1403636580868555648,world,1,2,3,"
+                                         "0,0,0.8,0.6\n1403636580900000001,8,1403636580873555648,"
+                                         "world,1,2,4,0,0,0.8,0.6\n");
+  CHECK(a.parameters == std::vector<double>{1403636580.868555648, 1403636580.873555648});
+  CHECK(duet::rotation(a.elements[1]) == rotation(0.6, 0, 0, 0.8));
+  CHECK((duet::translation(a.elements[1]) - vector3<double>(1, 2, 4)).norm() < 1e-15);
+  const poses simulated = loaded<screw>(header + "12500000000,7,12000000000,,1,2,3,0,0,0.8,0.6\n"
+                                                 "12700000000,8,12000000001,,1,2,3,0,0,0.8,0.6\n");
+  CHECK(simulated.parameters == std::vector<double>{12, 12.000000001});
+  // Of Pose: the time of arrival, in nanoseconds from a bag, else in seconds.
+  const std::string bare = "%time,field.position.x,field.position.y,field.position.z,"
+                           "field.orientation.x,field.orientation.y,field.orientation.z,"
+                           "field.orientation.w\n";
+  CHECK(loaded<screw>(bare + "1500000000,1,2,3,0,0,0.8,0.6\n").parameters[0] == 1.5);
+  CHECK(loaded<screw>(bare + "1403636580.87,1,2,3,0,0,0.8,0.6\n").parameters[0] == 1403636580.87);
+  // Of Odometry and TransformStamped.
+  CHECK(loaded<screw>("%time,field.child_frame_id,field.pose.pose.position.x,"
+                      "field.pose.pose.position.y,field.pose.pose.position.z,"
+                      "field.pose.pose.orientation.x,field.pose.pose.orientation.y,"
+                      "field.pose.pose.orientation.z,field.pose.pose.orientation.w,"
+                      "field.pose.covariance0,field.twist.twist.linear.x,"
+                      "field.twist.twist.angular.x\n1,base,1,2,3,0,0,0.8,0.6,9,9,9\n")
+            .elements[0] == loaded<screw>(bare + "1,1,2,3,0,0,0.8,0.6\n").elements[0]);
+  CHECK(loaded<double>("%time,field.header.stamp,field.transform.rotation.x,"
+                       "field.transform.rotation.y,field.transform.rotation.z,"
+                       "field.transform.rotation.w\n5,1000000000,0,0,0.8,0.6\n")
+            .parameters == std::vector<double>{1});
+  const scratch_file file("ros.csv", header + "5,1,5,world,1,2,3,0,0,0.8,0.6\n"
+                                              "6,1,0.5,world,1,2,3,0,0,0.8,0.6\n");
+  const auto complaint = [&] {
+    return duet_test::message_of<duet::file_error>(
+        [&] { static_cast<void>(duet::load_table<screw>(file.path)); });
+  };
+  CHECK(complaint().find(":3: field.header.stamp 0.5 is no whole number of nanoseconds") !=
+        std::string::npos);
+  file.write("%time,stamp," + pose);
+  CHECK(complaint().ends_with(":1: the header has both '%time' and 'stamp'"));
+  file.write("time,field.header.stamp," + pose);
+  CHECK(complaint().ends_with(":1: the header has both 'time' and 'field.header.stamp'"));
 }
 
 TEST_CASE("of a matrix of few digits, the nearest rotation") {
@@ -353,9 +421,6 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
   CHECK(is_told(complaint("# t q0 q1 q2 q3\n0 .1 .3 .9 .3\n")));
   CHECK(complaint("qw,qx,qy,qz\n.1,.3,.9,.3\n")
             .starts_with("duet: " + path + ":1: the header names no column u"));
-  CHECK(complaint("t;qw;qx;qy;qz\n0;.1;.3;.9;.3\n") ==
-        "duet: " + path +
-            ":1: the header is one cell, as cells are apart by commas or blanks, not by ';'");
   CHECK(complaint("t,u,qw,qx,qy,qz\n0,0,.1,.3,.9,.3\n") ==
         "duet: " + path + ":1: the header has both 't' and 'u'");
   CHECK(complaint("# t qx qy qz qw norm\n0 .3 .9 .3 .1\n") ==
@@ -404,12 +469,14 @@ TEST_CASE("bad files are named, with line, column and value") {
   CHECK(complaint(header_of_euroc + "0.5,0,0,0,1,0,0,0\n") ==
         "2: timestamp 0.5 is no whole number of nanoseconds: a header with its unit, as in "
         "`timestamp [s]`, is needed");
-  // Decimal commas, and semicolons between columns.
+  // Decimal commas.
   CHECK(complaint("0,5 1,0 2 3 0 0 0 1\n").starts_with("1: 3 columns, and no header before the "));
   CHECK(complaint(header_of_euroc + "1,1,2,3,0,5,0,0,1\n") ==
         "1: the comment names 8 columns, the rows have 9");
-  CHECK(complaint("u;x;y;z;qw;qx;qy;qz\n0;1;2;3;1;0;0;0\n")
-            .starts_with("1: the header is one cell, as cells "));
+  CHECK(complaint("u;x;y;z;qw;qx;qy;qz\n0;1;2,5;3;1;0;0;0\n") ==
+        "2: y is not a number: '2,5': decimals come after a point");
+  CHECK(complaint("0,5;1,0;2,5;3,5;1,0;0,0;0,0;0,0\n").find(" 8 columns, and no header") !=
+        std::string::npos);
 
   const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
   CHECK(complaint(identity + "1 0 0 0 0 1 0 0 0 0 -1 0\n") ==

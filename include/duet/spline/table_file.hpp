@@ -4,6 +4,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
+#include <duet/core/text/file_pair.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
@@ -114,8 +115,8 @@ template <class T>
 } // namespace detail
 
 /// Writes a table of rotations or poses with all digits and independently of the locale; the whole
-/// file or none. Parameters are seconds in TUM's and EuRoC's files, the latter round them to whole
-/// nanoseconds; KITTI's have none.
+/// file or none, of two files both or none. Parameters are seconds in TUM's and EuRoC's files, the
+/// latter round them to whole nanoseconds; KITTI's have none.
 ///
 /// Read back, parameters and quaternions have the same bits, and places differ by rounding, as a
 /// dual quaternion holds half the product of both. In EuRoC's files that is so of parameters from
@@ -134,19 +135,21 @@ void save_table(const std::string& path, const look_up_table<T>& table,
   detail::require(times.empty() || format == table_format::kitti,
                   "duet: save_table: only KITTI files have times in a file of their own");
   const std::string text = detail::text_of(table, format);
-  if (!times.empty()) {
-    std::string column;
-    for (const double u : table.parameters) {
-      column += csv_line({u});
-    }
-    write_file(times, column);
+  if (times.empty()) {
+    write_file(path, text);
+    return;
   }
-  write_file(path, text);
+  std::string column;
+  for (const double u : table.parameters) {
+    column += csv_line({u});
+  }
+  write_files(times, column, path, text);
 }
 
 /// Reads a table of rotations (T = double) or poses (T = screw_dual<double>) of any format that
-/// `save_table` writes. The file tells which one it is, and in which order its columns are: by a
-/// header, a first line or a comment, or the number of columns, see spline/tables/row_format.hpp.
+/// `save_table` writes, of `rostopic echo -p`, and with semicolons in place of commas. The file
+/// tells which one it is, and in which order its columns are: by a header, a first line or a
+/// comment, or the number of columns, see spline/tables/row_format.hpp.
 ///
 /// Parameters are the doubles nearest to the seconds of the file, whatever its unit of time, with
 /// places in metres; columns named u or tau are taken as they are. (Doubles of seconds since 1970

@@ -26,8 +26,8 @@ struct csv_row {
   std::vector<double> numbers; ///< the other cells
 };
 
-/// The rows of a file. Empty lines and lines from `#` on are passed over; a first line without any
-/// number is the header.
+/// The rows of a file, whose cells are apart by commas, semicolons or blanks. Empty lines and lines
+/// from `#` on are passed over; a first line without any number is the header.
 class csv_file {
 public:
   /// \param columns  how many numbers each row must hold; 0: any, the first cell may be a name
@@ -48,7 +48,8 @@ public:
       for (std::size_t i = 0; i < cells.size(); ++i) {
         double number = 0;
         if (i == 0 && columns == 0 &&
-            detail::read_number(cells[i], number) == std::errc::invalid_argument) {
+            detail::read_number(cells[i], number) == std::errc::invalid_argument &&
+            !detail::has_decimal_comma(cells[i])) {
           row.name = cells[i];
           continue;
         }
@@ -90,7 +91,7 @@ private:
 [[nodiscard]] inline std::string csv_name(const std::string& text) {
   std::string name;
   for (const char c : printable(text)) {
-    if (c != ',' && c != '"' && c != '#') {
+    if (c != ',' && c != ';' && c != '"' && c != '#') {
       name += c;
     }
   }

@@ -88,14 +88,16 @@ struct split_line {
   }
 };
 
-/// The cells of a line: apart by commas where it has any, one at its end not counted, else by
-/// blanks, where units in brackets, as in `t [s]`, belong to the cell before.
+/// The cells of a line: apart by semicolons where it has any, else by commas where it has any, one
+/// at its end not counted, else by blanks, where units in brackets, as in `t [s]`, belong to the
+/// cell before.
 inline void split_cells(std::string_view text, std::vector<std::string_view>& cells) {
   cells.clear();
   text = trimmed(text);
-  if (text.find(',') != std::string_view::npos) {
+  const char separator = text.find(';') != text.npos ? ';' : ',';
+  if (text.find(separator) != text.npos) {
     while (!text.empty()) {
-      const std::size_t end = std::min(text.find(','), text.size());
+      const std::size_t end = std::min(text.find(separator), text.size());
       cells.push_back(trimmed(text.substr(0, end)));
       text.remove_prefix(std::min(end + 1, text.size()));
     }
@@ -114,11 +116,23 @@ inline void split_cells(std::string_view text, std::vector<std::string_view>& ce
   }
 }
 
+/// Would it be a number with a decimal point in place of a comma?
+[[nodiscard]] inline bool has_decimal_comma(std::string_view cell) {
+  const std::size_t comma = cell.find(',');
+  if (comma == cell.npos) {
+    return false;
+  }
+  std::string text(cell);
+  text[comma] = '.';
+  double number = 0;
+  return read_number(text, number) != std::errc::invalid_argument;
+}
+
 /// Does a line of cells hold no number?
 [[nodiscard]] inline bool are_words(const std::vector<std::string_view>& cells) {
   return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
     double number = 0;
-    return read_number(cell, number) != std::errc::invalid_argument;
+    return read_number(cell, number) != std::errc::invalid_argument || has_decimal_comma(cell);
   });
 }
 
@@ -130,7 +144,9 @@ inline void split_cells(std::string_view text, std::vector<std::string_view>& ce
                                            double& number) {
   const std::errc error = read_number(cell, number);
   if (error == std::errc::invalid_argument) {
-    throw file_error(path, line, name + " is not a number: '" + std::string(cell) + "'");
+    throw file_error(path, line,
+                     name + " is not a number: '" + std::string(cell) + "'" +
+                         (has_decimal_comma(cell) ? ": decimals come after a point" : ""));
   }
   if (error != std::errc() || !(number - number == 0)) {
     return name + " is " + std::string(cell) +

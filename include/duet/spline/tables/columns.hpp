@@ -30,6 +30,7 @@ inline constexpr const char* known_columns = "known are u (tau, t, time, timesta
 struct column_name {
   table_column what = table_column::other;
   bool is_a_time = false; ///< a `u` in seconds, or in a unit of time
+  bool is_of_ros = false; ///< a time as `rostopic echo -p` writes it
   std::string name;
   std::string unit; ///< as written, empty where none is
 
@@ -59,7 +60,8 @@ private:
     if (name == "u" || name == "tau") {
       return table_column::u;
     }
-    if (is_time(name)) {
+    is_of_ros = name == "%time" || name == "field_header_stamp";
+    if (is_time(name) || is_of_ros) {
       is_a_time = true;
       return table_column::u;
     }
@@ -80,7 +82,7 @@ private:
     const std::string of = name.substr(0, has_cut ? cut : name.size() - 1);
     const auto ends_with = [&](std::string_view end) { return has_cut && of.ends_with(end); };
     if (of == "q" || (has_cut && of.starts_with("q_")) || ends_with("quat") ||
-        ends_with("quaternion") || ends_with("orientation")) {
+        ends_with("quaternion") || ends_with("orientation") || ends_with("rotation")) {
       return table_column(std::size_t(table_column::qw) + axis);
     }
     if (axis > 0 && (of.empty() || of == "t" || of == "p" || (has_cut && of.starts_with("p_")) ||
@@ -103,8 +105,9 @@ struct table_layout {
   std::array<std::string, 8> names; ///< as in the header
   std::size_t columns = 0;
   std::array<std::string, 8> units;
-  bool has_time = false; ///< its parameter is a time
-  bool is_euroc = false; ///< named as in the files of the EuRoC data set
+  bool has_time = false;  ///< its parameter is a time
+  bool is_euroc = false;  ///< named as in the files of the EuRoC data set
+  bool is_of_ros = false; ///< its time is as `rostopic echo -p` writes it
 
   table_layout() { at.fill(absent); }
   /// Columns in this order.
@@ -128,7 +131,9 @@ struct table_layout {
         continue;
       }
       const auto k = std::size_t(cell.what);
-      if (at[k] != absent) {
+      // Of ROS's two times the message's own is that of the measurement, and comes second.
+      const bool is_better_time = names[k] == "%time" && cell.name == "field_header_stamp";
+      if (at[k] != absent && !is_better_time) {
         return "the header has both '" + names[k] + "' and '" + std::string(header[i]) + "'";
       }
       at[k] = i;
@@ -136,13 +141,11 @@ struct table_layout {
       units[k] = cell.unit;
       has_time = has_time || cell.is_a_time;
       is_euroc = is_euroc || cell.name.starts_with("p_rs_");
+      is_of_ros = is_of_ros || cell.is_of_ros;
     }
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < 8; ++k) {
       if (at[k] == absent && (k == 0 ? has_u : k >= 4 || has_place)) {
-        if (columns == 1 && header[0].find(';') != std::string_view::npos) {
-          return "the header is one cell, as cells are apart by commas or blanks, not by ';'";
-        }
         return std::string("the header names no column ") + short_names[k] + ": " + known_columns;
       }
     }

@@ -16,12 +16,14 @@
 ///
 /// - a header, a first line of names or a comment before the first row: columns by their names,
 ///   others passed over. Times are in the unit that it says, else in seconds; in nanoseconds in
-///   files with the names of the EuRoC data set, or where the first is 1e17 or more. Columns u and
-///   tau are no times and are taken as they are;
+///   files with the names of the EuRoC data set, or where the first is 1e17 or more. rostopic's
+///   (%time, or field.header.stamp where it is there, too) are nanoseconds where they are whole
+///   numbers, seconds where they have a point, as it prints them. Columns u and tau are no times
+///   and are taken as they are;
 /// - 8 numbers apart by blanks: TUM's `timestamp tx ty tz qx qy qz qw`, in seconds, or nanoseconds
 ///   by the same rule;
 /// - 8 numbers apart by commas, the first 1e17 or more: EuRoC's `timestamp,x,y,z,qw,qx,qy,qz`.
-///   Smaller ones are refused, as w may be first or last;
+///   Smaller ones are refused, as w may be first or last (semicolons in place of commas: alike);
 /// - 12 numbers: KITTI's matrix [R t], row by row; the time is the row's number from 0 on, or in a
 ///   file of times.
 
@@ -93,11 +95,13 @@ struct row_format {
   result.layout = header;
   const std::string& unit = header.units[0];
   if (header.has_time && unit.empty()) {
-    const std::size_t at = header.at[0];
-    if (header.is_euroc || (at < cells.size() && is_of_nanoseconds(cells[at]))) {
+    const std::string_view first = header.at[0] < cells.size() ? cells[header.at[0]] : "";
+    const bool is_of_ros = header.is_of_ros && first.find_first_of(".eE") == first.npos;
+    if (header.is_euroc || is_of_ros || is_of_nanoseconds(first)) {
       result.digits = 9;
       result.must_be_whole = true;
       result.remark = header.is_euroc ? "a EuRoC file: timestamps in nanoseconds"
+                      : is_of_ros     ? header.names[0] + " as rostopic writes it, in nanoseconds"
                                       : "timestamps of this size are taken for nanoseconds";
     }
   } else if (header.has_time && (unit == "ns" || unit == "us" || unit == "ms")) {

@@ -70,7 +70,7 @@ public:
       return std::nullopt;
     }
     if (!format_) {
-      choose_format(line, parts.text.find(',') != parts.text.npos);
+      choose_format(line, parts.text.find_first_of(",;") != parts.text.npos);
     }
     if (cells_.size() != format_->layout.columns) {
       throw file_error(path_, line,

@@ -1,0 +1,82 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/file.hpp>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+/// \file
+/// Two files that belong together.
+
+namespace duet {
+namespace detail {
+
+/// Puts two drafts in their places. Where the second cannot take its own, what was at that of the
+/// first, `path`, is put back.
+/// \throws file_error
+inline void commit_both(const std::string& path, file_draft& first, file_draft& second) {
+  namespace fs = std::filesystem;
+  const fs::path target = link_target(path);
+  file_draft before(path);
+  std::error_code error;
+  const bool was_there = exists(fs::status(target, error));
+  if (was_there) {
+    fs::copy_file(target, before.name(), fs::copy_options::overwrite_existing, error);
+    if (error) {
+      throw cannot_write(path, error.value());
+    }
+  }
+  first.commit();
+  try {
+    second.commit();
+  } catch (...) {
+    if (was_there) {
+      before.commit();
+    } else {
+      fs::remove(target, error);
+    }
+    throw;
+  }
+}
+
+} // namespace detail
+
+/// Writes two files, each as a whole, or neither of them. (Devices and pipes take nothing back:
+/// what goes there is written after the drafts of others, and of two of them the first before the
+/// second.)
+/// \throws file_error, also for two names of one file
+inline void write_files(const std::string& first, const std::string& first_content,
+                        const std::string& second, const std::string& second_content) {
+  const auto is_direct = [](const std::string& path) {
+    return detail::is_special_file(path) || detail::is_standard_output(path);
+  };
+  if (is_direct(first)) {
+    if (is_direct(second)) {
+      write_file(first, first_content);
+      write_file(second, second_content);
+    } else {
+      write_files(second, second_content, first, first_content);
+    }
+    return;
+  }
+  file_draft draft(first);
+  draft.write(first_content);
+  if (is_direct(second)) {
+    write_file(second, second_content);
+    draft.commit();
+    return;
+  }
+  const auto place = [](const std::string& path) {
+    return std::filesystem::weakly_canonical(detail::link_target(path));
+  };
+  file_draft other(second);
+  if (place(first) == place(second)) {
+    throw file_error(second, "is the same file as " + first);
+  }
+  other.write(second_content);
+  detail::commit_both(first, draft, other);
+}
+
+} // namespace duet
