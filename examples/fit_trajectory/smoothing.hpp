@@ -33,16 +33,6 @@ namespace fit_trajectory {
 using curve = duet::cumulative_bspline<duet::dual<double, 1, duet::screw_tag>, 4>;
 using fitted = duet::fit_result<curve>;
 
-/// A knot at every n-th row, so that gaps have few and dense parts many.
-inline std::vector<double> knots_at_rows(const std::vector<double>& times, std::size_t n) {
-  std::vector<double> breaks;
-  for (std::size_t i = 0; i + n <= times.size() - 1; i += n) {
-    breaks.push_back(times[i]);
-  }
-  breaks.push_back(times.back());
-  return duet::clamped_knots(breaks, 4);
-}
-
 inline double median(std::vector<double> x) {
   const auto middle = x.begin() + std::ptrdiff_t(x.size() / 2);
   std::nth_element(x.begin(), middle, x.end());
@@ -60,7 +50,7 @@ inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double len
                        double outlier) {
   const duet::fit_options options{.length = length, .outlier = std::max(outlier, 0.0)};
   fitted result = duet::fit<curve>(r.table.parameters, r.table.elements,
-                                   knots_at_rows(r.table.parameters, rows_per_knot), options);
+                                   duet::knots_at_rows(r.table.parameters, rows_per_knot), options);
   const double limit = result.outlier;
   return {std::move(result), limit};
 }

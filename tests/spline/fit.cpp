@@ -438,6 +438,41 @@ TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
   check(1e-6, std::numeric_limits<double>::infinity());
 }
 
+TEST_CASE("a knot at every n-th row") {
+  using knots = std::vector<double>;
+  const knots u{0, 1, 2, 4, 8, 9, 10};
+  CHECK(duet::knots_at_rows(u, 3) == knots{0, 0, 0, 0, 4, 10, 10, 10, 10});
+  CHECK(duet::knots_at_rows(u, 2, 3) == knots{0, 0, 0, 2, 8, 10, 10, 10});
+  CHECK(duet::knots_at_rows(u, 4, 2) == knots{0, 0, 10, 10}); // 2 rows are too few for one more
+  CHECK(duet::knots_at_rows(u, 1, 2) == knots{0, 0, 1, 2, 4, 8, 9, 10, 10});
+  for (const std::size_t many : {6UL, 7UL, std::size_t(-1)}) {
+    CHECK(duet::knots_at_rows(u, many, 2) == knots{0, 0, 10, 10});
+  }
+  const auto complaint = [](const knots& parameters, std::size_t n) {
+    return duet_test::message_of([&] { static_cast<void>(duet::knots_at_rows(parameters, n)); });
+  };
+  CHECK(complaint(u, 0) ==
+        "duet: knots_at_rows: n = 0 and 7 rows: n must be positive, and at least "
+        "two rows there");
+  CHECK(complaint({1}, 3) == "duet: knots_at_rows: n = 3 and 1 rows: n must be positive, and at "
+                             "least two rows there");
+  CHECK(!complaint({}, 3).empty());
+
+  // Rows of any number and spacing can be fitted by them.
+  const auto truth = some_curve<rotation>();
+  for (const int count : {8, 9, 60, 61, 63}) {
+    auto t = steps(8, count);
+    for (double& x : t) {
+      x = x * x / 8;
+    }
+    for (const std::size_t n : {2UL, 3UL, 7UL}) {
+      const auto result =
+          duet::fit<curve<rotation>>(t, rows_of(truth, t), duet::knots_at_rows(t, n));
+      CHECK(result.residuals.size() == t.size());
+    }
+  }
+}
+
 TEST_CASE("bad input is named") {
   const auto truth = some_curve<rotation>();
   const auto knots = truth.basis().knots();

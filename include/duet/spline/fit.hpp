@@ -35,7 +35,7 @@ struct fit_result {
   /// Row by row |2 log(S(uᵢ)* Qᵢ)|: radians, of poses together with (distance/length) as a root of
   /// the sum of squares; with `fit_options::covariances` standard deviations.
   std::vector<real_type> residuals;
-  real_type rms;     ///< root of the weighted mean of their squares
+  real_type rms;     ///< root of the weighted mean of their squares, over all rows, outliers too
   int iterations;    ///< of the least-squares method
   real_type outlier; ///< residuals beyond this counted as outliers
 
@@ -99,7 +99,8 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 /// `options.covariances` where there are some.
 ///
 /// Time and memory are linear in the number of rows. The signs of the rows do not matter.
-/// \param knots  of the curve, `clamped_knots(few_parameters, Order)` say; more smoothing by fewer
+/// \param knots  of the curve, `knots_at_rows(parameters, 10, Order)` say, or those of chosen
+///               parameters, `clamped_knots(few_parameters, Order)`; more smoothing by fewer
 /// \throws invalid_row for a row that is not finite, not a unit, outside the knots' domain or does
 ///         not follow the row before; invalid_input for counts that differ, too few rows somewhere,
 ///         a length or weight that is not positive, a limit that is negative, a covariance that is

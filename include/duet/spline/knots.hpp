@@ -59,6 +59,24 @@ template <Real R>
   return knots;
 }
 
+/// The knots of a spline of this order for `fit` to rows at the given parameters: one at every n-th
+/// row, so that they are dense where the rows are, and at the first and the last, those repeated as
+/// by `clamped_knots`. The last of them but the end is n to 2 n − 1 rows before it.
+/// \param n  rows to a knot: more smooth more, fewer follow faster motion
+/// \throws invalid_input for n = 0 and fewer than two rows
+template <Real R>
+[[nodiscard]] std::vector<R> knots_at_rows(const std::vector<R>& parameters, std::size_t n,
+                                           int order = 4) {
+  detail::require(n > 0 && parameters.size() > 1, "duet: knots_at_rows: n = ", n, " and ",
+                  parameters.size(), " rows: n must be positive, and at least two rows there");
+  std::vector<R> breaks{parameters.front()};
+  for (std::size_t i = n; i < parameters.size() - 1 && n <= parameters.size() - 1 - i; i += n) {
+    breaks.push_back(parameters[i]);
+  }
+  breaks.push_back(parameters.back());
+  return clamped_knots(breaks, order);
+}
+
 /// The knots of a spline of this order, even, through data at the given parameters that has no knot
 /// where the first order/2 − 1 parameters inside are, nor where the last ones are.
 template <Real R>
