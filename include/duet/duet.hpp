@@ -54,6 +54,7 @@
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
 #include <duet/mechanism/joint_efforts.hpp>
+#include <duet/mechanism/limits.hpp>
 #include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/screw_axes.hpp>

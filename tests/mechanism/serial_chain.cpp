@@ -219,7 +219,10 @@ TEST_CASE("what is wrong with a chain is said in one line") {
   joints[1] = {};
   joints[0].limits = {1, -1};
   CHECK(message([&] { serial_chain chain(joints); }) ==
-        "duet: serial_chain: joint 0: no motion is within its limits");
+        "duet: serial_chain: joint 0: no motion is within its limits, 1 to -1");
+  joints[0].limits = {.velocity = -1};
+  CHECK(message([&] { serial_chain chain(joints); }) ==
+        "duet: serial_chain: joint 0: its limit of velocity is -1");
   joints[0] = {};
   joints[1].kind = joint_kind::fixed;
   CHECK(message([&] { serial_chain chain(joints); }) ==

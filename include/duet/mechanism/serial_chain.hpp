@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -29,8 +30,23 @@ template <class S, int N>
 using joint_vector =
     Eigen::Matrix<S, (N > 0 ? N : Eigen::Dynamic), 1, Eigen::ColMajor, (N > 0 ? N : -N), 1>;
 
-[[noreturn]] inline void bad_joint(std::size_t i, const std::string& reason) {
-  throw invalid_input("duet: serial_chain: joint " + std::to_string(i) + ": " + reason);
+[[noreturn]] inline void bad_joint(std::size_t i, const std::string& reason,
+                                   const char* function = "serial_chain") {
+  throw invalid_input(message("duet: ", function, ": joint ", i, ": ", reason));
+}
+
+/// Can a joint be somewhere within its limits? NaN and infinite ends on the wrong side leave none.
+template <class T>
+constexpr void require_limits(const joint_limits<T>& given, std::size_t i,
+                              const char* function = "serial_chain") {
+  const T infinity = std::numeric_limits<T>::infinity();
+  if (!(given.lower <= given.upper && infinity > given.lower && given.upper > -infinity)) {
+    bad_joint(i, message("no motion is within its limits, ", given.lower, " to ", given.upper),
+              function);
+  }
+  if (!(given.velocity >= 0)) {
+    bad_joint(i, message("its limit of velocity is ", given.velocity), function);
+  }
 }
 
 template <class T>
@@ -50,9 +66,7 @@ constexpr void require_joint(const joint<T>& given, std::size_t i) {
   if (!(given.pitch - given.pitch == 0)) {
     bad_joint(i, "its pitch is not finite");
   }
-  if (!(given.limits.lower <= given.limits.upper && given.limits.velocity >= 0)) {
-    bad_joint(i, "no motion is within its limits");
-  }
+  require_limits(given.limits, i);
 }
 
 /// Poses of the links of a chain.
@@ -164,6 +178,16 @@ public:
 
   /// The table that evaluation reads.
   [[nodiscard]] constexpr const auto& steps() const { return steps_; }
+  /// Puts other limits in place of those of joint i, which must be good. With one a joint is no
+  /// more `continuous`.
+  constexpr void set_limits(int i, const joint_limits<T>& limits) {
+    const T infinity = std::numeric_limits<T>::infinity();
+    joint_kind& kind = kinds_[std::size_t(i)];
+    if (kind == joint_kind::continuous && (limits.lower > -infinity || infinity > limits.upper)) {
+      kind = joint_kind::revolute;
+    }
+    limits_[std::size_t(i)] = limits;
+  }
 
 private:
   constexpr void add(const joint<T>& given, const placement<T>& origin) {

@@ -1,0 +1,77 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/mechanism/chain_walk.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+
+/// \file
+/// Chains whose joints have other limits.
+
+namespace duet {
+namespace detail {
+
+/// A copy of a chain in memory: as it is, with its names where it has some; the table of one that
+/// the compiler knows.
+template <SerialChain C>
+[[nodiscard]] constexpr auto copy_of_chain(const C& chain) {
+  if constexpr (requires { chain.table(); }) {
+    return chain.table();
+  } else {
+    return chain;
+  }
+}
+
+} // namespace detail
+
+/// The chain with other limits of joint i: all three of them, so velocities are not limited where
+/// none is given. A `continuous` joint that gets a lower or an upper limit becomes `revolute`.
+///
+/// Example: `auto limits = arm.limits(3); limits.upper = -0.5; arm = with_limits(arm, 3, limits);`
+/// \return a chain of the same type, with the same names; of a `compiled_chain` a `serial_chain`
+/// \throws invalid_input for a joint that there is none of, and limits that hold no motion: a lower
+/// one above the upper one, NaN, a velocity below zero
+template <SerialChain C>
+[[nodiscard]] constexpr auto with_limits(const C& chain, int i,
+                                         const joint_limits<typename C::scalar_type>& limits) {
+  auto result = detail::copy_of_chain(chain);
+  if (i < 0 || i >= chain.size()) {
+    throw invalid_input(detail::message("duet: with_limits: no joint ", i, " in a chain of ",
+                                        chain.size(), " moving joints"));
+  }
+  detail::require_limits(limits, std::size_t(i), "with_limits");
+  result.set_limits(i, limits);
+  return result;
+}
+
+/// The chain with other lower and upper limits of all joints that move, radians or units of length;
+/// those of velocity stay. (Any kind of vectors: Eigen's, `std::array`, `std::vector`.)
+///
+/// Example: `with_limits(arm, (0.9 * lower_limits(arm)).eval(), (0.9 * upper_limits(arm)).eval())`
+/// \return as with the limits of one joint
+/// \throws invalid_input for another number of limits than joints, and as with one joint
+template <SerialChain C, VectorLike Lower, VectorLike Upper>
+[[nodiscard]] auto with_limits(const C& chain, const Lower& lower, const Upper& upper) {
+  using T = typename C::scalar_type;
+  using below = detail::vector_argument<Lower>;
+  using above = detail::vector_argument<Upper>;
+  detail::require(below::size(lower) == chain.size() && above::size(upper) == chain.size(),
+                  "duet: with_limits: ", below::size(lower), " lower and ", above::size(upper),
+                  " upper limits for ", chain.size(), " moving joints");
+  auto result = detail::copy_of_chain(chain);
+  for (int i = 0; i < chain.size(); ++i) {
+    const joint_limits<T> limits{T(below::get(lower, i)), T(above::get(upper, i)),
+                                 chain.limits(i).velocity};
+    detail::require_limits(limits, std::size_t(i), "with_limits");
+    result.set_limits(i, limits);
+  }
+  return result;
+}
+
+} // namespace duet
