@@ -9,9 +9,12 @@
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/spline/look_up_table.hpp>
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -55,6 +58,37 @@ TEST_CASE("vectors and matrices by themselves") {
   CHECK(to_text(Eigen::Vector3d(1, 2.5, -3)) == "(1, 2.5, -3)");
   CHECK(to_text(Eigen::RowVector2d(1, 2)) == "[1, 2]");
   CHECK(to_text(Eigen::Matrix2d::Identity()) == "[1, 0; 0, 1]");
+}
+
+TEST_CASE("rotations and poses by themselves and in results") {
+  using rotation = duet::quaternion<double>;
+  const rotation quarter = duet::from_rotation_vector(Eigen::Vector3d(0, 0, std::acos(-1.0) / 2));
+  CHECK(to_text(rotation(0.6, 0, 0, -0.8)) == "(0.6, 0, 0, -0.8)");
+  CHECK(to_text(rotation(3, 1, 2, 9)) == "(3, 1, 2, 9)");
+  const auto a = duet::pose(quarter, Eigen::Vector3d(1, -2, 0.5));
+  CHECK(to_text(a) == "(0.707107, 0, 0, 0.707107) at (1, -2, 0.5)");
+  CHECK(to_text(duet::dual_quaternion<double>(1)) == "(1, 0, 0, 0) at (0, 0, 0)");
+  const duet::quaternion<float> one(1);
+  CHECK(to_text(duet::pose(one, duet::vector3<float>(1, 2, 3))) == "(1, 0, 0, 0) at (1, 2, 3)");
+  const auto far = duet::pose(normalized(rotation(1, 2, -3, 4)), Eigen::Vector3d(1e12, 3e12, 7e11));
+  CHECK(to_text(far).ends_with(" at (1e+12, 3e+12, 7e+11)"));
+  // What is no pose, by the length of its real part or by the angle of its dual one.
+  for (const auto& other : {duet::dual_quaternion<double>(2 * a),
+                            duet::make_dual_quaternion(quarter, rotation(1, 0, 0, 0)),
+                            duet::make_dual_quaternion(quarter, rotation(std::nan("")))}) {
+    CHECK(to_text(other) == duet::detail::message(other));
+  }
+  duet::look_up_table<duet::screw_dual<double>> table{{0, 1}, {a, a}};
+  CHECK(to_text(table) ==
+        "parameters: (0, 1)\nelements: (" + to_text(a) + ", " + to_text(a) + ")\n");
+  const auto moved = duet::derivative(
+      [](const auto& t) {
+        using T = std::decay_t<decltype(t)>;
+        return duet::pose(duet::quaternion<T>(T(1)), duet::vector3<T>(t, T(0), T(0)));
+      },
+      3.0);
+  CHECK(to_text(moved).starts_with("value: (1, 0, 0, 0) at (3, 0, 0)\nderivative: (0"));
+  CHECK(to_text(moved).find("at", 40) == std::string::npos);
 }
 
 TEST_CASE("enumerations, lists of results, results in results") {

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/quaternion/foreign.hpp>
+#include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <cmath>
 #include <concepts>
+#include <string>
 
 /// \file
 /// Dual numbers, vectors and quaternions of rigid motion, and how they come apart (N10–N16).
@@ -105,6 +109,20 @@ template <class T>
   const screw_dual<T> square = norm2(a);
   return abs(innermost(square.value()) - 1) <= tolerance &&
          abs(innermost(square.epsilon())) <= tolerance;
+}
+
+/// A pose as `(w, x, y, z) at (x, y, z)`, its rotation and its translation, numbers to six digits;
+/// what is no pose by its four dual numbers.
+template <Real T>
+[[nodiscard]] std::string to_text(const dual_quaternion<T>& a) {
+  using std::abs;
+  const screw_dual<T> square = norm2(a);
+  const T length = norm(dual_part(a));
+  if (!(abs(square.value() - 1) <= 1e-6 && abs(square.epsilon()) <= 1e-6 * (1 + length))) {
+    return detail::message(a);
+  }
+  const vector3<T> t = translation(a);
+  return detail::message(rotation(a), " at (", t[0], ", ", t[1], ", ", t[2], ")");
 }
 
 DUET_REFUSES_FOREIGN(rotation, quaternion<double>)

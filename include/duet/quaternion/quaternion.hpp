@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
@@ -14,6 +15,7 @@
 
 #include <concepts>
 #include <ostream>
+#include <string>
 #include <type_traits>
 
 /// \file
@@ -93,6 +95,12 @@ public:
 private:
   T w_, x_, y_, z_;
 };
+
+/// A rotation, or any quaternion, as (w, x, y, z), numbers to six digits.
+template <class T>
+[[nodiscard]] std::string to_text(const quaternion<T>& q) {
+  return detail::message(q);
+}
 
 /// Of numbers that cannot be divided there is none.
 template <class T>

@@ -31,6 +31,12 @@ concept Result = requires(const X& x) {
 
 namespace detail {
 
+/// A class with a `to_text` in its own namespace, as rotations and poses have.
+template <class X>
+concept TextOfItsOwn = std::is_class_v<X> && requires(const X& x) {
+  { to_text(x) } -> std::convertible_to<std::string>;
+};
+
 template <class X>
 [[nodiscard]] std::string field_text(const X& x);
 
@@ -76,7 +82,7 @@ std::string field_text(const X& x) {
       text += (text.empty() ? "" : ", ") + std::string(name) + " " + field_text(field);
     });
     return "{" + text + "}";
-  } else if constexpr (std::is_enum_v<X>) {
+  } else if constexpr (std::is_enum_v<X> || TextOfItsOwn<X>) {
     return std::string(to_text(x));
   } else if constexpr (requires {
                          X::ColsAtCompileTime;
@@ -112,7 +118,8 @@ void append_fields(std::string& text, const std::string& prefix, const X& x) {
 } // namespace detail
 
 /// The fields of a result, `name: value` on a line each: numbers to six digits, vectors as (x, y,
-/// z), matrices as [a, b; c, d], long lists by their first and last entries.
+/// z), rotations as (w, x, y, z), poses as (w, x, y, z) at (x, y, z), matrices as [a, b; c, d],
+/// long lists by their first and last entries.
 ///
 /// Example: `std::cout << to_text(gradient(f, x));`
 template <Result X>
