@@ -1,11 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
+
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/functions_of_many.hpp>
+#include <duet/expression/rotation.hpp>
 #include <duet/expression/special_functions.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/text.hpp>
+#include <duet/expression/vector.hpp>
 
 #include <doctest/doctest.h>
 
@@ -292,6 +296,27 @@ TEST_CASE("LaTeX has the value of its formula") {
   check_values((x * (y + a) - x * y - x * a + x / a) / (y + 1 / a));
   check_values(pow(2 * x, 40) * pow(x / 3, 30) * 123456789.0 * 987654321.0);
   check_values(x - (y - a) - (x + y - 2.5e-7 * x) / 1e20);
+}
+
+TEST_CASE("symbols that look alike are refused, both by their names") {
+  const symbol<"theta1"> plain;
+  const symbol<"theta_1"> apart;
+  const auto message = [](const auto& f) {
+    return duet_test::message_of<duet::invalid_input>([&] { (void)to_latex(f); });
+  };
+  CHECK(message(plain * apart) == "duet: to_latex: theta1 and theta_1 both look like "
+                                  "\\theta_{1}: one of them needs another name");
+  CHECK(message(sin(apart) / exp(2 * plain)).starts_with("duet: to_latex: theta_1 and theta1 "));
+  CHECK(to_latex(plain * plain) == "\\theta_{1}^{2}");
+  CHECK(to_latex(plain * symbol<"theta_2">()) == "\\theta_{1} \\theta_{2}");
+  CHECK(message(x * symbol<"x_">()) == "duet: to_latex: x and x_ both look like x: one "
+                                       "of them needs another name");
+  CHECK(message(x * norm(vector_symbol<"x">())).empty()); // \vec{x}
+  CHECK(message(symbol<"q">() * rotate(quaternion_symbol<"q">(), vector_symbol<"u">()))
+            .starts_with("duet: to_latex: q and q both look like q"));
+  CHECK(message(pi * symbol<"pi">()) == "duet: to_latex: the number pi and pi both look "
+                                        "like \\pi: one of them needs another name");
+  CHECK(to_latex(symbol<"pi">()) == "\\pi");
 }
 
 } // namespace test_expression_latex

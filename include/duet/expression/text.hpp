@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/errors.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/tree/formula.hpp>
@@ -145,7 +146,7 @@ namespace detail {
   if (is_matrix(k) && columns_of(k) == 1) {
     letters = "\\vec{" + letters + "}";
   }
-  if (end == std::string::npos) {
+  if (end == std::string::npos || name.substr(end) == "_") {
     return letters;
   }
   return letters + "_{" + name.substr(name[end] == '_' ? end + 1 : end) + "}";
@@ -208,6 +209,43 @@ template <class Operation, class... Operands>
   return style == notation::latex ? latex_of_kind(std::move(result), k == kind::scalar) : result;
 }
 
+/// The symbols of a formula, as they look in LaTeX.
+class latex_symbols {
+public:
+  template <kind K, char... Letters>
+  void visit(symbol_node<K, Letters...>) {
+    const std::string name = {Letters...};
+    add({latex_name(name, K), name, K});
+  }
+  void visit(pi_node) { add({"\\pi", "the number pi", kind::scalar}); }
+  template <class Operation, class... Operands>
+  void visit(applied_node<Operation, Operands...>) {
+    (visit(Operands{}), ...);
+  }
+  void visit(const auto&) {}
+
+private:
+  struct look {
+    std::string latex, name;
+    kind of;
+  };
+
+  /// \throws invalid_input where it looks like another one
+  void add(look now) {
+    for (const look& other : seen_) {
+      if (other.latex == now.latex) {
+        duet::detail::require(other.name == now.name && other.of == now.of,
+                              "duet: to_latex: ", other.name, " and ", now.name, " both look like ",
+                              now.latex, ": one of them needs another name");
+        return;
+      }
+    }
+    seen_.push_back(std::move(now));
+  }
+
+  std::vector<look> seen_;
+};
+
 } // namespace detail
 
 /// The formula as one writes it in a program: `2 * x * cos(x^2)`.
@@ -221,8 +259,11 @@ template <Formula F>
 /// terms are collected, and no fraction stands in another, in an exponent or in an argument.
 /// Symbols with the names of Greek letters are those letters; digits, and what follows _, are an
 /// index.
+/// \throws invalid_input for two symbols that would look alike, as theta1 and theta_1 do, and
+/// a symbol pi beside the number
 template <Formula F>
 [[nodiscard]] std::string to_latex(const F& f) {
+  detail::latex_symbols().visit(typename F::node_type{});
   const printed whole =
       detail::print(notation::latex, detail::written_t<typename F::node_type>{}, f.held());
   return detail::latex_text(detail::latex_terms(whole), detail::fractions::lines).text;
