@@ -64,6 +64,7 @@
 #include <duet/planning/time_parametrised.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
+#include <duet/quaternion/distance.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>

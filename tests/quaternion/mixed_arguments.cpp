@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/quaternion/curves.hpp>
+#include <duet/quaternion/distance.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -28,6 +29,8 @@ TEST_CASE("constants mix with derivatives: quaternions") {
   DUET_CHECK_MIXED(dot, p, q);
   DUET_CHECK_MIXED(pow, p, 0.3);
   DUET_CHECK_MIXED(slerp, p, q, 0.3);
+  DUET_CHECK_MIXED(distance, p, q);
+  DUET_CHECK_MIXED(squared_distance, p, q);
   DUET_CHECK_MIXED(squad_control, p, q, r);
   DUET_CHECK_MIXED(squad, p, q, r, s, 0.3);
   check(

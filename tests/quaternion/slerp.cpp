@@ -137,6 +137,8 @@ TEST_CASE("slerp meets its ends and takes the shorter arc") {
   CHECK(norm(slerp(quaternion<double>(1), i, 0.5) - quaternion<double>(root, root, 0, 0)) <= 2e-16);
   CHECK(norm(slerp(quaternion<double>(1), -i, 0.5) - quaternion<double>(root, -root, 0, 0)) <=
         2e-16);
+  CHECK_THROWS_AS(static_cast<void>(slerp(pairs()[0].first, quaternion<double>(), 0.5)),
+                  duet::invalid_input);
 }
 
 TEST_CASE("the angular velocity of slerp is constant") {

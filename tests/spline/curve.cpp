@@ -18,7 +18,7 @@
 namespace test_spline_curve {
 
 using duet::cumulative_bspline;
-using duet_test::distance;
+using duet_test::gap;
 using duet_test::knot_vectors;
 using duet_test::message_of;
 using duet_test::parameters_on;
@@ -59,7 +59,7 @@ TEST_CASE("P2: the curve is the product over all control quaternions") {
       for (const double u : parameters_on(knots, k, 3)) {
         const auto product =
             duet_test::product_definition(knots, k, s.controls()[0], increments, u, u);
-        worst = std::max(worst, distance(s(u), product));
+        worst = std::max(worst, gap(s(u), product));
         worst = std::max(worst, std::abs(norm2(s(u)) - 1));
       }
       CHECK(worst <= 1e-14);
@@ -77,11 +77,11 @@ TEST_CASE("P2 as printed, functions from B_{−1}: the first exponent B̃_0 is r
     const double exponent = duet_test::cumulative_definition(knots, 1, 4, u, u);
     const quaternion printed = pow(first, exponent) * (conj(first) * s(u));
     if (s.basis().span_of(u) == 0 && exponent < 0.999) {
-      CHECK(distance(printed, s(u)) > 1e-6);
+      CHECK(gap(printed, s(u)) > 1e-6);
       ++in_first_span;
     } else if (s.basis().span_of(u) > 0) {
       CHECK(exponent == doctest::Approx(1).epsilon(1e-15));
-      CHECK(distance(printed, s(u)) < 1e-14);
+      CHECK(gap(printed, s(u)) < 1e-14);
       ++beyond;
     }
   }
@@ -93,9 +93,9 @@ TEST_CASE("order 2 is spherical interpolation between neighbours") {
   const std::vector<double> knots = {0, 0, 1, 3, 3.5, 3.5};
   const auto s = random_curve<2>(knots, 2);
   for (const double t : {0.0, 0.2, 0.7, 0.99}) {
-    CHECK(distance(s(t), slerp(s.controls()[0], s.controls()[1], t)) < 1e-15);
-    CHECK(distance(s(1 + 2 * t), slerp(s.controls()[1], s.controls()[2], t)) < 1e-15);
-    CHECK(distance(s(3 + t / 2), slerp(s.controls()[2], s.controls()[3], t)) < 1e-15);
+    CHECK(gap(s(t), slerp(s.controls()[0], s.controls()[1], t)) < 1e-15);
+    CHECK(gap(s(1 + 2 * t), slerp(s.controls()[1], s.controls()[2], t)) < 1e-15);
+    CHECK(gap(s(3 + t / 2), slerp(s.controls()[2], s.controls()[3], t)) < 1e-15);
   }
 }
 
@@ -113,16 +113,16 @@ TEST_CASE("about one axis the angle is the plain B-spline of the control angles"
     for (std::size_t i = 0; i < angles.size(); ++i) {
       angle += angles[i] * duet::bspline_value(knots, i, 4, u);
     }
-    CHECK(distance(s(u), duet::from_axis_angle(axis, angle)) < 1e-15);
+    CHECK(gap(s(u), duet::from_axis_angle(axis, angle)) < 1e-15);
   }
 }
 
 TEST_CASE("the curve meets its first and last control quaternion and one at every triple knot") {
   const auto knots = duet::clamped_knots(std::vector<double>{0, 1, 1, 1, 2, 3}, 4);
   const auto s = random_curve<4>(knots, 2);
-  CHECK(distance(s(0.0), s.controls()[0]) < 1e-15);
-  CHECK(distance(s(1.0), s.controls()[3]) < 1e-15);
-  CHECK(distance(s(3.0), s.controls().back()) < 1e-15);
+  CHECK(gap(s(0.0), s.controls()[0]) < 1e-15);
+  CHECK(gap(s(1.0), s.controls()[3]) < 1e-15);
+  CHECK(gap(s(3.0), s.controls().back()) < 1e-15);
 }
 
 TEST_CASE("moving all control quaternions moves the curve") {
@@ -135,7 +135,7 @@ TEST_CASE("moving all control quaternions moves the curve") {
   }
   const cumulative_bspline<double> t(knots, moved);
   for (const double u : parameters_on(knots, 4)) {
-    CHECK(distance(t(u), p * s(u)) < 1e-14);
+    CHECK(gap(t(u), p * s(u)) < 1e-14);
   }
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("signs of control quaternions do not matter, but for the first one's")
   }
   for (const double u : parameters_on(knots, 4)) {
     CHECK(t(u) == s(u));
-    CHECK(distance(opposite(u), -s(u)) < 1e-15);
+    CHECK(gap(opposite(u), -s(u)) < 1e-15);
   }
 }
 

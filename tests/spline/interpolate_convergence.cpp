@@ -20,7 +20,7 @@
 
 namespace test_spline_interpolate_convergence {
 
-using duet_test::distance;
+using duet_test::gap;
 
 using spline = duet::cumulative_bspline<double>;
 using quaternion = duet::quaternion<double>;
@@ -86,10 +86,10 @@ errors measure(int steps, Place place, const Ends& ends, double a, double b,
     const auto m = s.motion(at, duet::frame::spatial);
     const double sign = dot(exact.value, m.value) < 0 ? -1 : 1;
     const errors here = {
-        distance(exact.value, sign * m.value), (exact.velocity - m.velocity).norm(),
+        gap(exact.value, sign * m.value), (exact.velocity - m.velocity).norm(),
         (exact.acceleration - m.acceleration).norm(),
-        distance(exact.second, sign * s.derivatives(at)[2]),
-        distance(exact.second, sign * duet::printed_derivative(s, at).commuting_second)};
+        gap(exact.second, sign * s.derivatives(at)[2]),
+        gap(exact.second, sign * duet::printed_derivative(s, at).commuting_second)};
     for (std::size_t k = 0; k < worst.size(); ++k) {
       worst[k] = std::max(worst[k], here[k]);
     }

@@ -20,7 +20,7 @@ namespace test_spline_printed {
 using duet::cumulative_bspline;
 using duet::printed_derivative;
 using duet_test::b_definition;
-using duet_test::distance;
+using duet_test::gap;
 using duet_test::knot_vectors;
 using duet_test::parameters_on;
 
@@ -87,8 +87,8 @@ TEST_CASE("P3, P4 as printed: the letter of the formulas") {
         const quaternion q = s(u);
         const auto printed = printed_derivative(s, u);
         const quaternion literal_second = q * first * first_in_p4 + q * second;
-        CHECK(distance(printed.literal_first, q * first) <= 1e-13 * (1 + size(first)));
-        CHECK(distance(printed.literal_second, literal_second) <=
+        CHECK(gap(printed.literal_first, q * first) <= 1e-13 * (1 + size(first)));
+        CHECK(gap(printed.literal_second, literal_second) <=
               1e-13 * (1 + size(first) * size(first_in_p4) + size(second)));
         // With functions from B_0 the curve's first control is q_0: sums over all that follow, and
         // B̃′_0 = B̃″_0 = 0 on the domain.
@@ -97,11 +97,10 @@ TEST_CASE("P3, P4 as printed: the letter of the formulas") {
         CHECK(zero[1] == 0);
         const quaternion all(0, sum + s.increments()[1] * lone[0]);
         const quaternion all_of_second(0, sum_of_second + s.increments()[1] * lone[1]);
-        CHECK(distance(printed.from_zero_first, q * all) <= 1e-13 * (1 + size(all)));
-        CHECK(distance(printed.from_zero_second, q * all * all + q * all_of_second) <=
+        CHECK(gap(printed.from_zero_first, q * all) <= 1e-13 * (1 + size(all)));
+        CHECK(gap(printed.from_zero_second, q * all * all + q * all_of_second) <=
               1e-13 * (1 + size(all) * size(all) + size(all_of_second)));
-        CHECK(distance(printed.from_zero_first, printed.commuting_first) <=
-              1e-13 * (1 + size(all)));
+        CHECK(gap(printed.from_zero_first, printed.commuting_first) <= 1e-13 * (1 + size(all)));
       }
     }
   };
@@ -120,8 +119,8 @@ TEST_CASE("where the ω_i are parallel the commuting sums are the derivatives, i
     for (const double u : parameters_on(knots, 4)) {
       const auto truth = s.derivatives(u);
       const auto printed = printed_derivative(s, u);
-      worst = std::max(worst, distance(printed.commuting_first, truth[1]) / (1 + size(truth[1])));
-      worst = std::max(worst, distance(printed.commuting_second, truth[2]) / (1 + size(truth[2])));
+      worst = std::max(worst, gap(printed.commuting_first, truth[1]) / (1 + size(truth[1])));
+      worst = std::max(worst, gap(printed.commuting_second, truth[2]) / (1 + size(truth[2])));
     }
     CHECK(worst < 1e-13);
   }
@@ -176,7 +175,7 @@ TEST_CASE("P2 with functions from B_0: q_{-1} cancels") {
       for (std::size_t i = 1; i < count; ++i) {
         q = q * duet::exp(vector(s.increments()[i] * cumulative(i)));
       }
-      CHECK(distance(q, s(u)) < 1e-14);
+      CHECK(gap(q, s(u)) < 1e-14);
     }
   }
 }
@@ -188,8 +187,8 @@ TEST_CASE("P4: Q″ = Q (a + w²), and w² = −|w|²") {
     const auto m = s.motion(u, duet::frame::body);
     const quaternion w(0, m.velocity / 2), a(0, m.acceleration / 2);
     const auto truth = s.derivatives(u)[2];
-    CHECK(distance(truth, m.value * (a + w * w)) <= 1e-13 * (1 + size(truth)));
-    CHECK(distance(w * w, quaternion(-norm2(w))) <= 1e-14 * (1 + norm2(w)));
+    CHECK(gap(truth, m.value * (a + w * w)) <= 1e-13 * (1 + size(truth)));
+    CHECK(gap(w * w, quaternion(-norm2(w))) <= 1e-14 * (1 + norm2(w)));
     CHECK(relative(truth, m.value * (a - w * w)) > 1e-3);
   }
 }

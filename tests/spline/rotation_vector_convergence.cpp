@@ -78,7 +78,7 @@ errors measure(int steps, double (*place)(double), const Ends& ends, double a = 
     const truth exact = at<is_periodic>(x);
     const auto m = s.motion(x, duet::frame::spatial);
     const double sign = dot(exact.value, m.value) < 0 ? -1 : 1;
-    const errors here = {duet_test::distance(exact.value, sign * m.value),
+    const errors here = {duet_test::gap(exact.value, sign * m.value),
                          (exact.velocity - m.velocity).norm(),
                          (exact.acceleration - m.acceleration).norm()};
     for (std::size_t k = 0; k < worst.size(); ++k) {

@@ -3,9 +3,10 @@
 
 #include <duet/core/batch/lanes.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/distance.hpp>
 #include <duet/quaternion/norm.hpp>
-#include <duet/quaternion/rotation.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +31,8 @@ template <class A, Promotable<A> B>
   detail::require(length >= 0 && length - length == 0, "duet: distance: length is ", length,
                   ", not a number from 0 up");
   const vector3<T> move = translation(b) - translation(a);
-  const vector3<T> turn = rotation_vector(quaternion<T>(conj(rotation(a)) * rotation(b)));
-  return move.dot(move) + real_type_t<T>(length * length) * turn.dot(turn);
+  return move.dot(move) +
+         real_type_t<T>(length * length) * squared_distance(rotation(a), rotation(b));
 }
 
 namespace detail {
@@ -47,7 +48,7 @@ template <class T>
   using std::sqrt;
   using R = real_type_t<T>;
   const vector3<T> move = translation(b) - translation(a);
-  const vector3<T> turn = rotation_vector(quaternion<T>(conj(rotation(a)) * rotation(b)));
+  const vector3<T> turn = turn_between(rotation(a), rotation(b));
   R largest(0);
   T sum(R(0));
   for (int i = 0; i < 3; ++i) {
@@ -85,5 +86,13 @@ template <class A, Promotable<A> B>
             dual_quaternion<T>(a), dual_quaternion<T>(b));
       });
 }
+
+/// Without a length it is not clear what a turn counts.
+template <class A, class B>
+DUET_REFUSED("how far does a turn by one radian count? distance(a, b, length)")
+promote_t<A, B> distance(const dual_quaternion<A>&, const dual_quaternion<B>&);
+template <class A, class B>
+DUET_REFUSED("how far does a turn by one radian count? squared_distance(a, b, length)")
+promote_t<A, B> squared_distance(const dual_quaternion<A>&, const dual_quaternion<B>&);
 
 } // namespace duet

@@ -37,6 +37,13 @@ template <class T>
   return {c[0], v[0] * c[1], v[1] * c[1], v[2] * c[1]};
 }
 
+/// The exponential exp(w + v) = e^w (cos|v| + v sin|v|/|v|) (N4).
+template <class T>
+[[nodiscard]] quaternion<T> exp(const quaternion<T>& q) {
+  using std::exp;
+  return duet::exp(q.vec()) * T(exp(q.w()));
+}
+
 namespace detail {
 
 /// exp(b v) for a v that does not depend on all that b depends on: derivatives by b cost no more
@@ -47,17 +54,6 @@ template <class S, class T>
   const auto u = universal_functions<2>(b, T(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
   return {u[0], v[0] * u[1], v[1] * u[1], v[2] * u[1]};
 }
-
-} // namespace detail
-
-/// The exponential exp(w + v) = e^w (cos|v| + v sin|v|/|v|) (N4).
-template <class T>
-[[nodiscard]] quaternion<T> exp(const quaternion<T>& q) {
-  using std::exp;
-  return duet::exp(q.vec()) * T(exp(q.w()));
-}
-
-namespace detail {
 
 /// The unit vector û along the vector part of q; undetermined where that is zero.
 template <class T>
@@ -138,6 +134,24 @@ template <class T>
 }
 
 namespace detail {
+
+/// The vector part of log(a* b), where b is on the other side of log(−a* b); `cosine` = a·b.
+template <class A, class B, class T, class Side>
+[[nodiscard]] DUET_ALWAYS_INLINE vector3<T> half_arc(const quaternion<A>& a, const quaternion<B>& b,
+                                                     const T& cosine, const Side& other_side,
+                                                     const char* function) {
+  if (any(innermost(cosine) == 0)) [[unlikely]] {
+    require_not_zero(b, function);
+  }
+  // a* a has no vector part. Subtracting it first keeps all digits of a small rotation.
+  using end = std::conditional_t<Batched<T>, T, B>; // which of a batch turn round
+  const quaternion<end> aligned = select(
+      other_side, [&] { return quaternion<end>(-b); }, [&] { return quaternion<end>(b); });
+  const quaternion<T> difference = conj(a) * (aligned - a);
+  const T w = select(
+      other_side, [&] { return T(-cosine); }, [&] { return cosine; });
+  return log_vector(quaternion<T>(w, difference.x(), difference.y(), difference.z()), function);
+}
 
 template <class T, class S>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>>
@@ -250,15 +264,7 @@ template <class A, class B, class S>
   const T cosine = dot(a, b);
   const auto other_side = (round == way::shortest && innermost(cosine) < 0) ||
                           (round == way::longest && innermost(cosine) > 0);
-  // a* a has no vector part. Subtracting it first keeps all digits of a small rotation.
-  using end = std::conditional_t<Batched<T>, T, B>; // which of a batch turn round
-  const quaternion<end> aligned = select(
-      other_side, [&] { return quaternion<end>(-b); }, [&] { return quaternion<end>(b); });
-  const quaternion<T> difference = conj(a) * (aligned - a);
-  const quaternion<T> relative(select(
-                                   other_side, [&] { return T(-cosine); }, [&] { return cosine; }),
-                               difference.x(), difference.y(), difference.z());
-  const vector3<T> v = detail::log_vector(relative, "slerp");
+  const vector3<T> v = detail::half_arc(a, b, cosine, other_side, "slerp");
   using R = promote_t<T, S>;
   const auto t = detail::as_constant<R>(tau);
   return a * duet::exp(vector3<R>(v[0] * t, v[1] * t, v[2] * t));

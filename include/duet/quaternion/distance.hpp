@@ -1,0 +1,53 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual/promotion.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/foreign.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+/// \file
+/// How far rotations are from each other.
+
+namespace duet {
+
+namespace detail {
+
+/// The rotation vector of conj(a) b, the shorter way, with all digits where a and b are near.
+template <class A, class B>
+[[nodiscard]] vector3<promote_t<A, B>> turn_between(const quaternion<A>& a,
+                                                    const quaternion<B>& b) {
+  using T = promote_t<A, B>;
+  const T cosine = dot(a, b);
+  const vector3<T> half = half_arc(a, b, cosine, innermost(cosine) < 0, "distance");
+  return {2 * half[0], 2 * half[1], 2 * half[2]};
+}
+
+} // namespace detail
+
+/// The square of the angle between two rotations, φ² = |2 log(a* b)|², φ ∈ [0, π] in radians: the
+/// same for b and −b, and in every frame; a and b of unit norm. Smooth where φ < π, also at a = b;
+/// at φ = π, where both ways are as long, derivatives are those of the way of b's own sign. \throws
+/// invalid_input where a or b is zero
+template <class A, Promotable<A> B>
+  requires(!detail::contains_tag<promote_t<A, B>, screw_tag>())
+[[nodiscard]] promote_t<A, B> squared_distance(const quaternion<A>& a, const quaternion<B>& b) {
+  const auto turn = detail::turn_between(a, b);
+  return turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
+}
+
+/// The distance of two rotations, the angle φ ∈ [0, π] between them in radians: the root of
+/// `squared_distance`, a metric. Its derivative at φ = 0 does not exist.
+/// \throws invalid_input where a or b is zero
+template <class A, Promotable<A> B>
+  requires(!detail::contains_tag<promote_t<A, B>, screw_tag>())
+[[nodiscard]] promote_t<A, B> distance(const quaternion<A>& a, const quaternion<B>& b) {
+  using T = promote_t<A, B>;
+  return norm(quaternion<T>(T(0), detail::turn_between(a, b)));
+}
+
+DUET_REFUSES_FOREIGN(squared_distance, double)
+DUET_REFUSES_FOREIGN(distance, double)
+
+} // namespace duet

@@ -1,0 +1,16 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+// expect: duet: how far does a turn by one radian count\?
+
+#include <duet/dual_quaternion/distance.hpp>
+
+int main() {
+  const duet::dual_quaternion<double> a(1);
+#ifdef DUET_MUST_FAIL
+  const double here = distance(a, a);           // mistake
+  const double square = squared_distance(a, a); // mistake
+#else
+  const double here = distance(a, a, 0.5);
+  const double square = squared_distance(a, a, 0.5);
+#endif
+  return here == 0 && square == 0 ? 0 : 1;
+}

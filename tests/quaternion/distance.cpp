@@ -1,0 +1,149 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/gap.hpp"
+#include "support/lanes.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/interop/multiprecision.hpp>
+#include <duet/quaternion/distance.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <tuple>
+#include <vector>
+
+// The angle between two rotations and its square.
+
+namespace test_quaternion_distance {
+
+using duet::distance;
+using duet::squared_distance;
+using duet_test::gap;
+using std::numbers::pi;
+using quaternion = duet::quaternion<double>;
+using vector = duet::vector3<double>;
+using matrix = duet::matrix3<double>;
+namespace frame = duet::frame;
+
+namespace {
+
+const vector axis(2.0 / 7, -3.0 / 7, 6.0 / 7);
+const quaternion start = duet::from_rotation_vector(vector(0.3, -1.2, 0.7));
+
+/// By the angle's definition, with 50 digits of rotations as they are.
+double exact_distance(const quaternion& a, const quaternion& b) {
+  const duet::quaternion<duet::real_50> turn =
+      conj(duet::quaternion<duet::real_50>(a)) * duet::quaternion<duet::real_50>(b);
+  const duet::real_50 sine = sqrt(turn.x() * turn.x() + turn.y() * turn.y() + turn.z() * turn.z());
+  return double(2 * atan2(sine, abs(turn.w())));
+}
+
+} // namespace
+
+TEST_CASE("the angle between rotations, of whatever sign") {
+  for (const double angle : {0.0, 1e-200, 1e-12, 1e-4, 0.3, 1.0, 2.5, pi - 1e-9, pi}) {
+    CAPTURE(angle);
+    const quaternion turn = duet::from_rotation_vector(vector(angle * axis));
+    CHECK(distance(quaternion(1), turn) == doctest::Approx(angle).epsilon(1e-15));
+    CHECK(std::abs(squared_distance(turn, quaternion(1)) - angle * angle) <= 2e-15 * angle * angle);
+    for (const quaternion& b : {turn * start, -(start * turn)}) {
+      CHECK(std::abs(distance(start, b) - angle) < 1e-15);
+      CHECK(distance(start, b) == doctest::Approx(exact_distance(start, b)).epsilon(4e-15));
+      CHECK(distance(b, start) == doctest::Approx(distance(start, b)).epsilon(4e-15));
+      CHECK(distance(start, -b) == distance(start, b));
+      CHECK(distance(-start, b) == distance(start, b));
+      CHECK(squared_distance(start, b) ==
+            doctest::Approx(std::pow(distance(start, b), 2)).epsilon(1e-15));
+    }
+  }
+  CHECK(distance(start, duet::from_rotation_vector(vector(4 * axis)) * start) ==
+        doctest::Approx(2 * pi - 4).epsilon(1e-15));
+  CHECK(distance(start, start) == 0);
+  CHECK(distance(start, -start) == 0);
+  CHECK_THROWS_WITH_AS(static_cast<void>(distance(start, quaternion())),
+                       "duet: distance of the zero quaternion", duet::invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(squared_distance(quaternion(), start)), duet::invalid_input);
+}
+
+TEST_CASE("rotations near each other: all digits, and a metric") {
+  duet_test::random_source random(7);
+  for (int i = 0; i < 100; ++i) {
+    const auto some = [&](double size) {
+      return quaternion(random.uniform(-size, size), random.uniform(-size, size),
+                        random.uniform(-size, size), random.uniform(-size, size));
+    };
+    const quaternion a = normalized(some(1));
+    const quaternion b = normalized(a + some(std::pow(10, -0.15 * i)));
+    const quaternion c = normalized(some(1));
+    CHECK(distance(a, b) == doctest::Approx(exact_distance(a, b)).epsilon(4e-15));
+    CHECK(distance(a, c) <= distance(a, b) + distance(b, c) + 1e-15);
+    CHECK(distance(c * a, c * b) == doctest::Approx(distance(a, b)).epsilon(1e-14).scale(0.1));
+    CHECK(distance(a * c, b * c) == doctest::Approx(distance(a, b)).epsilon(1e-14).scale(0.1));
+  }
+}
+
+TEST_CASE("derivatives, also at and near zero") {
+  // b = exp(r/2) a moves as exp(δ/2) b. The gradient of θ² = |r|² is 2r, the Hessian
+  // 2 ((θ/2) cot(θ/2) (1 − r̂r̂ᵀ) + r̂r̂ᵀ); those of θ are r̂ and ½ cot(θ/2) (1 − r̂r̂ᵀ).
+  const auto square = [](const auto& b) { return squared_distance(start, b); };
+  const auto angle = [](const auto& b) { return distance(start, b); };
+  const matrix along = axis * axis.transpose();
+  for (const double theta : {1e-150, 1e-30, 1e-8, 1e-3, 0.4, 2.0, 3.1}) {
+    CAPTURE(theta);
+    const quaternion b = duet::from_rotation_vector(vector(theta * axis)) * start;
+    CHECK(gap(duet::gradient(square, b, frame::spatial).gradient, vector(2 * theta * axis)) <
+          4e-15);
+    const matrix across = theta / 2 / std::tan(theta / 2) * (matrix::Identity() - along);
+    CHECK(gap(duet::hessian(square, b, frame::spatial).hessian, matrix(2 * (across + along))) <
+          1e-13);
+    if (theta > 1e-4) {
+      CHECK(gap(duet::gradient(angle, b, frame::spatial).gradient, axis) < 1e-15 / theta);
+      CHECK(gap(duet::hessian(angle, b, frame::spatial).hessian, matrix(across / theta)) <
+            1e-14 / (theta * theta));
+    }
+  }
+  const auto [value, slope, curvature] = duet::hessian(square, start, frame::body);
+  CHECK(value == 0);
+  CHECK(slope.norm() == 0);
+  CHECK(gap(curvature, matrix(2 * matrix::Identity())) < 1e-15);
+  // From the identity nothing is rounded, however small the angle.
+  const auto from_one = [](const auto& b) { return distance(quaternion(1), b); };
+  for (const double theta : {1e-300, 1e-150, 1e-8}) {
+    const quaternion b = duet::from_rotation_vector(vector(theta * axis));
+    CHECK(gap(duet::gradient(from_one, b, frame::spatial).gradient, axis) < 1e-15);
+  }
+  // By both ends.
+  const auto both = [](const auto& a, const auto& b) { return squared_distance(a, b); };
+  const quaternion end = duet::from_rotation_vector(vector(0.8 * axis)) * start;
+  const auto g = duet::gradient(both, std::tuple(start, end), frame::spatial).gradient;
+  CHECK(gap(g.head<3>(), vector(-1.6 * axis)) < 4e-15);
+  CHECK(gap(g.tail<3>(), vector(1.6 * axis)) < 4e-15);
+}
+
+TEST_CASE("half a turn apart the derivative is that of the sign as given") {
+  const quaternion half_turn(0, 1, 0, 0);
+  const auto square = [](const auto& b) { return squared_distance(quaternion(1), b); };
+  const auto way = [&](const quaternion& b) {
+    return vector(duet::gradient(square, b, frame::spatial).gradient);
+  };
+  CHECK(square(half_turn) == doctest::Approx(pi * pi).epsilon(1e-15));
+  CHECK(gap(way(half_turn), vector(2 * pi, 0, 0)) < 4e-15);
+  CHECK(gap(way(-half_turn), vector(-2 * pi, 0, 0)) < 4e-15);
+}
+
+TEST_CASE("over batches") {
+  std::vector<quaternion> a, b;
+  for (const double angle : {0.0, 1e-170, 1e-9, 0.4, 2.0, pi, 4.0, 6.28}) {
+    a.push_back(start);
+    b.push_back(duet::from_rotation_vector(vector(angle * axis)) * start);
+  }
+  duet_test::check_lanes<4>([](const auto& p, const auto& q) { return distance(p, q); }, 16, a, b);
+  duet_test::check_lanes<4>([](const auto& p, const auto& q) { return squared_distance(p, q); }, 16,
+                            a, b);
+}
+
+} // namespace test_quaternion_distance
