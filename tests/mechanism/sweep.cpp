@@ -103,14 +103,24 @@ TEST_CASE("other frames, and matrices of dynamic size") {
   const auto chain = robots::panda();
   const auto theta = configurations(6);
   std::vector<dual_quaternion<double>> a(6);
-  std::vector<Eigen::MatrixXd> m(6, Eigen::MatrixXd(6, 7));
+  std::vector<Eigen::MatrixXd> m(6); // which get their sizes
+  m[2].resize(6, 9);
+  m[4].resize(6, 7);
   poses(chain, theta, a, one_core, 3);
   jacobians(chain, theta, frame::hybrid, m, one_core, chain.tip().at_point({0.1, 0, 0}));
   for (std::size_t i = 0; i < 6; ++i) {
     CHECK(ulps_apart(a[i], chain.pose(theta[i], 3)) <= limit);
     const matrix expected =
         jacobian(chain, theta[i], frame::hybrid, chain.tip().at_point({0.1, 0, 0}));
+    CHECK(m[i].cols() == 7);
     CHECK(ulps_apart(matrix(m[i]), expected) <= limit);
+  }
+  std::vector<value_and_jacobian<dual_quaternion<double>, Eigen::MatrixXd>> both(6);
+  poses_and_jacobians(chain, theta, frame::hybrid, both);
+  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 7>> bounded(6);
+  jacobians(chain, theta, frame::hybrid, bounded);
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK(bounded[i] == both[i].jacobian);
   }
 }
 
@@ -120,10 +130,18 @@ TEST_CASE("bad sizes are named") {
   std::vector<dual_quaternion<double>> a(4);
   CHECK(message_of([&] { poses(chain, theta, a); }) ==
         "duet: poses: 5 configurations, but room for 4 results");
-  std::vector<Eigen::MatrixXd> m(5, Eigen::MatrixXd(6, 7));
-  m[3].resize(6, 2);
-  CHECK(message_of([&] { jacobians(chain, theta, frame::body, m); }) ==
-        "duet: jacobians: result 3 is a 6 × 2 matrix, not 6 × 7");
+  std::vector<Eigen::Matrix<double, 6, 6>> fixed(5);
+  CHECK(message_of([&] { jacobians(chain, theta, frame::body, fixed); }) ==
+        "duet: jacobians: result 0 is a 6 × 6 matrix, not 6 × 7");
+  // Room for six columns at most, and where no matrix could be made larger.
+  std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>> bounded(5);
+  bounded[0].resize(6, 6);
+  CHECK(message_of([&] { jacobians(chain, theta, frame::body, bounded); }) ==
+        "duet: jacobians: result 0 is a 6 × 6 matrix, not 6 × 7");
+  std::vector<double> memory(6 * 6);
+  std::vector<Eigen::Map<Eigen::MatrixXd>> maps(5, {memory.data(), 6, 6});
+  CHECK(message_of([&] { jacobians(chain, theta, frame::body, maps); }) ==
+        "duet: jacobians: result 0 is a 6 × 6 matrix, not 6 × 7");
   std::vector<Eigen::VectorXd> wrong(4, Eigen::VectorXd::Zero(7));
   wrong[2].resize(5);
   CHECK(message_of([&] { poses(chain, wrong, a); }) ==

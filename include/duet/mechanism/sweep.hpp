@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <iterator>
 #include <ranges>
@@ -45,14 +46,32 @@ void write_lane(const value_and_jacobian<V, J>& both, int k, To& to) {
   write_lane(both.jacobian, k, to.jacobian);
 }
 
-/// Have the matrices of all results 6 rows and n columns?
+/// May a matrix of this type be given this size?
+template <class M>
+[[nodiscard]] constexpr bool can_become(Eigen::Index rows, Eigen::Index columns) {
+  constexpr auto fits = [](int fixed, int most, Eigen::Index n) {
+    return fixed == Eigen::Dynamic ? most == Eigen::Dynamic || n <= most : n == fixed;
+  };
+  return std::derived_from<M, Eigen::PlainObjectBase<M>> &&
+         fits(M::RowsAtCompileTime, M::MaxRowsAtCompileTime, rows) &&
+         fits(M::ColsAtCompileTime, M::MaxColsAtCompileTime, columns);
+}
+
+/// Gives the matrices of all results 6 rows and n columns.
 template <class Out, class Matrix>
-void require_matrices(const char* function, Out& out, Eigen::Index n, const Matrix& matrix_of) {
+void fit_matrices(const char* function, Out& out, Eigen::Index n, const Matrix& matrix_of) {
   for (std::size_t i = 0; i < std::size(out); ++i) {
-    const auto& m = matrix_of(out[i]);
-    if (m.rows() != 6 || m.cols() != n) {
+    auto& m = matrix_of(out[i]);
+    using type = std::decay_t<decltype(m)>;
+    if (m.rows() == 6 && m.cols() == n) {
+      continue;
+    }
+    if (!can_become<type>(6, n)) {
       throw invalid_input(message("duet: ", function, ": result ", i, " is a ", m.rows(), " × ",
                                   m.cols(), " matrix, not 6 × ", n));
+    }
+    if constexpr (type::SizeAtCompileTime == Eigen::Dynamic) {
+      m.resize(6, n);
     }
   }
 }
@@ -128,13 +147,13 @@ void poses(const C& chain, const X& configurations, Out&& out, execution how = o
 
 /// out[i] = jacobian(chain, configurations[i], frame, at), as `poses`.
 ///
-/// Elements of `out` are 6 × n matrices of fixed or dynamic size; the latter must have it already.
-/// \throws invalid_input as `poses`, and for a matrix of another size
+/// Elements of `out` are 6 × n matrices; those of a size known at run time are given it.
+/// \throws invalid_input as `poses`, and for a matrix of another fixed size, or whose bound is less
 template <SerialChain C, Configurations X, FrameConstant Frame, std::ranges::contiguous_range Out,
           PlaceOnChain<C> At = tip_of_chain>
 void jacobians(const C& chain, const X& configurations, Frame frame_of_result, Out&& out,
                execution how = one_core, const At& at = {}) {
-  detail::require_matrices(
+  detail::fit_matrices(
       "jacobians", out, chain.size(), [](auto& m) -> auto& { return m; });
   detail::sweep("jacobians", chain, detail::read_only(configurations), out, how,
                 [&](const auto& theta) { return jacobian(chain, theta, frame_of_result, at); });
@@ -145,7 +164,7 @@ template <SerialChain C, Configurations X, FrameConstant Frame, std::ranges::con
           PlaceOnChain<C> At = tip_of_chain>
 void poses_and_jacobians(const C& chain, const X& configurations, Frame frame_of_result, Out&& out,
                          execution how = one_core, const At& at = {}) {
-  detail::require_matrices(
+  detail::fit_matrices(
       "poses_and_jacobians", out, chain.size(), [](auto& both) -> auto& { return both.jacobian; });
   detail::sweep(
       "poses_and_jacobians", chain, detail::read_only(configurations), out, how,
