@@ -106,12 +106,45 @@ TEST_CASE("singular configurations") {
   CHECK_THROWS_AS((void)manipulability_gradient(twice, zero), invalid_input);
 }
 
+TEST_CASE("the gradient within rounding of a singularity is as steep as beside it") {
+  const auto arm = robots::ur5e().table();
+  coordinates<6> theta;
+  theta << .3, -1, 1e-6, -.7, .9, .7; // the elbow is all but stretched
+  const double slope = manipulability_gradient(arm, theta).gradient[2];
+  CHECK(slope > .05);
+  int regular = 0;
+  for (const double bend : {1e-14, 1e-15, 7e-16, 4e-16, 1e-16, 5e-17, 1e-17, 1e-100}) {
+    CAPTURE(bend);
+    theta[2] = bend;
+    if (manipulability(arm, theta) > 0) { // as rounded; of either side
+      ++regular;
+      coordinates<6> g = manipulability_gradient(arm, theta).gradient;
+      CHECK(std::abs(g[2]) == doctest::Approx(slope).epsilon(1e-6));
+      g[2] = 0;
+      CHECK(g.norm() < 1e-13);
+    }
+  }
+  CHECK(regular > 3);
+
+  // |det M| M⁻¹ is but for its sign the adjugate, whatever the smallest pivot.
+  for (const double small : {1e-3, 1e-16, -1e-17, 1e-140}) {
+    Eigen::Matrix2d m, adjugate;
+    m << 1, 2, 0, small;
+    adjugate << small, -2, 0, 1;
+    const auto [volume, of_entries] = detail::volume_of<true>(m);
+    CHECK(std::abs(volume - std::abs(small)) <= 1e-15 * std::abs(small));
+    CHECK(gap(of_entries, small > 0 ? adjugate : Eigen::Matrix2d(-adjugate)) < 1e-15);
+  }
+}
+
 TEST_CASE("as many joints as there turn out to be") {
   const auto panda = robots::panda().table();
   const serial_chain<-9> chain = panda;
   for (const auto& theta : duet_test::configurations(panda, 3)) {
     const Eigen::VectorXd x = theta;
     CHECK(manipulability(chain, x) == doctest::Approx(manipulability(panda, theta)).epsilon(1e-10));
+    CHECK(gap(manipulability_gradient(chain, x).gradient,
+              manipulability_gradient(panda, theta).gradient) < 1e-13);
   }
 }
 

@@ -41,35 +41,45 @@ template <class C, class X, PlaceOnChain<C> At = tip_of_chain>
 }
 
 template <class S, class M>
-struct volume_and_inverse {
-  S volume;  ///< |det R| of M = QR, without the squares of what is small in det(MᵀM)
-  M inverse; ///< M⁺, where it was asked for
+struct volume_and_slope {
+  S volume; ///< w = |det R| of M = QR, without the squares of what is small in det(MᵀM)
+  M slope;  ///< w M⁺, the transpose of ∂w/∂M, where it was asked for
 };
 
-/// By QR with pivoting, which lanes of batches take one by one.
-template <bool WithInverse, class M>
-[[nodiscard]] auto decomposed(const M& m) {
+/// By QR with pivoting, which lanes of batches take one by one. The last pivot is the smallest, and
+/// however small it is, the slope is not: w M⁺ = |r₀ r₁ …| (|r_last| R⁻¹) Qᵀ.
+template <bool WithSlope, class M>
+[[nodiscard]] auto volume_of(const M& m) {
   using std::abs;
   using S = typename M::Scalar;
-  using square = Eigen::Matrix<S, M::RowsAtCompileTime, M::RowsAtCompileTime, Eigen::ColMajor,
-                               M::MaxRowsAtCompileTime, M::MaxRowsAtCompileTime>;
-  using inverse = Eigen::Matrix<S, M::ColsAtCompileTime, M::RowsAtCompileTime, Eigen::ColMajor,
-                                M::MaxColsAtCompileTime, M::MaxRowsAtCompileTime>;
-  volume_and_inverse<S, inverse> result{S(1), {}};
+  using square = Eigen::Matrix<S, M::ColsAtCompileTime, M::ColsAtCompileTime, Eigen::ColMajor,
+                               M::MaxColsAtCompileTime, M::MaxColsAtCompileTime>;
+  using slope = Eigen::Matrix<S, M::ColsAtCompileTime, M::RowsAtCompileTime, Eigen::ColMajor,
+                              M::MaxColsAtCompileTime, M::MaxRowsAtCompileTime>;
+  volume_and_slope<S, slope> result{S(1), {}};
   if constexpr (Batched<S>) {
-    const auto volume = [](const auto& x) { return decomposed<false>(x).volume; };
-    result.volume = by_lane(volume, m);
-    if constexpr (WithInverse) {
-      result.inverse = by_lane([](const auto& x) { return decomposed<true>(x).inverse; }, m);
+    result.volume = by_lane([](const auto& x) { return volume_of<false>(x).volume; }, m);
+    if constexpr (WithSlope) {
+      result.slope = by_lane([](const auto& x) { return volume_of<true>(x).slope; }, m);
     }
   } else {
     const Eigen::ColPivHouseholderQR<M> qr(m);
-    for (Eigen::Index i = 0; i < qr.cols(); ++i) {
-      result.volume *= qr.matrixQR()(i, i);
+    const Eigen::Index last = qr.cols() - 1;
+    S others(1);
+    for (Eigen::Index i = 0; i < last; ++i) {
+      others *= qr.matrixQR()(i, i);
     }
-    result.volume = S(abs(result.volume));
-    if constexpr (WithInverse) {
-      result.inverse = qr.solve(square::Identity(m.rows(), m.rows()));
+    others = S(abs(others));
+    const S smallest = abs(qr.matrixQR()(last, last));
+    result.volume = others * smallest;
+    if constexpr (WithSlope) { // by qr.solve it would lack what is divided by a small pivot
+      square r = square::Identity(last + 1, last + 1) * smallest;
+      qr.matrixQR()
+          .template topLeftCorner<M::ColsAtCompileTime, M::ColsAtCompileTime>(last + 1, last + 1)
+          .template triangularView<Eigen::Upper>()
+          .solveInPlace(r);
+      const M q = qr.householderQ() * M::Identity(m.rows(), m.cols());
+      result.slope = qr.colsPermutation() * (others * r * q.transpose());
     }
   }
   return result;
@@ -84,17 +94,21 @@ template <bool WithInverse, class M>
 /// Arguments as `jacobian`.
 template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto manipulability(const C& chain, const X& theta, const At& at = {}) {
-  return detail::decomposed<false>(detail::tall_jacobian(chain, theta, at)).volume;
+  return detail::volume_of<false>(detail::tall_jacobian(chain, theta, at)).volume;
 }
 
 /// w and ∇w, ∂w/∂θ_j = w tr(J⁺ ∂J/∂θ_j). Arguments as `jacobian`.
+///
+/// Within rounding of a singularity they are those of J as it is rounded, which may be on the other
+/// side.
+///
 /// \return `value_and_gradient`
 /// \throws invalid_input where J loses rank: w has a kink there
 template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto manipulability_gradient(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
   using vector = detail::joint_vector<S, C::joints>;
-  const auto [w, inverse] = detail::decomposed<true>(detail::tall_jacobian(chain, theta, at));
+  const auto [w, slope] = detail::volume_of<true>(detail::tall_jacobian(chain, theta, at));
   if (any(innermost(w) == 0)) {
     throw invalid_input("duet: manipulability_gradient: the Jacobian loses rank here");
   }
@@ -102,12 +116,12 @@ template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
   const auto h = kinematic_hessian(chain, theta, frame::hybrid, at);
   for (Eigen::Index j = 0; j < chain.size(); ++j) {
     S trace(0);
-    for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
-      for (Eigen::Index k = 0; k < inverse.cols(); ++k) {
-        trace += inverse(i, k) * (chain.size() >= 6 ? h(i, k, j) : h(k, i, j));
+    for (Eigen::Index i = 0; i < slope.rows(); ++i) {
+      for (Eigen::Index k = 0; k < slope.cols(); ++k) {
+        trace += slope(i, k) * (chain.size() >= 6 ? h(i, k, j) : h(k, i, j));
       }
     }
-    result.gradient[j] = result.value * trace;
+    result.gradient[j] = trace;
   }
   return result;
 }
