@@ -143,9 +143,12 @@ TEST_CASE("as many joints as there turn out to be") {
   for (const auto& theta : duet_test::configurations(panda, 3)) {
     const Eigen::VectorXd x = theta;
     CHECK(manipulability(chain, x) == doctest::Approx(manipulability(panda, theta)).epsilon(1e-10));
-    CHECK(gap(manipulability_gradient(chain, x).gradient,
-              manipulability_gradient(panda, theta).gradient) < 1e-13);
   }
+  coordinates<7> regular;
+  regular << .3, -1, 1.5, -1.2, .4, .9, .7;
+  const Eigen::VectorXd x = regular;
+  CHECK(gap(manipulability_gradient(chain, x).gradient,
+            manipulability_gradient(panda, regular).gradient) < 1e-14);
 }
 
 } // namespace test_mechanism_manipulability
