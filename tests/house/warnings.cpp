@@ -41,6 +41,32 @@ int main() {
   const auto knots = clamped_knots(std::vector<double>{0, 2, 4}, 4);
   std::cout << to_text(fit<cumulative_bspline<double, 4>>(times, rows, knots));
 
+  // Some fields by name, the others as they are.
+  const auto weighted = fit<cumulative_bspline<double, 4>>(times, rows, knots, {.outlier = 0});
+  std::cout << weighted.rms << weighted.outlier;
+  [[maybe_unused]] const std::tuple some{fit_options{.length = 2},
+                                         fit_options{.max_iterations = 3},
+                                         table_options{.length = 2},
+                                         table_options{.most_rows = 100},
+                                         plan_options{.tolerance = 1e-9},
+                                         plan_options{.iterations = 100},
+                                         inverse_kinematics_options{.tolerance = 1e-9},
+                                         inverse_kinematics_options{.seed = 2},
+                                         time_options{.parts = 10},
+                                         newton_options{.max_iterations = 3},
+                                         closed_loop_options{.largest_step = .1},
+                                         comparison_options{.samples = 3},
+                                         comparison_options{.tolerance = 3},
+                                         real_numbers{.lower = 0},
+                                         real_numbers{.upper = 0},
+                                         joint_limits<>{.lower = 0},
+                                         joint_limits<>{.velocity = 1},
+                                         joint<>{.kind = joint_kind::prismatic},
+                                         joint<>{.pitch = 1},
+                                         dh_row<>{.d = 1},
+                                         scene{.margin = .01},
+                                         scene{.obstacles = {}}};
+
   const expression::symbol<"t"> t;
   std::cout << to_latex(expression::derivative(exp(-t * t), t)) << "\n";
 }

@@ -30,8 +30,8 @@ using obstacle = std::variant<sphere<double>, box<double>, half_space<double>>;
 
 /// What a chain consists of, and what it must not touch, in the frame of its base.
 struct scene {
-  std::vector<link_body> bodies;   ///< what the chain consists of
-  std::vector<obstacle> obstacles; ///< in the frame of the chain's base
+  std::vector<link_body> bodies = {};   ///< what the chain consists of
+  std::vector<obstacle> obstacles = {}; ///< in the frame of the chain's base
   /// How far planners keep them apart, in units of length.
   double margin = 0;
   /// From how far beyond the margin on planners look at an obstacle before each step.

@@ -23,11 +23,11 @@ struct fit_options {
   /// residual. Infinite: plain least squares.
   double outlier = std::numeric_limits<double>::infinity();
   /// How much each row counts, wᵢ > 0 in proportion; none: all the same.
-  std::vector<double> weights;
+  std::vector<double> weights = {};
   /// Σᵢ of the rows' errors, or one matrix for all of them: 3 × 3, rad², of turns in the row's body
   /// axes, for poses 6 × 6 of the twists [v; ω] there. Residuals are then |Lᵢ⁻¹ rᵢ|, Σᵢ = Lᵢ Lᵢᵀ,
   /// in standard deviations, `outlier` with them, and `length` does not matter. None: of one size.
-  std::vector<Eigen::MatrixXd> covariances;
+  std::vector<Eigen::MatrixXd> covariances = {};
   int max_iterations = 100; ///< of the least-squares method
 };
 
