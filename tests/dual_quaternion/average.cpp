@@ -87,6 +87,46 @@ TEST_CASE("the equation holds, in rotation and translation") {
   }
 }
 
+TEST_CASE("within a quarter turn of one rotation no other has a smaller sum of squares") {
+  duet_test::random_source random(3);
+  const auto turn = [&](double angle) {
+    const auto d = random.direction<3>();
+    return duet::from_rotation_vector(vector(angle * vector(d[0], d[1], d[2])));
+  };
+  for (int table = 0; table < 100; ++table) {
+    const rotation middle = turn(random.uniform(0, 3));
+    std::vector<rotation> q;
+    std::vector<double> w;
+    for (int k = 0; k < 2 + table % 8; ++k) {
+      q.push_back(middle * turn(1.57)); // all at the edge
+      w.push_back(random.uniform(0.01, 1));
+    }
+    const auto direction = [&](const rotation& m) {
+      vector sum = vector::Zero();
+      double weights = 0;
+      for (std::size_t k = 0; k < q.size(); ++k) {
+        sum += w[k] * duet::rotation_vector(conj(m) * q[k]);
+        weights += w[k];
+      }
+      return vector(sum / weights);
+    };
+    const auto squares = [&](const rotation& m) {
+      double sum = 0;
+      for (std::size_t k = 0; k < q.size(); ++k) {
+        sum += w[k] * duet::rotation_vector(conj(m) * q[k]).squaredNorm();
+      }
+      return sum;
+    };
+    const double found = squares(average(q, w));
+    for (rotation m : q) { // downhill from each
+      for (int i = 0; i < 100; ++i) {
+        m = normalized(m * duet::from_rotation_vector(direction(m)));
+      }
+      CHECK(found <= squares(m) * (1 + 1e-9) + 1e-12);
+    }
+  }
+}
+
 TEST_CASE("pure translations have the mean of the translations") {
   std::vector<dual_quaternion> p;
   for (const vector& t : {vector(1, 2, 3), vector(-2, 0, 1), vector(4, 4, 2)}) {

@@ -1,7 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/dual/eigen_traits.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/interop/boost_odeint.hpp>
+#include <duet/quaternion/rate.hpp>
+#include <duet/quaternion/rotation.hpp>
 
 #include <boost/numeric/odeint/external/eigen/eigen.hpp>
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
@@ -125,6 +129,33 @@ TEST_CASE("runge_kutta4 with constant steps") {
       eigen_state>();
   check_constant_steps<
       odeint::runge_kutta4<eigen_state, double, eigen_state, double, range_algebra>, eigen_state>();
+}
+
+TEST_CASE("rotations and poses are states with vector_space_algebra") {
+  using odeint::vector_space_algebra;
+  using rotation = duet::quaternion<D>;
+  const duet::vector3<D> omega(D(0), D(0), D::variable(2, 0));
+  rotation q(1);
+  odeint::integrate_const(
+      odeint::runge_kutta4<rotation, double, rotation, double, vector_space_algebra>(),
+      [&](const rotation& at, rotation& rate, double) {
+        rate = quaternion_rate(at, omega, duet::frame::body);
+      },
+      q, 0.0, 1.0, 1e-3);
+  const auto turned = duet::rotation_vector(normalized(q));
+  CHECK(std::abs(turned[2].value() - 2) <= 1e-12);
+  CHECK(std::abs(turned[2].partial(0) - 1) <= 1e-12);
+
+  using pose = duet::dual_quaternion<double>;
+  pose a(1.0);
+  const Eigen::Matrix<double, 6, 1> twist(1, 2, 3, 0, 0, 2);
+  odeint::integrate_const(
+      odeint::runge_kutta4<pose, double, pose, double, vector_space_algebra>(),
+      [&](const pose& at, pose& rate, double) { rate = pose_rate(at, twist, duet::frame::hybrid); },
+      a, 0.0, 1.0, 1e-3);
+  a = normalized(a);
+  CHECK((duet::translation(a) - Eigen::Vector3d(1, 2, 3)).norm() <= 1e-12);
+  CHECK(std::abs(duet::rotation(a).z() - std::sin(1)) <= 1e-13);
 }
 
 TEST_CASE("runge_kutta_dopri5 with step size control that looks at values") {

@@ -87,8 +87,10 @@ private:
 /// The mean m of unit quaternions, of rotations or of poses: Σ wᵢ log(m* qᵢ) = 0, each qᵢ with the
 /// sign nearer to m.
 ///
-/// Of rotations it is the one with the smallest sum of squared angles, unique where all are less
-/// than a quarter turn from one of them; of poses the bi-invariant mean: moving or turning all
+/// Of rotations it is the one with the smallest sum of squared angles where all are less than a
+/// quarter turn from some one rotation: there it is unique. Where they are farther apart the
+/// equation may have several solutions, and this is one of them. Of poses it is the bi-invariant
+/// mean: moving or turning all
 /// moves the mean along, from the left and from the right, and its rotation is the mean of the
 /// rotations. Infinitesimal parts, those of poses among them, follow from the equation, not through
 /// the iteration.
