@@ -4,8 +4,10 @@
 #include "support/random.hpp"
 
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/look_up_table.hpp>
+#include <duet/spline/recording.hpp>
 #include <duet/spline/table_file.hpp>
 
 #include <doctest/doctest.h>
@@ -262,6 +264,86 @@ TEST_CASE("columns apart by semicolons") {
   const poses euroc = loaded<screw>("1403636580868555648;1;2;3;0.6;0;0;0.8\n");
   CHECK(euroc.parameters == std::vector<double>{1403636580.868555648});
   CHECK(euroc.elements == expected.elements);
+}
+
+TEST_CASE("Euler angles, where the caller says which") {
+  using duet::angle_unit, duet::euler_columns;
+  const double degree = std::acos(-1.0) / 180;
+  const scratch_file file("angles.csv");
+  const auto read = [&](const std::string& text, const euler_columns& angles) {
+    file.write(text);
+    return duet::load_table<double>(file.path, angles);
+  };
+  const euler_columns aircraft(duet::zyx, {"yaw", "pitch", "roll"}, angle_unit::degree);
+  const auto gap = [](const rotation& a, const rotation& b) { return norm(a - b); };
+  const rotation turned = duet::from_euler<duet::zyx>(30 * degree, -20 * degree, 10 * degree);
+  for (const char* text : {"t,roll,pitch,yaw\n0.5,10,-20,30\n",
+                           "Yaw [deg];Roll [degrees];Pitch [\u00b0];t\n30;10;-20;0.5\n",
+                           "# t roll pitch yaw\n0.5 10 -20 30\n",
+                           "# turns, by hand\n# t roll pitch yaw\n# degrees\n0.5 10 -20 30\n",
+                           "t,qw,qx,qy,qz,roll,pitch,yaw\n0.5,1,0,0,0,10,-20,30\n"}) {
+    const rotations table = read(text, aircraft);
+    CHECK(table.parameters == std::vector<double>{0.5});
+    CHECK(gap(table.elements[0], turned) < 4e-16);
+  }
+  // Every sequence, in radians; whole turns are kept: the sign of the quaternion is theirs.
+  const std::string text = "t,a,b,c\n0,0.3,-1.2,7\n";
+  const auto of = [&](duet::euler_sequence s) {
+    return read(text, euler_columns(s, {"a", "b", "c"}, angle_unit::radian)).elements[0];
+  };
+  CHECK(gap(of(duet::xyz), duet::from_euler<duet::xyz>(0.3, -1.2, 7.0)) < 4e-16);
+  CHECK(gap(of(duet::zxz), duet::from_euler<duet::zxz>(0.3, -1.2, 7.0)) < 4e-16);
+  CHECK(gap(of(duet::yzx), duet::from_euler<duet::yzx>(0.3, -1.2, 7.0)) < 4e-16);
+  // Poses, and recordings with a row that is left out.
+  file.write("time [ms],x,y,z,roll,pitch,yaw\n0,1,2,3,0,0,90\n5,1,2,3,0,nan,90\n");
+  const auto recorded = duet::load_recording<screw>(file.path, aircraft);
+  CHECK(recorded.left_out == 1);
+  CHECK(recorded.faults.at(0).reason == "pitch is nan: left out");
+  const auto& pose = recorded.table.elements.at(0);
+  CHECK(gap(duet::rotation(pose), duet::from_euler<duet::zyx>(90 * degree, 0.0, 0.0)) < 4e-16);
+  CHECK((duet::translation(pose) - vector3<double>(1, 2, 3)).norm() < 1e-15);
+
+  const auto complaint = [&](const std::string& content, const euler_columns& angles) {
+    const std::string message =
+        duet_test::message_of<duet::file_error>([&] { static_cast<void>(read(content, angles)); });
+    const std::string begin = "duet: " + file.path + ":";
+    REQUIRE(message.starts_with(begin));
+    return message.substr(begin.size());
+  };
+  CHECK(complaint("t,roll,pitch\n0,1,2\n", aircraft) ==
+        std::string("1: the header names no column yaw: ") + duet::detail::known_columns);
+  CHECK(complaint("t,roll,pitch,yaw [rad]\n0,1,2,3\n", aircraft) ==
+        "1: the header has yaw [rad], euler_columns other angles: degrees");
+  CHECK(complaint("t,a,b [deg],c\n0,1,2,3\n",
+                  euler_columns(duet::zyx, {"a", "b", "c"}, angle_unit::radian)) ==
+        "1: the header has b [deg], euler_columns other angles: radians");
+  CHECK(complaint("t,roll,pitch,yaw,Yaw\n0,1,2,3,3\n", aircraft) ==
+        "1: the header has both 'yaw' and 'Yaw'");
+  CHECK(complaint("0 1 2 3 0 0 0 1\n", aircraft) ==
+        "1: no header before the first row names the columns of angles");
+  CHECK(complaint("1 0 0 0 0 1 0 0 0 0 1 0\n", aircraft) ==
+        "1: no header before the first row names the columns of angles");
+  CHECK(complaint("t,roll,pitch,yaw\n0,1,2,north\n", aircraft) ==
+        "2: yaw is not a number: 'north'");
+  // Without the caller's word they are refused.
+  file.write("t,roll,pitch,yaw\n0,1,2,3\n");
+  const std::string message = duet_test::message_of<duet::file_error>(
+      [&] { static_cast<void>(duet::load_table<double>(file.path)); });
+  CHECK(message.find("names no column qw") != message.npos);
+  CHECK(message.ends_with("Euler angles where `euler_columns` names them"));
+
+  const auto refusal = [](duet::euler_sequence s, const char* third) {
+    return duet_test::message_of<duet::invalid_input>([&] {
+      static_cast<void>(euler_columns(s, {"a", "b", third}, angle_unit::radian));
+    });
+  };
+  CHECK(refusal({0, 0, 1}, "c") ==
+        "duet: euler_columns: axes 0, 0, 1: each is 0, 1 or 2, and no two neighbours are equal");
+  CHECK(!refusal({0, 1, 3}, "c").empty());
+  CHECK(!refusal({0, 1, 1}, "c").empty());
+  CHECK(refusal(duet::zyx, "a") ==
+        "duet: euler_columns: the names 'a' and 'a': each angle has a column of its own");
+  CHECK(!refusal(duet::zyx, "").empty());
 }
 
 TEST_CASE("what rostopic echo -p writes") {

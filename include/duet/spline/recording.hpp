@@ -91,6 +91,35 @@ namespace detail {
   return once;
 }
 
+template <class T>
+[[nodiscard]] recording<T> loaded_recording(const std::string& path, const std::string& times,
+                                            const euler_columns* angles) {
+  recording<T> result;
+  std::vector<table_row> rows;
+  std::size_t count = 0;
+  result.remark =
+      for_each_table_row(path, times, !is_rotation_scalar<T>, angles, [&](const table_row& row) {
+        ++count;
+        if (row.fault.empty()) {
+          rows.push_back(row);
+        } else {
+          result.faults.push_back({row.line, printable(row.fault + ": left out")});
+        }
+      });
+  if (rows.empty()) {
+    throw file_error(path, "holds no usable rows");
+  }
+  rows = in_order(path, std::move(rows), result.faults);
+  result.left_out = count - rows.size();
+  result.start = rows.front().time.seconds();
+  for (const table_row& row : rows) {
+    result.table.parameters.push_back(row.time.since(rows.front().time));
+    result.table.elements.push_back(element_of<T>(row));
+    result.lines.push_back(row.line);
+  }
+  return result;
+}
+
 } // namespace detail
 
 /// Reads recorded rotations or poses of any format that `load_table` reads. Rows that are not
@@ -104,30 +133,14 @@ namespace detail {
 /// the line of a row that is ragged or has cells that are no numbers
 template <class T>
 [[nodiscard]] recording<T> load_recording(const std::string& path, const std::string& times = {}) {
-  recording<T> result;
-  std::vector<detail::table_row> rows;
-  std::size_t count = 0;
-  result.remark = detail::for_each_table_row(
-      path, times, !detail::is_rotation_scalar<T>, [&](const detail::table_row& row) {
-        ++count;
-        if (row.fault.empty()) {
-          rows.push_back(row);
-        } else {
-          result.faults.push_back({row.line, printable(row.fault + ": left out")});
-        }
-      });
-  if (rows.empty()) {
-    throw file_error(path, "holds no usable rows");
-  }
-  rows = detail::in_order(path, std::move(rows), result.faults);
-  result.left_out = count - rows.size();
-  result.start = rows.front().time.seconds();
-  for (const detail::table_row& row : rows) {
-    result.table.parameters.push_back(row.time.since(rows.front().time));
-    result.table.elements.push_back(detail::element_of<T>(row));
-    result.lines.push_back(row.line);
-  }
-  return result;
+  return detail::loaded_recording<T>(path, times, nullptr);
+}
+
+/// Reads a recording whose rotations are Euler angles, in the columns, sequence and unit given. All
+/// else is as without; the file needs a header.
+template <class T>
+[[nodiscard]] recording<T> load_recording(const std::string& path, const euler_columns& angles) {
+  return detail::loaded_recording<T>(path, {}, &angles);
 }
 
 } // namespace duet

@@ -11,6 +11,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/look_up_table.hpp>
+#include <duet/spline/tables/euler_columns.hpp>
 #include <duet/spline/tables/row_reader.hpp>
 
 #include <algorithm>
@@ -146,6 +147,33 @@ void save_table(const std::string& path, const look_up_table<T>& table,
   write_files(times, column, path, text);
 }
 
+namespace detail {
+
+template <class T>
+[[nodiscard]] look_up_table<T> loaded_table(const std::string& path, const std::string& times,
+                                            const euler_columns* angles) {
+  look_up_table<T> table;
+  for_each_table_row(path, times, !is_rotation_scalar<T>, angles, [&](const table_row& row) {
+    if (!row.fault.empty()) {
+      throw file_error(path, row.line, row.fault);
+    }
+    const double u = row.time.seconds();
+    if (!table.parameters.empty() && !(u > table.parameters.back())) {
+      throw file_error(path, row.line,
+                       "parameter " + to_text(u) + " does not increase, the row before has " +
+                           to_text(table.parameters.back()));
+    }
+    table.parameters.push_back(u);
+    table.elements.push_back(detail::element_of<T>(row));
+  });
+  if (table.parameters.empty()) {
+    throw file_error(path, "holds no rows");
+  }
+  return table;
+}
+
+} // namespace detail
+
 /// Reads a table of rotations (T = double) or poses (T = screw_dual<double>) of any format that
 /// `save_table` writes, of `rostopic echo -p`, and with semicolons in place of commas. The file
 /// tells which one it is, and in which order its columns are: by a header, a first line or a
@@ -163,25 +191,14 @@ void save_table(const std::string& path, const look_up_table<T>& table,
 /// the column and its value
 template <class T>
 [[nodiscard]] look_up_table<T> load_table(const std::string& path, const std::string& times = {}) {
-  look_up_table<T> table;
-  detail::for_each_table_row(
-      path, times, !detail::is_rotation_scalar<T>, [&](const detail::table_row& row) {
-        if (!row.fault.empty()) {
-          throw file_error(path, row.line, row.fault);
-        }
-        const double u = row.time.seconds();
-        if (!table.parameters.empty() && !(u > table.parameters.back())) {
-          throw file_error(path, row.line,
-                           "parameter " + to_text(u) + " does not increase, the row before has " +
-                               to_text(table.parameters.back()));
-        }
-        table.parameters.push_back(u);
-        table.elements.push_back(detail::element_of<T>(row));
-      });
-  if (table.parameters.empty()) {
-    throw file_error(path, "holds no rows");
-  }
-  return table;
+  return detail::loaded_table<T>(path, times, nullptr);
+}
+
+/// Reads a table whose rotations are Euler angles, in the columns, sequence and unit given. All
+/// else is as without; the file needs a header.
+template <class T>
+[[nodiscard]] look_up_table<T> load_table(const std::string& path, const euler_columns& angles) {
+  return detail::loaded_table<T>(path, {}, &angles);
 }
 
 } // namespace duet

@@ -3,6 +3,7 @@
 
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/text_rows.hpp>
+#include <duet/spline/tables/euler_columns.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,9 +23,10 @@ namespace duet::detail {
 /// What a column of such a table may hold; `other` is passed over.
 enum class table_column : std::size_t { u, x, y, z, qw, qx, qy, qz, other };
 
-inline constexpr const char* known_columns = "known are u (tau, t, time, timestamp), x y z (tx, "
-                                             "px, p_x, p_RS_R_x ...) and qw qx qy qz (q_w, "
-                                             "q_RS_w ...), with units as in `t [s]`";
+inline constexpr const char* known_columns =
+    "known are u (tau, t, time, timestamp), x y z (tx, px, p_x, p_RS_R_x ...) and qw qx qy qz "
+    "(q_w, "
+    "q_RS_w ...), with units as in `t [s]`; Euler angles where `euler_columns` names them";
 
 /// A name in a header: of what, and in which unit.
 struct column_name {
@@ -97,7 +99,8 @@ private:
   }
 };
 
-/// Where in a row its eight numbers stand: u, x y z, qw qx qy qz.
+/// Where in a row its eight numbers stand: u, x y z, qw qx qy qz, or seven, with three Euler angles
+/// in place of the last four.
 struct table_layout {
   static constexpr std::size_t absent = std::size_t(-1);
 
@@ -105,9 +108,10 @@ struct table_layout {
   std::array<std::string, 8> names; ///< as in the header
   std::size_t columns = 0;
   std::array<std::string, 8> units;
-  bool has_time = false;  ///< its parameter is a time
-  bool is_euroc = false;  ///< named as in the files of the EuRoC data set
-  bool is_of_ros = false; ///< its time is as `rostopic echo -p` writes it
+  bool has_time = false;   ///< its parameter is a time
+  bool is_euroc = false;   ///< named as in the files of the EuRoC data set
+  bool is_of_ros = false;  ///< its time is as `rostopic echo -p` writes it
+  bool has_angles = false; ///< Euler angles in place of a quaternion
 
   table_layout() { at.fill(absent); }
   /// Columns in this order.
@@ -120,17 +124,19 @@ struct table_layout {
     }
   }
 
-  /// \param has_u, has_place  what the rows must have besides quaternions
+  /// \param has_u, has_place  what the rows must have besides rotations
+  /// \param angles  which columns are Euler angles; none: rotations are quaternions
   /// \return what is wrong with the header, empty if nothing
   [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_u,
-                                 bool has_place) {
+                                 bool has_place, const euler_columns* angles = nullptr) {
     columns = header.size();
+    has_angles = angles != nullptr;
     for (std::size_t i = 0; i < columns; ++i) {
       const column_name cell(header[i]);
-      if (cell.what == table_column::other) {
+      const std::size_t k = has_angles ? place_among(*angles, cell) : std::size_t(cell.what);
+      if (k == std::size_t(table_column::other)) {
         continue;
       }
-      const auto k = std::size_t(cell.what);
       // Of ROS's two times the message's own is that of the measurement, and comes second.
       const bool is_better_time = names[k] == "%time" && cell.name == "field_header_stamp";
       if (at[k] != absent && !is_better_time) {
@@ -143,10 +149,39 @@ struct table_layout {
       is_euroc = is_euroc || cell.name.starts_with("p_rs_");
       is_of_ros = is_of_ros || cell.is_of_ros;
     }
+    return missing(has_u, has_place, angles);
+  }
+
+private:
+  /// Angles stand where the first three numbers of a quaternion would.
+  [[nodiscard]] static std::size_t place_among(const euler_columns& angles,
+                                               const column_name& cell) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (cell.name == column_name(angles.names()[k]).name) {
+        return std::size_t(table_column::qw) + k;
+      }
+    }
+    return std::size_t(cell.what < table_column::qw ? cell.what : table_column::other);
+  }
+
+  [[nodiscard]] static bool is_unit_of(const euler_columns& angles, const std::string& unit) {
+    return unit.empty() ||
+           (angles.unit() == angle_unit::degree
+                ? unit == "deg" || unit == "degree" || unit == "degrees" || unit == "\u00b0"
+                : unit == "rad" || unit == "radian" || unit == "radians");
+  }
+
+  /// What the header should name but does not, and units of angles that are not those given.
+  [[nodiscard]] std::string missing(bool has_u, bool has_place, const euler_columns* angles) const {
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
-    for (std::size_t k = 0; k < 8; ++k) {
+    for (std::size_t k = 0; k < (has_angles ? 7 : 8); ++k) {
       if (at[k] == absent && (k == 0 ? has_u : k >= 4 || has_place)) {
-        return std::string("the header names no column ") + short_names[k] + ": " + known_columns;
+        const std::string name = has_angles && k >= 4 ? angles->names()[k - 4] : short_names[k];
+        return "the header names no column " + name + ": " + known_columns;
+      }
+      if (has_angles && k >= 4 && !is_unit_of(*angles, units[k])) {
+        return "the header has " + names[k] + ", euler_columns other angles: " +
+               (angles->unit() == angle_unit::degree ? "degrees" : "radians");
       }
     }
     return {};
@@ -156,7 +191,7 @@ struct table_layout {
 /// A comment before the first row that seems to name the columns.
 class commented_header {
 public:
-  void look_at(std::size_t line, std::string_view comment) {
+  void look_at(std::size_t line, std::string_view comment, const euler_columns* angles) {
     std::vector<std::string_view> cells;
     split_cells(comment, cells);
     if (cells.size() > 1 && cells[0].ends_with(':')) { // `columns: t x y z ...`
@@ -166,23 +201,32 @@ public:
     for (const std::string_view cell : cells) {
       has[std::size_t(column_name(cell).what)] = true;
     }
-    const bool has_quaternion = has[4] && has[5] && has[6] && has[7];
-    if (has_quaternion ||
+    const auto has_angle = [&](const std::string& name) {
+      return std::any_of(cells.begin(), cells.end(), [&](std::string_view cell) {
+        return column_name(cell).name == column_name(name).name;
+      });
+    };
+    const bool has_rotation =
+        angles == nullptr ? has[4] && has[5] && has[6] && has[7]
+                          : std::all_of(angles->names().begin(), angles->names().end(), has_angle);
+    if (has_rotation ||
         (!is_certain_ && cells.size() > 1 && column_name(cells[0]).what == table_column::u)) {
       line_ = line;
       cells_.assign(cells.begin(), cells.end());
-      is_certain_ = has_quaternion;
+      is_certain_ = has_rotation;
     }
   }
 
   /// The layout that it gives rows of so many columns, if any.
   /// \throws file_error where it is in doubt
   [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
-                                                   bool has_u, bool has_place) const {
+                                                   bool has_u, bool has_place,
+                                                   const euler_columns* angles) const {
     table_layout result;
     if (cells_.size() == columns) {
       const std::vector<std::string_view> header(cells_.begin(), cells_.end());
-      if (const std::string problem = result.read(header, has_u, has_place); !problem.empty()) {
+      if (const std::string problem = result.read(header, has_u, has_place, angles);
+          !problem.empty()) {
         throw file_error(path, line_, problem);
       }
       return result;

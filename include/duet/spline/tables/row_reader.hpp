@@ -8,6 +8,7 @@
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/tables/columns.hpp>
+#include <duet/spline/tables/euler_columns.hpp>
 #include <duet/spline/tables/file_rotation.hpp>
 #include <duet/spline/tables/file_time.hpp>
 #include <duet/spline/tables/row_format.hpp>
@@ -42,9 +43,12 @@ class table_row_reader {
 public:
   /// \param times_path  a file of times, empty if none
   /// \param has_place   must rows have places?
+  /// \param angles      which columns are Euler angles; none: rotations are quaternions
   /// \throws file_error for a bad file of times
-  table_row_reader(std::string path, std::string times_path, bool has_place)
-      : path_(std::move(path)), times_path_(std::move(times_path)), has_place_(has_place) {
+  table_row_reader(std::string path, std::string times_path, bool has_place,
+                   const euler_columns* angles)
+      : path_(std::move(path)), times_path_(std::move(times_path)), has_place_(has_place),
+        angles_(angles) {
     if (!times_path_.empty()) {
       times_ = csv_file(times_path_, 1).rows();
     }
@@ -57,14 +61,15 @@ public:
     const bool is_begin = !format_ && !header_;
     if (parts.text.empty()) {
       if (is_begin) {
-        comment_.look_at(line, parts.comment);
+        comment_.look_at(line, parts.comment, angles_);
       }
       return std::nullopt;
     }
     split_cells(parts.text, cells_);
     if (is_begin && are_words(cells_)) {
       header_.emplace();
-      if (const std::string problem = header_->read(cells_, true, has_place_); !problem.empty()) {
+      if (const std::string problem = header_->read(cells_, true, has_place_, angles_);
+          !problem.empty()) {
         throw file_error(path_, line, problem);
       }
       return std::nullopt;
@@ -103,7 +108,10 @@ public:
 private:
   void choose_format(std::size_t line, bool has_commas) {
     if (!header_) {
-      header_ = comment_.layout(path_, cells_.size(), true, has_place_);
+      header_ = comment_.layout(path_, cells_.size(), true, has_place_, angles_);
+    }
+    if (!header_ && angles_ != nullptr) {
+      throw file_error(path_, line, "no header before the first row names the columns of angles");
     }
     format_ = header_ ? format_of_header(path_, line, *header_, cells_, has_place_)
                       : format_of_row(path_, line, cells_, has_commas);
@@ -123,7 +131,8 @@ private:
     if (!row.fault.empty()) {
       return;
     }
-    const quaternion<double> q(x[4], x[5], x[6], x[7]);
+    const quaternion<double> q = layout.has_angles ? angles_->rotation({x[4], x[5], x[6]})
+                                                   : quaternion<double>(x[4], x[5], x[6], x[7]);
     if (const double length = norm(q); !(std::abs(length - 1) <= unit_norm_tolerance)) {
       row.fault = "the quaternion of " + layout.names[4] + ", " + layout.names[5] + ", " +
                   layout.names[6] + ", " + layout.names[7] + " has norm " + to_text(length) +
@@ -171,6 +180,7 @@ private:
 
   std::string path_, times_path_;
   bool has_place_;
+  const euler_columns* angles_;
   std::vector<csv_row> times_;
   std::optional<table_layout> header_;
   commented_header comment_;
@@ -184,8 +194,8 @@ private:
 /// \throws file_error as `table_row_reader`
 template <class Row>
 std::string for_each_table_row(const std::string& path, const std::string& times_path,
-                               bool has_place, const Row& row) {
-  table_row_reader reader(path, times_path, has_place);
+                               bool has_place, const euler_columns* angles, const Row& row) {
+  table_row_reader reader(path, times_path, has_place, angles);
   for_each_line(path, [&](std::size_t line, std::string_view whole) {
     if (const std::optional<table_row> r = reader.read(line, whole)) {
       row(*r);
