@@ -35,10 +35,6 @@ struct own<X> {
 template <class X>
 using own_t = typename own<X>::type;
 
-/// Integers are differentiated as reals.
-template <class X>
-using differentiable_t = std::conditional_t<std::integral<X>, double, X>;
-
 /// The tag of a driver: the caller's, or the differentiated function.
 template <class Given, class F>
 using tag_for = std::conditional_t<std::is_void_v<Given>, derivative_tag<std::decay_t<F>>,

@@ -180,6 +180,17 @@ using promote_t = detail::promotion_t<A, B>;
 template <class B, class A>
 concept Promotable = !std::same_as<promote_t<A, B>, detail::no_promotion>;
 
+namespace detail {
+
+/// Integers are computed with and differentiated as reals.
+template <class X>
+using differentiable_t = std::conditional_t<std::integral<X>, double, X>;
+/// The same where what they meet is known, T: the reals of that.
+template <class X, class T>
+using as_real_of = std::conditional_t<std::integral<X>, real_type_t<T>, X>;
+
+} // namespace detail
+
 /// U is a constant for the level of D: an arithmetic type or a scalar of what is below.
 template <class U, class D>
 concept ConstantOf = Infinitesimal<D> &&

@@ -34,9 +34,9 @@ using dual_quaternion = quaternion<screw_dual<T>>;
 
 /// The dual vector a + εb.
 template <class A, Promotable<A> B>
-[[nodiscard]] dual_vector<promote_t<A, B>> make_dual_vector(const vector3<A>& a,
-                                                            const vector3<B>& b) {
-  using T = promote_t<A, B>;
+[[nodiscard]] dual_vector<detail::differentiable_t<promote_t<A, B>>>
+make_dual_vector(const vector3<A>& a, const vector3<B>& b) {
+  using T = detail::differentiable_t<promote_t<A, B>>;
   using D = screw_dual<T>;
   return {D(T(a[0]), T(b[0])), D(T(a[1]), T(b[1])), D(T(a[2]), T(b[2]))};
 }

@@ -31,22 +31,22 @@ template <class T>
 
 /// J_l with V^s = J_l(x) ẋ for the pose exp(½x), x = [v; ω] constant twist times time.
 template <class T>
-[[nodiscard]] matrix6<T> left_jacobian(const vector6<T>& x) {
+[[nodiscard]] matrix6<detail::differentiable_t<T>> left_jacobian(const vector6<T>& x) {
   return detail::unfolded(left_jacobian(dual_vector_of(x)));
 }
 /// J_r with V^b = J_r(x) ẋ: J_r(x) = J_l(−x).
 template <class T>
-[[nodiscard]] matrix6<T> right_jacobian(const vector6<T>& x) {
+[[nodiscard]] matrix6<detail::differentiable_t<T>> right_jacobian(const vector6<T>& x) {
   return detail::unfolded(right_jacobian(dual_vector_of(x)));
 }
 /// J_l⁻¹ with ẋ = J_l⁻¹(x) V^s; infinite where the angle is a full turn.
 template <class T>
-[[nodiscard]] matrix6<T> left_jacobian_inverse(const vector6<T>& x) {
+[[nodiscard]] matrix6<detail::differentiable_t<T>> left_jacobian_inverse(const vector6<T>& x) {
   return detail::unfolded(left_jacobian_inverse(dual_vector_of(x)));
 }
 /// J_r⁻¹ with ẋ = J_r⁻¹(x) V^b; infinite where the angle is a full turn.
 template <class T>
-[[nodiscard]] matrix6<T> right_jacobian_inverse(const vector6<T>& x) {
+[[nodiscard]] matrix6<detail::differentiable_t<T>> right_jacobian_inverse(const vector6<T>& x) {
   return detail::unfolded(right_jacobian_inverse(dual_vector_of(x)));
 }
 

@@ -97,7 +97,7 @@ template <class N, class M, class A, class D>
   requires Promotable<promote_t<N, M>, promote_t<A, D>>
 [[nodiscard]] auto from_screw(const vector3<N>& axis, const vector3<M>& moment, const A& angle,
                               const D& translation) {
-  using T = promote_t<promote_t<N, M>, promote_t<A, D>>;
+  using T = detail::differentiable_t<promote_t<promote_t<N, M>, promote_t<A, D>>>;
   return exp(dual_vector<T>(make_dual_vector(axis, moment) *
                             screw_dual<T>(T(T(angle) / 2), T(T(translation) / 2))));
 }

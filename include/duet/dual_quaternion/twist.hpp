@@ -41,7 +41,7 @@ template <class T>
 }
 /// The column [v; ω] as ω + εv.
 template <class T>
-[[nodiscard]] dual_vector<T> dual_vector_of(const vector6<T>& twist) {
+[[nodiscard]] dual_vector<detail::differentiable_t<T>> dual_vector_of(const vector6<T>& twist) {
   return make_dual_vector(vector3<T>(twist.template tail<3>()),
                           vector3<T>(twist.template head<3>()));
 }
@@ -95,7 +95,8 @@ template <class A, Promotable<A> B, FrameConstant Frame>
   if constexpr (std::same_as<Frame, hybrid_frame>) {
     return pose_rate(a, detail::spatial_twist(a, twist), frame::spatial);
   } else {
-    return quaternion_rate(a, dual_vector_of(twist), frame);
+    using S = detail::as_real_of<B, promote_t<A, B>>;
+    return quaternion_rate(a, dual_vector_of(vector6<S>(twist.template cast<S>())), frame);
   }
 }
 

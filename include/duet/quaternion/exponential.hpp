@@ -31,8 +31,8 @@ namespace duet {
 /// The exponential of a pure quaternion, exp(v) = cos|v| + v sin|v|/|v| (N4). v = ½ × rotation
 /// vector.
 template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE quaternion<T> exp(const vector3<T>& v) {
-  const T s = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+[[nodiscard]] DUET_ALWAYS_INLINE quaternion<detail::differentiable_t<T>> exp(const vector3<T>& v) {
+  const detail::differentiable_t<T> s = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   const auto c = detail::first_stumpff_pair(s);
   return {c[0], v[0] * c[1], v[1] * c[1], v[2] * c[1]};
 }

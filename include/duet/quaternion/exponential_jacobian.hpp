@@ -228,24 +228,28 @@ template <class T>
 /// J_l with ω^s = J_l(r) ṙ for the rotation exp(½r), r its rotation vector in radians:
 /// J_l = c₁ I + c₂ r̂ + c₃ r rᵀ, cₙ the Stumpff functions of r·r.
 template <class T>
-[[nodiscard]] matrix3<T> left_jacobian(const vector3<T>& r) {
-  return detail::exponential_jacobian(r, 1);
+[[nodiscard]] matrix3<detail::differentiable_t<T>> left_jacobian(const vector3<T>& r) {
+  using S = detail::differentiable_t<T>;
+  return detail::exponential_jacobian<S>(r.template cast<S>(), 1);
 }
 /// J_r with ω^b = J_r(r) ṙ: J_r(r) = J_l(−r) = J_l(r)ᵀ.
 template <class T>
-[[nodiscard]] matrix3<T> right_jacobian(const vector3<T>& r) {
-  return detail::exponential_jacobian(r, -1);
+[[nodiscard]] matrix3<detail::differentiable_t<T>> right_jacobian(const vector3<T>& r) {
+  using S = detail::differentiable_t<T>;
+  return detail::exponential_jacobian<S>(r.template cast<S>(), -1);
 }
 /// J_l⁻¹ with ṙ = J_l⁻¹(r) ω^s: (φ/2)cot(φ/2) I − ½ r̂ + (1 − (φ/2)cot(φ/2)) r rᵀ/φ², φ = |r|.
 /// Infinite at full turns φ = 2π, 4π …, where exp(½r) stands still in two directions of r.
 template <class T>
-[[nodiscard]] matrix3<T> left_jacobian_inverse(const vector3<T>& r) {
-  return detail::exponential_jacobian_inverse(r, 1);
+[[nodiscard]] matrix3<detail::differentiable_t<T>> left_jacobian_inverse(const vector3<T>& r) {
+  using S = detail::differentiable_t<T>;
+  return detail::exponential_jacobian_inverse<S>(r.template cast<S>(), 1);
 }
 /// J_r⁻¹ with ṙ = J_r⁻¹(r) ω^b.
 template <class T>
-[[nodiscard]] matrix3<T> right_jacobian_inverse(const vector3<T>& r) {
-  return detail::exponential_jacobian_inverse(r, -1);
+[[nodiscard]] matrix3<detail::differentiable_t<T>> right_jacobian_inverse(const vector3<T>& r) {
+  using S = detail::differentiable_t<T>;
+  return detail::exponential_jacobian_inverse<S>(r.template cast<S>(), -1);
 }
 
 } // namespace duet

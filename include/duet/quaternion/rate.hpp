@@ -47,7 +47,8 @@ vector3<promote_t<A, B>> angular_velocity(const quaternion<A>&, const quaternion
 template <class A, Promotable<A> B, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<A, B>>
 quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_omega) {
-  const quaternion<B> half(B(0), vector3<B>(omega[0] / 2, omega[1] / 2, omega[2] / 2));
+  using S = detail::as_real_of<B, promote_t<A, B>>;
+  const quaternion<S> half(S(0), S(omega[0]) / 2, S(omega[1]) / 2, S(omega[2]) / 2);
   return detail::composed_in(frame_of_omega, half, q);
 }
 
@@ -78,7 +79,7 @@ quaternion_acceleration(const quaternion<A>& q, const vector3<B>& omega, const v
                         Frame frame_of_omega) {
   using T = promote_t<promote_t<A, B>, C>;
   const T square(omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2]);
-  const quaternion<T> half(T(-square / 4), T(alpha[0] / 2), T(alpha[1] / 2), T(alpha[2] / 2));
+  const quaternion<T> half(T(-square / 4), T(alpha[0]) / 2, T(alpha[1]) / 2, T(alpha[2]) / 2);
   return detail::composed_in(frame_of_omega, half, q);
 }
 

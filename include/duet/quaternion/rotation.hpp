@@ -31,14 +31,16 @@ template <class T, Promotable<T> U>
 /// Rotation by the angle a about the direction n of any length.
 /// \throws invalid_input where n is zero
 template <class T, Promotable<T> S>
-[[nodiscard]] quaternion<promote_t<T, S>> from_axis_angle(const vector3<T>& n, const S& a) {
+[[nodiscard]] quaternion<detail::differentiable_t<promote_t<T, S>>>
+from_axis_angle(const vector3<T>& n, const S& a) {
   using std::cos;
   using std::sin;
-  const quaternion<T> direction(T(0), n);
+  using R = detail::differentiable_t<promote_t<T, S>>;
+  using U = detail::as_real_of<T, R>;
+  const quaternion<U> direction(U(0), U(n[0]), U(n[1]), U(n[2]));
   detail::require(!any(detail::is_zero(direction)),
                   "duet: from_axis_angle: the axis is the zero vector");
-  const quaternion<T> axis = normalized(direction);
-  using R = promote_t<T, S>;
+  const quaternion<U> axis = normalized(direction);
   const R half = R(a) / 2;
   const R s = sin(half);
   return {cos(half), axis.x() * s, axis.y() * s, axis.z() * s};
@@ -46,8 +48,9 @@ template <class T, Promotable<T> S>
 
 /// Rotation by |r| about r: exp(r/2).
 template <class T>
-[[nodiscard]] quaternion<T> from_rotation_vector(const vector3<T>& r) {
-  return duet::exp(vector3<T>(r[0] / 2, r[1] / 2, r[2] / 2));
+[[nodiscard]] quaternion<detail::differentiable_t<T>> from_rotation_vector(const vector3<T>& r) {
+  using S = detail::differentiable_t<T>;
+  return duet::exp(vector3<S>(S(r[0]) / 2, S(r[1]) / 2, S(r[2]) / 2));
 }
 
 /// The rotation vector of q, angle times axis, of length at most π: the same for q and −q, q of any
@@ -101,9 +104,9 @@ template <class T>
 /// axis is undetermined: one perpendicular to a is chosen, without derivatives.
 /// \throws invalid_input where a or b is zero
 template <class A, Promotable<A> B>
-[[nodiscard]] quaternion<promote_t<A, B>> from_two_vectors(const vector3<A>& a,
-                                                           const vector3<B>& b) {
-  using T = promote_t<A, B>;
+[[nodiscard]] quaternion<detail::differentiable_t<promote_t<A, B>>>
+from_two_vectors(const vector3<A>& a, const vector3<B>& b) {
+  using T = detail::differentiable_t<promote_t<A, B>>;
   return detail::by_lane(
       [](const auto& u, const auto& v) { return detail::shortest_rotation(u, v); },
       vector3<T>(a.template cast<T>()), vector3<T>(b.template cast<T>()));
@@ -182,8 +185,10 @@ template <class T>
 /// \throws invalid_input where R Rᵀ differs from 1 by more than 1e-6 (1e-3 in single precision), or
 /// det R < 0
 template <class T>
-[[nodiscard]] quaternion<T> from_rotation_matrix(const matrix3<T>& r) {
-  return detail::by_lane([](const auto& m) { return detail::quaternion_of(m); }, r);
+[[nodiscard]] quaternion<detail::differentiable_t<T>> from_rotation_matrix(const matrix3<T>& r) {
+  using S = detail::differentiable_t<T>;
+  return detail::by_lane([](const auto& m) { return detail::quaternion_of(m); },
+                         matrix3<S>(r.template cast<S>()));
 }
 
 DUET_REFUSES_FOREIGN(rotate, vector3<double>)
