@@ -117,15 +117,22 @@ template <class X>
     return x[std::size_t(i)];
   }
 }
-template <std::size_t I = 0, class... Parts>
-[[nodiscard]] auto& component(std::tuple<Parts...>& x, Eigen::Index i) {
+
+/// visit(part, k), where the i-th component of several arguments is the k-th of that part.
+template <std::size_t I = 0, class Tuple, class Visit>
+decltype(auto) at_component(Tuple& x, Eigen::Index i, const Visit& visit) {
   auto& part = std::get<I>(x);
-  if constexpr (I + 1 == sizeof...(Parts)) {
-    return component(part, i);
+  if constexpr (I + 1 == std::tuple_size_v<std::remove_const_t<Tuple>>) {
+    return visit(part, i);
   } else {
     const Eigen::Index size = argument_part<std::decay_t<decltype(part)>>::size(part);
-    return i < size ? component(part, i) : component<I + 1>(x, i - size);
+    return i < size ? visit(part, i) : at_component<I + 1>(x, i - size, visit);
   }
+}
+template <class... Parts>
+[[nodiscard]] auto& component(std::tuple<Parts...>& x, Eigen::Index i) {
+  return at_component(
+      x, i, [](auto& part, Eigen::Index k) -> auto& { return component(part, k); });
 }
 
 /// Several arguments, scalars and vectors: their components one after the other.
@@ -143,16 +150,9 @@ struct vector_argument<std::tuple<X...>> {
     return std::apply([](const X&... part) { return (argument_part<X>::size(part) + ...); }, x);
   }
   static scalar get(const std::tuple<X...>& x, Eigen::Index i) {
-    scalar result(0);
-    const auto look_at = [&]<class Part>(const Part& part) {
-      const Eigen::Index size = argument_part<Part>::size(part);
-      if (0 <= i && i < size) {
-        result = scalar(argument_part<Part>::get(part, i));
-      }
-      i -= size;
-    };
-    std::apply([&](const X&... part) { (look_at(part), ...); }, x);
-    return result;
+    return at_component(x, i, []<class Part>(const Part& part, Eigen::Index k) {
+      return scalar(argument_part<Part>::get(part, k));
+    });
   }
   template <class D>
   static over<D> make(const std::tuple<X...>& x) {

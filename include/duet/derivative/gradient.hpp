@@ -124,30 +124,40 @@ void hessian_in_blocks(F&& f, const X& x, Result& result) {
       visit(first + i, i);
     }
   };
-  for (Eigen::Index block = 0; block < size; block += n) {
+  // From one pass to the next only what is no constant changes.
+  const auto set_constants = [&](auto& variables, Eigen::Index block) {
+    for_block(block, [&](Eigen::Index at, int) {
+      auto& variable = component(variables, at);
+      variable = std::decay_t<decltype(variable)>(argument::get(x, at));
+    });
+  };
+  {
     using D = second_dual<T, n, Tag>;
     auto variables = constants<D>(x);
-    for_block(block, [&](Eigen::Index at, int i) {
-      component(variables, at) = D::variable(argument::get(x, at), i);
-    });
-    const auto y = result_of_call(call(f, variables));
-    result.value = part<Tag>(y, 0);
-    for_block(block, [&](Eigen::Index row, int i) {
-      result.gradient[row] = part<Tag>(y, 1 + i);
-      for_block(block, [&](Eigen::Index column, int j) {
-        result.hessian(row, column) = part<Tag>(y, 1 + n + n * i + j);
+    for (Eigen::Index block = 0; block < size; block += n) {
+      for_block(block, [&](Eigen::Index at, int i) {
+        component(variables, at) = D::variable(argument::get(x, at), i);
       });
-    });
+      const auto y = result_of_call(call(f, variables));
+      result.value = part<Tag>(y, 0);
+      for_block(block, [&](Eigen::Index row, int i) {
+        result.gradient[row] = part<Tag>(y, 1 + i);
+        for_block(block, [&](Eigen::Index column, int j) {
+          result.hessian(row, column) = part<Tag>(y, 1 + n + n * i + j);
+        });
+      });
+      set_constants(variables, block);
+    }
   }
+  using column_tag = derivative_tag<Tag, struct columns_of_hessian>;
+  using E = dual<T, n, column_tag>;
+  using D = dual<E, n, Tag>;
+  auto variables = constants<D>(x);
   for (Eigen::Index row_block = n; row_block < size; row_block += n) {
+    for_block(row_block, [&](Eigen::Index at, int i) {
+      component(variables, at) = D::variable(E(argument::get(x, at)), i);
+    });
     for (Eigen::Index column_block = 0; column_block < row_block; column_block += n) {
-      using column_tag = derivative_tag<Tag, struct columns_of_hessian>;
-      using E = dual<T, n, column_tag>;
-      using D = dual<E, n, Tag>;
-      auto variables = constants<D>(x);
-      for_block(row_block, [&](Eigen::Index at, int i) {
-        component(variables, at) = D::variable(E(argument::get(x, at)), i);
-      });
       for_block(column_block, [&](Eigen::Index at, int j) {
         component(variables, at) = D(E::variable(argument::get(x, at), j));
       });
@@ -159,7 +169,9 @@ void hessian_in_blocks(F&& f, const X& x, Result& result) {
               part<column_tag>(slope, 1 + j);
         });
       });
+      set_constants(variables, column_block);
     }
+    set_constants(variables, row_block);
   }
 }
 

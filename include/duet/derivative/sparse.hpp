@@ -80,9 +80,10 @@ public:
         scale[entry.row()] += std::abs(double(innermost(entry.value())));
       }
     }
+    const double largest = rest.size() > 0 ? scale.maxCoeff() : 0;
     for (Eigen::Index i = 0; i < rest.size(); ++i) {
       // Sums are not exact: a millionth of the row or what cancels out of the largest one.
-      require(!(std::abs(double(innermost(rest[i]))) > 1e-6 * scale[i] + 1e-12 * scale.maxCoeff()),
+      require(!(std::abs(double(innermost(rest[i]))) > 1e-6 * scale[i] + 1e-12 * largest),
               "duet: ", caller, ": row ", i, " has entries that the structure has not");
     }
     return entries_;
@@ -177,10 +178,10 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X, class P>
   detail::column_groups<S> groups(matrix(structure) + matrix(structure.transpose()));
   using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
   value_gradient_and_hessian<S, vector, Eigen::SparseMatrix<S>> result{S(0), vector(size), {}};
+  auto variables = detail::constants<D>(x);
   for (Eigen::Index block = 0; block < size; block += rows) {
     for (int first = 0; first < groups.count(); first += columns) {
       const int count = std::min(columns, groups.count() - first);
-      auto variables = detail::constants<D>(x);
       for (Eigen::Index j = 0; j < size; ++j) {
         E moved(argument::get(x, j));
         for (int k = 0; k < count; ++k) {
