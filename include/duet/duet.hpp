@@ -4,10 +4,10 @@
 /// \file
 /// All of duet but what programs ask for by name, as it takes compilers long or is rare: sparse
 /// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (mechanism/urdf.hpp),
-/// tables, recordings and plans as files (spline/table_file.hpp, spline/recording.hpp,
-/// planning/save_plan.hpp, core/text/csv.hpp), progress_line (core/text/progress_line.hpp), the
-/// notes' own planner (planning/printed_plan.hpp), the nearest point of a screw motion
-/// (dual_quaternion/nearest.hpp), and `interop/`.
+/// plans over time (planning/time_parametrised.hpp), tables, recordings and plans as files
+/// (spline/table_file.hpp, spline/recording.hpp, planning/save_plan.hpp, core/text/csv.hpp),
+/// progress_line (core/text/progress_line.hpp), the notes' own planner (planning/printed_plan.hpp),
+/// the nearest point of a screw motion (dual_quaternion/nearest.hpp), and `interop/`.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
@@ -61,7 +61,6 @@
 #include <duet/mechanism/sweep.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
-#include <duet/planning/time_parametrised.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/distance.hpp>
