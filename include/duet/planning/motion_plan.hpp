@@ -170,8 +170,9 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
   require(is_all_finite(turn), "duet: ", caller, ": ", name, ": its rotation is not finite: (",
           entry(turn.w()), ", ", entry(turn.x()), ", ", entry(turn.y()), ", ", entry(turn.z()),
           ")");
-  require(is_all_finite(move), "duet: ", caller, ": ", name, ": its translation is not finite: (",
-          entry(move[0]), ", ", entry(move[1]), ", ", entry(move[2]), ")");
+  require(is_all_finite(dual_part(a)), "duet: ", caller, ": ", name,
+          ": its translation is not finite: (", entry(move[0]), ", ", entry(move[1]), ", ",
+          entry(move[2]), ")");
   const auto square = norm2(a);
   throw invalid_input(message("duet: ", caller, ": ", name, " is no unit dual quaternion: |p|^2 = ",
                               square.value(), ", p.q = ", square.epsilon() / 2));
