@@ -185,7 +185,7 @@ namespace detail {
 /// Integers are computed with and differentiated as reals.
 template <class X>
 using differentiable_t = std::conditional_t<std::integral<X>, double, X>;
-/// The same where what they meet is known, T: the reals of that.
+/// Integers that meet a T are computed with as the reals of T.
 template <class X, class T>
 using as_real_of = std::conditional_t<std::integral<X>, real_type_t<T>, X>;
 
