@@ -95,6 +95,14 @@ TEST_CASE("fixed and dynamic sizes: Eigen's values and the derivatives of the no
       check<Dynamic, Dynamic>(random_fit(m, n));
     }
   }
+  // Reflections one by one: of fewer than 48 columns several right-hand sides have Eigen's values
+  // too, of more a single one.
+  const auto equals_eigen = [](const MatrixXd& a, const auto& b) {
+    return least_squares(a, b) == a.colPivHouseholderQr().solve(b).eval();
+  };
+  const fit few = random_fit(60, 47), many = random_fit(70, 60);
+  CHECK(equals_eigen(few.a, MatrixXd(few.a_slope.leftCols(3))));
+  CHECK(equals_eigen(many.a, Eigen::VectorXd(many.b)));
 }
 
 TEST_CASE("QR over duals gives the same, also where A and b have zeros") {

@@ -33,6 +33,28 @@ void require_tall(const A& a, const B& b) {
   require(a.rows() == b.rows(), "duet: least_squares: A has ", a.rows(), " rows, but b ", b.rows());
 }
 
+/// qr.solve(b) for A of full rank, the same operations as Eigen's with fewer than 48 columns: one
+/// reflection after the other. The products of blocks of them that there are for more take
+/// compilers longer than all else here.
+template <class QR, class B>
+[[nodiscard]] auto solve_by_reflections(const QR& qr, const B& b) {
+  using R = typename B::Scalar;
+  constexpr int size = QR::ColsAtCompileTime, columns = B::ColsAtCompileTime;
+  const Eigen::Index m = qr.rows(), n = qr.cols();
+  B c = b;
+  Eigen::Matrix<R, 1, columns> workspace(b.cols());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Block<B, Eigen::Dynamic, Eigen::Dynamic> below(c, k, 0, m - k, b.cols());
+    below.applyHouseholderOnTheLeft(qr.matrixQR().col(k).tail(m - k - 1), qr.hCoeffs()[k],
+                                    workspace.data());
+  }
+  qr.matrixQR()
+      .template topLeftCorner<size, size>(n, n)
+      .template triangularView<Eigen::Upper>()
+      .solveInPlace(c.template topRows<size>(n));
+  return (qr.colsPermutation() * c.template topRows<size>(n)).eval();
+}
+
 /// (AᵀA)⁻¹ g = P R⁻¹R⁻ᵀPᵀ g for A P = Q R.
 template <class QR, class G>
 [[nodiscard]] G solve_normal_equations(const QR& qr, const G& g) {
@@ -87,8 +109,8 @@ template <class S, class A, class X>
 /// \param a  A, m × n of rank n
 /// \param b  a vector, or a matrix of right-hand sides
 ///
-/// The values are those of `Eigen::ColPivHouseholderQR` over real numbers, to the last bit. The
-/// derivatives follow from Aᵀ(b − A x) = 0,
+/// The values are those of `Eigen::ColPivHouseholderQR` over real numbers, to the last bit where b
+/// is a vector or A has fewer than 48 columns. The derivatives follow from Aᵀ(b − A x) = 0,
 ///
 ///   dx = A⁺(db − dA x) + (AᵀA)⁻¹dAᵀ(b − A x),
 ///
@@ -113,7 +135,7 @@ template <class A, class B>
   const Eigen::ColPivHouseholderQR<decltype(matrix)> qr(matrix);
   detail::require(qr.rank() == a.cols(), "duet: least_squares: A has rank ", qr.rank(),
                   ", less than its ", a.cols(), " columns");
-  const auto values = qr.solve(detail::real_values<R>(b)).eval();
+  const auto values = detail::solve_by_reflections(qr, detail::real_values<R>(b));
   if constexpr (scalar_traits<S>::order == 0) {
     return (values * scale).eval();
   } else {
@@ -128,7 +150,7 @@ template <class A, class B>
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
       const auto r = detail::residual(coefficients, right, x);
       detail::correct_infinitesimals(
-          x, [&](const auto& column) { return qr.solve(column); }, r);
+          x, [&](const auto& column) { return detail::solve_by_reflections(qr, column); }, r);
       if (!is_constant) {
         detail::correct_infinitesimals(
             x, [&](const auto& g) { return detail::solve_normal_equations(qr, g); },
