@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cmath>
 
 /// \file
 /// Eigen's solvers over dual and Taylor numbers, where an entry is zero but its derivative is not.
@@ -18,15 +19,20 @@
 /// - a Householder reflector is left out where what it has to remove is zero already.
 ///
 /// So LLT, LDLT, LU and every QR give the derivatives of what they solve, wherever the matrix is
-/// regular. Householder reflectors differ from those over `double` in one way: one is made even
-/// where the column is zero below the diagonal, which flips the sign of that row of R and column
-/// of Q; HouseholderQR does so only where a derivative needs it, the pivoting QR always. At a
-/// column that vanishes altogether Q has no derivative, and what Eigen does is kept.
+/// regular, with Eigen 3.4 as with later ones. Householder reflectors differ from those over
+/// `double` in one way: where a column is zero below the diagonal but its derivatives are not,
+/// there is one, which flips the sign of that row of R and column of Q. At a column that vanishes
+/// altogether Q has no derivative, and what Eigen does is kept: no reflector.
 ///
 /// Not covered: Jacobi and Givens rotations (SVD, eigenvalue solvers), which skip zeros by value
-/// too. For symmetric matrices there is `symmetric_eigen`; else perturb the input or write the
-/// derivative by hand where off-diagonal entries vanish. EigenSolver's derivatives are one step of
-/// its iteration behind the values.
+/// too, as Hessenberg decompositions of later Eigens do, and reflectors of a vector that is no
+/// block of another, `v.makeHouseholder(…)`. For symmetric matrices there is `symmetric_eigen`;
+/// else perturb the input or write the derivative by hand where off-diagonal entries vanish.
+/// EigenSolver's derivatives are one step of its iteration behind the values.
+///
+/// Eigen documents no way to replace the two. What is specialised here, `BlockImpl` and
+/// `triangular_solve_vector`, is the same in 3.4, 5.0 and its main branch of August 2026; tests
+/// with DUET_TEST_EIGEN (CONTRIBUTING.md) tell of others.
 
 namespace duet::detail {
 
@@ -59,27 +65,46 @@ struct triangular_substitution {
 template <class A, class B>
 concept EitherInfinitesimal = Infinitesimal<A> || Infinitesimal<B>;
 
-/// The imaginary part of a real number: zero, but it remembers whether the number is.
+/// An expression of Eigen over dual or Taylor numbers; its type may be incomplete still.
+template <class Expression>
+concept InfinitesimalExpression =
+    Infinitesimal<typename Eigen::internal::traits<Expression>::Scalar>;
+
+/// H = 1 − τ v vᵀ with H x = (β, 0 … 0)ᵀ and v = (1, essential)ᵀ, as `makeHouseholder` of Eigen:
 ///
-/// `makeHouseholder` leaves a reflector out where the tail of a column and the imaginary part of
-/// its head are below a limit, and takes this part for nothing else.
-template <Infinitesimal D>
-struct imaginary_zero {
-  bool head_vanishes;
-
-  operator D() const { return D(0); }
-  friend D abs(const imaginary_zero&) { return D(0); }
-  friend bool operator==(const imaginary_zero&, const D& x) { return x == 0; }
-};
-
-/// |imaginary part|², below the limit only where no reflector can be made.
-template <Infinitesimal D>
-struct imaginary_zero_square {
-  bool head_vanishes;
-
-  operator D() const { return D(0); }
-  friend bool operator<=(const imaginary_zero_square& x, const D&) { return x.head_vanishes; }
-};
+///   β = −sign(x₀) ‖x‖,  essential = tail / (x₀ − β),  τ = (β − x₀) / β
+///
+/// H = 1 only where the tail of x is zero with all its derivatives, or where x vanishes. The
+/// essential part may be the tail of x itself.
+template <class Vector, class Essential, class Scalar>
+void make_reflector(const Vector& x, Essential& essential, Scalar& tau, Scalar& beta) {
+  using std::abs;
+  using R = real_type_t<Scalar>;
+  const Scalar head = x.coeff(0);
+  R largest = abs(innermost(head));
+  bool is_reduced = true;
+  for (Eigen::Index i = 1; i < x.size(); ++i) {
+    largest = std::max(largest, R(abs(innermost(x.coeff(i)))));
+    is_reduced = is_reduced && is_structural_zero(x.coeff(i));
+  }
+  if (is_reduced || largest == R(0)) {
+    tau = Scalar(0);
+    beta = head;
+    essential.setZero();
+    return;
+  }
+  Scalar square(0); // of x / largest, which stays in the range
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Scalar part = x.coeff(i) / largest;
+    square += part * part;
+  }
+  const Scalar norm = sqrt(square) * largest;
+  beta = head >= R(0) ? Scalar(-norm) : norm;
+  for (Eigen::Index i = 1; i < x.size(); ++i) {
+    essential.coeffRef(i - 1) = x.coeff(i) / (head - beta);
+  }
+  tau = (beta - head) / beta;
+}
 
 } // namespace duet::detail
 
@@ -97,52 +122,30 @@ struct triangular_solve_vector<Lhs, Rhs, Index, OnTheLeft, Mode, Conjugate, RowM
     : duet::detail::triangular_substitution<Lhs, Rhs, Index, Mode, Conjugate, true> {
 };
 
-template <duet::Infinitesimal D>
-struct imag_retval<D> {
-  using type = duet::detail::imaginary_zero<D>;
-};
-template <duet::Infinitesimal D>
-struct imag_impl<D> {
-  static duet::detail::imaginary_zero<D> run(const D& x) { return {x == 0}; }
-};
-template <duet::Infinitesimal D>
-struct abs2_retval<duet::detail::imaginary_zero<D>> {
-  using type = duet::detail::imaginary_zero_square<D>;
-};
-template <duet::Infinitesimal D>
-struct abs2_impl<duet::detail::imaginary_zero<D>> {
-  static duet::detail::imaginary_zero_square<D> run(const duet::detail::imaginary_zero<D>& x) {
-    return {x.head_vanishes};
-  }
-};
-
-template <class Matrix, class Coefficients, class Scalar, bool InnerStrideIsOne>
-struct householder_qr_inplace_blocked; // of Eigen/QR
-
-/// Reflectors column by column, left out where the rest of the column is zero with all its
-/// derivatives.
-template <class Matrix, class Coefficients, duet::Infinitesimal Scalar, bool InnerStrideIsOne>
-struct householder_qr_inplace_blocked<Matrix, Coefficients, Scalar, InnerStrideIsOne> {
-  static void run(Matrix& matrix, Coefficients& coefficients, Index, Scalar* workspace) {
-    const Index rows = matrix.rows();
-    const Index columns = matrix.cols();
-    for (Index k = 0; k < std::min(rows, columns); ++k) {
-      bool triangular = true;
-      for (Index i = k + 1; i < rows; ++i) {
-        triangular = triangular && duet::detail::is_structural_zero(matrix.coeff(i, k));
-      }
-      if (triangular) {
-        coefficients.coeffRef(k) = Scalar(0);
-        continue;
-      }
-      Scalar pivot;
-      matrix.col(k).tail(rows - k).makeHouseholderInPlace(coefficients.coeffRef(k), pivot);
-      matrix.coeffRef(k, k) = pivot;
-      matrix.bottomRightCorner(rows - k, columns - k - 1)
-          .applyHouseholderOnTheLeft(matrix.col(k).tail(rows - k - 1), coefficients.coeffRef(k),
-                                     workspace + k + 1);
-    }
-  }
-};
-
 } // namespace Eigen::internal
+
+namespace Eigen {
+
+/// Blocks of vectors of dual numbers, of which Eigen's decompositions make their reflectors: as
+/// Eigen's own, but with reflectors that keep derivatives.
+template <class Expression, int Rows, int Columns, bool InnerPanel>
+  requires duet::detail::InfinitesimalExpression<Expression>
+class BlockImpl<Expression, Rows, Columns, InnerPanel, Dense>
+    : public internal::BlockImpl_dense<Expression, Rows, Columns, InnerPanel> {
+public:
+  using Base = internal::BlockImpl_dense<Expression, Rows, Columns, InnerPanel>;
+  using Base::Base;
+  EIGEN_INHERIT_ASSIGNMENT_OPERATORS(BlockImpl)
+
+  template <class Essential, class Scalar>
+  void makeHouseholder(Essential& essential, Scalar& tau, Scalar& beta) const {
+    duet::detail::make_reflector(this->derived(), essential, tau, beta);
+  }
+  template <class Scalar>
+  void makeHouseholderInPlace(Scalar& tau, Scalar& beta) {
+    auto essential = this->tail(this->size() - 1);
+    makeHouseholder(essential, tau, beta);
+  }
+};
+
+} // namespace Eigen
