@@ -7,6 +7,7 @@
 #include <duet/comparison/sampler.hpp>
 #include <duet/core/compiled.hpp>
 #include <duet/core/progress.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/function.hpp>
 
@@ -19,6 +20,7 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -109,6 +111,15 @@ template <class T, class F, class Inputs>
 using result_type = decltype(result_of_call(
     std::apply(std::declval<const F&>(),
                std::declval<const Inputs&>().template make<T>(std::span<const double>()))));
+
+/// Does F take the arguments that inputs make over the first of the scalars T?
+template <class F, class Arguments>
+inline constexpr bool takes = false;
+template <class F, class... X>
+inline constexpr bool takes<F, std::tuple<X...>> = std::is_invocable_v<const F&, X...>;
+template <class F, class Inputs, class T, class... More>
+inline constexpr bool takes_inputs =
+    takes<F, decltype(std::declval<const Inputs&>().template make<T>(std::span<const double>()))>;
 
 /// Two formulas and their inputs, of whose types what is common to all comparisons knows nothing,
 /// so that compilers make it once.
@@ -252,5 +263,18 @@ template <class... T, class F, class G, class Inputs>
         label, pair, {worst_errors{.digits = std::numeric_limits<T>::digits10}...}, options);
   }
 }
+
+template <class... T, class F, class G, InputDomain Inputs>
+DUET_REFUSED("compare: arguments come from a sampler: compare(label, f, g, sampler(real_numbers{0, "
+             "1}))")
+comparison
+    compare(const std::string&, const F&, const G&, const Inputs&, const comparison_options& = {});
+template <class... T, class F, class G, class... Domains>
+  requires(!detail::takes_inputs<F, sampler<Domains...>, T..., double> ||
+           !detail::takes_inputs<G, sampler<Domains...>, T..., double>)
+DUET_REFUSED("compare: both functions take what the sampler gives, an argument of each domain: "
+             "f(v, t) with sampler(vectors<3>{1.0}, real_numbers{0, 1})")
+comparison compare(const std::string&, const F&, const G&, const sampler<Domains...>&,
+                   const comparison_options& = {});
 
 } // namespace duet

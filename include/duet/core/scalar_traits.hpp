@@ -101,6 +101,10 @@ namespace detail {
 template <class T>
 using constant_t = typename field_traits<real_type_t<T>>::constant_type;
 
+/// A formula: it stands for numbers that are given later.
+template <class X>
+inline constexpr bool is_symbolic = false;
+
 /// The integer n for an expression with T: as it is where T is over the reals, which all take an
 /// int.
 template <class T>

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/dual/eigen_structure.hpp>
 
@@ -37,11 +39,19 @@ constexpr int fixed_length(int n) {
   return is_large ? Eigen::Dynamic : n;
 }
 
+/// Of Eigen, with rows and columns.
+template <class X>
+inline constexpr bool is_matrix_argument = false;
 template <class X>
   requires EigenMatrix<X>
+inline constexpr bool is_matrix_argument<X> =
+    X::ColsAtCompileTime != 1 && !bool(X::IsVectorAtCompileTime);
+template <class... X>
+inline constexpr bool is_matrix_argument<std::tuple<X...>> = (is_matrix_argument<X> || ...);
+
+template <class X>
+  requires(EigenMatrix<X> && !is_matrix_argument<X>)
 struct vector_argument<X> {
-  static_assert(X::ColsAtCompileTime == 1 || X::IsVectorAtCompileTime,
-                "duet: differentiate with respect to a vector, not to a matrix: x.reshaped()");
   using scalar = differentiable_t<typename X::Scalar>;
   static constexpr int size_at_compile_time = X::SizeAtCompileTime;
   template <class D>
@@ -192,3 +202,20 @@ template <class X>
 concept VectorLike = Variables<X> && !detail::is_tuple<X>;
 
 } // namespace duet
+
+/// What `driver` is not differentiated by: matrices, several arguments that are no tuple, and one
+/// number, of which there is `of_one`; then the type of its result.
+#define DUET_REFUSES_ARGUMENTS(driver, of_one, ...)                                                \
+  template <class Tag = void, detail::FunctionOfAny F, class X>                                    \
+    requires(detail::is_matrix_argument<X> && !HasOwnJacobian<F>)                                  \
+  DUET_REFUSED("differentiate with respect to a vector, not to a matrix: " #driver                 \
+               "(f, x.reshaped())")                                                                \
+  __VA_ARGS__ driver(F&&, const X&);                                                               \
+  template <class Tag = void, detail::FunctionOfAny F, class A, class B, class... More>            \
+    requires(!FrameConstant<B> && !HasOwnJacobian<F>)                                              \
+  DUET_REFUSED("several arguments are given as a tuple: " #driver "(f, std::tuple(a, b))")         \
+  __VA_ARGS__ driver(F&&, const A&, const B&, const More&...);                                     \
+  template <class Tag = void, detail::FunctionOfAny F, class X>                                    \
+    requires((Scalar<X> || Arithmetic<X>)&&!HasOwnJacobian<F>)                                     \
+  DUET_REFUSED(#driver " is by a vector, by one number there is " of_one)                          \
+  __VA_ARGS__ driver(F&&, const X&);

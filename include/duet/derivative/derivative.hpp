@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <tuple>
 #include <utility>
 
 /// \file
@@ -72,5 +73,16 @@ value_and_derivative<double, double> derivative(F&&, X&&...);
 template <int K, class Tag = void, detail::FunctionOfReals F, class... X>
 DUET_REFUSED_FUNCTION(derivatives)
 std::array<double, std::size_t(K) + 1> derivatives(F&&, X&&...);
+
+template <class Tag = void, detail::FunctionOfAny F, class X>
+  requires(!Scalar<X> && !Arithmetic<X>)
+DUET_REFUSED(
+    "derivative is by one number; by vectors, rotations and poses there are gradient(f, x) "
+    "and jacobian(f, x)")
+value_and_derivative<double, double> derivative(F&&, const X&);
+template <class Tag = void, detail::FunctionOfAny F, class A, class B, class... More>
+DUET_REFUSED("derivative is by one number; of several arguments there are gradient(f, "
+             "std::tuple(a, b)) and jacobian(f, std::tuple(a, b))")
+value_and_derivative<double, double> derivative(F&&, const A&, const B&, const More&...);
 
 } // namespace duet

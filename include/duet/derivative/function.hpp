@@ -63,9 +63,9 @@ concept FunctionOfReals = requires(std::decay_t<F> f) {
 }
 || requires { requires decltype(has_real_parameters(&std::decay_t<F>::operator()))::value; };
 
-/// Any other: what drivers differentiate.
+/// Any other: what drivers differentiate. (Formulas have drivers of their own.)
 template <class F>
-concept FunctionOfAny = !FunctionOfReals<F>;
+concept FunctionOfAny = !FunctionOfReals<F> && !is_symbolic<std::remove_cvref_t<F>>;
 
 /// What a function of the caller's returned, as an object of its own. (Its type is deduced, so that
 /// compilers say first of all what is wrong, also where only the type is asked for.)
@@ -81,6 +81,17 @@ template <class X>
 }
 
 } // namespace duet::detail
+
+namespace duet {
+
+/// What has a function `jacobian` of its own, as a mechanism, and is not differentiated as a
+/// callable. For those who extend duet.
+template <class F>
+concept HasOwnJacobian = requires {
+  typename std::remove_cvref_t<F>::own_jacobian;
+};
+
+} // namespace duet
 
 /// Said where `driver` is given one.
 #define DUET_REFUSED_FUNCTION(driver)                                                              \

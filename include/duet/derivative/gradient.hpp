@@ -226,4 +226,8 @@ template <class Tag = void, detail::FunctionOfReals F, class... X>
 DUET_REFUSED_FUNCTION(hessian)
 value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd> hessian(F&&, X&&...);
 
+DUET_REFUSES_ARGUMENTS(gradient, "derivative(f, x)", value_and_gradient<double, Eigen::VectorXd>)
+DUET_REFUSES_ARGUMENTS(hessian, "derivatives<2>(f, x)",
+                       value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd>)
+
 } // namespace duet

@@ -20,13 +20,6 @@
 
 namespace duet {
 
-/// What has a function `jacobian` of its own, as a mechanism, and is not differentiated as a
-/// callable. For those who extend duet.
-template <class F>
-concept HasOwnJacobian = requires {
-  typename std::remove_cvref_t<F>::own_jacobian;
-};
-
 /// What `jacobian` returns: y = f(x), and ∂y/∂x, a row for each component of y.
 template <class Y, class J>
 struct value_and_jacobian {
@@ -149,5 +142,8 @@ Eigen::VectorXd jacobian_into(F&&, X&&...);
 template <class Tag = void, detail::FunctionOfReals F, class... X>
 DUET_REFUSED_FUNCTION(directional_derivative)
 value_and_derivative<double, double> directional_derivative(F&&, X&&...);
+
+DUET_REFUSES_ARGUMENTS(jacobian, "derivative(f, x)",
+                       value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd>)
 
 } // namespace duet

@@ -66,7 +66,8 @@ void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
 }
 
 template <class X>
-concept NeedsFrame = ManifoldPoint<X> && !Variables<X> && !Scalar<X> && !Arithmetic<X>;
+concept NeedsFrame =
+    ManifoldPoint<X> && !Variables<X> && !Scalar<X> && !Arithmetic<X> && !is_matrix_argument<X>;
 
 } // namespace detail
 

@@ -7,17 +7,33 @@
 #include <cmath>
 
 /// \file
-/// `std::sin(x)` of a dual x, and its like: qualified names find the standard library's functions
-/// alone, which know none. Compilers would list these; they say what to write instead.
+/// `std::sin(x)` of a dual or a formula x, and its like: qualified names find the standard
+/// library's functions alone, which know none. Compilers would list these; they say what to write
+/// instead.
 ///
 /// (The standard keeps its namespace to itself. These are called by no program that compiles, and
 /// wherever another function fits, it is more specialised than a parameter pack.)
 
+namespace duet::detail {
+
+template <class X>
+concept UnknownToStd = RealInfinitesimal<X> || is_symbolic<X>;
+
+} // namespace duet::detail
+
 #define DUET_REFUSES_STD(function)                                                                 \
   template <class... X>                                                                            \
-    requires(duet::RealInfinitesimal<X> || ...)                                                    \
-  DUET_REFUSED("std::" #function " does not know numbers with derivatives: write " #function       \
+    requires(duet::detail::UnknownToStd<X> || ...)                                                 \
+  DUET_REFUSED("std::" #function                                                                   \
+               " does not know numbers with derivatives nor formulas: write " #function            \
                "(x), after `using std::" #function ";` where x may be a double")                   \
+  double function(const X&...);
+#define DUET_REFUSES_SPECIAL(function)                                                             \
+  template <class... X>                                                                            \
+    requires(duet::detail::UnknownToStd<X> || ...)                                                 \
+  DUET_REFUSED("std::" #function " does not know numbers with derivatives nor formulas: of such "  \
+               "numbers there is " #function " of <duet/interop/special_functions.hpp>, without "  \
+               "`std::`, of formulas there is none")                                               \
   double function(const X&...);
 
 namespace std {
@@ -66,6 +82,29 @@ DUET_REFUSES_STD(tanh)
 DUET_REFUSES_STD(tgamma)
 DUET_REFUSES_STD(trunc)
 
+DUET_REFUSES_SPECIAL(assoc_laguerre)
+DUET_REFUSES_SPECIAL(assoc_legendre)
+DUET_REFUSES_SPECIAL(beta)
+DUET_REFUSES_SPECIAL(comp_ellint_1)
+DUET_REFUSES_SPECIAL(comp_ellint_2)
+DUET_REFUSES_SPECIAL(comp_ellint_3)
+DUET_REFUSES_SPECIAL(cyl_bessel_i)
+DUET_REFUSES_SPECIAL(cyl_bessel_j)
+DUET_REFUSES_SPECIAL(cyl_bessel_k)
+DUET_REFUSES_SPECIAL(cyl_neumann)
+DUET_REFUSES_SPECIAL(ellint_1)
+DUET_REFUSES_SPECIAL(ellint_2)
+DUET_REFUSES_SPECIAL(ellint_3)
+DUET_REFUSES_SPECIAL(expint)
+DUET_REFUSES_SPECIAL(hermite)
+DUET_REFUSES_SPECIAL(laguerre)
+DUET_REFUSES_SPECIAL(legendre)
+DUET_REFUSES_SPECIAL(riemann_zeta)
+DUET_REFUSES_SPECIAL(sph_bessel)
+DUET_REFUSES_SPECIAL(sph_legendre)
+DUET_REFUSES_SPECIAL(sph_neumann)
+
 } // namespace std
 
 #undef DUET_REFUSES_STD
+#undef DUET_REFUSES_SPECIAL

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/refused.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/parts.hpp>
@@ -164,6 +165,9 @@ inline constexpr bool is_symbol_formula = false;
 template <class NodeType, class Held>
 inline constexpr bool is_symbol_formula<formula<NodeType, Held>> = is_symbol<NodeType>;
 
+template <class T>
+concept ScalarSymbol = is_symbol_formula<T> && ScalarTerm<T>;
+
 } // namespace detail
 
 /// A formula that is one symbol.
@@ -172,15 +176,21 @@ concept Symbol = detail::is_symbol_formula<T>;
 
 /// ∂f/∂u of any formula by a scalar symbol: of a scalar, a vector or matrix componentwise,
 /// a quaternion or pose in its own algebra (N6).
-template <Formula F, Symbol U>
+template <Formula F, detail::ScalarSymbol U>
 [[nodiscard]] constexpr auto derivative(const F& f, const U&) {
-  using symbol_type = typename U::node_type;
-  static_assert(symbol_type::kind_of == kind::scalar,
-                "duet: derivative(f, u) is by a scalar symbol; by vectors, matrices, rotations and "
-                "poses there is jacobian(f, wrt(w))");
-  return make_formula(
-      detail::rate_t<typename F::node_type, detail::movement_of_scalar<symbol_type>>{}, f.held());
+  using motion = detail::movement_of_scalar<typename U::node_type>;
+  return make_formula(detail::rate_t<typename F::node_type, motion>{}, f.held());
 }
+template <Formula F, Symbol U>
+  requires(!detail::ScalarSymbol<U>)
+DUET_REFUSED("derivative(f, u) is by a scalar symbol; by vectors, matrices, rotations and poses "
+             "there are gradient(f, wrt(w)) and jacobian(f, wrt(w))")
+F derivative(const F&, const U&);
+template <Formula F, class... X>
+  requires(sizeof...(X) != 1 || (!Symbol<X> || ...))
+DUET_REFUSED("derivative(f, u) is by one symbol, as symbol<\"u\"> u; it is called with values "
+             "afterwards, derivative(f, u)(u = 0.3)")
+F derivative(const F&, const X&...);
 
 /// A symbol and the direction in which it moves; made by `along`.
 template <class SymbolType, Term Direction>

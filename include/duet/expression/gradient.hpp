@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/given.hpp>
@@ -25,6 +26,8 @@ template <class Motions>
 struct gradient_of;
 template <class... Motions>
 struct gradient_of<motion_list<Motions...>> {
+  using result = value_and_gradient<double, Eigen::VectorXd>;
+
   template <class Node, class Given>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
     constexpr int n = int(sizeof...(Motions));
@@ -57,6 +60,8 @@ template <class Motions>
 struct hessian_of;
 template <class... Motions>
 struct hessian_of<motion_list<Motions...>> {
+  using result = value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd>;
+
   template <class Node, class Given>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
     return with_second<Node>(g, typename upper_triangle<Node, Motions...>::type{});
@@ -91,20 +96,40 @@ private:
 /// f and its gradient by the variables in their order, a function to be called by name:
 /// `auto [y, g] = gradient(f, wrt(u, w))(u = 0.3, w = w0)`.
 template <Formula F, class... Symbols>
+  requires ScalarTerm<F>
 [[nodiscard]] constexpr auto gradient(const F& f, variables<Symbols...>) {
-  static_assert(F::node_type::kind_of == kind::scalar,
-                "duet: a gradient is that of a scalar formula; others have a jacobian");
   using gradient = detail::gradient_of<typename variables<Symbols...>::motions>;
   return detail::called_by_name<gradient, F>(f);
 }
 
 /// f, its gradient and its symmetric Hessian, to be called likewise.
 template <Formula F, class... Symbols>
+  requires ScalarTerm<F>
 [[nodiscard]] constexpr auto hessian(const F& f, variables<Symbols...>) {
-  static_assert(F::node_type::kind_of == kind::scalar,
-                "duet: a Hessian is that of a scalar formula");
   using hessian = detail::hessian_of<typename variables<Symbols...>::motions>;
   return detail::called_by_name<hessian, F>(f);
 }
+
+template <Formula F, class... Symbols>
+  requires(!ScalarTerm<F>)
+DUET_REFUSED("a gradient is that of a scalar formula; others have a jacobian")
+detail::called_by_name<detail::gradient_of<detail::motion_list<>>, F>
+gradient(const F&, variables<Symbols...>);
+template <Formula F, class... Symbols>
+  requires(!ScalarTerm<F>)
+DUET_REFUSED("a Hessian is that of a scalar formula")
+detail::called_by_name<detail::hessian_of<detail::motion_list<>>, F> hessian(const F&,
+                                                                             variables<Symbols...>);
+template <Formula F, class... X>
+  requires detail::NoVariables<X...>
+      DUET_REFUSED("by which symbols? gradient(f, wrt(u, w)); it is called with values afterwards, "
+                   "gradient(f, wrt(u, w))(u = 0.3, w = w0)")
+detail::called_by_name<detail::gradient_of<detail::motion_list<>>, F> gradient(const F&,
+                                                                               const X&...);
+template <Formula F, class... X>
+  requires detail::NoVariables<X...>
+      DUET_REFUSED("by which symbols? hessian(f, wrt(u, w)); it is called with values afterwards, "
+                   "hessian(f, wrt(u, w))(u = 0.3, w = w0)")
+detail::called_by_name<detail::hessian_of<detail::motion_list<>>, F> hessian(const F&, const X&...);
 
 } // namespace duet::expression

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/expression/arm/pose_chain.hpp>
@@ -38,6 +39,8 @@ template <class Motions, class Frame>
 struct jacobian_of;
 template <class... Motions, class Frame>
 struct jacobian_of<motion_list<Motions...>, Frame> {
+  using result = value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd>;
+
   template <class Node, class Given>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
     if constexpr (is_pose_chain<Node> && std::is_same_v<Frame, spatial_frame> &&
@@ -116,5 +119,12 @@ template <Formula F, class... Symbols>
                 "duet: with rotations and poses say the frame: jacobian(f, wrt(u), frame::body)");
   return detail::make_jacobian<F, variables<Symbols...>, void>(f);
 }
+
+template <Formula F, class... X>
+  requires detail::NoVariables<X...> DUET_REFUSED(
+      "by which symbols? jacobian(f, wrt(u, w)), where rotations or poses are among them or "
+      "f is one jacobian(f, wrt(u, w), frame::body)")
+detail::called_by_name<detail::jacobian_of<detail::motion_list<>, void>, F> jacobian(const F&,
+                                                                                     const X&...);
 
 } // namespace duet::expression

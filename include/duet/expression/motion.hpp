@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/given.hpp>
@@ -32,6 +33,8 @@ namespace detail {
 /// The value, the velocity and the acceleration.
 template <class Symbol, class Frame>
 struct motion_of {
+  using result = moving_value<quaternion<double>, Eigen::VectorXd>;
+
   template <class Node, class Given>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
     using by_symbol = movement_of_scalar<Symbol>;
@@ -63,5 +66,11 @@ template <Formula F, Symbol U, FrameConstant Frame>
   using motion = detail::motion_of<typename U::node_type, Frame>;
   return detail::called_by_name<motion, F>(f);
 }
+
+/// Without a frame it is not clear which is meant.
+template <Formula F, Symbol U>
+DUET_REFUSED("in which axes? motion(f, u, frame::spatial) or frame::body")
+detail::called_by_name<detail::motion_of<typename U::node_type, body_frame>, F> motion(const F&,
+                                                                                       const U&);
 
 } // namespace duet::expression

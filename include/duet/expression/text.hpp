@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/tree/formula.hpp>
@@ -268,5 +269,18 @@ template <Formula F>
       detail::print(notation::latex, detail::written_t<typename F::node_type>{}, f.held());
   return detail::latex_text(detail::latex_terms(whole), detail::fractions::lines).text;
 }
+
+template <class Made, class F>
+DUET_REFUSED(
+    "gradients, Hessians, Jacobians and motions are functions to be called with values; "
+    "formulas are derivative(f, u) and, along a vector, directional_derivative(f, along(w, "
+    "v))")
+std::string to_latex(const detail::called_by_name<Made, F>&);
+template <class Made, class F>
+DUET_REFUSED(
+    "gradients, Hessians, Jacobians and motions are functions to be called with values; "
+    "formulas are derivative(f, u) and, along a vector, directional_derivative(f, along(w, "
+    "v))")
+std::string to_text(const detail::called_by_name<Made, F>&);
 
 } // namespace duet::expression

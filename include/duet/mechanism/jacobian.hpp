@@ -144,4 +144,8 @@ template <class C, VectorLike X>
       DUET_REFUSED("a chain has three Jacobians, say which: jacobian(chain, theta, frame::hybrid)")
 detail::chain_jacobian<std::remove_cvref_t<C>, X> jacobian(C&&, const X&);
 
+DUET_ASKS_FOR_ONE_CONFIGURATION(jacobian, Eigen::MatrixXd)
+DUET_ASKS_FOR_ONE_CONFIGURATION(pose_and_jacobian,
+                                value_and_jacobian<dual_quaternion<double>, Eigen::MatrixXd>)
+
 } // namespace duet

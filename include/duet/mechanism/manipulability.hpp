@@ -149,4 +149,8 @@ struct high_manipulability {
 template <class C, class... W>
 high_manipulability(C, W...) -> high_manipulability<C>;
 
+DUET_ASKS_FOR_ONE_CONFIGURATION(manipulability, double)
+DUET_ASKS_FOR_ONE_CONFIGURATION(manipulability_gradient,
+                                value_and_gradient<double, Eigen::VectorXd>)
+
 } // namespace duet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/chain_walk.hpp>
@@ -85,6 +86,10 @@ struct poses_of {
         attached(walk<true, S>(chain, theta, frame.link, visit_nothing), frame.offset);
     return pose_of_unit(at_frame.rotation, at_frame.translation.eigen());
   }
+  template <class... X>
+    requires(is_matrix_argument<X> || ...)
+  DUET_REFUSED("pose takes the coordinates of one configuration: chain.pose(thetas.col(i))")
+  dual_quaternion<double> pose(const X&...) const;
 };
 
 } // namespace detail
@@ -281,5 +286,13 @@ template <SerialChain C>
   }
   return result;
 }
+
+/// Said where `function` of a chain is given a matrix of configurations; then the type of its
+/// result.
+#define DUET_ASKS_FOR_ONE_CONFIGURATION(function, ...)                                             \
+  template <SerialChain C, class... X>                                                             \
+    requires(detail::is_matrix_argument<X> || ...)                                                 \
+  DUET_REFUSED(#function " takes the coordinates of one configuration: thetas.col(i) of a matrix") \
+  __VA_ARGS__ function(const C&, const X&...);
 
 } // namespace duet

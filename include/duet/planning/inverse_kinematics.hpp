@@ -88,4 +88,6 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
       goals.size(), [&](std::size_t i) { out[i] = search(goals[i]); }, how);
 }
 
+DUET_ASKS_FOR_ONE_CONFIGURATION(inverse_kinematics, inverse_kinematics_result<C::joints>)
+
 } // namespace duet

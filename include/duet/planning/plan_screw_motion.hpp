@@ -59,4 +59,6 @@ plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<doub
   return detail::follow(chain, start, target, {0, 1}, options, objective, around, true);
 }
 
+DUET_ASKS_FOR_ONE_CONFIGURATION(plan_screw_motion, motion_plan<C::joints>)
+
 } // namespace duet

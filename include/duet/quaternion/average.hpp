@@ -2,9 +2,11 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
+#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
@@ -12,7 +14,9 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -134,5 +138,18 @@ template <class T>
   }
   return m;
 }
+
+template <class T, class... More>
+DUET_REFUSED("average takes a vector of them: average(std::vector{p, q})")
+quaternion<T> average(const quaternion<T>&, const More&...);
+template <class T, class... More>
+DUET_REFUSED("average takes a vector of them: average(std::vector{p, q})")
+quaternion<T> average(std::initializer_list<quaternion<T>>, const More&...);
+template <class T, std::size_t N, class... More>
+DUET_REFUSED("average takes a vector of them: average(std::vector(q.begin(), q.end()))")
+quaternion<T> average(const std::array<quaternion<T>, N>&, const More&...);
+template <detail::ForeignRows Rows, class... More>
+DUET_REFUSED_FOREIGN_ROWS(average)
+quaternion<double> average(const Rows&, const More&...);
 
 } // namespace duet

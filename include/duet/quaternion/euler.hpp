@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/parts.hpp>
@@ -254,5 +255,16 @@ template <class A, Promotable<A> B>
       T(-sin(psi)), zero, T(1);
   return a;
 }
+
+/// Without a sequence it is not clear about which axes.
+template <class... X>
+DUET_REFUSED("about which axes? from_euler<zyx>(yaw, pitch, roll), in radians")
+quaternion<double> from_euler(const X&...);
+template <class T>
+DUET_REFUSED("about which axes? euler<zyx>(q)")
+std::array<T, 3> euler(const quaternion<T>&);
+template <class... X>
+DUET_REFUSED("about which axes? euler_rate_matrix<zyx>(yaw, pitch)")
+matrix3<double> euler_rate_matrix(const X&...);
 
 } // namespace duet

@@ -46,6 +46,18 @@ concept Foreign = ForeignMotion<X> || requires(const X& x) {
   as_foreign(x);
 };
 
+template <class Derived>
+  requires(Derived::RowsAtCompileTime == Derived::ColsAtCompileTime)
+void as_foreign_row(const Eigen::MatrixBase<Derived>&);
+template <ForeignMotion X>
+void as_foreign_row(const X&);
+
+/// Rows of rotations or poses of Eigen, by quaternions, matrices or whatever else it has for them.
+template <class Rows>
+concept ForeignRows = requires(const typename Rows::value_type& row) {
+  as_foreign_row(row);
+};
+
 /// X is a Q or becomes one by itself. (What is Eigen's seems to, as a constructor refuses it.)
 template <class X, class Q>
 concept Becomes = std::convertible_to<X, Q> && !ForeignMotion<std::remove_cvref_t<X>>;
@@ -60,3 +72,9 @@ concept Becomes = std::convertible_to<X, Q> && !ForeignMotion<std::remove_cvref_
                          "Eigen, (a + b).eval() of an expression, vector3<double>(v[0], v[1], "    \
                          "v[2]) of standard vectors")                                              \
   __VA_ARGS__ function(const X&...);
+
+/// Said where `function` is given rows of Eigen's.
+#define DUET_REFUSED_FOREIGN_ROWS(function)                                                        \
+  DUET_REFUSED(#function ": rows of rotations and poses are those of duet: from_eigen(q) of each " \
+                         "quaternion or Isometry3d, in <duet/interop/eigen.hpp>, "                 \
+                         "from_rotation_matrix(R) of each matrix")

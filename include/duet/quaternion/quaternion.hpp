@@ -202,6 +202,27 @@ template <class T, detail::ForeignMotion X>
 DUET_REFUSED("a product with a rotation or pose of Eigen: from_eigen(p) * q")
 quaternion<T> operator*(const X&, const quaternion<T>&);
 
+/// A vector is turned by a product on either side, a point moved by poses from one, and a matrix
+/// is another form of what a quaternion is.
+template <class T, class V>
+  requires(V::ColsAtCompileTime == 1)
+DUET_REFUSED("a quaternion times a vector: rotate(q, v) turns it, transform_point(A, v) moves a "
+             "point by a pose")
+vector3<T> operator*(const quaternion<T>&, const Eigen::MatrixBase<V>&);
+template <class T, class V>
+  requires(V::ColsAtCompileTime == 1)
+DUET_REFUSED("a vector times a quaternion: rotate(q, v) turns it, transform_point(A, v) moves a "
+             "point by a pose")
+vector3<T> operator*(const Eigen::MatrixBase<V>&, const quaternion<T>&);
+template <class T, class M>
+  requires(M::ColsAtCompileTime != 1)
+DUET_REFUSED("a quaternion times a matrix: q * from_rotation_matrix(R), or rotation_matrix(q) * R")
+matrix3<T> operator*(const quaternion<T>&, const Eigen::MatrixBase<M>&);
+template <class T, class M>
+  requires(M::ColsAtCompileTime != 1)
+DUET_REFUSED("a matrix times a quaternion: from_rotation_matrix(R) * q, or R * rotation_matrix(q)")
+matrix3<T> operator*(const Eigen::MatrixBase<M>&, const quaternion<T>&);
+
 /// Componentwise, by value. q and −q are the same rotation but not the same quaternion.
 template <class A, Promotable<A> B>
 [[nodiscard]] constexpr auto operator==(const quaternion<A>& p, const quaternion<B>& q) {

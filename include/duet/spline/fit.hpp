@@ -12,6 +12,7 @@
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/refused_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -161,6 +162,14 @@ DUET_REFUSED("fit: the curve is over another scalar than the rows: rotations mak
              "cumulative_bspline<double>, poses a cumulative_bspline<dual<double, 1, screw_tag>>")
 fit_result<Spline> fit(const std::vector<R>&, const std::vector<quaternion<T>>&,
                        const std::vector<R>&, const More&...);
+DUET_REFUSES_ROWS(fit, fit_result, "(parameters, rows, knots)")
+template <CurveType Spline, class U, class T>
+DUET_REFUSED("fit: with which knots? fit<Curve>(parameters, rows, clamped_knots(breaks, 4))")
+fit_result<Spline> fit(const U&, const std::vector<quaternion<T>>&);
+template <CurveType Spline, class U, class T>
+DUET_REFUSED("fit: with which knots? fit<Curve>(parameters, rows, clamped_knots(breaks, 4), "
+             "options)")
+fit_result<Spline> fit(const U&, const std::vector<quaternion<T>>&, const fit_options&);
 
 #ifdef DUET_COMPILED
 DUET_COMPILED_TEMPLATE fit_result<cumulative_bspline<double>>

@@ -16,6 +16,7 @@
 #include <duet/spline/equations/rotation_vector_quintic.hpp>
 #include <duet/spline/hermite.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/refused_rows.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <algorithm>
@@ -263,5 +264,7 @@ DUET_REFUSED("interpolate: the curve is over another scalar than the rows: rotat
              "cumulative_bspline<double>, poses a cumulative_bspline<dual<double, 1, screw_tag>>")
 Spline interpolate(const std::vector<real_type_t<T>>&, const std::vector<quaternion<T>>&,
                    const More&...);
+
+DUET_REFUSES_ROWS(interpolate, detail::itself, "(parameters, rows)")
 
 } // namespace duet

@@ -3,6 +3,7 @@
 
 #include <duet/core/batch/lanes.hpp>
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -59,6 +60,11 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame, span_hint& hint) const {
     return detail::motion_of(evaluate<3>(u, hint), frame);
   }
+  /// Without a frame it is not clear which is meant.
+  template <class S>
+  DUET_REFUSED("in which axes? motion(u, frame::spatial) or frame::body, of poses also "
+               "frame::hybrid")
+  auto motion(const S& u) const -> decltype(motion(u, frame::body));
 
   /// Q, Q′ = Q w, Q″ = Q (a − |w|²) and Q‴ = Q (j − |w|² w + w × a − 3 w·a), with halved rates in
   /// body axes (P3, P4 in their true form).

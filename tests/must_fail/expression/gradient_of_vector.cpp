@@ -1,20 +1,28 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: a gradient is that of a scalar formula
+// expect: duet: a (gradient|Hessian) is that of a scalar formula
+// within: 2
+// forms: 3
 
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/gradient.hpp>
 #include <duet/expression/jacobian.hpp>
 #include <duet/expression/symbol.hpp>
 
+#include <iostream>
+
 int main() {
   using namespace duet::expression;
   constexpr symbol<"u"> u;
   constexpr vector_symbol<"w"> w;
-  const duet::vector3<double> w0(1, 2, 3);
+  const Eigen::Vector3d w0(1, 2, 3);
   const auto f = sin(u) * norm(w);
-#ifdef DUET_MUST_FAIL
-  static_cast<void>(duet::expression::gradient(u * w, wrt(u)));
+#if DUET_MUST_FAIL == 1
+  static_cast<void>(gradient(u * w, wrt(u)));
+#elif DUET_MUST_FAIL == 2
+  std::cout << gradient(u * w, wrt(u))(u = 0.3, w = w0).gradient << "\n";
+#elif DUET_MUST_FAIL == 3
+  const auto h = hessian(u * w, wrt(u));
 #else
-  static_cast<void>(duet::expression::gradient(f, wrt(u)));
+  std::cout << f(u = 0.3, w = w0) << gradient(f, wrt(u))(u = 0.3, w = w0).gradient << "\n";
 #endif
 }

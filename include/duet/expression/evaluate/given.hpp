@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual/promotion.hpp>
@@ -160,57 +161,84 @@ template <kind K, char... Letters, class... Arguments>
 inline constexpr bool has_value<symbol_node<K, Letters...>, Arguments...> =
     times_given<symbol_node<K, Letters...>, Arguments...> > 0;
 
-template <class Item, class... Arguments>
-[[nodiscard]] constexpr bool require_value() {
-  static_assert(has_value<Item, Arguments...>,
-                "duet: a symbol of the formula has no value; say f(u = 0.3, ...) with all of them");
-  return has_value<Item, Arguments...>;
+template <class... Arguments, class... Items>
+[[nodiscard]] constexpr bool has_all_values(const held<Items...>*) {
+  return (has_value<Items, Arguments...> && ...);
 }
 
-template <class Argument, class Held, class... Arguments>
-[[nodiscard]] constexpr bool require_known_once() {
-  using symbol = typename Argument::symbol_type;
-  constexpr bool is_known = std::is_base_of_v<holding<symbol>, Held>;
-  constexpr bool is_single = times_given<symbol, Arguments...> == 1;
-  static_assert(is_known, "duet: a value is given for a symbol that the formula does not have");
-  static_assert(is_single, "duet: two values are given for one symbol");
-  return is_known && is_single;
-}
+/// What is wrong with the arguments of a call.
+enum class slip { none, no_name, unknown, doubled, missing };
 
-template <class Held>
-struct call_of;
-template <class... Items>
-struct call_of<held<Items...>> {
-  /// Every symbol that the formula was written with has one value, and nothing else has.
-  template <class... Arguments>
-  [[nodiscard]] static constexpr bool is_complete() {
-    constexpr bool by_name = (is_argument<Arguments> && ...);
-    static_assert(by_name, "duet: formulas are called by name, as f(u = 0.3)");
-    if constexpr (by_name) {
-      constexpr bool known = (require_known_once<Arguments, held<Items...>, Arguments...>() && ...);
-      constexpr bool given = (require_value<Items, Arguments...>() && ...);
-      return known && given;
-    } else {
-      return false;
-    }
+template <class Held, class... Arguments>
+[[nodiscard]] constexpr slip find_slip() {
+  if constexpr (!(is_argument<Arguments> && ...)) {
+    return slip::no_name;
+  } else if constexpr (!(std::is_base_of_v<holding<typename Arguments::symbol_type>, Held> &&
+                         ...)) {
+    return slip::unknown;
+  } else if constexpr (((times_given<typename Arguments::symbol_type, Arguments...> > 1) || ...)) {
+    return slip::doubled;
+  } else {
+    return has_all_values<Arguments...>(static_cast<const Held*>(nullptr)) ? slip::none
+                                                                           : slip::missing;
   }
+}
+template <class Held, class... Arguments>
+inline constexpr slip slip_of_call = find_slip<Held, Arguments...>();
+
+/// Calls of a formula, or of what is made of it, that are none: every symbol that the formula was
+/// written with has one value, and nothing else has. (Parameters are of other types than those of
+/// the right calls: clang 14 does not tell by what they require what a `using` brings along.)
+template <class Held, class Result>
+struct refused_calls {
+  template <class... Arguments>
+    requires(slip_of_call<Held, std::remove_cvref_t<Arguments>...> == slip::no_name)
+  DUET_REFUSED("formulas are called by name, as f(u = 0.3)")
+  Result operator()(Arguments&&...) const;
+  template <class... Arguments>
+    requires(slip_of_call<Held, std::remove_cvref_t<Arguments>...> == slip::unknown)
+  DUET_REFUSED("a value is given for a symbol that the formula does not have")
+  Result operator()(Arguments&&...) const;
+  template <class... Arguments>
+    requires(slip_of_call<Held, std::remove_cvref_t<Arguments>...> == slip::doubled)
+  DUET_REFUSED("two values are given for one symbol")
+  Result operator()(Arguments&&...) const;
+  template <class... Arguments>
+    requires(slip_of_call<Held, std::remove_cvref_t<Arguments>...> == slip::missing)
+  DUET_REFUSED("a symbol of the formula has no value; say f(u = 0.3, ...) with all of them")
+  Result operator()(Arguments&&...) const;
 };
 
+/// What an ordinary value of a kind is.
+template <kind K>
+struct kind_value {
+  using type = decltype(leaf<zero_node<K>, numbers_as<double>>::value({}));
+};
+template <>
+struct kind_value<kind::scalar> {
+  using type = double;
+};
+template <>
+struct kind_value<kind::condition> {
+  using type = bool;
+};
+template <kind K>
+using value_of_kind = typename kind_value<K>::type;
+
 /// What is made of a formula and called by name as the formula is: `Made::of` of its node where
-/// `given` holds values that are complete.
+/// `given` holds values that are complete; `Made::result` has the members of what that returns.
 template <class Made, class F>
-class called_by_name {
+class called_by_name : refused_calls<typename F::held_type, typename Made::result> {
 public:
   constexpr explicit called_by_name(const F& f) : f_(f) {}
 
   template <class... Arguments>
+    requires(slip_of_call<typename F::held_type, Arguments...> == slip::none)
   [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
-    using held = typename F::held_type;
-    if constexpr (call_of<held>::template is_complete<Arguments...>()) {
-      using node = typename F::node_type;
-      return Made::template of<node>(given<held, Arguments...>{f_.held(), arguments...});
-    }
+    using values = given<typename F::held_type, Arguments...>;
+    return Made::template of<typename F::node_type>(values{f_.held(), arguments...});
   }
+  using refused_calls<typename F::held_type, typename Made::result>::operator();
 
 private:
   F f_;

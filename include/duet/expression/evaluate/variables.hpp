@@ -1,11 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/refused.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/vector.hpp>
 
 #include <boost/mp11/list.hpp>
+
+#include <tuple>
 
 /// \file
 /// By which symbols a formula is differentiated, and in which directions each of them moves.
@@ -39,6 +42,9 @@ struct directions<Symbol, Frame, kind::dual_vector> {
   using type = moving_along_axes<Symbol, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
 };
 
+template <class T>
+inline constexpr bool is_variables = false;
+
 } // namespace detail
 
 /// Variables in an order; made by `wrt`.
@@ -51,13 +57,26 @@ struct variables {
   using motions = motions_in<void>;
 };
 
+namespace detail {
+
+template <class... Symbols>
+inline constexpr bool is_variables<variables<Symbols...>> = true;
+
+/// What is called as `wrt` says is.
+template <class... X>
+concept NoVariables = sizeof...(X) == 0 || !is_variables<std::tuple_element_t<0, std::tuple<X...>>>;
+
+} // namespace detail
+
 /// With respect to u, w …: the columns of a Jacobian in this order. They are one for a scalar,
 /// three for a vector or a rotation, six for a dual vector n + εm, in the order [m; n], or a pose,
 /// one for each entry of a matrix, column by column.
 template <Symbol... U>
-[[nodiscard]] constexpr variables<typename U::node_type...> wrt(const U&...) {
-  static_assert(sizeof...(U) > 0, "duet: wrt needs at least one symbol");
-  return {};
-}
+  requires(sizeof...(U) > 0)
+[[nodiscard]] constexpr variables<typename U::node_type...> wrt(const U&...) { return {}; }
+template <class... X>
+  requires(sizeof...(X) == 0 || (!Symbol<X> || ...))
+DUET_REFUSED("wrt(u, w) takes symbols, as symbol<\"u\"> u")
+variables<> wrt(const X&...);
 
 } // namespace duet::expression

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/evaluate/given.hpp>
@@ -33,6 +34,13 @@ template <class T>
 inline constexpr bool is_formula = false;
 template <class NodeType, class Held>
 inline constexpr bool is_formula<formula<NodeType, Held>> = true;
+
+} // namespace duet::expression
+
+template <class NodeType, class Held>
+inline constexpr bool duet::detail::is_symbolic<duet::expression::formula<NodeType, Held>> = true;
+
+namespace duet::expression {
 
 /// A formula, or a symbol.
 template <class T>
@@ -157,7 +165,7 @@ concept SizedOperands = Operands<T...> &&(is_sized_matrix(kind_of_operand<T>()) 
 
 /// A formula: its type is the tree of its operations, its members are its constants alone.
 template <Node NodeType, class Held>
-class formula {
+class formula : detail::refused_calls<Held, detail::value_of_kind<NodeType::kind_of>> {
 public:
   using node_type = NodeType;
   using held_type = Held;
@@ -172,30 +180,32 @@ public:
   /// the formula was written with is given one, also where simplification removed it. What occurs
   /// more than once is evaluated once.
   template <class... Arguments>
+    requires(detail::slip_of_call<Held, Arguments...> == detail::slip::none)
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator()(const Arguments&... arguments) const {
-    if constexpr (detail::call_of<Held>::template is_complete<Arguments...>()) {
-      using values = detail::given<Held, Arguments...>;
-      return detail::evaluated_nodes<NodeType>(values{held_, arguments...}).template get<0>();
-    }
+    using values = detail::given<Held, Arguments...>;
+    return detail::evaluated_nodes<NodeType>(values{held_, arguments...}).template get<0>();
   }
+  using detail::refused_calls<Held, detail::value_of_kind<NodeType::kind_of>>::operator();
 
   /// A value for a symbol, to be handed to a formula.
   template <class T>
-    requires is_symbol<NodeType>
+    requires(is_symbol<NodeType>&& detail::ConstantOf<T, NodeType::kind_of>)
   [[nodiscard]] constexpr auto operator=(const T& value) const {
-    constexpr bool is_right_kind = detail::ConstantOf<T, NodeType::kind_of>;
-    static_assert(
-        is_right_kind || is_sized_matrix(NodeType::kind_of),
-        "duet: a symbol is given a value of another kind; scalar, vector, quaternion, dual "
-        "vector and pose symbols take just that");
-    static_assert(is_right_kind || !is_sized_matrix(NodeType::kind_of),
-                  "duet: a matrix symbol is given a value of another size; matrix_symbol<\"A\", 2, "
-                  "4> takes a matrix of Eigen of 2 rows and 4 columns");
-    if constexpr (is_right_kind) {
-      using held_type_of_value = typename detail::constant_traits<T>::held_type;
-      return detail::argument<NodeType, held_type_of_value>{static_cast<held_type_of_value>(value)};
-    }
+    using held_type_of_value = typename detail::constant_traits<T>::held_type;
+    return detail::argument<NodeType, held_type_of_value>{static_cast<held_type_of_value>(value)};
   }
+  template <class T>
+    requires(is_symbol<NodeType> && !detail::ConstantOf<T, NodeType::kind_of> &&
+             !is_sized_matrix(NodeType::kind_of))
+  DUET_REFUSED("a symbol is given a value of another kind; scalar, vector, quaternion, dual vector "
+               "and pose symbols take just that")
+  detail::argument<NodeType, detail::value_of_kind<NodeType::kind_of>> operator=(const T&) const;
+  template <class T>
+    requires(is_symbol<NodeType> && !detail::ConstantOf<T, NodeType::kind_of> &&
+             is_sized_matrix(NodeType::kind_of))
+  DUET_REFUSED("a matrix symbol is given a value of another size; matrix_symbol<\"A\", 2, 4> takes "
+               "a matrix of Eigen of 2 rows and 4 columns")
+  detail::argument<NodeType, detail::value_of_kind<NodeType::kind_of>> operator=(const T&) const;
 
 private:
   [[no_unique_address]] Held held_;

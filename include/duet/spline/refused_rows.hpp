@@ -1,0 +1,54 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/refused.hpp>
+#include <duet/quaternion/foreign.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/equations/curve_equations.hpp>
+
+#include <vector>
+
+/// \file
+/// What is given for the rows of a curve, or left out, and cannot be.
+
+namespace duet::detail {
+
+template <class X>
+using itself = X;
+
+template <class X>
+inline constexpr bool is_standard_vector = false;
+template <class X, class Allocator>
+inline constexpr bool is_standard_vector<std::vector<X, Allocator>> = true;
+
+} // namespace duet::detail
+
+/// What `function<Spline>`, with the arguments that are said, does not take; `result<Spline>` is
+/// the type of its result.
+#define DUET_REFUSES_ROWS(function, result, arguments)                                             \
+  template <CurveType Spline, class U, detail::ForeignRows Rows, class... More>                    \
+  DUET_REFUSED_FOREIGN_ROWS(function)                                                              \
+  result<Spline> function(const U&, const Rows&, const More&...);                                  \
+  template <CurveType Spline, class U, class Rows, class... More>                                  \
+    requires(!detail::ForeignRows<Rows> &&                                                         \
+             (!detail::is_standard_vector<U> || !detail::is_standard_vector<Rows>))                \
+  DUET_REFUSED(#function " takes standard vectors: std::vector<double> of parameters, "            \
+                         "std::vector<quaternion<double>> of rows")                                \
+  result<Spline> function(const U&, const Rows&, const More&...);                                  \
+  template <CurveType Spline, class T>                                                             \
+  DUET_REFUSED(#function ": at which parameters, times say? " #function "<Curve>" arguments)       \
+  result<Spline> function(const std::vector<quaternion<T>>&);                                      \
+  template <CurveType Spline, class T, class Other, class... More>                                 \
+  DUET_REFUSED(#function ": first the parameters, times say: " #function "<Curve>" arguments)      \
+  result<Spline> function(const std::vector<quaternion<T>>&, const Other&, const More&...);        \
+  template <class U, class T, class... More>                                                       \
+    requires(!CurveType<U>)                                                                        \
+  DUET_REFUSED(#function ": which curve? " #function "<cumulative_bspline<double>>" arguments)     \
+  result<cumulative_bspline<T>> function(const U&, const std::vector<quaternion<T>>&,              \
+                                         const More&...);                                          \
+  template <template <class, int> class Spline, class... X>                                        \
+  DUET_REFUSED(#function ": a curve over which scalar? " #function                                 \
+                         "<cumulative_bspline<double>>" arguments)                                 \
+  result<cumulative_bspline<double>>                                                               \
+  function(const X&...);
