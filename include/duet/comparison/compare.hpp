@@ -201,7 +201,7 @@ template <class Pair>
     ++result.counts[std::size_t(found)];
     const progress now{i + 1, points.size()};
     if (options.report && !options.report(now) && now.done < now.count) {
-      throw cancelled(now);
+      raise(cancelled(now));
     }
     if (found == verdict::agrees) {
       continue;

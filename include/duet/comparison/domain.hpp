@@ -94,7 +94,8 @@ struct vectors {
 
   [[nodiscard]] std::size_t size() const { return std::size_t(N); }
   [[nodiscard]] bool contains(std::span<const double> point) const {
-    return std::ranges::all_of(point, [this](double x) { return std::abs(x) <= bound; });
+    return std::all_of(point.begin(), point.end(),
+                       [this](double x) { return std::abs(x) <= bound; });
   }
   [[nodiscard]] std::vector<coordinates> special_points() const {
     std::vector<coordinates> points = {coordinates(std::size_t(N), 0.0),

@@ -26,7 +26,7 @@ namespace detail {
 template <class T>
 [[nodiscard]] bool is_finite(const std::vector<T>& components) {
   using std::isfinite;
-  return std::ranges::all_of(components, [](const T& x) { return isfinite(x); });
+  return std::all_of(components.begin(), components.end(), [](const T& x) { return isfinite(x); });
 }
 
 } // namespace detail

@@ -68,8 +68,9 @@ struct quaternions {
 
   [[nodiscard]] std::size_t size() const { return 4; }
   [[nodiscard]] bool contains(std::span<const double> point) const {
-    return std::ranges::all_of(point, [this](double x) { return std::abs(x) <= bound; }) &&
-           std::ranges::any_of(point, [](double x) { return x != 0; });
+    return std::all_of(point.begin(), point.end(),
+                       [this](double x) { return std::abs(x) <= bound; }) &&
+           std::any_of(point.begin(), point.end(), [](double x) { return x != 0; });
   }
   [[nodiscard]] std::vector<coordinates> special_points() const {
     std::vector<coordinates> points;

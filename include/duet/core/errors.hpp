@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/error_handler.hpp>
 
 #include <initializer_list>
 #include <sstream>
@@ -74,7 +75,7 @@ template <class... Parts>
 template <class... Parts>
 void require(bool condition, const Parts&... parts) {
   if (!condition) [[unlikely]] {
-    throw invalid_input(message(parts...));
+    raise(invalid_input(message(parts...)));
   }
 }
 

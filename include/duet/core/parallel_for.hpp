@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/error_handler.hpp>
 #include <duet/core/progress.hpp>
 
 #include <algorithm>
@@ -49,15 +50,14 @@ public:
         return;
       }
       const std::size_t last = std::min(first + block_, count_);
-      try {
-        body(first, last);
-        if (report_) {
-          tell(last - first);
-        }
-      } catch (...) {
-        keep(first, std::current_exception());
-        return;
-      }
+      catching<void>(
+          [&] {
+            body(first, last);
+            if (report_) {
+              tell(last - first);
+            }
+          },
+          [&] { keep(first, std::current_exception()); });
     }
   }
 
@@ -67,7 +67,7 @@ public:
       std::rethrow_exception(error_);
     }
     if (report_ && done_ < count_) {
-      throw cancelled({done_, count_});
+      raise(cancelled({done_, count_}));
     }
   }
 
@@ -78,15 +78,16 @@ private:
     if (has_stopped_) {
       return;
     }
-    try {
-      if (!report_({done_, count_})) {
-        has_stopped_ = true;
-      }
-    } catch (...) {
-      has_stopped_ =
-          true; // while the others still wait for the lock, so that they do not ask again
-      throw;
-    }
+    catching<void>(
+        [&] {
+          if (!report_({done_, count_})) {
+            has_stopped_ = true;
+          }
+        },
+        [&] { // while the others still wait for the lock, so that they do not ask again
+          has_stopped_ = true;
+          raise_again();
+        });
   }
   void keep(std::size_t first, std::exception_ptr error) {
     has_stopped_ = true;
@@ -136,12 +137,13 @@ void parallel_for_blocks(std::size_t count, const Body& body, execution how = al
   detail::block_queue queue(count, size, how.report);
   std::vector<std::thread> helpers;
   const std::size_t blocks = count / size + (count % size > 0 ? 1 : 0);
-  try {
-    while (helpers.size() + 1 < std::min(wanted, blocks)) {
-      helpers.emplace_back([&] { queue.work(body); });
-    }
-  } catch (const std::system_error&) { // no more threads to be had: those there are do it all
-  }
+  detail::catching<std::system_error>(
+      [&] {
+        while (helpers.size() + 1 < std::min(wanted, blocks)) {
+          helpers.emplace_back([&] { queue.work(body); });
+        }
+      },
+      [](const auto&) {}); // no more threads to be had: those there are do it all
   queue.work(body);
   for (std::thread& helper : helpers) {
     helper.join();

@@ -127,8 +127,8 @@ public:
   /// \throws no_convergence unless it has
   void require_converged() const {
     if (!has_converged()) {
-      throw no_convergence(message("duet: implicit_function: Newton's method ", failure_, " after ",
-                                   iterations_, " iterations; residual ", residual.norm()));
+      raise(no_convergence(message("duet: implicit_function: Newton's method ", failure_, " after ",
+                                   iterations_, " iterations; residual ", residual.norm())));
     }
   }
 

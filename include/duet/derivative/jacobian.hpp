@@ -61,8 +61,8 @@ void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::
     return c == 1 ? message(r) : message(r, " x ", c);
   };
   if (out.rows() != rows || out.cols() != columns) {
-    throw invalid_input(message("duet: ", driver, ": the result needs size ", text(rows, columns),
-                                ", but has ", text(out.rows(), out.cols())));
+    raise(invalid_input(message("duet: ", driver, ": the result needs size ", text(rows, columns),
+                                ", but has ", text(out.rows(), out.cols()))));
   }
 }
 

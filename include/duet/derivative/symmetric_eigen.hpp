@@ -136,7 +136,7 @@ template <class A>
   detail::require_finite("symmetric_eigen", lower);
   const Eigen::SelfAdjointEigenSolver<std::remove_const_t<decltype(lower)>> solver(lower);
   if (solver.info() != Eigen::Success) {
-    throw no_convergence("duet: symmetric_eigen: Eigen's solver did not converge");
+    detail::raise(no_convergence("duet: symmetric_eigen: Eigen's solver did not converge"));
   }
   eigenvalues_and_vectors result{detail::converted<S>(solver.eigenvalues()),
                                  detail::converted<S>(solver.eigenvectors())};

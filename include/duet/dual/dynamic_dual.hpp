@@ -93,8 +93,8 @@ private:
   /// New partials are zero, and so is what pads the last packet.
   void grow(int size) {
     if (size > Capacity) {
-      throw invalid_input("duet: dynamic_dual: " + std::to_string(size) +
-                          " partials, but the capacity is " + std::to_string(Capacity));
+      raise(invalid_input("duet: dynamic_dual: " + std::to_string(size) +
+                          " partials, but the capacity is " + std::to_string(Capacity)));
     }
     for (int p = (size_ + width - 1) / width; p < (size + width - 1) / width; ++p) {
       packets_[p] = packet{};

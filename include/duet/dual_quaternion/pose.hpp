@@ -36,8 +36,8 @@ template <class A, class B>
 
 template <class Q>
 [[noreturn, gnu::cold, gnu::noinline]] void refuse_rotation(Q q) {
-  throw invalid_input(
-      message("duet: pose: the rotation ", q, " is no unit quaternion: normalized(q)"));
+  raise(invalid_input(
+      message("duet: pose: the rotation ", q, " is no unit quaternion: normalized(q)")));
 }
 
 } // namespace detail

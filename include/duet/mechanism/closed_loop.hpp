@@ -118,7 +118,7 @@ private:
 
   [[noreturn]] static void fail(const std::string& what, const P& u) {
     const coordinates x = numbers(u);
-    throw cannot_close("duet: closed_loop: " + what, {x.begin(), x.end()});
+    detail::raise(cannot_close("duet: closed_loop: " + what, {x.begin(), x.end()}));
   }
 
   [[nodiscard]] solution assembled(const X& position) const {
@@ -177,7 +177,7 @@ private:
   [[nodiscard]] solution followed(const P& target) const {
     const coordinates way = numbers(target) - numbers(u_);
     if (!way.allFinite()) {
-      throw invalid_input("duet: closed_loop: u = " + text(target) + " is not finite");
+      detail::raise(invalid_input("duet: closed_loop: u = " + text(target) + " is not finite"));
     }
     solution here = start_;
     P u = u_;

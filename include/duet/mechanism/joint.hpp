@@ -113,8 +113,8 @@ template <class T>
 [[nodiscard]] constexpr quaternion<T> unit_rotation(const quaternion<T>& q) {
   const T square = norm2(q);
   if (!is_nearly_one(square)) {
-    throw invalid_input(
-        message("duet: placement: its rotation ", q, " is no unit quaternion: normalized(q)"));
+    raise(invalid_input(
+        message("duet: placement: its rotation ", q, " is no unit quaternion: normalized(q)")));
   }
   // A rotation that is a unit but for rounding stays what it is to the last bit.
   const T rounding = 8 * std::numeric_limits<T>::epsilon();

@@ -42,8 +42,8 @@ template <SerialChain C>
                                          const joint_limits<typename C::scalar_type>& limits) {
   auto result = detail::copy_of_chain(chain);
   if (i < 0 || i >= chain.size()) {
-    throw invalid_input(detail::message("duet: with_limits: no joint ", i, " in a chain of ",
-                                        chain.size(), " moving joints"));
+    detail::raise(invalid_input(detail::message(
+        "duet: with_limits: no joint ", i, " in a chain of ", chain.size(), " moving joints")));
   }
   detail::require_limits(limits, std::size_t(i), "with_limits");
   result.set_limits(i, limits);

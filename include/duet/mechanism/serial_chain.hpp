@@ -33,7 +33,7 @@ using joint_vector =
 
 [[noreturn]] inline void bad_joint(std::size_t i, const std::string& reason,
                                    const char* function = "serial_chain") {
-  throw invalid_input(message("duet: ", function, ": joint ", i, ": ", reason));
+  raise(invalid_input(message("duet: ", function, ": joint ", i, ": ", reason)));
 }
 
 /// Can a joint be somewhere within its limits? NaN and infinite ends on the wrong side leave none.
@@ -136,8 +136,8 @@ public:
       }
     }
     if (N > 0 && size_ != N) {
-      throw invalid_input("duet: serial_chain<" + std::to_string(N) + ">: only " +
-                          std::to_string(size_) + " joints move");
+      detail::raise(invalid_input("duet: serial_chain<" + std::to_string(N) + ">: only " +
+                                  std::to_string(size_) + " joints move"));
     }
     tip_ = {size_, carried * tool};
   }
@@ -167,8 +167,8 @@ public:
   /// \throws invalid_input for i outside 0 … size()
   [[nodiscard]] constexpr attached_frame<T> link(int i) const {
     if (i < 0 || i > size_) {
-      throw invalid_input("duet: serial_chain: no link " + std::to_string(i) + " in a chain of " +
-                          std::to_string(size_) + " joints");
+      detail::raise(invalid_input("duet: serial_chain: no link " + std::to_string(i) +
+                                  " in a chain of " + std::to_string(size_) + " joints"));
     }
     return {i, i == 0 ? placement<T>{} : frames_[std::size_t(i - 1)]};
   }

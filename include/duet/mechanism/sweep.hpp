@@ -67,8 +67,8 @@ void fit_matrices(const char* function, Out& out, Eigen::Index n, const Matrix& 
       continue;
     }
     if (!can_become<type>(6, n)) {
-      throw invalid_input(message("duet: ", function, ": result ", i, " is a ", m.rows(), " × ",
-                                  m.cols(), " matrix, not 6 × ", n));
+      raise(invalid_input(message("duet: ", function, ": result ", i, " is a ", m.rows(), " × ",
+                                  m.cols(), " matrix, not 6 × ", n)));
     }
     if constexpr (type::SizeAtCompileTime == Eigen::Dynamic) {
       m.resize(6, n);
@@ -88,9 +88,9 @@ void sweep(const char* function, const C& chain, std::span<const X> configuratio
           " configurations, but room for ", std::size(out), " results");
   for (std::size_t i = 0; i < configurations.size(); ++i) {
     if (argument::size(configurations[i]) != chain.size()) {
-      throw invalid_input(message("duet: ", function, ": configuration ", i, " has ",
+      raise(invalid_input(message("duet: ", function, ": configuration ", i, " has ",
                                   argument::size(configurations[i]), " coordinates, but ",
-                                  chain.size(), " joints move"));
+                                  chain.size(), " joints move")));
     }
   }
   parallel_for_blocks(

@@ -50,8 +50,9 @@ public:
       for (const named_link& each : links_) {
         names.push_back(each.name);
       }
-      throw invalid_input(printable("duet: no link \"" + std::string(name) +
-                                    "\" in the chain: " + detail::nearest_names(name, names)));
+      detail::raise(
+          invalid_input(printable("duet: no link \"" + std::string(name) +
+                                  "\" in the chain: " + detail::nearest_names(name, names))));
     }
     return found->frame;
   }

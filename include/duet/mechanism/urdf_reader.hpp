@@ -10,6 +10,10 @@
 #include <duet/mechanism/urdf_contents.hpp>
 #include <duet/mechanism/xml_check.hpp>
 
+#if !defined(__cpp_exceptions) || !defined(__cpp_rtti)
+// After an #error compilers would go on, with Boost's errors.
+#include "duet: read_urdf needs exceptions and RTTI, as Boost.PropertyTree does: compile without -fno-exceptions and -fno-rtti"
+#endif
 #include <boost/property_tree/xml_parser.hpp>
 
 #include <algorithm>
@@ -37,12 +41,14 @@ class urdf_reader {
 public:
   explicit urdf_reader(std::string path) : path_(std::move(path)) {
     Xml document;
-    try {
-      std::istringstream text(checked_text());
-      boost::property_tree::read_xml(text, document);
-    } catch (const boost::property_tree::xml_parser_error& e) {
-      fail(e.line() > 0 ? "line " + std::to_string(e.line()) : "", e.message());
-    }
+    catching<boost::property_tree::xml_parser_error>(
+        [&] {
+          std::istringstream text(checked_text());
+          boost::property_tree::read_xml(text, document);
+        },
+        [&](const auto& e) {
+          fail(e.line() > 0 ? "line " + std::to_string(e.line()) : "", e.message());
+        });
     const auto robot = document.get_child_optional("robot");
     if (!robot) {
       fail("", "no element <robot>");
@@ -128,7 +134,7 @@ public:
     return attribute(element.get_child("child"), where(element), "link");
   }
   [[noreturn]] void fail(const std::string& where, const std::string& what) const {
-    throw file_error(path_, (where.empty() ? "" : where + ": ") + what);
+    raise(file_error(path_, (where.empty() ? "" : where + ": ") + what));
   }
 
 private:

@@ -82,8 +82,9 @@ public:
     if (!(t >= 0 && t <= duration())) {
       t = detail::rounded_into(t, 0.0, duration());
       if (!(t >= 0 && t <= duration())) {
-        throw invalid_input("duet: joint_trajectory: t is " + to_text(t) + ", outside 0 to " +
-                            to_text(duration()) + "; std::clamp makes it stay at its end");
+        detail::raise(invalid_input("duet: joint_trajectory: t is " + to_text(t) +
+                                    ", outside 0 to " + to_text(duration()) +
+                                    "; std::clamp makes it stay at its end"));
       }
     }
     const auto next = std::upper_bound(pieces_.begin() + 1, pieces_.end(), t,

@@ -174,8 +174,8 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
           ": its translation is not finite: (", entry(move[0]), ", ", entry(move[1]), ", ",
           entry(move[2]), ")");
   const auto square = norm2(a);
-  throw invalid_input(message("duet: ", caller, ": ", name, " is no unit dual quaternion: |p|^2 = ",
-                              square.value(), ", p.q = ", square.epsilon() / 2));
+  raise(invalid_input(message("duet: ", caller, ": ", name, " is no unit dual quaternion: |p|^2 = ",
+                              square.value(), ", p.q = ", square.epsilon() / 2)));
 }
 
 /// \throws invalid_input for what is no number above 0, if it is one that is asked for

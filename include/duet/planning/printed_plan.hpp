@@ -46,9 +46,11 @@ template <class C, class Next, class Keep>
     if (k == options.iterations) {
       return stop_reason::iteration_limit;
     }
-    try {
-      theta = resolved_step(chain, theta, next(k + 1, here), options.beta);
-    } catch (const invalid_input&) {
+    bool is_singular = false;
+    catching<invalid_input>(
+        [&] { theta = resolved_step(chain, theta, next(k + 1, here), options.beta); },
+        [&](const auto&) { is_singular = true; });
+    if (is_singular) {
       return stop_reason::singular;
     }
     for (int i = 0; i < chain.size(); ++i) {

@@ -69,8 +69,8 @@ struct rotation_mean {
       }
       last_step = length;
     }
-    throw no_convergence(message("duet: average: no mean found in ", limit, " steps, the last one ",
-                                 last_step, " rad: the rotations are too far apart"));
+    raise(no_convergence(message("duet: average: no mean found in ", limit, " steps, the last one ",
+                                 last_step, " rad: the rotations are too far apart")));
   }
 
 private:

@@ -46,7 +46,7 @@ namespace detail {
 template <class Points, class S>
 [[nodiscard]] auto de_casteljau(Points q, const S& tau) {
   if (q.empty()) {
-    throw invalid_input("duet: bezier: there are no control points");
+    raise(invalid_input("duet: bezier: there are no control points"));
   }
   for (std::size_t n = q.size(); n > 1; --n) {
     for (std::size_t i = 0; i + 1 < n; ++i) {

@@ -82,7 +82,7 @@ template <class T>
 template <class T>
 void require_not_zero(const quaternion<T>& q, const char* function) {
   if (any(is_zero(q))) {
-    throw invalid_input(std::string("duet: ") + function + " of the zero quaternion");
+    raise(invalid_input(std::string("duet: ") + function + " of the zero quaternion"));
   }
 }
 

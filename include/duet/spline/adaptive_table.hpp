@@ -95,7 +95,7 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
   if (!(first < last) || !(tolerance > 0)) {
     message << "duet: adaptive_table: from " << first << " to " << last << " with tolerance "
             << tolerance << ": the range must not be empty, the tolerance positive";
-    throw invalid_input(message.str());
+    detail::raise(invalid_input(message.str()));
   }
   look_up_table<T> table;
   const std::size_t rows = std::max<std::size_t>(4, options.first_rows);
@@ -130,7 +130,7 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
       message << "duet: adaptive_table: " << table.parameters.size() << " rows reach an error of "
               << worst << ", not " << tolerance << ", and more than " << options.most_rows
               << " are not allowed";
-      throw no_convergence(message.str());
+      detail::raise(no_convergence(message.str()));
     }
     table = std::move(finer);
   }
@@ -153,7 +153,7 @@ estimated_errors(const look_up_table<typename Spline::scalar_type>& table,
     std::ostringstream message;
     message << "duet: estimated_errors: needs nine rows or more, got " << rows << " parameters and "
             << table.elements.size() << " elements";
-    throw invalid_input(message.str());
+    detail::raise(invalid_input(message.str()));
   }
   look_up_table<typename Spline::scalar_type> half;
   for (std::size_t i = 0; i < rows; ++i) {

@@ -74,7 +74,7 @@ public:
       const auto step = conj(controls_[i - 1]) * controls_[i];
       const auto miss = detail::innermost_of(step - duet::exp(increments_[i]));
       if (!(norm(miss) <= real_type(unit_norm_tolerance))) {
-        throw invalid_row(i, "the increment does not lead here from the control before");
+        detail::raise(invalid_row(i, "the increment does not lead here from the control before"));
       }
     }
     increments_.front() = vector3<T>::Zero();

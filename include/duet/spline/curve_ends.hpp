@@ -35,10 +35,10 @@ void check_end_rates(const char* condition, const V& start, const V& end) {
   const auto check = [&](const char* which, const V& rate) {
     for (int i = 0; i < V::SizeAtCompileTime; ++i) {
       if (!(innermost(rate[i]) - innermost(rate[i]) == 0)) {
-        throw invalid_input(
+        raise(invalid_input(
             message("duet: ", condition, ": the rate at the ", which, ", (",
                     rate.transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "}),
-                    "), is not finite"));
+                    "), is not finite")));
       }
     }
   };

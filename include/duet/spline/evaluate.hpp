@@ -36,14 +36,14 @@ template <class R, class F>
 [[noreturn]] void rethrow_with_row(std::span<const R> parameters, std::size_t i, const F& f) {
   span_hint hint;
   for (; i < parameters.size(); ++i) {
-    try {
-      static_cast<void>(f(parameters[i], hint));
-    } catch (const invalid_input& error) {
-      const std::string_view reason = error.what(); // begins as that of invalid_row does
-      throw invalid_row(i, std::string(reason.substr(std::string_view("duet: ").size())));
-    }
+    catching<invalid_input>(
+        [&] { static_cast<void>(f(parameters[i], hint)); },
+        [&](const auto& error) {
+          const std::string_view reason = error.what(); // begins as that of invalid_row does
+          raise(invalid_row(i, std::string(reason.substr(std::string_view("duet: ").size()))));
+        });
   }
-  throw;
+  raise_again();
 }
 
 /// out[i] = f(parameters[i], hint) with a hint for every block.
@@ -54,32 +54,32 @@ void evaluate_blocks(const char* function, std::span<const R> parameters, std::s
     std::ostringstream message;
     message << "duet: " << function << ": " << parameters.size() << " parameters, but room for "
             << out.size() << " results";
-    throw invalid_input(message.str());
+    raise(invalid_input(message.str()));
   }
   parallel_for_blocks(
       parameters.size(),
       [&](std::size_t first, std::size_t last) {
         span_hint hint;
         std::size_t i = first;
-        try {
-          if constexpr (QuickInLanes<T>) {
-            using B = batch<R>;
-            for (; i < last; i += std::size_t(B::lanes)) {
-              const std::size_t count = std::min(std::size_t(B::lanes), last - i);
-              const auto u = detail::load_some<B>(&parameters[i], count);
-              const auto result = f(u, hint);
-              for (std::size_t k = 0; k < count; ++k) {
-                out[i + k] = lane(result, int(k));
+        catching<invalid_input>(
+            [&]() DUET_INLINE_LAMBDA {
+              if constexpr (QuickInLanes<T>) {
+                using B = batch<R>;
+                for (; i < last; i += std::size_t(B::lanes)) {
+                  const std::size_t count = std::min(std::size_t(B::lanes), last - i);
+                  const auto u = detail::load_some<B>(&parameters[i], count);
+                  const auto result = f(u, hint);
+                  for (std::size_t k = 0; k < count; ++k) {
+                    out[i + k] = lane(result, int(k));
+                  }
+                }
+              } else {
+                for (; i < last; ++i) {
+                  out[i] = f(parameters[i], hint);
+                }
               }
-            }
-          } else {
-            for (; i < last; ++i) {
-              out[i] = f(parameters[i], hint);
-            }
-          }
-        } catch (const invalid_input&) {
-          rethrow_with_row(parameters, i, f);
-        }
+            },
+            [&](const auto&) { rethrow_with_row(parameters, i, f); });
       },
       how);
 }

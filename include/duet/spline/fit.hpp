@@ -86,7 +86,7 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
       std::ostringstream message;
       message << "duet: fit: too few rows for control element " << i
               << ", which acts on parameters from " << low << " to " << high << ": " << advice;
-      throw invalid_input(message.str());
+      raise(invalid_input(message.str()));
     }
     ++row;
   }
@@ -117,7 +117,7 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
   if (!(options.length > 0) || !(options.outlier >= 0)) {
     message << "duet: fit: length " << options.length << " and outlier " << options.outlier
             << ": the length must be positive, the limit not negative";
-    throw invalid_input(message.str());
+    detail::raise(invalid_input(message.str()));
   }
   detail::require_fit_weights(options.weights, rows.size());
   const bspline_basis<Spline::order, R> basis(std::move(knots));
@@ -130,7 +130,7 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
               << " is outside the knots' domain, " << detail::all_digits(basis.front()) << " to "
               << detail::all_digits(basis.back()) << ": clamped_knots of parameters from "
               << parameters.front() << " to " << parameters.back() << " hold all rows";
-      throw invalid_row(i, message.str());
+      detail::raise(invalid_row(i, message.str()));
     }
   }
   detail::require_rows_for_controls(

@@ -42,7 +42,7 @@ template <class Q, class V, FrameConstant Frame>
   rates.reserve(velocities.size());
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     if (!velocities[i].allFinite()) {
-      throw invalid_row(i, "the velocity is not finite");
+      detail::raise(invalid_row(i, "the velocity is not finite"));
     }
     const vector3<T> half = detail::half_rate<T>(velocities[i]);
     if constexpr (detail::is_spatial(frame)) {

@@ -90,8 +90,8 @@ closed(std::vector<quaternion<T>> q) {
     using R = real_type_t<T>;
     const R off = 2 * length(vector3<R>(innermost(x[0]), innermost(x[1]), innermost(x[2])));
     if (!(off <= tolerance)) {
-      throw invalid_row(q.size() - 1, message("periodic ends: differs from row 0 by ", off, unit,
-                                              ", but must repeat it"));
+      raise(invalid_row(q.size() - 1, message("periodic ends: differs from row 0 by ", off, unit,
+                                              ", but must repeat it")));
     }
   };
   if constexpr (contains_tag<T, screw_tag>()) {
@@ -144,8 +144,8 @@ template <CurveType Spline, class T>
     using equations = equations_of_t<Spline, T>;
     static_assert(CurveEquations<equations>);
     if (Spline::order < 6 && ends.kind == end_kind::velocity_and_acceleration) {
-      throw invalid_input(
-          "duet: interpolate: a cubic's ends take velocities or accelerations, not both");
+      raise(invalid_input(
+          "duet: interpolate: a cubic's ends take velocities or accelerations, not both"));
     }
     check_rows("interpolate", parameters, q.size(), equations::least_rows(ends.kind));
     q = aligned_orientations(std::move(q));

@@ -19,7 +19,7 @@ namespace detail {
 template <Real R>
 void check_knots(const std::vector<R>& knots, int order) {
   const auto fail = [](const auto&... what) {
-    throw invalid_input(message("duet: knots: ", what...));
+    raise(invalid_input(message("duet: knots: ", what...)));
   };
   const auto k = std::size_t(order);
   if (knots.size() < 2 * k) {

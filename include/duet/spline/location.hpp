@@ -130,10 +130,10 @@ private:
     if (contains(rounded_into_domain(u))) {
       return u < front() ? 0 : span_count() - 1;
     }
-    throw invalid_input(detail::message(
+    detail::raise(invalid_input(detail::message(
         "duet: spline evaluated at ", detail::all_digits(u), ", outside its domain [",
         detail::all_digits(front()), ", ", detail::all_digits(back()), "]",
-        u == u ? "; set_outside_domain(outside::clamp) makes a curve stay at its end" : ""));
+        u == u ? "; set_outside_domain(outside::clamp) makes a curve stay at its end" : "")));
   }
 
   std::vector<R> breaks_;

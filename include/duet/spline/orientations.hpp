@@ -49,11 +49,11 @@ void check_rows(const char* caller, const std::vector<R>& parameters, std::size_
   for (std::size_t i = 0; i < elements; ++i) {
     const R& u = parameters[i];
     if (!(u - u == 0)) {
-      throw invalid_row(i, message("parameter ", u, " is not finite"));
+      raise(invalid_row(i, message("parameter ", u, " is not finite")));
     }
     if (i > 0 && !(u > parameters[i - 1])) {
-      throw invalid_row(i, message("parameter ", u, " does not increase, the row before has ",
-                                   parameters[i - 1]));
+      raise(invalid_row(i, message("parameter ", u, " does not increase, the row before has ",
+                                   parameters[i - 1])));
     }
   }
 }
@@ -89,9 +89,9 @@ template <class T>
     const auto length = norm(detail::innermost_of(q[i]));
     const bool is_finite = detail::is_all_finite(q[i]);
     if (!is_finite || !(abs(length - 1) <= unit_norm_tolerance)) {
-      throw invalid_row(
+      detail::raise(invalid_row(
           i, is_finite ? detail::message("quaternion ", q[i], " has norm ", length, ", not 1")
-                       : detail::message("quaternion ", q[i], " is not finite"));
+                       : detail::message("quaternion ", q[i], " is not finite")));
     }
     q[i] = normalized(q[i]);
   }
@@ -107,7 +107,8 @@ template <class T>
   q = unit_quaternions(std::move(q));
   for (std::size_t i = 1; i < q.size(); ++i) {
     if (is_half_turn_apart(q[i - 1], q[i])) {
-      throw invalid_row(i, "half a turn from the row before: either way round is as short");
+      detail::raise(
+          invalid_row(i, "half a turn from the row before: either way round is as short"));
     }
     if (innermost(dot(q[i - 1], q[i])) < 0) {
       q[i] = -q[i];

@@ -68,10 +68,10 @@ namespace detail {
   for (const table_row& row : rows) {
     const double since = row.time.since(rows.front().time);
     if (!(since - since == 0)) {
-      throw file_error(path, row.line,
+      raise(file_error(path, row.line,
                        "timestamp " + to_text(row.time.seconds()) + ", and line " +
                            std::to_string(rows.front().line) + " has " +
-                           to_text(rows.front().time.seconds()) + ": too far apart");
+                           to_text(rows.front().time.seconds()) + ": too far apart"));
     }
     if (!once.empty() && !(since > once.back().time.since(rows.front().time))) {
       fault(row, " repeats line " + std::to_string(once.back().line) + ": left out");
@@ -107,7 +107,7 @@ template <class T>
         }
       });
   if (rows.empty()) {
-    throw file_error(path, "holds no usable rows");
+    raise(file_error(path, "holds no usable rows"));
   }
   rows = in_order(path, std::move(rows), result.faults);
   result.left_out = count - rows.size();

@@ -89,7 +89,7 @@ public:
       const auto step = conj(result.elements_[i]) * result.elements_[i + 1];
       const auto miss = detail::innermost_of(step - duet::exp(x[0]));
       if (!(norm(miss) <= real_type(unit_norm_tolerance))) {
-        throw invalid_row(i + 1, "the piece before does not lead here");
+        detail::raise(invalid_row(i + 1, "the piece before does not lead here"));
       }
     }
     return result;

@@ -155,19 +155,19 @@ template <class T>
   look_up_table<T> table;
   for_each_table_row(path, times, !is_rotation_scalar<T>, angles, [&](const table_row& row) {
     if (!row.fault.empty()) {
-      throw file_error(path, row.line, row.fault);
+      raise(file_error(path, row.line, row.fault));
     }
     const double u = row.time.seconds();
     if (!table.parameters.empty() && !(u > table.parameters.back())) {
-      throw file_error(path, row.line,
+      raise(file_error(path, row.line,
                        "parameter " + to_text(u) + " does not increase, the row before has " +
-                           to_text(table.parameters.back()));
+                           to_text(table.parameters.back())));
     }
     table.parameters.push_back(u);
     table.elements.push_back(detail::element_of<T>(row));
   });
   if (table.parameters.empty()) {
-    throw file_error(path, "holds no rows");
+    raise(file_error(path, "holds no rows"));
   }
   return table;
 }

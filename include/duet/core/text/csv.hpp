@@ -56,19 +56,19 @@ public:
         const std::string fault =
             detail::read_cell(path, line, "column " + std::to_string(i + 1), cells[i], number);
         if (!fault.empty()) {
-          throw file_error(path, line, fault);
+          detail::raise(file_error(path, line, fault));
         }
         row.numbers.push_back(number);
       }
       if (columns != 0 && row.numbers.size() != columns) {
-        throw file_error(path, line,
-                         std::to_string(columns) + " numbers expected, got " +
-                             std::to_string(row.numbers.size()));
+        detail::raise(file_error(path, line,
+                                 std::to_string(columns) + " numbers expected, got " +
+                                     std::to_string(row.numbers.size())));
       }
       rows_.push_back(std::move(row));
     });
     if (rows_.empty()) {
-      throw file_error(path, "holds no rows");
+      detail::raise(file_error(path, "holds no rows"));
     }
   }
 

@@ -87,25 +87,25 @@ private:
   std::error_code error;
   for (int links = 0; is_symlink(std::filesystem::symlink_status(result, error)); ++links) {
     if (links == most_links) {
-      throw cannot_write(path, ELOOP);
+      raise(cannot_write(path, ELOOP));
     }
     const std::filesystem::path next = std::filesystem::read_symlink(result, error);
     if (error) {
-      throw cannot_write(path, error.value());
+      raise(cannot_write(path, error.value()));
     }
     result = result.parent_path() / next;
   }
   const auto status = std::filesystem::status(result, error);
   if (!status_known(status)) {
-    throw cannot_write(path, error.value());
+    raise(cannot_write(path, error.value()));
   }
   if (exists(status)) {
     if (!is_regular_file(status)) {
-      throw is_directory(status) ? file_error(path, "is a folder, not a file")
-                                 : cannot_write(path, EINVAL);
+      raise(is_directory(status) ? file_error(path, "is a folder, not a file")
+                                 : cannot_write(path, EINVAL));
     }
     if (!c_file(result.string(), "r+b").is_open()) { // changes nothing
-      throw cannot_write(path, errno);
+      raise(cannot_write(path, errno));
     }
   }
   return result;
@@ -163,14 +163,14 @@ public:
         // Who may not read the file may not read its draft.
         if (const auto error = take_permissions(owner_read | owner_write)) {
           remove();
-          throw detail::cannot_write(path, error.value());
+          detail::raise(detail::cannot_write(path, error.value()));
         }
         return;
       }
       const int error = errno;
       strike();
       if (error != EEXIST || number == 1000) {
-        throw detail::cannot_write(path, error);
+        detail::raise(detail::cannot_write(path, error));
       }
     }
   }
@@ -190,7 +190,7 @@ public:
   void write(const std::string& content) const {
     detail::c_file out(name_, "wb");
     if (!out.is_open() || !out.write(content) || !out.close()) {
-      throw detail::cannot_write(path_, errno);
+      detail::raise(detail::cannot_write(path_, errno));
     }
   }
 
@@ -202,7 +202,7 @@ public:
       std::filesystem::rename(name_, target_, error);
     }
     if (error) {
-      throw detail::cannot_write(path_, error.value());
+      detail::raise(detail::cannot_write(path_, error.value()));
     }
     strike();
     name_.clear();
@@ -271,7 +271,7 @@ inline void write_file(const std::string& path, const std::string& content) {
   if (detail::is_standard_output(path)) {
     if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
         std::fflush(stdout) != 0) {
-      throw detail::cannot_write(path, errno);
+      detail::raise(detail::cannot_write(path, errno));
     }
     return;
   }
@@ -279,7 +279,7 @@ inline void write_file(const std::string& path, const std::string& content) {
     std::fflush(stdout); // it may go there, too: what was printed before comes first
     detail::c_file out(path, "wb");
     if (!out.is_open() || !out.write(content) || !out.close()) {
-      throw detail::cannot_write(path, errno);
+      detail::raise(detail::cannot_write(path, errno));
     }
     return;
   }

@@ -25,20 +25,19 @@ inline void commit_both(const std::string& path, file_draft& first, file_draft& 
   if (was_there) {
     fs::copy_file(target, before.name(), fs::copy_options::overwrite_existing, error);
     if (error) {
-      throw cannot_write(path, error.value());
+      raise(cannot_write(path, error.value()));
     }
   }
   first.commit();
-  try {
-    second.commit();
-  } catch (...) {
-    if (was_there) {
-      before.commit();
-    } else {
-      fs::remove(target, error);
-    }
-    throw;
-  }
+  catching<void>([&] { second.commit(); },
+                 [&] {
+                   if (was_there) {
+                     before.commit();
+                   } else {
+                     fs::remove(target, error);
+                   }
+                   raise_again();
+                 });
 }
 
 } // namespace detail
@@ -73,7 +72,7 @@ inline void write_files(const std::string& first, const std::string& first_conte
   };
   file_draft other(second);
   if (place(first) == place(second)) {
-    throw file_error(second, "is the same file as " + first);
+    detail::raise(file_error(second, "is the same file as " + first));
   }
   other.write(second_content);
   detail::commit_both(first, draft, other);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
+#include <duet/core/text/from_chars.hpp>
 
 #include <charconv>
 #include <concepts>
@@ -42,7 +42,7 @@ namespace detail {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
     text.remove_prefix(1);
   }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = from_chars(text.data(), text.data() + text.size(), value);
   return end == text.data() + text.size() ? error : std::errc::invalid_argument;
 }
 

@@ -37,7 +37,7 @@ template <class F>
 void for_each_line(const std::string& path, const F& f) {
   std::ifstream in;
   if (const std::string fault = open_input(path, in); !fault.empty()) {
-    throw file_error(path, fault);
+    raise(file_error(path, fault));
   }
   std::string buffer(std::size_t(1) << 14, '\0');
   std::string_view unread;
@@ -45,7 +45,7 @@ void for_each_line(const std::string& path, const F& f) {
     std::size_t end = unread.find('\n');
     while (end == std::string_view::npos && in) {
       if (unread.size() > 1'000'000) {
-        throw file_error(path, line, "more than a million characters: no file of rows");
+        raise(file_error(path, line, "more than a million characters: no file of rows"));
       }
       // What is unread goes to the front, and more behind it.
       std::copy(unread.begin(), unread.end(), buffer.begin());
@@ -55,7 +55,7 @@ void for_each_line(const std::string& path, const F& f) {
       }
       in.read(buffer.data() + size, std::streamsize(buffer.size() - size));
       if (in.bad()) {
-        throw file_error(path, line, "cannot be read");
+        raise(file_error(path, line, "cannot be read"));
       }
       const auto count = std::size_t(in.gcount());
       unread = {buffer.data(), size + count};
@@ -70,7 +70,7 @@ void for_each_line(const std::string& path, const F& f) {
       if (text.starts_with("\xef\xbb\xbf")) {
         text.remove_prefix(3);
       } else if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
-        throw file_error(path, "is UTF-16: UTF-8 expected");
+        raise(file_error(path, "is UTF-16: UTF-8 expected"));
       }
     }
     f(line, text);
@@ -144,9 +144,9 @@ inline void split_cells(std::string_view text, std::vector<std::string_view>& ce
                                            double& number) {
   const std::errc error = read_number(cell, number);
   if (error == std::errc::invalid_argument) {
-    throw file_error(path, line,
+    raise(file_error(path, line,
                      name + " is not a number: '" + std::string(cell) + "'" +
-                         (has_decimal_comma(cell) ? ": decimals come after a point" : ""));
+                         (has_decimal_comma(cell) ? ": decimals come after a point" : "")));
   }
   if (error != std::errc() || !(number - number == 0)) {
     return name + " is " + std::string(cell) +

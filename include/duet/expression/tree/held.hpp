@@ -52,8 +52,9 @@ void refuse(const T& a, const T& b) {
   if constexpr (std::floating_point<T>) {
     values = ", " + to_text(a) + " and " + to_text(b);
   }
-  throw invalid_input("duet: a formula: one place in the code made two constants" + values +
-                      ", which would be taken for one; make what changes a symbol");
+  duet::detail::raise(invalid_input("duet: a formula: one place in the code made two constants" +
+                                    values +
+                                    ", which would be taken for one; make what changes a symbol"));
 }
 
 /// Refuses another value of a constant that both hold.

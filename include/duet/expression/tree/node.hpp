@@ -1,9 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
+#include <duet/core/bit_cast.hpp>
 
-#include <bit>
 #include <cstdint>
 #include <type_traits>
 
@@ -59,7 +58,7 @@ struct constant_node {
 template <std::uint64_t Bits>
 struct number_node {
   static constexpr kind kind_of = kind::scalar;
-  static constexpr double value = std::bit_cast<double>(Bits);
+  static constexpr double value = duet::detail::bit_cast<double>(Bits);
 };
 
 /// 0 of what is no scalar.

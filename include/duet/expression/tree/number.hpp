@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/bit_cast.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 
-#include <bit>
 #include <cstdint>
 
 /// \file
@@ -34,7 +34,7 @@ namespace detail {
 }
 
 [[nodiscard]] constexpr std::uint64_t bits_of(double x) {
-  return std::bit_cast<std::uint64_t>(x == 0 ? 0.0 : x);
+  return duet::detail::bit_cast<std::uint64_t>(x == 0 ? 0.0 : x);
 }
 
 } // namespace detail

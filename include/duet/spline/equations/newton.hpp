@@ -49,7 +49,7 @@ public:
   /// The Jacobian at the solution.
   [[nodiscard]] const matrix& jacobian() {
     if (!linearise(full_)) {
-      throw no_convergence("duet: interpolate: the equations are singular at their solution");
+      raise(no_convergence("duet: interpolate: the equations are singular at their solution"));
     }
     return matrix_;
   }
@@ -151,9 +151,9 @@ private:
                                "interval is ",
                                ratio, " times the shortest")
                      : "";
-    throw no_convergence(message("duet: interpolate: ", found, "; after ", iterations_,
+    raise(no_convergence(message("duet: interpolate: ", found, "; after ", iterations_,
                                  " iterations. The largest step is ", angle, " rad, from row ", row,
-                                 " to the next", uneven));
+                                 " to the next", uneven)));
   }
 
   [[nodiscard]] bool linearise(const equations& f) { return f.linearise(x_, residual_, matrix_); }

@@ -185,9 +185,9 @@ private:
   [[noreturn]] void fail_at_farthest() const {
     const std::vector<R> sizes = residuals();
     const auto farthest = std::max_element(sizes.begin(), sizes.end());
-    throw invalid_row(std::size_t(farthest - sizes.begin()),
+    raise(invalid_row(std::size_t(farthest - sizes.begin()),
                       message("is ", *farthest, " from the rows around it, too far for least ",
-                              "squares: fit_options::outlier makes the fit robust"));
+                              "squares: fit_options::outlier makes the fit robust")));
   }
 
   [[nodiscard]] R weight_of(std::size_t i) const {
@@ -283,8 +283,8 @@ private:
   }
 
   [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
-    throw no_convergence(message("duet: fit: the iteration ", what, " after ",
-                                 iterations_ + iterations, " steps, the last one ", step));
+    raise(no_convergence(message("duet: fit: the iteration ", what, " after ",
+                                 iterations_ + iterations, " steps, the last one ", step)));
   }
 
   fit_options options_;

@@ -227,14 +227,14 @@ public:
       const std::vector<std::string_view> header(cells_.begin(), cells_.end());
       if (const std::string problem = result.read(header, has_u, has_place, angles);
           !problem.empty()) {
-        throw file_error(path, line_, problem);
+        raise(file_error(path, line_, problem));
       }
       return result;
     }
     if (is_certain_) {
-      throw file_error(path, line_,
+      raise(file_error(path, line_,
                        "the comment names " + std::to_string(cells_.size()) +
-                           " columns, the rows have " + std::to_string(columns));
+                           " columns, the rows have " + std::to_string(columns)));
     }
     return std::nullopt;
   }

@@ -59,13 +59,13 @@ struct row_format {
   }
   const bool has_nanoseconds = is_of_nanoseconds(cells[0]);
   if (cells.size() != 8 || (has_commas && !has_nanoseconds)) {
-    throw file_error(
-        path, line,
-        std::to_string(cells.size()) +
-            " columns, and no header before the first row says which is which, as "
-            "`u,x,y,z,qw,qx,qy,qz` does; those of TUM's files (timestamp tx ty tz qx qy "
-            "qz qw, apart by blanks) and KITTI's (12 numbers) need none: " +
-            known_columns);
+    raise(
+        file_error(path, line,
+                   std::to_string(cells.size()) +
+                       " columns, and no header before the first row says which is which, as "
+                       "`u,x,y,z,qw,qx,qy,qz` does; those of TUM's files (timestamp tx ty tz qx qy "
+                       "qz qw, apart by blanks) and KITTI's (12 numbers) need none: " +
+                       known_columns));
   }
   if (has_commas) {
     result.layout = table_layout({u, x, y, z, qw, qx, qy, qz},
@@ -108,11 +108,11 @@ struct row_format {
     result.digits = unit == "ns" ? 9 : unit == "us" ? 6 : 3;
     result.remark = std::string(header.is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
   } else if (header.has_time && unit != "s" && unit != "sec" && unit != "seconds") {
-    throw file_error(path, line, "timestamps in '" + unit + "': s, ms, us or ns expected");
+    raise(file_error(path, line, "timestamps in '" + unit + "': s, ms, us or ns expected"));
   }
   for (std::size_t k = 1; has_place && k < 4; ++k) {
     if (!header.units[k].empty() && header.units[k] != "m") {
-      throw file_error(path, line, "positions in '" + header.units[k] + "': m expected");
+      raise(file_error(path, line, "positions in '" + header.units[k] + "': m expected"));
     }
   }
   return result;

@@ -70,7 +70,7 @@ public:
       header_.emplace();
       if (const std::string problem = header_->read(cells_, true, has_place_, angles_);
           !problem.empty()) {
-        throw file_error(path_, line, problem);
+        raise(file_error(path_, line, problem));
       }
       return std::nullopt;
     }
@@ -78,9 +78,9 @@ public:
       choose_format(line, parts.text.find_first_of(",;") != parts.text.npos);
     }
     if (cells_.size() != format_->layout.columns) {
-      throw file_error(path_, line,
+      raise(file_error(path_, line,
                        std::to_string(format_->layout.columns) + " columns expected, got " +
-                           std::to_string(cells_.size()));
+                           std::to_string(cells_.size())));
     }
     table_row row;
     row.line = line;
@@ -97,8 +97,8 @@ public:
   /// \throws file_error for more times than rows
   void finish() const {
     if (row_count_ > 0 && row_count_ < times_.size()) {
-      throw file_error(times_path_, times_[row_count_].line,
-                       "a time beyond the " + std::to_string(row_count_) + " rows of " + path_);
+      raise(file_error(times_path_, times_[row_count_].line,
+                       "a time beyond the " + std::to_string(row_count_) + " rows of " + path_));
     }
   }
 
@@ -111,12 +111,12 @@ private:
       header_ = comment_.layout(path_, cells_.size(), true, has_place_, angles_);
     }
     if (!header_ && angles_ != nullptr) {
-      throw file_error(path_, line, "no header before the first row names the columns of angles");
+      raise(file_error(path_, line, "no header before the first row names the columns of angles"));
     }
     format_ = header_ ? format_of_header(path_, line, *header_, cells_, has_place_)
                       : format_of_row(path_, line, cells_, has_commas);
     if (!times_path_.empty() && !format_->is_matrix) {
-      throw file_error(path_, line, "has times of its own besides those of " + times_path_);
+      raise(file_error(path_, line, "has times of its own besides those of " + times_path_));
     }
   }
 
@@ -140,10 +140,10 @@ private:
       return;
     }
     if (format_->must_be_whole && x[0] != std::floor(x[0])) {
-      throw file_error(path_, row.line,
+      raise(file_error(path_, row.line,
                        layout.names[0] + " " + to_text(x[0]) +
                            " is no whole number of nanoseconds: a header with its unit, as in "
-                           "`timestamp [s]`, is needed");
+                           "`timestamp [s]`, is needed"));
     }
     row.time = file_time(cells_[layout.at[0]], format_->digits);
     row.place = {x[1], x[2], x[3]};
@@ -165,9 +165,9 @@ private:
     } else if (row_count_ < times_.size()) {
       row.time = file_time(times_[row_count_].numbers[0]);
     } else {
-      throw file_error(path_, row.line,
+      raise(file_error(path_, row.line,
                        "a row beyond the " + std::to_string(times_.size()) + " times of " +
-                           times_path_);
+                           times_path_));
     }
   }
 

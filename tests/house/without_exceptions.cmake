@@ -1,0 +1,62 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# All headers but those that read URDF compile with -fno-exceptions and -fno-rtti; what they compute is right,
+# and errors end in the handler, or in std::abort.
+#
+# cmake "-Dcompile=<compiler and flags>" -P without_exceptions.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+set(flags -fno-exceptions -fno-rtti)
+set(headers "")
+set(include ${CMAKE_CURRENT_LIST_DIR}/../../include)
+file(GLOB_RECURSE all RELATIVE ${include} ${include}/duet/*.hpp)
+list(FILTER all EXCLUDE REGEX "/urdf(_library|_reader)?[.]hpp$|/interop/")
+list(TRANSFORM all REPLACE "(.+)" "#include <\\1>\n")
+list(JOIN all "" headers)
+file(WRITE without_exceptions_headers.hpp "${headers}")
+file(WRITE without_exceptions_urdf.cpp "#include <duet/mechanism/urdf.hpp>\n")
+
+execute_process(
+  COMMAND ${compile} ${flags} -Wall -Wextra -Werror -Wno-ignored-attributes -I .
+    -include without_exceptions_headers.hpp ${CMAKE_CURRENT_LIST_DIR}/without_exceptions.cpp
+    -o without_exceptions
+  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ./without_exceptions COMMAND_ERROR_IS_FATAL ANY)
+
+# usage: expect_end(<how> <error> <fails> <regex of standard output> <regex of standard error>)
+function(expect_end how error fails output_regex error_regex)
+  execute_process(COMMAND ./without_exceptions ${how} ${error}
+    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE message)
+  if(result EQUAL 0)
+    set(has_failed FALSE)
+  else()
+    set(has_failed TRUE)
+  endif()
+  if(NOT has_failed STREQUAL fails OR NOT output MATCHES "^${output_regex}$" OR NOT message MATCHES "^${error_regex}$")
+    message(FATAL_ERROR "${how} ${error}: ended with ${result}, said:\n${output}${message}")
+  endif()
+endfunction()
+foreach(case IN ITEMS
+    "zero:duet: normalized of the zero quaternion"
+    "row:duet: spline evaluated at 9, outside its domain [^\n]*"
+    "joints:duet: a chain of 7 moving joints, but 2 coordinates")
+  string(REGEX MATCH "^([a-z]+):(.*)$" case "${case}")
+  set(error ${CMAKE_MATCH_1})
+  set(message ${CMAKE_MATCH_2})
+  expect_end(handled ${error} FALSE "handled: ${message}\n" "")
+  expect_end(unhandled ${error} TRUE "" "${message}\n")
+endforeach()
+
+# A handler that returns does not make the program go on. (What it wrote may be lost in std::abort.)
+expect_end(returns zero TRUE "(handled: [^\n]*\n)?" "duet: normalized of the zero quaternion\n")
+
+foreach(flag IN LISTS flags)
+  execute_process(COMMAND ${compile} ${flag} -fsyntax-only without_exceptions_urdf.cpp
+    RESULT_VARIABLE result ERROR_VARIABLE message)
+  string(REGEX MATCHALL "error: " errors "${message}")
+  list(LENGTH errors count)
+  if(result EQUAL 0 OR NOT count EQUAL 1 OR NOT message MATCHES "duet: read_urdf needs exceptions and RTTI")
+    message(FATAL_ERROR "urdf.hpp with ${flag}: ${message}")
+  endif()
+endforeach()

@@ -1,0 +1,15 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// expect: constant expression|non-.constexpr. function
+
+// What throws where programs run does not compile in constants.
+
+#include <duet/mechanism/denavit_hartenberg.hpp>
+
+#include <array>
+
+#ifdef DUET_MUST_FAIL
+constexpr auto arm = duet::from_dh(std::array<duet::dh_row<>, 1>{{{.alpha = 90}}}); // degrees
+#else
+constexpr auto arm = duet::from_dh(std::array<duet::dh_row<>, 1>{{{.alpha = 1.5}}});
+#endif
