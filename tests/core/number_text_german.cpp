@@ -27,6 +27,16 @@ TEST_CASE("the German C locale changes nothing") {
   CHECK(duet::to_text(0.25L) == "0.25");
   CHECK(duet::parse_number("1234.5") == 1234.5);
   CHECK_FALSE(duet::parse_number("1234,5").has_value());
+
+  // What stands in for std::from_chars and std::to_chars where there are none.
+  const std::string text = "-1234.5e1,5";
+  double x = 0;
+  CHECK(duet::detail::from_chars_by_strtod(text.data(), text.data() + text.size(), x).ptr ==
+        text.data() + 9);
+  CHECK(x == -12345);
+  CHECK(duet::detail::shortest_text_by_printf(1234.5) == "1234.5");
+  CHECK(duet::detail::shortest_text_by_printf(1.5e-7F) == "1.5e-07");
+  CHECK(duet::detail::shortest_text_by_printf(0.25L) == "0.25");
   std::setlocale(LC_ALL, "C");
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/text/from_chars.hpp>
+#include <duet/core/text/to_chars.hpp>
 
-#include <charconv>
 #include <concepts>
 #include <optional>
 #include <string>
@@ -18,9 +18,7 @@ namespace duet {
 /// The shortest text that reads back as exactly `x`, with a decimal point.
 template <std::floating_point T>
 [[nodiscard]] std::string to_text(T x) {
-  char buffer[64];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, x);
-  return error == std::errc() ? std::string(buffer, end) : std::string();
+  return detail::shortest_text(x);
 }
 
 namespace detail {
