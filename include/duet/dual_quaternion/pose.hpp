@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
@@ -132,5 +133,12 @@ DUET_REFUSES_FOREIGN(transform_direction, vector3<double>)
 DUET_REFUSES_FOREIGN(transform_line, dual_vector<double>)
 DUET_REFUSES_FOREIGN(transform_matrix, Eigen::Matrix4d)
 DUET_REFUSES_FOREIGN(from_transform_matrix, dual_quaternion<double>)
+
+template <class V, class T>
+DUET_REFUSED("first the rotation: pose(q, t)")
+dual_quaternion<T> pose(const Eigen::MatrixBase<V>&, const quaternion<T>&);
+template <Real T, class V>
+DUET_REFUSED("a rotation, which turns vectors: rotate(q, v); poses move points, pose(q, t)")
+vector3<T> transform_point(const quaternion<T>&, const Eigen::MatrixBase<V>&);
 
 } // namespace duet

@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/parallel_for.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/serial_chain.hpp>
@@ -89,5 +90,18 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
 }
 
 DUET_ASKS_FOR_ONE_CONFIGURATION(inverse_kinematics, inverse_kinematics_result<C::joints>)
+
+template <SerialChain C>
+DUET_REFUSED("from which joints on? inverse_kinematics(chain, goal, start)")
+inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const dual_quaternion<double>&);
+template <SerialChain C, VectorLike Start, class... More>
+DUET_REFUSED("first the goal: inverse_kinematics(chain, goal, start)")
+inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const Start&,
+                                                        const dual_quaternion<double>&,
+                                                        const More&...);
+template <SerialChain C, Real T, VectorLike Start, class... More>
+DUET_REFUSED("the goal is a rotation, which says nothing of where: pose(q, t)")
+inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const quaternion<T>&,
+                                                        const Start&, const More&...);
 
 } // namespace duet

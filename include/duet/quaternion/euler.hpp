@@ -267,4 +267,8 @@ template <class... X>
 DUET_REFUSED("about which axes? euler_rate_matrix<zyx>(yaw, pitch)")
 matrix3<double> euler_rate_matrix(const X&...);
 
+template <euler_sequence Sequence, class V>
+DUET_REFUSED("from_euler takes three angles: from_euler<zyx>(a[0], a[1], a[2])")
+quaternion<typename V::Scalar> from_euler(const Eigen::MatrixBase<V>&);
+
 } // namespace duet

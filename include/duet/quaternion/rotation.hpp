@@ -3,6 +3,7 @@
 
 #include <duet/core/batch/lanes.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/foreign.hpp>
@@ -198,5 +199,18 @@ DUET_REFUSES_FOREIGN(rotation_vector, vector3<double>)
 DUET_REFUSES_FOREIGN(from_two_vectors, quaternion<double>)
 DUET_REFUSES_FOREIGN(rotation_matrix, matrix3<double>)
 DUET_REFUSES_FOREIGN(from_rotation_matrix, quaternion<double>)
+
+template <class V, class T>
+DUET_REFUSED("first the rotation: rotate(q, v)")
+vector3<T> rotate(const Eigen::MatrixBase<V>&, const quaternion<T>&);
+template <Arithmetic S, class V>
+DUET_REFUSED("first the axis: from_axis_angle(n, a)")
+quaternion<double> from_axis_angle(const S&, const Eigen::MatrixBase<V>&);
+template <class A, class B>
+DUET_REFUSED("how far from p to q? slerp(p, q, t), t from 0 to 1")
+quaternion<promote_t<A, B>> slerp(const quaternion<A>&, const quaternion<B>&);
+template <Arithmetic S, class A, class B>
+DUET_REFUSED("first the rotations: slerp(p, q, t)")
+quaternion<promote_t<A, B>> slerp(const S&, const quaternion<A>&, const quaternion<B>&);
 
 } // namespace duet
