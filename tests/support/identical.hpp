@@ -14,4 +14,12 @@ namespace duet_test {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (a != a && b != b);
 }
 
+/// May the compiler multiply and add in one step? Then the same sum of products rounds in one place
+/// of a program otherwise than in another, and bits tell nothing.
+#if defined(__FMA__) || defined(__FP_FAST_FMA) || defined(__aarch64__)
+inline constexpr bool may_fuse = true;
+#else
+inline constexpr bool may_fuse = false;
+#endif
+
 } // namespace duet_test

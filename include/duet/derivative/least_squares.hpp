@@ -109,8 +109,9 @@ template <class S, class A, class X>
 /// \param a  A, m × n of rank n
 /// \param b  a vector, or a matrix of right-hand sides
 ///
-/// The values are those of `Eigen::ColPivHouseholderQR` over real numbers, to the last bit where b
-/// is a vector or A has fewer than 48 columns. The derivatives follow from Aᵀ(b − A x) = 0,
+/// The values are those of `Eigen::ColPivHouseholderQR` over real numbers: of Eigen 3.4 to the last
+/// bit, where b is a vector or A has fewer than 48 columns and the compiler does not fuse products
+/// and sums. The derivatives follow from Aᵀ(b − A x) = 0,
 ///
 ///   dx = A⁺(db − dA x) + (AᵀA)⁻¹dAᵀ(b − A x),
 ///
