@@ -56,7 +56,11 @@ void check_beside_library(std::string_view text) {
   INFO("\"", std::string(text), "\"");
   CHECK(ours.error == library.error);
   CHECK(ours.length == library.length);
-  CHECK(have_same_bits(ours.value, library.value));
+  // (Out of range libc++'s sets an infinity or zero, others leave the value alone, as the standard
+  // says.)
+  if (ours.error != std::errc::result_out_of_range) {
+    CHECK(have_same_bits(ours.value, library.value));
+  }
 }
 
 template <class T>
