@@ -124,7 +124,7 @@ foreach(header IN LISTS headers)
          AND NOT header MATCHES "^duet/dual/eigen[/_][a-z]*\\.hpp$")
         problem("${header} includes ${include}, but ${layer}/ does without that library")
       endif()
-    elseif(NOT include MATCHES "^<([a-z_]+|(e|i)mmintrin\\.h|math\\.h|unistd\\.h)>$"
+    elseif(NOT include MATCHES "^<([a-z_]+|(e|i)mmintrin\\.h|arm_neon\\.h|math\\.h|unistd\\.h)>$"
            AND NOT include MATCHES "^\"duet: [^\"]*needs [^\"]*: compile with[^\"]*\"$")
       problem("${header} includes ${include}, which is neither <duet/…>, nor Eigen, Boost or std")
     endif()

@@ -100,6 +100,13 @@ template <class P>
     return P(_mm_sqrt_ps(x));
   }
 #endif
+#if defined(__aarch64__)
+  if constexpr (std::same_as<P, typename packet_type<double, 2>::packet>) {
+    return P(vsqrtq_f64(float64x2_t(x)));
+  } else if constexpr (std::same_as<P, typename packet_type<float, 4>::packet>) {
+    return P(vsqrtq_f32(float32x4_t(x)));
+  }
+#endif
   P result = x;
   for (int i = 0; i < int(sizeof(P) / sizeof(x[0])); ++i) {
     result[i] = std::sqrt(x[i]);
