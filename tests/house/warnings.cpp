@@ -4,6 +4,7 @@
 
 #include <duet/derivative/sparse.hpp>
 #include <duet/duet.hpp>
+#include <duet/planning/time_parametrised.hpp>
 
 #include <cstddef>
 #include <iostream>
