@@ -4,6 +4,7 @@
 
 #include <duet/derivative/sparse.hpp>
 #include <duet/duet.hpp>
+#include <duet/mechanism/urdf.hpp>
 #include <duet/planning/time_parametrised.hpp>
 
 #include <cstddef>
@@ -31,6 +32,27 @@ int main() {
   std::cout << to_text(inverse_kinematics(arm, arm.pose(end), start));
   std::cout << to_text(plan_screw_motion(arm, start, arm.pose(end)));
   std::cout << to_text(pose_and_jacobian(arm, start, frame::body));
+
+  // A chain whose number of joints is known at run time.
+  const auto read = read_urdf("three.urdf", "base", "hand");
+  const std::vector<double> theta{.3, .4, .1};
+  std::cout << to_text(read.pose(theta, read.link("hand")));
+  std::cout << to_text(jacobian(read, theta, frame::hybrid, read.link("hand")));
+  std::cout << upper_limits(with_limits(read, 0, {.upper = 1})).transpose();
+  std::cout << to_text(inverse_kinematics(read, read.pose(theta), theta));
+
+  const std::vector<Eigen::VectorXd> configurations(10, Eigen::VectorXd::Zero(3));
+  std::vector<dual_quaternion<double>> tips(configurations.size());
+  std::vector<Eigen::MatrixXd> jacobians_there(configurations.size());
+  poses(read, configurations, tips, all_cores);
+  jacobians(read, configurations, frame::hybrid, jacobians_there, all_cores);
+
+  const auto bars = [](const auto& x, const auto& crank) {
+    return column(.2 * cos(crank) + .5 * cos(x[0]) - .55 - .4 * cos(x[1]),
+                  .2 * sin(crank) + .5 * sin(x[0]) - .4 * sin(x[1]));
+  };
+  const closed_loop loop(bars, Eigen::Vector2d(.9, 1.7), 0);
+  std::cout << derivatives<2>(loop, 2.0)[2] << implicit_function<2>(bars, loop.position(), 0.0)[1];
 
   const std::vector<double> times{0, 1, 2, 3, 4};
   std::vector<quaternion<double>> rows;

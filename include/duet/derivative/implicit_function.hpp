@@ -195,9 +195,9 @@ private:
     const auto r = residuals<n>(f(manifold<X>::plus(x, delta), p));
     matrix jacobian;
     for (int i = 0; i < n; ++i) {
-      residual[i] = innermost(part<tag>(r[std::size_t(i)], 0));
+      residual[i] = innermost(part<tag>(component(r, i), 0));
       for (int j = 0; j < n; ++j) {
-        jacobian(i, j) = innermost(part<tag>(r[std::size_t(i)], j + 1));
+        jacobian(i, j) = innermost(part<tag>(component(r, i), j + 1));
       }
     }
     lu.compute(jacobian);
@@ -220,7 +220,7 @@ template <class F, class Newton, class P>
       for (int i = 0; i < n; ++i) {
         step[i] = S(0);
         for (int j = 0; j < n; ++j) {
-          step[i] -= inverse(i, j) * r[std::size_t(j)];
+          step[i] -= inverse(i, j) * component(r, j);
         }
       }
       x = manifold<std::decay_t<decltype(x)>>::plus(x, step);

@@ -162,11 +162,10 @@ template <bool WithRotation, class S, class C, class X, class Visit>
         theta, turns_of, links, visit);
   } else {
     link_displacement<S> link{quaternion<S>(S(1)), {S(0), S(0), S(0)}};
-    const auto count = std::size_t(links);
-    for (std::size_t i = 0; i < count; ++i) {
-      const step_in_memory<typename C::scalar_type> step{chain.steps()[i]};
-      const S x(vector_argument<X>::get(theta, Eigen::Index(i)));
-      if (!WithRotation && i + 1 == count) {
+    for (int i = 0; i < links; ++i) {
+      const step_in_memory<typename C::scalar_type> step{chain.steps()[std::size_t(i)]};
+      const S x(vector_argument<X>::get(theta, i));
+      if (!WithRotation && i + 1 == links) {
         return after_joint<false>(link, step, i, x, turns_of, visit);
       }
       link = after_joint<true>(link, step, i, x, turns_of, visit);

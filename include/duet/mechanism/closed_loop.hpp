@@ -144,7 +144,7 @@ private:
     const auto r = detail::residuals<tangent::SizeAtCompileTime>(constraints_(x, u));
     tangent result;
     for (Eigen::Index i = 0; i < result.size(); ++i) {
-      result[i] = innermost(detail::part<tag>(r[std::size_t(i)], part));
+      result[i] = innermost(detail::part<tag>(detail::component(r, i), part));
     }
     return result;
   }
