@@ -51,6 +51,41 @@ TEST_CASE("for people") {
                          "  15 digits: worst error 0 ulp, relative 0, absolute 0\n");
 }
 
+TEST_CASE("as many digits as show where the sides differ") {
+  comparison c = sample();
+  c.simplest = duet::counterexample{"x = 1", {0.5, 2}, {0.5, 2 + 0x1p-42}};
+  CHECK(to_text(c).ends_with("    automatic:   (0.5, 2)\n"
+                             "    closed form: (0.5, 2.0000000000002)\n"));
+  c.simplest = duet::counterexample{"x = 1", {1}, {1 + 0x1p-52}};
+  CHECK(to_text(c).ends_with("    automatic:   1\n    closed form: 1.0000000000000002\n"));
+  CHECK(to_markdown(std::array{c}).ends_with("| x = 1 | 1 | 1.0000000000000002 |\n"));
+  // What is nothing beside the largest component at ten digits is not at more.
+  c.simplest = duet::counterexample{"x = 1", {1, 0}, {1, 1e-13}};
+  CHECK(to_text(c).ends_with("    automatic:   (1, 0)\n    closed form: (1, 1e-13)\n"));
+  // Digits that `double` does not have.
+  c.simplest = duet::counterexample{"x = 1", {0.5}, {0.5}, 1.25e-30};
+  CHECK(to_text(c).ends_with("    automatic:   0.5\n    closed form: 0.5\n"
+                             "    difference:  1.25e-30\n"));
+  const comparison found = duet::compare<float, double>(
+      "in double", [](auto x) { return x; },
+      [](auto x) { return decltype(x)(x * (1 + decltype(x)(1e-13))); },
+      duet::sampler(duet::real_numbers{1, 3}));
+  CHECK(found.outcome == verdict::loses_digits);
+  CHECK(to_text(found).ends_with("    automatic:   1\n    closed form: 1.0000000000001\n"));
+  CHECK(found.simplest->difference == doctest::Approx(1e-13).epsilon(1e-2));
+}
+
+TEST_CASE("what fewer digits than the arguments' were compared") {
+  comparison c = sample();
+  c.errors[0].compared_digits = 6;
+  c.note = "why";
+  CHECK(
+      to_text(c).find("  15 digits, compared to 6: worst error 4.5e+15 ulp, relative 0.5, absolute "
+                      "0.25, at u = 1, w = (0, 2)\n  note: why\n") != std::string::npos);
+  CHECK(to_markdown(std::array{c}).find("| disagrees (why) |") != std::string::npos);
+  CHECK(to_csv(std::array{c}).ends_with("\"u = 1, w = (0, 1)\",6\n"));
+}
+
 TEST_CASE("for documents") {
   comparison good;
   good.label = "good";
@@ -65,9 +100,9 @@ TEST_CASE("for documents") {
 TEST_CASE("for programs") {
   CHECK(to_csv(std::array{sample()}) ==
         "label,verdict,samples,agreeing,tolerance_ulp,digits,worst_ulp,worst_relative,"
-        "worst_absolute,worst_input,simplest_input\n"
+        "worst_absolute,worst_input,simplest_input,compared_digits\n"
         "\"P5, \"\"printed\"\"\",disagrees,100,60,100,15,4500000000000000,0.5,0.25,"
-        "\"u = 1, w = (0, 2)\",\"u = 1, w = (0, 1)\"\n");
+        "\"u = 1, w = (0, 2)\",\"u = 1, w = (0, 1)\",15\n");
 }
 
 TEST_CASE("a run says how far it is, and may be ended") {

@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 
 // What `compare` says of formulas that are right, wrong, wrong in one place only, or badly rounded.
@@ -239,6 +240,129 @@ TEST_CASE("results of different sizes") {
           sampler(real_numbers{}))),
       "duet: compare \"sizes\": the automatic result has 2 components, the closed form 3",
       duet::invalid_input);
+}
+
+namespace {
+
+const std::string note_of_first = "the first function returned double where its arguments were "
+                                  "long double: a constant made it so, as the 0.0 of "
+                                  "derivative(f, 0.0): write T(0)";
+constexpr bool long_double_is_longer =
+    std::numeric_limits<long double>::digits10 > std::numeric_limits<double>::digits10;
+
+} // namespace
+
+TEST_CASE("a right formula, beside a derivative at a constant of double, agrees to its digits") {
+  const auto inputs = sampler(vectors<3>{}, vectors<3>{}).named("w", "v");
+  const auto at_zero = [](const auto& w, const auto& v) {
+    return derivative(
+               [&](const auto& t) {
+                 return duet::rotate(duet::from_rotation_vector((w * t).eval()), v);
+               },
+               0.0)
+        .derivative;
+  };
+  const auto right = [](const auto& w, const auto& v) { return (w.cross(v) / 3 * 3).eval(); };
+  const auto wrong_sign = [](const auto& w, const auto& v) { return v.cross(w).eval(); };
+  const auto third = [](auto x) {
+    return derivative([&](auto t) { return t * x / 3; }, 0.0F).derivative;
+  };
+  const auto exact_third = [](auto x) { return x / 3; };
+  const comparison c =
+      compare<float, double>("third", third, exact_third, sampler(real_numbers{-3, 3}));
+  CHECK(c);
+  CHECK(c.counts[0] == c.samples);
+  CHECK(c.note == "the first function returned float where its arguments were double: a constant "
+                  "made it so, as the 0.0 of derivative(f, 0.0): write T(0)");
+  CHECK(compare<double, real_50>(
+            "third", [](auto x) { return static_cast<double>(x / 3); }, exact_third,
+            sampler(real_numbers{-3, 3}))
+            .note.starts_with("the first function returned double where its arguments were "
+                              "numbers of 50 digits: "));
+  REQUIRE(c.errors.size() == 2);
+  CHECK(c.errors[0].compared_digits == 0);
+  CHECK(c.errors[1].digits == 15);
+  CHECK(c.errors[1].compared_digits == 6);
+  CHECK(c.errors[1].ulps < 4);
+  CHECK(c.errors[1].ulps > 0.1);
+  CHECK(to_text(c).find("  15 digits, compared to 6: worst error ") != std::string::npos);
+  CHECK(to_text(c).find("\n  note: the first function returned float ") != std::string::npos);
+
+  // The other way round, and both.
+  CHECK(compare<float, double>("third", exact_third, third, sampler(real_numbers{-3, 3}))
+            .note.starts_with("the second function returned float where its arguments were"));
+  CHECK(compare<float, double>(
+            "third", third, [&](auto x) { return third(x) * (1 + 0x1p-23F); },
+            sampler(real_numbers{-3, 3}))
+            .note.starts_with("both functions returned float where their arguments were"));
+
+  if (long_double_is_longer) {
+    const comparison turning = compare("turning", at_zero, right, inputs);
+    CHECK(turning);
+    CHECK(turning.note == note_of_first);
+    CHECK(turning.errors[1].compared_digits == 15);
+  }
+  CHECK(compare("turning", at_zero, wrong_sign, inputs).outcome == verdict::disagrees);
+}
+
+TEST_CASE("a slip and lost digits are found beside a derivative at a constant of double") {
+  const auto at_zero = [](auto w) {
+    return derivative([&](const auto& t) { return w * t / 3; }, 0.0F).derivative;
+  };
+  const auto inputs = sampler(real_numbers{1e-8, 3});
+  const auto off_by = [](double relative) {
+    return [relative](auto w) { return w / 3 * (1 + relative); };
+  };
+  const comparison slip = compare<float, double>("slip", at_zero, off_by(0x1p-10), inputs);
+  CHECK(slip.outcome == verdict::disagrees);
+  CHECK(slip.counts[std::size_t(verdict::disagrees)] == slip.samples);
+  CHECK(slip.note.starts_with("the first function returned float"));
+  // What leaves more than half of the digits may be rounding: nothing has more digits to tell.
+  CHECK(compare<float, double>("small", at_zero, off_by(0x1p-15), inputs).outcome ==
+        verdict::loses_digits);
+  CHECK(compare<float, double>("in T", off_by(0), off_by(0x1p-15), inputs).outcome ==
+        verdict::disagrees);
+
+  const auto cancelling = [](auto w) { return ((1 + w) - 1) / 3; };
+  const comparison lost = compare<float, double>("lost", at_zero, cancelling, inputs);
+  CHECK(lost.outcome == verdict::loses_digits);
+  CHECK(lost.counts[std::size_t(verdict::disagrees)] == 0);
+  CHECK(lost.counts[std::size_t(verdict::loses_digits)] > 0);
+  // Where it is the shorter side that loses them.
+  const auto cancelling_at_zero = [](auto w) {
+    return derivative([&](const auto& t) { return ((1 + w * (t + 1)) - (1 + w * 0.5)) / 3; }, 0.0F)
+        .value;
+  };
+  const auto half = [](auto w) { return w / 6; };
+  const comparison shorter = compare<float, double>("shorter", cancelling_at_zero, half, inputs);
+  CHECK(!shorter);
+  CHECK(shorter.counts[std::size_t(verdict::loses_digits)] > 0);
+  CHECK(shorter.note.starts_with("the first function returned float"));
+}
+
+TEST_CASE("constants are judged as they are, without a word on their type where they agree") {
+  const auto two = [](auto x) { return derivative([](auto t) { return 2 * t; }, x).derivative; };
+  const auto inputs = sampler(real_numbers{-3, 3});
+  for (const comparison& c : {compare<double, real_50>(
+                                  "2.0", two, [](auto) { return 2.0; }, inputs),
+                              compare<double, real_50>(
+                                  "2", two, [](auto) { return 2; }, inputs)}) {
+    CHECK(c);
+    CHECK(c.note.empty());
+    CHECK(c.errors[1].compared_digits == 0);
+  }
+  for (const comparison& c : {compare<double, real_50>(
+                                  "3.0", two, [](auto) { return 3.0; }, inputs),
+                              compare<double, real_50>(
+                                  "3", two, [](auto) { return 3; }, inputs)}) {
+    CHECK(c.outcome == verdict::disagrees);
+    CHECK(c.counts[std::size_t(verdict::disagrees)] == c.samples);
+  }
+  // A whole number has no fewer digits than it needs: it is not judged by those of another type.
+  CHECK(compare<double, real_50>(
+            "1 + 1e-18", [](auto x) { return decltype(x)(x * 0 + 1 + decltype(x)(1e-18)); },
+            [](auto) { return 1; }, inputs)
+            .outcome == verdict::loses_digits);
 }
 
 } // namespace test_comparison_verdicts

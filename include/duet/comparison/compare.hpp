@@ -3,6 +3,7 @@
 
 #include <duet/comparison/comparison.hpp>
 #include <duet/comparison/domain.hpp>
+#include <duet/comparison/judgement.hpp>
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
 #include <duet/core/compiled.hpp>
@@ -87,25 +88,6 @@ struct comparison_options {
 
 namespace detail {
 
-/// What the differences in several precisions, the least precise first, say together.
-///
-/// Rounding errors shrink with ε. A slip is seen in every scalar, and stays what it is.
-[[nodiscard]] inline verdict judged(std::span<const difference> differences, double tolerance) {
-  std::size_t failures = 0;
-  for (const difference& d : differences) {
-    if (!d.is_finite) {
-      return verdict::not_finite;
-    }
-    failures += d.ulps > tolerance ? 1 : 0;
-  }
-  if (failures == 0) {
-    return verdict::agrees;
-  }
-  const bool shrinks =
-      differences.size() > 1 && differences.back().absolute < differences.front().absolute / 2;
-  return failures == differences.size() && !shrinks ? verdict::disagrees : verdict::loses_digits;
-}
-
 /// What a function makes of the inputs.
 template <class T, class F, class Inputs>
 using result_type = decltype(result_of_call(
@@ -184,6 +166,7 @@ template <class Pair>
   result.errors = std::move(errors);
   coordinates worst_point;
   double worst_ulps = -1;
+  std::vector<difference> shorter(differences.size()); // where fewer digits were what counted
   for (std::size_t i = 0; i < points.size(); ++i) {
     pair.measure_at(points[i], differences);
     const verdict found = judged(differences, options.tolerance);
@@ -196,7 +179,10 @@ template <class Pair>
         worst.ulps = differences[k].ulps;
         worst.input = pair.describe(points[i]);
       }
-      ulps = std::max(ulps, differences[k].ulps);
+      ulps = std::max(ulps, differences[k].common_ulps());
+      if (differences[k].ulps_in_shorter > 1 && differences[k].ulps > options.tolerance) {
+        shorter[k] = differences[k];
+      }
     }
     ++result.counts[std::size_t(found)];
     const progress now{i + 1, points.size()};
@@ -212,13 +198,18 @@ template <class Pair>
       worst_point = points[i];
     }
   }
+  count_in_shorter(result, shorter);
   if (result.outcome != verdict::agrees) {
-    result.simplest = pair.values_at(simplified(
+    const coordinates simplest = simplified(
         worst_point, [&](const coordinates& point) { return pair.contains(point); },
         [&](const coordinates& point) {
           pair.measure_at(point, differences);
           return judged(differences, options.tolerance) == result.outcome;
-        }));
+        });
+    result.simplest = pair.values_at(simplest);
+    pair.measure_at(simplest, differences);
+    result.simplest->difference =
+        std::max_element(differences.begin(), differences.end(), by_common_ulps)->absolute;
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -42,6 +43,9 @@ struct worst_errors {
   double relative = 0; ///< largest |difference| / ‖f‖
   double ulps = 0;     ///< largest difference in units of the last place
   std::string input{}; ///< where `ulps` is largest
+  /// where a function returned fewer digits than the scalar has, and these decided: how many. The
+  /// last place is then theirs. Otherwise 0.
+  int compared_digits = 0;
 };
 
 /// An input at which two formulas differ, and what they give there in double precision.
@@ -49,6 +53,7 @@ struct counterexample {
   std::string input;               ///< the arguments, as text
   std::vector<double> automatic;   ///< components of the result of the automatic derivative
   std::vector<double> closed_form; ///< components of the result of the closed form
+  double difference = 0; ///< largest |difference| there, in the precision that shows most of it
 };
 
 /// What `compare` found.
@@ -60,6 +65,9 @@ struct comparison {
   double tolerance = 0;                   ///< in units of the last place
   std::vector<worst_errors> errors;       ///< one for every scalar type
   std::optional<counterexample> simplest; ///< simplest input with the worst verdict
+  /// which function returned fewer digits than its arguments have, so that fewer were compared;
+  /// empty where that changed nothing
+  std::string note{};
 
   /// Do the formulas agree?
   [[nodiscard]] explicit operator bool() const { return outcome == verdict::agrees; }
@@ -75,23 +83,35 @@ namespace detail {
   return stream;
 }
 
-/// Ten digits; what is nothing beside the largest component is printed as 0.
-[[nodiscard]] inline std::string components_text(std::span<const double> numbers) {
+/// What is nothing beside the largest component is printed as 0.
+[[nodiscard]] inline std::string components_text(std::span<const double> numbers, int digits) {
   double largest = 0;
   for (const double x : numbers) {
     largest = std::max(largest, std::isfinite(x) ? std::abs(x) : 0.0);
   }
-  auto out = plain_stream(10);
+  auto out = plain_stream(digits);
+  const double nothing = largest * std::pow(10.0, -digits - 2);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const double x = numbers[i];
     out << (i > 0 ? ", " : "");
     if (std::isnan(x)) {
       out << "nan"; // whatever its sign
     } else {
-      out << (std::abs(x) < 1e-12 * largest ? 0.0 : x);
+      out << (std::abs(x) < nothing ? 0.0 : x);
     }
   }
   return numbers.size() == 1 ? out.str() : "(" + out.str() + ")";
+}
+
+/// What both sides give: ten digits, or as many as show where they differ.
+[[nodiscard]] inline std::array<std::string, 2> sides_text(const counterexample& c) {
+  for (int digits = 10;; ++digits) {
+    std::array sides = {components_text(c.automatic, digits),
+                        components_text(c.closed_form, digits)};
+    if (sides[0] != sides[1] || digits == std::numeric_limits<double>::max_digits10) {
+      return sides;
+    }
+  }
 }
 
 /// A field of a CSV file, in quotation marks where it needs them.
@@ -119,17 +139,27 @@ namespace detail {
   }
   out << "agrees at " << c.counts[0] << " of " << c.samples << " inputs\n";
   for (const worst_errors& e : c.errors) {
-    out << "  " << e.digits << " digits: worst error " << e.ulps << " ulp, relative " << e.relative
-        << ", absolute " << e.absolute;
+    out << "  " << e.digits << " digits";
+    if (e.compared_digits > 0) {
+      out << ", compared to " << e.compared_digits;
+    }
+    out << ": worst error " << e.ulps << " ulp, relative " << e.relative << ", absolute "
+        << e.absolute;
     if (!e.input.empty()) {
       out << ", at " << e.input;
     }
     out << "\n";
   }
+  if (!c.note.empty()) {
+    out << "  note: " << c.note << "\n";
+  }
   if (c.simplest) {
-    out << "  simplest input: " << c.simplest->input
-        << "\n    automatic:   " << detail::components_text(c.simplest->automatic)
-        << "\n    closed form: " << detail::components_text(c.simplest->closed_form) << "\n";
+    const auto [automatic, closed_form] = detail::sides_text(*c.simplest);
+    out << "  simplest input: " << c.simplest->input << "\n    automatic:   " << automatic
+        << "\n    closed form: " << closed_form << "\n";
+    if (automatic == closed_form) { // more digits than `double` has would show it
+      out << "    difference:  " << c.simplest->difference << "\n";
+    }
   }
   return out.str();
 }
@@ -139,10 +169,11 @@ namespace detail {
   std::string text = "| formula | verdict | simplest input | automatic | closed form |\n"
                      "|---|---|---|---|---|\n";
   for (const comparison& c : comparisons) {
-    text += "| " + c.label + " | " + std::string(to_text(c.outcome));
+    text += "| " + c.label + " | " + std::string(to_text(c.outcome)) +
+            (c.note.empty() ? "" : " (" + c.note + ")");
     if (c.simplest) {
-      text += " | " + c.simplest->input + " | " + detail::components_text(c.simplest->automatic) +
-              " | " + detail::components_text(c.simplest->closed_form) + " |\n";
+      const auto [automatic, closed_form] = detail::sides_text(*c.simplest);
+      text += " | " + c.simplest->input + " | " + automatic + " | " + closed_form + " |\n";
     } else {
       text += " | | | |\n";
     }
@@ -154,13 +185,14 @@ namespace detail {
 [[nodiscard]] inline std::string to_csv(std::span<const comparison> comparisons) {
   auto out = detail::plain_stream(17);
   out << "label,verdict,samples,agreeing,tolerance_ulp,digits,worst_ulp,worst_relative,"
-         "worst_absolute,worst_input,simplest_input\n";
+         "worst_absolute,worst_input,simplest_input,compared_digits\n";
   for (const comparison& c : comparisons) {
     for (const worst_errors& e : c.errors) {
       out << detail::csv_field(c.label) << "," << to_text(c.outcome) << "," << c.samples << ","
           << c.counts[0] << "," << c.tolerance << "," << e.digits << "," << e.ulps << ","
           << e.relative << "," << e.absolute << "," << detail::csv_field(e.input) << ","
-          << detail::csv_field(c.simplest ? c.simplest->input : "") << "\n";
+          << detail::csv_field(c.simplest ? c.simplest->input : "") << ","
+          << (e.compared_digits > 0 ? e.compared_digits : e.digits) << "\n";
     }
   }
   return out.str();

@@ -8,6 +8,7 @@
 #include <duet/derivative/function.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -22,15 +23,33 @@
 
 namespace duet::detail {
 
+/// The least decimal digits of some numbers, and the ε of those.
+struct precision {
+  int digits = 0;
+  double epsilon = 0;
+};
+
+template <class T>
+[[nodiscard]] precision precision_of() {
+  return {std::numeric_limits<T>::digits10, static_cast<double>(std::numeric_limits<T>::epsilon())};
+}
+
 /// The scalars of a result in a row.
+/// \param coarsest  becomes that of the result's real numbers where it is less
 template <class T, class Y>
-[[nodiscard]] std::vector<T> components_of(const Y& y) {
+[[nodiscard]] std::vector<T> components_of(const Y& y, precision& coarsest) {
   std::vector<T> components;
   static_cast<void>(map_scalars(
       [&](const auto& s) {
-        static_assert(Real<std::decay_t<decltype(s)>> || Arithmetic<std::decay_t<decltype(s)>>,
+        using scalar = std::decay_t<decltype(s)>;
+        static_assert(Real<scalar> || Arithmetic<scalar>,
                       "duet: compare: a compared function must return plain numbers; take the "
                       "derivative out of what the driver returned");
+        if constexpr (Real<scalar>) { // whole numbers are exact
+          if (std::numeric_limits<scalar>::digits10 < coarsest.digits) {
+            coarsest = precision_of<scalar>();
+          }
+        }
         components.push_back(T(s));
         return s;
       },
@@ -38,11 +57,23 @@ template <class T, class Y>
   return components;
 }
 
+template <class T, class Y>
+[[nodiscard]] std::vector<T> components_of(const Y& y) {
+  precision ignored;
+  return components_of<T>(y, ignored);
+}
+
 /// f at the point, in the precision of T.
 template <class T, class F, class Inputs>
 [[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
+                                         std::span<const double> point, precision& coarsest) {
+  return components_of<T>(result_of_call(std::apply(f, inputs.template make<T>(point))), coarsest);
+}
+template <class T, class F, class Inputs>
+[[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
                                          std::span<const double> point) {
-  return components_of<T>(result_of_call(std::apply(f, inputs.template make<T>(point))));
+  precision ignored;
+  return evaluate_at<T>(f, inputs, point, ignored);
 }
 
 /// The difference of two results in one precision.
@@ -50,7 +81,13 @@ struct difference {
   bool is_finite = true; ///< no component is infinite or NaN in one result only
   double absolute = 0;
   double relative = 0;
-  double ulps = 0;
+  double ulps = 0; ///< of the arguments' scalar
+  /// How many of them are one of the shorter result, and the decimal digits of both.
+  double ulps_in_shorter = 1;
+  std::array<int, 2> digits{};
+
+  /// What counts: the error in units that both results have.
+  [[nodiscard]] double common_ulps() const { return ulps / ulps_in_shorter; }
 };
 
 template <class T>
@@ -116,15 +153,20 @@ template <class T, class F, class G, class Inputs>
 [[nodiscard]] difference measure(const std::string& label, const F& automatic, const G& closed_form,
                                  const Inputs& inputs, std::span<const double> point,
                                  double tolerance) {
-  const std::vector<T> a = evaluate_at<T>(automatic, inputs, point);
-  const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point);
+  std::array precisions = {precision_of<T>(), precision_of<T>()};
+  const std::vector<T> a = evaluate_at<T>(automatic, inputs, point, precisions[0]);
+  const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point, precisions[1]);
   require(a.size() == b.size(), "duet: compare \"", label, "\": the automatic result has ",
           a.size(), " components, the closed form ", b.size());
+  difference result;
+  result.digits = {precisions[0].digits, precisions[1].digits};
+  result.ulps_in_shorter =
+      std::max(precisions[0].epsilon, precisions[1].epsilon) / precision_of<T>().epsilon;
   const T d = distance(a, b);
   if (d < 0) {
-    return {.is_finite = false};
+    result.is_finite = false;
+    return result;
   }
-  difference result;
   const T half_epsilon = std::numeric_limits<T>::epsilon() / 2;
   T scale = largest(a);
   const auto ratio = [](const T& x, const T& y) {
