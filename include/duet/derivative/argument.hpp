@@ -219,3 +219,17 @@ concept VectorLike = Variables<X> && !detail::is_tuple<X>;
     requires((Scalar<X> || Arithmetic<X>)&&!HasOwnJacobian<F>)                                     \
   DUET_REFUSED(#driver " is by a vector, by one number there is " of_one)                          \
   __VA_ARGS__ driver(F&&, const X&);
+
+/// Where `driver` has more arguments than these, `rest` among the words.
+#define DUET_REFUSES_MATRICES(driver, rest, ...)                                                   \
+  template <class Tag = void, detail::FunctionOfAny F, class X, class... Rest>                     \
+    requires(detail::is_matrix_argument<X> && sizeof...(Rest) > 0)                                 \
+  DUET_REFUSED("differentiate with respect to a vector, not to a matrix: " #driver                 \
+               "(f, x.reshaped(), " rest ")")                                                      \
+  __VA_ARGS__ driver(F&&, const X&, Rest&&...);
+#define DUET_REFUSES_MATRICES_IN_CHUNKS(driver, rest, ...)                                         \
+  template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, class X, class J>            \
+    requires(detail::is_matrix_argument<X>)                                                        \
+  DUET_REFUSED("differentiate with respect to a vector, not to a matrix: " #driver                 \
+               "(f, x.reshaped(), " rest ")")                                                      \
+  __VA_ARGS__ driver(F&&, const X&, J&&);

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -96,7 +97,10 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
   using tag = detail::tag_for<Tag, F>;
   using output = std::decay_t<decltype(detail::result_of_call(
       detail::call(f, detail::constants_of_pass<tag, 0>(x))))>;
-  static_assert(Scalar<output>, "duet: gradient needs a function that returns a scalar");
+  static_assert(
+      Scalar<output>,
+      "duet: gradient needs a function that returns a scalar, f(x) of a vector; of several "
+      "arguments it is gradient(f, std::tuple(x, y))");
   using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
   using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
   value_and_gradient<S, vector> result{S(0), vector(argument::size(x))};
@@ -226,6 +230,7 @@ template <class Tag = void, detail::FunctionOfReals F, class... X>
 DUET_REFUSED_FUNCTION(hessian)
 value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd> hessian(F&&, X&&...);
 
+DUET_REFUSES_MATRICES_IN_CHUNKS(gradient_into, "gradient", double)
 DUET_REFUSES_ARGUMENTS(gradient, "derivative(f, x)", value_and_gradient<double, Eigen::VectorXd>)
 DUET_REFUSES_ARGUMENTS(hessian, "derivatives<2>(f, x)",
                        value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd>)

@@ -143,6 +143,8 @@ template <class Tag = void, detail::FunctionOfReals F, class... X>
 DUET_REFUSED_FUNCTION(directional_derivative)
 value_and_derivative<double, double> directional_derivative(F&&, X&&...);
 
+DUET_REFUSES_MATRICES_IN_CHUNKS(jacobian_into, "jacobian", Eigen::VectorXd)
+DUET_REFUSES_MATRICES(directional_derivative, "v.reshaped()", value_and_derivative<double, double>)
 DUET_REFUSES_ARGUMENTS(jacobian, "derivative(f, x)",
                        value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd>)
 

@@ -108,4 +108,7 @@ template <class Tag = void, detail::FunctionOfReals F, class... X>
 DUET_REFUSED_FUNCTION(mixed_hessian)
 value_and_mixed_hessian<double, Eigen::MatrixXd> mixed_hessian(F&&, X&&...);
 
+DUET_REFUSES_MATRICES(hessian_vector_product, "v.reshaped()",
+                      value_gradient_and_product<double, Eigen::VectorXd>)
+
 } // namespace duet

@@ -213,4 +213,10 @@ DUET_REFUSED_FUNCTION(sparse_hessian)
 value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::SparseMatrix<double>> sparse_hessian(
     F&&, X&&...);
 
+DUET_REFUSES_MATRICES(sparse_jacobian, "structure",
+                      value_and_jacobian<Eigen::VectorXd, Eigen::SparseMatrix<double>>)
+DUET_REFUSES_MATRICES(
+    sparse_hessian, "structure",
+    value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::SparseMatrix<double>>)
+
 } // namespace duet
