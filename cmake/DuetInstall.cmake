@@ -36,6 +36,14 @@ file(RELATIVE_PATH from_pkgconfig_to_prefix ${full_folder} ${CMAKE_INSTALL_PREFI
 string(REGEX REPLACE "/$" "" from_pkgconfig_to_prefix ${from_pkgconfig_to_prefix})
 file(RELATIVE_PATH from_prefix_to_headers ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 file(RELATIVE_PATH from_prefix_to_library ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_LIBDIR})
+# Of what Eigen's own file says with -I compilers would tell warnings. A folder that is also named as one of the system is that.
+# Only where that is the same on every machine; a folder that is not there does no harm.
+get_target_property(eigen_as_system Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+if(eigen_as_system MATCHES "^/usr/(local/)?include/[^;]+$")
+  string(PREPEND eigen_as_system " -isystem ")
+else()
+  set(eigen_as_system "")
+endif()
 set(pkgconfig_names duet)
 if(TARGET duet_compiled)
   list(APPEND pkgconfig_names duet-compiled)
