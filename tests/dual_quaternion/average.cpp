@@ -67,6 +67,8 @@ TEST_CASE("of two: half way along the screw between them") {
   const auto p = some_poses(2, 1.5);
   CHECK(gap_of_poses(average(p), slerp(p[0], p[1], 0.5)) < 2e-15);
   CHECK(gap_of_poses(average(p, {3, 1}), slerp(p[0], p[1], 0.25)) < 2e-15);
+  CHECK(average({p[0], p[1]}) == average(p));
+  CHECK(average({p[0], p[1]}, {3, 1}) == average(p, {3, 1}));
   CHECK(gap_of_poses(average(p, {0, 2}), p[1]) < 1e-15);
 }
 

@@ -103,17 +103,27 @@ TEST_CASE("rotations are saved and loaded with all bits") {
   CHECK(std::signbit(again.elements[3].w()));
   CHECK(std::signbit(again.elements[3].y()));
   CHECK(file.text().starts_with("u,qw,qx,qy,qz\n-1.5,"));
+  CHECK(duet::load_table<rotation>(file.path).elements == table.elements);
+
+  duet::save_table(file.path, table, table_format::csv_seconds);
+  CHECK(file.text().starts_with("t [s],qw,qx,qy,qz\n-1.5,"));
+  const rotations timed = duet::load_table<double>(file.path);
+  CHECK(timed.parameters == table.parameters);
+  CHECK(timed.elements == table.elements);
 }
 
 TEST_CASE("poses are saved and loaded in every format") {
   const scratch_file file("poses.txt"), times("times.txt");
   for (const double first : {0.0, -3.25, 1403636580.8385556}) {
     const poses table = random_poses(100, first, 0.005);
-    for (const table_format format : {table_format::csv, table_format::tum}) {
+    for (const table_format format :
+         {table_format::csv, table_format::csv_seconds, table_format::tum}) {
       duet::save_table(file.path, table, format);
+      CHECK(file.text().starts_with("t [s],x,y,z,") == (format == table_format::csv_seconds));
       const poses again = duet::load_table<screw>(file.path);
       CHECK(again.parameters == table.parameters);
       CHECK(distance_of_places(again, table) < 2e-14);
+      CHECK(duet::load_table<duet::dual_quaternion<double>>(file.path).elements == again.elements);
     }
   }
   // Nearest doubles to whole nanoseconds, and any doubles from 2^23 s on.

@@ -139,12 +139,16 @@ template <class T>
   return m;
 }
 
+/// The mean of listed ones, `average({p, q})`; all else as of a vector.
+template <class T>
+[[nodiscard]] quaternion<T> average(std::initializer_list<quaternion<T>> q,
+                                    const std::vector<double>& weights = {}) {
+  return average(std::vector<quaternion<T>>(q), weights);
+}
+
 template <class T, class... More>
-DUET_REFUSED("average takes a vector of them: average(std::vector{p, q})")
+DUET_REFUSED("average takes a list or vector of them: average({p, q})")
 quaternion<T> average(const quaternion<T>&, const More&...);
-template <class T, class... More>
-DUET_REFUSED("average takes a vector of them: average(std::vector{p, q})")
-quaternion<T> average(std::initializer_list<quaternion<T>>, const More&...);
 template <class T, std::size_t N, class... More>
 DUET_REFUSED("average takes a vector of them: average(std::vector(q.begin(), q.end()))")
 quaternion<T> average(const std::array<quaternion<T>, N>&, const More&...);

@@ -161,7 +161,7 @@ using angle_t = std::conditional_t<std::integral<T>, double, T>;
 } // namespace detail
 
 /// The rotation R_i(a) R_j(b) R_k(c) of the sequence ijk; angles in the letters' order, radians,
-/// integers among them.
+/// integers among them (degrees are not told apart: 90 is 90 radians).
 /// Example: `from_euler<zyx>(yaw, pitch, roll)`.
 /// \return `quaternion<T>`
 template <euler_sequence Sequence, class A, class B, class C>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/refused.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
@@ -122,25 +123,34 @@ template <class T>
 
 } // namespace detail
 
-/// Reads recorded rotations or poses of any format that `load_table` reads. Rows that are not
-/// finite, no units or rotations, or repeat a time, are left out, rows out of order sorted in, and
-/// `faults` names them all.
+/// Reads recorded rotations or poses of any format that `load_table` reads, with T as there. Rows
+/// that are not finite, no units or rotations, or repeat a time, are left out, rows out of order
+/// sorted in, and `faults` names them all.
 ///
 /// Parameters are the differences of the times in the file, with all its digits: of nanoseconds
 /// since 1970, too, of which a double of seconds holds steps of 238.
 /// \param times  as `load_table`
+/// \return `recording<double>` or `recording<screw_dual<double>>`
 /// \throws file_error for a file without a row that is good, or whose columns are in doubt; with
 /// the line of a row that is ragged or has cells that are no numbers
 template <class T>
-[[nodiscard]] recording<T> load_recording(const std::string& path, const std::string& times = {}) {
-  return detail::loaded_recording<T>(path, times, nullptr);
+[[nodiscard]] recording<detail::table_numbers_t<T>> load_recording(const std::string& path,
+                                                                   const std::string& times = {}) {
+  return detail::loaded_recording<detail::table_numbers_t<T>>(path, times, nullptr);
 }
 
 /// Reads a recording whose rotations are Euler angles, in the columns, sequence and unit given. All
 /// else is as without; the file needs a header.
+/// \return `recording<double>` or `recording<screw_dual<double>>`
 template <class T>
-[[nodiscard]] recording<T> load_recording(const std::string& path, const euler_columns& angles) {
-  return detail::loaded_recording<T>(path, {}, &angles);
+[[nodiscard]] recording<detail::table_numbers_t<T>> load_recording(const std::string& path,
+                                                                   const euler_columns& angles) {
+  return detail::loaded_recording<detail::table_numbers_t<T>>(path, {}, &angles);
 }
+
+template <class T = void, class... More>
+  requires(!requires { typename detail::table_numbers_t<T>; })
+DUET_REFUSED("load_recording<double> reads rotations, load_recording<screw_dual<double>> poses")
+recording<double> load_recording(const std::string&, const More&...);
 
 } // namespace duet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/file_pair.hpp>
@@ -30,16 +31,30 @@ namespace duet {
 
 /// How a table is written. When it is read, the file tells.
 enum class table_format {
-  csv,   ///< `u,x,y,z,qw,qx,qy,qz`, of rotations `u,qw,qx,qy,qz`, under a header
-  tum,   ///< `timestamp tx ty tz qx qy qz qw`, in seconds and metres
-  euroc, ///< `timestamp,x,y,z,qw,qx,qy,qz` under the data set's header, whole nanoseconds
-  kitti  ///< the matrix [R t] row by row, 12 numbers; the parameters in a file of their own
+  csv,         ///< `u,x,y,z,qw,qx,qy,qz`, of rotations `u,qw,qx,qy,qz`, under a header
+  csv_seconds, ///< the same with `t [s]` for `u`: of recordings, whose parameters are times
+  tum,         ///< `timestamp tx ty tz qx qy qz qw`, in seconds and metres
+  euroc,       ///< `timestamp,x,y,z,qw,qx,qy,qz` under the data set's header, whole nanoseconds
+  kitti        ///< the matrix [R t] row by row, 12 numbers; the parameters in a file of their own
 };
 
 namespace detail {
 
 template <class T>
 inline constexpr bool is_rotation_scalar = std::is_same_v<T, double>;
+
+/// The numbers of the rotations or poses that a caller names by `T`: by their numbers or whole.
+template <class T>
+struct table_numbers {};
+template <class T>
+  requires(std::is_same_v<T, double> || std::is_same_v<T, screw_dual<double>>)
+struct table_numbers<T> {
+  using type = T;
+};
+template <class T>
+struct table_numbers<quaternion<T>> : table_numbers<T> {};
+template <class T>
+using table_numbers_t = typename table_numbers<T>::type;
 
 /// What stands in a file of rotations or poses, as `T` says.
 template <class T>
@@ -49,6 +64,15 @@ template <class T>
   } else {
     return pose(row.rotation, row.place);
   }
+}
+
+/// Of a file of commas, that of the parameters.
+[[nodiscard]] inline std::string parameter_name(table_format format) {
+  return format == table_format::csv_seconds ? "t [s]" : "u";
+}
+
+[[nodiscard]] inline bool is_csv(table_format format) {
+  return format == table_format::csv || format == table_format::csv_seconds;
 }
 
 [[nodiscard]] inline std::string blank_line(const std::vector<double>& numbers) {
@@ -74,14 +98,14 @@ template <class T>
   } else if (format == table_format::euroc) {
     text = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
            "q_RS_z []\n";
-  } else if (format == table_format::csv) {
-    text = "u,x,y,z,qw,qx,qy,qz\n";
+  } else if (is_csv(format)) {
+    text = parameter_name(format) + ",x,y,z,qw,qx,qy,qz\n";
   }
   std::int64_t last = 0;
   for (std::size_t i = 0; i < table.parameters.size(); ++i) {
     const double u = table.parameters[i];
     const auto x = pose_coordinates(table.elements[i]);
-    if (format == table_format::csv) {
+    if (is_csv(format)) {
       text += csv_line({u, x[0], x[1], x[2], x[3], x[4], x[5], x[6]});
     } else if (format == table_format::tum) {
       text += blank_line({u, x[0], x[1], x[2], x[4], x[5], x[6], x[3]});
@@ -103,9 +127,9 @@ template <class T>
   return text;
 }
 [[nodiscard]] inline std::string text_of(const look_up_table<double>& table, table_format format) {
-  require(format == table_format::csv,
+  require(is_csv(format),
           "duet: save_table: TUM, EuRoC and KITTI files hold poses, not rotations alone");
-  std::string text = "u,qw,qx,qy,qz\n";
+  std::string text = parameter_name(format) + ",qw,qx,qy,qz\n";
   for (std::size_t i = 0; i < table.parameters.size(); ++i) {
     const quaternion<double>& q = table.elements[i];
     text += csv_line({table.parameters[i], q.w(), q.x(), q.y(), q.z()});
@@ -116,8 +140,8 @@ template <class T>
 } // namespace detail
 
 /// Writes a table of rotations or poses with all digits and independently of the locale; the whole
-/// file or none, of two files both or none. Parameters are seconds in TUM's and EuRoC's files, the
-/// latter round them to whole nanoseconds; KITTI's have none.
+/// file or none, of two files both or none. Parameters are seconds in TUM's and EuRoC's files and
+/// those of `csv_seconds`, EuRoC's round them to whole nanoseconds; KITTI's have none.
 ///
 /// Read back, parameters and quaternions have the same bits, and places differ by rounding, as a
 /// dual quaternion holds half the product of both. In EuRoC's files that is so of parameters from
@@ -175,9 +199,11 @@ template <class T>
 } // namespace detail
 
 /// Reads a table of rotations (T = double) or poses (T = screw_dual<double>) of any format that
-/// `save_table` writes, of `rostopic echo -p`, and with semicolons in place of commas. The file
-/// tells which one it is, and in which order its columns are: by a header, a first line or a
-/// comment, or the number of columns, see spline/tables/row_format.hpp.
+/// `save_table` writes; `quaternion<double>` and `dual_quaternion<double>` for T are the same.
+/// Also files of `rostopic echo -p`, and with semicolons in place of commas. Rotations are read
+/// from files of poses, too, whose places are passed over. The file tells which one it is, and in
+/// which order its columns are: by a header, a first line or a comment, or the number of columns,
+/// see spline/tables/row_format.hpp.
 ///
 /// Parameters are the doubles nearest to the seconds of the file, whatever its unit of time, with
 /// places in metres; columns named u or tau are taken as they are. (Doubles of seconds since 1970
@@ -186,19 +212,28 @@ template <class T>
 /// the nearest rotation. \param times  for KITTI's files: a file with the time of each row, in
 /// seconds; without, the
 ///               parameters are 0, 1, 2 …
+/// \return `look_up_table<double>` or `look_up_table<screw_dual<double>>`
 /// \throws file_error for a file without rows, or whose columns are in doubt; with the line of a
 /// row that is ragged, not finite, no unit or rotation, or does not follow the one before, and with
 /// the column and its value
 template <class T>
-[[nodiscard]] look_up_table<T> load_table(const std::string& path, const std::string& times = {}) {
-  return detail::loaded_table<T>(path, times, nullptr);
+[[nodiscard]] look_up_table<detail::table_numbers_t<T>> load_table(const std::string& path,
+                                                                   const std::string& times = {}) {
+  return detail::loaded_table<detail::table_numbers_t<T>>(path, times, nullptr);
 }
 
 /// Reads a table whose rotations are Euler angles, in the columns, sequence and unit given. All
 /// else is as without; the file needs a header.
+/// \return `look_up_table<double>` or `look_up_table<screw_dual<double>>`
 template <class T>
-[[nodiscard]] look_up_table<T> load_table(const std::string& path, const euler_columns& angles) {
-  return detail::loaded_table<T>(path, {}, &angles);
+[[nodiscard]] look_up_table<detail::table_numbers_t<T>> load_table(const std::string& path,
+                                                                   const euler_columns& angles) {
+  return detail::loaded_table<detail::table_numbers_t<T>>(path, {}, &angles);
 }
+
+template <class T = void, class... More>
+  requires(!requires { typename detail::table_numbers_t<T>; })
+DUET_REFUSED("load_table<double> reads rotations, load_table<screw_dual<double>> poses")
+look_up_table<double> load_table(const std::string&, const More&...);
 
 } // namespace duet
