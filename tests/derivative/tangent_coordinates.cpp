@@ -149,6 +149,28 @@ TEST_CASE("more coordinates than one pass takes") {
   }
 }
 
+TEST_CASE("a vector whose size is known at run time, in several passes") {
+  const auto turned = [](const auto& x) {
+    using T = std::decay_t<decltype(x[0] * 1.)>;
+    T sum(0);
+    for (int i = 0; i < 40; ++i) {
+      sum += (i + 1) * x[i] * x[i] / 100;
+    }
+    return duet::from_rotation_vector(duet::vector3<T>(T(0), T(0), sum));
+  };
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(40, -1, 1);
+  const auto J = jacobian(turned, x, body).jacobian;
+  REQUIRE(J.cols() == 40);
+  for (int i = 0; i < 40; ++i) {
+    CHECK(gap(J.col(i), vector(0, 0, .02 * (i + 1) * x[i])) < 1e-14);
+  }
+  const auto product = [](const auto& at) { return at[0] * at[1] * at[1]; };
+  const Eigen::VectorXd two = Eigen::Vector2d(2, 3);
+  CHECK(gradient(product, two, body).gradient == Eigen::Vector2d(9, 12));
+  CHECK(hessian(product, two, body).hessian == (Eigen::Matrix2d() << 0, 6, 6, 4).finished());
+  CHECK_THROWS_AS((void)jacobian(turned, Eigen::VectorXd(), body), duet::invalid_input);
+}
+
 TEST_CASE("gradients and Hessians: the squared distance of rotations") {
   // ½ θ² with θ the angle of q r*. Its gradient is the rotation vector from r to q; at q = r its
   // Hessian is the identity.

@@ -4,6 +4,7 @@
 #include "support/message.hpp"
 #include "support/skip.hpp"
 
+#include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/urdf.hpp>
 #include <duet/quaternion/euler.hpp>
@@ -12,6 +13,7 @@
 #include <fstream>
 #include <numbers>
 #include <string>
+#include <vector>
 
 namespace test_mechanism_urdf {
 namespace {
@@ -190,6 +192,29 @@ TEST_CASE("links that are fixed to one another do not count as joints") {
   }
   write(inside);
   CHECK(read_urdf(path, "l0", "l" + std::to_string(count)).links().size() == count + 1);
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("links by name and frame; the Jacobian by duals of joints of run-time number") {
+  write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
+  const auto arm = read_urdf(path, "a", "c");
+  REQUIRE(arm.links().size() == 3);
+  const duet::urdf_link& last = arm.links()[2];
+  CHECK(last.name == "c");
+  const std::vector<double> theta{.3, -.7};
+  const Eigen::VectorXd column = Eigen::Vector2d(.3, -.7);
+  CHECK(arm.pose(theta, last.frame) == arm.pose(theta));
+  const auto tip = [&](const auto& x) { return arm.pose(x); };
+  const auto check = [&](auto frame) {
+    const auto expected = duet::jacobian(arm, theta, frame);
+    REQUIRE(duet::jacobian(tip, theta, frame).jacobian.cols() == 2);
+    CHECK((duet::jacobian(tip, theta, frame).jacobian - expected).norm() < 1e-14);
+    CHECK((duet::jacobian(tip, column, frame).jacobian - expected).norm() < 1e-14);
+    CHECK(duet::jacobian(tip, column, frame).value == arm.pose(theta));
+  };
+  check(duet::frame::spatial);
+  check(duet::frame::body);
+  check(duet::frame::hybrid);
   std::filesystem::remove(path);
 }
 

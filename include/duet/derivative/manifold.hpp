@@ -16,6 +16,7 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 /// \file
 /// Tangent spaces: how an object is moved by a small vector, and which vector its rate is.
@@ -72,6 +73,23 @@ struct manifold<X> {
     Eigen::Matrix<scalar, dimension, 1> result(rate.size());
     for (Eigen::Index i = 0; i < rate.size(); ++i) {
       result[i] = rate(i);
+    }
+    return result;
+  }
+};
+
+/// Not moved as a whole, but in passes over the components.
+template <class X>
+  requires(Scalar<X> || Arithmetic<X>)
+struct manifold<std::vector<X>> {
+  static constexpr int dimension = Eigen::Dynamic;
+  using scalar = detail::differentiable_t<X>;
+  template <class Frame>
+  [[nodiscard]] static Eigen::Matrix<scalar, dimension, 1>
+  velocity(const std::vector<X>&, const std::vector<X>& rate, Frame) {
+    Eigen::Matrix<scalar, dimension, 1> result(Eigen::Index(rate.size()));
+    for (std::size_t i = 0; i < rate.size(); ++i) {
+      result[Eigen::Index(i)] = rate[i];
     }
     return result;
   }

@@ -26,8 +26,8 @@
 
 namespace duet {
 
-/// What the drivers with a frame differentiate by: scalars, fixed-size vectors, arrays, rotations,
-/// poses, and tuples of them.
+/// What the drivers with a frame differentiate by: scalars, vectors, arrays, rotations, poses, and
+/// tuples of them, in which vectors have a fixed size.
 template <class X>
 concept ManifoldPoint = requires {
   manifold<X>::dimension;
@@ -50,18 +50,42 @@ tangent_seeds(int first) {
 template <class X>
 inline constexpr int tangents_per_pass = std::min(manifold<X>::dimension, single_pass_limit);
 
+/// A single vector whose number of coordinates is known at run time only.
+template <class X>
+concept RunTimeVector = VectorLike<X> && vector_argument<X>::size_at_compile_time == Eigen::Dynamic;
+
+/// Whose number of coordinates is known where the passes need it.
+template <class X>
+concept OfKnownDimension = ManifoldPoint<X> &&
+    (manifold<X>::dimension != Eigen::Dynamic || RunTimeVector<X>);
+
 /// Calls visit(f(x moved by variables from `first` on), first, count) for every pass over the
 /// tangent coordinates of x.
 template <class Tag, class F, class X, class Frame, class Visit>
 void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
   constexpr int size = manifold<X>::dimension;
-  static_assert(size > 0, "duet: a Jacobian in tangent coordinates needs vectors of a size known "
-                          "at compile time");
   constexpr int n = tangents_per_pass<X>;
   using D = dual<typename manifold<X>::scalar, n, Tag>;
   for (int first = 0; first < size; first += n) {
     visit(result_of_call(call(f, manifold<X>::plus(x, tangent_seeds<D, n, X>(first), frame))),
           first, std::min(n, size - first));
+  }
+}
+template <class Tag, class F, RunTimeVector X, class Frame, class Visit>
+void for_each_tangent_pass(F&& f, const X& x, Frame, Visit&& visit) {
+  require(vector_argument<X>::size(x) > 0, "duet: jacobian of a function of no variables");
+  for_each_pass<Tag>(f, x, visit); // vectors do not care for the frame
+}
+
+/// Any of what the passes call f with: only its type is asked for.
+template <class Tag, class X, class Frame>
+[[nodiscard]] auto moved_in_pass(const X& x, Frame frame) {
+  if constexpr (RunTimeVector<X>) {
+    return constants_of_pass<Tag, 0>(x);
+  } else {
+    constexpr int n = tangents_per_pass<X>;
+    using D = dual<typename manifold<X>::scalar, n, Tag>;
+    return manifold<X>::plus(x, tangent_seeds<D, n, X>(0), frame);
   }
 }
 
@@ -81,52 +105,64 @@ concept NeedsFrame =
 ///               x exp(δ/2), or `frame::hybrid`, fixed axes too, but δ = [v; ω] moves a pose's
 ///               origin by v and turns it by ω, neither by the other's
 ///
-/// f may return any of these too, and vectors of a size known at run time. Vectors do not care for
-/// the frame.
+/// f may return any of these too. A vector alone, of x and of what f returns, may have a size known
+/// at run time, as the joints of a chain that was read. Vectors do not care for the frame.
 /// \return `value_and_jacobian`
 ///
 /// Example: `jacobian([](const auto& q) { return conj(q); }, q, frame::body)` is −R(q).
-template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
+          FrameConstant Frame>
   requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x, Frame frame) {
   using tag = detail::tag_for<Tag, F>;
-  constexpr int n = detail::tangents_per_pass<X>;
-  using D = dual<typename manifold<X>::scalar, n, tag>;
   using output = std::decay_t<decltype(detail::result_of_call(
-      detail::call(f, manifold<X>::plus(x, detail::tangent_seeds<D, n, X>(0), frame))))>;
+      detail::call(f, detail::moved_in_pass<tag>(x, frame))))>;
   using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
   using target = manifold<value>;
   value_and_jacobian<
       value, Eigen::Matrix<typename target::scalar, target::dimension, manifold<X>::dimension>>
       result{};
-  detail::for_each_tangent_pass<tag>(f, x, frame, [&](const output& y, int first, int count) {
-    if (first == 0) {
-      result.value = detail::parts<tag>(y, 0);
-    }
-    if constexpr (requires { target::takes_rates_of_any_scalar; }) {
-      // Velocities are linear in the rates: those of all columns at once, packed as they are.
-      const auto columns = target::velocity(result.value, y, frame);
-      for (int i = 0; i < target::dimension; ++i) {
-        for (int j = 0; j < count; ++j) {
-          result.jacobian(i, first + j) = detail::part<tag>(columns[i], j + 1);
-        }
-      }
+  const Eigen::Index coordinates = [&]() -> Eigen::Index {
+    if constexpr (detail::RunTimeVector<X>) {
+      return detail::vector_argument<X>::size(x);
     } else {
-      for (int j = 0; j < count; ++j) {
-        const auto column = target::velocity(result.value, detail::parts<tag>(y, j + 1), frame);
-        if (first + j == 0) {
-          result.jacobian.resize(column.size(), manifold<X>::dimension);
-        }
-        result.jacobian.col(first + j) = column;
-      }
+      return manifold<X>::dimension;
     }
-  });
+  }();
+  detail::for_each_tangent_pass<tag>(
+      f, x, frame, [&](const output& y, Eigen::Index first, Eigen::Index count) {
+        if (first == 0) {
+          result.value = detail::parts<tag>(y, 0);
+        }
+        if constexpr (requires { target::takes_rates_of_any_scalar; }) {
+          // Velocities are linear in the rates: those of all columns at once, packed as they are.
+          const auto columns = target::velocity(result.value, y, frame);
+          if (first == 0) {
+            result.jacobian.resize(target::dimension, coordinates);
+          }
+          for (int i = 0; i < target::dimension; ++i) {
+            for (Eigen::Index j = 0; j < count; ++j) {
+              result.jacobian(i, first + j) = detail::part<tag>(columns[i], int(j) + 1);
+            }
+          }
+        } else {
+          for (Eigen::Index j = 0; j < count; ++j) {
+            const auto column =
+                target::velocity(result.value, detail::parts<tag>(y, int(j) + 1), frame);
+            if (first + j == 0) {
+              result.jacobian.resize(column.size(), coordinates);
+            }
+            result.jacobian.col(first + j) = column;
+          }
+        }
+      });
   return result;
 }
 
 /// f(x) and the gradient in the tangent coordinates of x: gᵀδ is the change of f while x moves by
 /// δ. Arguments as `jacobian`; f returns a scalar. \return `value_and_gradient`
-template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
+          FrameConstant Frame>
 [[nodiscard]] auto gradient(F&& f, const X& x, Frame frame) {
   auto [value, row] = jacobian<Tag>(std::forward<F>(f), x, frame);
   static_assert(Scalar<decltype(value)>, "duet: gradient needs a function that returns a scalar");
@@ -142,18 +178,21 @@ template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConst
 /// in other axes: H of `frame::body` is Rᵀ H R of `frame::spatial`, of poses Adᵀ H Ad. Of poses
 /// that of `frame::hybrid` is another, as their origins move along straight lines, not along
 /// screws. \return `value_gradient_and_hessian`
-template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
+          FrameConstant Frame>
 [[nodiscard]] auto hessian(F&& f, const X& x, Frame frame) {
-  constexpr int n = manifold<X>::dimension;
-  static_assert(n > 0, "duet: a Hessian in tangent coordinates needs vectors of a size known at "
-                       "compile time");
-  // The tangent vector is a vector like any other, at which f is a function of it.
-  const auto moved = [&](const auto& delta) {
-    return detail::call(f, manifold<X>::plus(x, delta, frame));
-  };
-  using vector = Eigen::Matrix<typename manifold<X>::scalar, n, 1>;
-  return hessian<std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
-      moved, vector(vector::Zero()));
+  if constexpr (detail::RunTimeVector<X>) {
+    return hessian<Tag>(std::forward<F>(f), x);
+  } else {
+    constexpr int n = manifold<X>::dimension;
+    // The tangent vector is a vector like any other, at which f is a function of it.
+    const auto moved = [&](const auto& delta) {
+      return detail::call(f, manifold<X>::plus(x, delta, frame));
+    };
+    using vector = Eigen::Matrix<typename manifold<X>::scalar, n, 1>;
+    return hessian<std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
+        moved, vector(vector::Zero()));
+  }
 }
 
 template <class Tag = void, class F, class X, FrameConstant Frame>
@@ -161,6 +200,20 @@ template <class Tag = void, class F, class X, FrameConstant Frame>
 DUET_REFUSED("no tangent coordinates are known of this type; those of rotations are in "
              "<duet/quaternion/exponential.hpp>, of poses in <duet/dual_quaternion/twist.hpp>")
 value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd> jacobian(F&&, const X&, Frame);
+
+/// To be said where vectors of run-time size are not the only argument.
+#define DUET_REFUSES_RUN_TIME_SIZE(driver, ...)                                                    \
+  template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>                       \
+    requires(!HasOwnJacobian<F> && !detail::OfKnownDimension<X>)                                   \
+  DUET_REFUSED("with a frame, a vector of run-time size is differentiated by alone; in tuples "    \
+               "and arrays give it a size known at compile time")                                  \
+  __VA_ARGS__                                                                                      \
+  driver(F&&, const X&, Frame);
+
+DUET_REFUSES_RUN_TIME_SIZE(jacobian, value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd>)
+DUET_REFUSES_RUN_TIME_SIZE(gradient, value_and_gradient<double, Eigen::VectorXd>)
+DUET_REFUSES_RUN_TIME_SIZE(hessian,
+                           value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd>)
 
 /// To be said where a rotation, pose or tuple is given without a frame.
 #define DUET_ASKS_FOR_FRAME(driver, ...)                                                           \

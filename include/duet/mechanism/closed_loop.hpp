@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/core/text/number_text.hpp>
@@ -73,9 +74,18 @@ public:
   /// \param u0           where the motion starts
   /// \throws cannot_close where there is no position near the given one, or ∂F/∂x is singular
   closed_loop(F constraints, const X& position, const P& u0,
-              const closed_loop_options& options = {})
+              const closed_loop_options& options = {}) requires(manifold<X>::dimension !=
+                                                                    Eigen::Dynamic &&
+                                                                manifold<P>::dimension !=
+                                                                    Eigen::Dynamic)
       : constraints_(std::move(constraints)), u_(u0), options_(options),
         start_(assembled(position)) {}
+
+  DUET_REFUSED("closed_loop: positions and parameters need a size known at compile time, as "
+               "Eigen::Vector2d has")
+  closed_loop(F, const X&, const P&,
+              const closed_loop_options& = {}) requires(manifold<X>::dimension == Eigen::Dynamic ||
+                                                        manifold<P>::dimension == Eigen::Dynamic);
 
   /// The u that all others are reached from.
   [[nodiscard]] const P& parameter() const { return u_; }

@@ -32,10 +32,8 @@ namespace duet {
 template <int Capacity>
 class urdf_chain : public serial_chain<-Capacity> {
 public:
-  using named_link = detail::urdf_link;
-
   urdf_chain(const serial_chain<-Capacity>& chain, std::vector<std::string> joint_names,
-             std::vector<named_link> links)
+             std::vector<urdf_link> links)
       : serial_chain<-Capacity>(chain), joint_names_(std::move(joint_names)),
         links_(std::move(links)) {}
 
@@ -44,10 +42,10 @@ public:
   /// \throws invalid_input where the chain has none of that name
   [[nodiscard]] attached_frame<double> link(std::string_view name) const {
     const auto found = std::find_if(links_.begin(), links_.end(),
-                                    [&](const named_link& each) { return each.name == name; });
+                                    [&](const urdf_link& each) { return each.name == name; });
     if (found == links_.end()) {
       std::vector<std::string> names;
-      for (const named_link& each : links_) {
+      for (const urdf_link& each : links_) {
         names.push_back(each.name);
       }
       detail::raise(
@@ -58,12 +56,12 @@ public:
   }
   /// Names of the joints that move, in order.
   [[nodiscard]] const std::vector<std::string>& joint_names() const { return joint_names_; }
-  /// All links from the base to the tip.
-  [[nodiscard]] const std::vector<named_link>& links() const { return links_; }
+  /// All links from the base to the tip, each with its name and frame.
+  [[nodiscard]] const std::vector<urdf_link>& links() const { return links_; }
 
 private:
   std::vector<std::string> joint_names_;
-  std::vector<named_link> links_;
+  std::vector<urdf_link> links_;
 };
 
 /// The chain from one link of a robot description to another, both by their names; metres and

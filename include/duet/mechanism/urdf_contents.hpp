@@ -28,6 +28,12 @@ struct urdf_names {
   std::vector<urdf_joint_name> joints; ///< fixed ones included
 };
 
+/// A link of a chain that was read.
+struct urdf_link {
+  std::string name;             ///< as in the file
+  attached_frame<double> frame; ///< where it is attached: what `pose` and `jacobian` take
+};
+
 /// One link or joint a line, `shoulder_pan_joint: revolute, base_link -> shoulder_link`.
 [[nodiscard]] inline std::string to_text(const urdf_names& robot) {
   std::string text = "links:\n";
@@ -44,11 +50,6 @@ struct urdf_names {
 } // namespace duet
 
 namespace duet::detail {
-
-struct urdf_link {
-  std::string name;
-  attached_frame<double> frame;
-};
 
 /// From one link to another.
 struct urdf_contents {
