@@ -28,7 +28,7 @@ namespace duet::detail {
     if (!d.is_finite) {
       return verdict::not_finite;
     }
-    failures += d.common_ulps() > tolerance ? 1 : 0;
+    failures += d.common_ulps() > tolerance ? 1U : 0U;
   }
   if (failures == 0) {
     return verdict::agrees;
