@@ -48,7 +48,7 @@ template <class T>
   using std::sqrt;
   using R = real_type_t<T>;
   const vector3<T> move = translation(b) - translation(a);
-  const vector3<T> turn = turn_between(rotation(a), rotation(b));
+  const vector3<T> turn = rotation_vector_between(rotation(a), rotation(b));
   R largest(0);
   T sum(R(0));
   for (int i = 0; i < 3; ++i) {

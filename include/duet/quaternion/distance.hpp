@@ -16,8 +16,8 @@ namespace detail {
 
 /// The rotation vector of conj(a) b, the shorter way, with all digits where a and b are near.
 template <class A, class B>
-[[nodiscard]] vector3<promote_t<A, B>> turn_between(const quaternion<A>& a,
-                                                    const quaternion<B>& b) {
+[[nodiscard]] vector3<promote_t<A, B>> rotation_vector_between(const quaternion<A>& a,
+                                                               const quaternion<B>& b) {
   using T = promote_t<A, B>;
   const T cosine = dot(a, b);
   const vector3<T> half = half_arc(a, b, cosine, innermost(cosine) < 0, "distance");
@@ -33,7 +33,7 @@ template <class A, class B>
 template <class A, Promotable<A> B>
   requires(!detail::contains_tag<promote_t<A, B>, screw_tag>())
 [[nodiscard]] promote_t<A, B> squared_distance(const quaternion<A>& a, const quaternion<B>& b) {
-  const auto turn = detail::turn_between(a, b);
+  const auto turn = detail::rotation_vector_between(a, b);
   return turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
 }
 
@@ -44,7 +44,7 @@ template <class A, Promotable<A> B>
   requires(!detail::contains_tag<promote_t<A, B>, screw_tag>())
 [[nodiscard]] promote_t<A, B> distance(const quaternion<A>& a, const quaternion<B>& b) {
   using T = promote_t<A, B>;
-  return norm(quaternion<T>(T(0), detail::turn_between(a, b)));
+  return norm(quaternion<T>(T(0), detail::rotation_vector_between(a, b)));
 }
 
 DUET_REFUSES_FOREIGN(squared_distance, double)
