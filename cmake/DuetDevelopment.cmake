@@ -24,7 +24,8 @@ target_compile_options(duet_development INTERFACE
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>"
   $<$<AND:$<CXX_COMPILER_ID:Clang>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,22>>:-Wno-c2y-extensions>)
 
-# It links in a fifth of the time that the GNU linker takes: of the largest test 0.2 s instead of 0.9.
+# It links in a fifth of the time that the GNU linker takes: the table of formulas in 0.2 s of processor time
+# instead of 0.9.
 find_program(DUET_LLD NAMES ld.lld)
 if(DUET_LLD)
   target_link_options(duet_development INTERFACE -fuse-ld=lld)
