@@ -122,7 +122,7 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
   value_and_jacobian<
       value, Eigen::Matrix<typename target::scalar, target::dimension, manifold<X>::dimension>>
       result{};
-  const Eigen::Index coordinates = [&]() -> Eigen::Index {
+  const Eigen::Index dimension = [&]() -> Eigen::Index {
     if constexpr (detail::RunTimeVector<X>) {
       return detail::vector_argument<X>::size(x);
     } else {
@@ -138,7 +138,7 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
           // Velocities are linear in the rates: those of all columns at once, packed as they are.
           const auto columns = target::velocity(result.value, y, frame);
           if (first == 0) {
-            result.jacobian.resize(target::dimension, coordinates);
+            result.jacobian.resize(target::dimension, dimension);
           }
           for (int i = 0; i < target::dimension; ++i) {
             for (Eigen::Index j = 0; j < count; ++j) {
@@ -150,7 +150,7 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
             const auto column =
                 target::velocity(result.value, detail::parts<tag>(y, int(j) + 1), frame);
             if (first + j == 0) {
-              result.jacobian.resize(column.size(), coordinates);
+              result.jacobian.resize(column.size(), dimension);
             }
             result.jacobian.col(first + j) = column;
           }
