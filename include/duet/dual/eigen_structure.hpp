@@ -21,6 +21,8 @@ struct NumTraits<duet::batch<T, W>> : NumTraits<T> {
   using NonInteger = number;
   using Nested = number;
   using Literal = T;
+  // Copied as what it is: g++ warns of Eigen's memcpy, as a batch assigns itself.
+  static constexpr int RequireInitialization = 1;
 };
 
 template <class T, int W, class Operation>
