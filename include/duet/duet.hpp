@@ -4,7 +4,8 @@
 /// \file
 /// All of duet but what programs ask for by name, as it takes compilers long or is rare: sparse
 /// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (mechanism/urdf.hpp),
-/// plans over time (planning/time_parametrised.hpp), tables, recordings and plans as files
+/// arms in many configurations (mechanism/sweep.hpp), curves near rows (spline/fit.hpp), plans
+/// over time (planning/time_parametrised.hpp), tables, recordings and plans as files
 /// (spline/table_file.hpp, spline/recording.hpp, planning/save_plan.hpp, core/text/csv.hpp),
 /// progress_line (core/text/progress_line.hpp), the notes' own planner (planning/printed_plan.hpp),
 /// the nearest point of a screw motion (dual_quaternion/nearest.hpp), and `interop/`.
@@ -58,7 +59,6 @@
 #include <duet/mechanism/manipulability.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/screw_axes.hpp>
-#include <duet/mechanism/sweep.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/quaternion/average.hpp>
@@ -74,8 +74,6 @@
 #include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>
-#include <duet/spline/fit.hpp>
-#include <duet/spline/fitting/bspline_fit.hpp>
 #include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/look_up_table.hpp>

@@ -4,8 +4,10 @@
 
 #include <duet/derivative/sparse.hpp>
 #include <duet/duet.hpp>
+#include <duet/mechanism/sweep.hpp>
 #include <duet/mechanism/urdf.hpp>
 #include <duet/planning/time_parametrised.hpp>
+#include <duet/spline/fit.hpp>
 
 #include <cstddef>
 #include <iostream>

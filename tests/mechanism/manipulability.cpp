@@ -126,14 +126,15 @@ TEST_CASE("the gradient within rounding of a singularity is as steep as beside i
   }
   CHECK(regular > 3);
 
-  // |det M| M⁻¹ is but for its sign the adjugate, whatever the smallest pivot.
+  // |det M| M⁻ᵀ is but for its sign the matrix of cofactors, whatever the smallest pivot.
   for (const double small : {1e-3, 1e-16, -1e-17, 1e-140}) {
-    Eigen::Matrix2d m, adjugate;
+    detail::tall_matrix<double, 2> m(2, 2), cofactors(2, 2);
     m << 1, 2, 0, small;
-    adjugate << small, -2, 0, 1;
+    cofactors << small, 0, -2, 1;
     const auto [volume, of_entries] = detail::volume_of<true>(m);
     CHECK(std::abs(volume - std::abs(small)) <= 1e-15 * std::abs(small));
-    CHECK(gap(of_entries, small > 0 ? adjugate : Eigen::Matrix2d(-adjugate)) < 1e-15);
+    cofactors *= small > 0 ? 1 : -1;
+    CHECK(gap(of_entries, cofactors) < 1e-15);
   }
 }
 

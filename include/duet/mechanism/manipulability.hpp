@@ -23,40 +23,34 @@ namespace duet {
 
 namespace detail {
 
+/// One type for chains of up to 16 joints, as each that Eigen factorises costs its compiler a
+/// second.
+template <class S, int Joints>
+using tall_matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                  std::max({Joints, -Joints, 16}), 6>;
+
 /// Jᵀ of a chain with at least six joints, or J of one with fewer: never wider than it is high.
 template <class C, class X, PlaceOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto tall_jacobian(const C& chain, const X& theta, const At& at = {}) {
-  using S = chain_scalar<C, X>;
-  constexpr int n = C::joints;
-  if constexpr (n >= 6) {
-    return Eigen::Matrix<S, n, 6>(jacobian(chain, theta, frame::hybrid, at).transpose());
-  } else if constexpr (n > 0) {
-    return jacobian(chain, theta, frame::hybrid, at);
-  } else {
-    using matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
-                                 std::max(-n, 6), std::max(-n, 6)>;
-    const auto m = jacobian(chain, theta, frame::hybrid, at);
-    return chain.size() >= 6 ? matrix(m.transpose()) : matrix(m);
-  }
+  using matrix = tall_matrix<chain_scalar<C, X>, C::joints>;
+  const auto m = jacobian(chain, theta, frame::hybrid, at);
+  return chain.size() >= 6 ? matrix(m.transpose()) : matrix(m);
 }
 
-template <class S, class M>
+template <class M>
 struct volume_and_slope {
-  S volume; ///< w = |det R| of M = QR, without the squares of what is small in det(MᵀM)
-  M slope;  ///< w M⁺, the transpose of ∂w/∂M, where it was asked for
+  typename M::Scalar
+      volume; ///< w = |det R| of M = QR, without the squares of what is small in det(MᵀM)
+  M slope;    ///< w (M⁺)ᵀ = ∂w/∂M, where it was asked for
 };
 
 /// By QR with pivoting, which lanes of batches take one by one. The last pivot is the smallest, and
-/// however small it is, the slope is not: w M⁺ = |r₀ r₁ …| (|r_last| R⁻¹) Qᵀ.
+/// however small it is, the slope is not: w (M⁺)ᵀ = Q |r₀ r₁ …| (|r_last| R⁻ᵀ).
 template <bool WithSlope, class M>
-[[nodiscard]] auto volume_of(const M& m) {
+[[nodiscard]] volume_and_slope<M> volume_of(const M& m) {
   using std::abs;
   using S = typename M::Scalar;
-  using square = Eigen::Matrix<S, M::ColsAtCompileTime, M::ColsAtCompileTime, Eigen::ColMajor,
-                               M::MaxColsAtCompileTime, M::MaxColsAtCompileTime>;
-  using slope = Eigen::Matrix<S, M::ColsAtCompileTime, M::RowsAtCompileTime, Eigen::ColMajor,
-                              M::MaxColsAtCompileTime, M::MaxRowsAtCompileTime>;
-  volume_and_slope<S, slope> result{S(1), {}};
+  volume_and_slope<M> result{S(1), {}};
   if constexpr (Batched<S>) {
     result.volume = by_lane([](const auto& x) { return volume_of<false>(x).volume; }, m);
     if constexpr (WithSlope) {
@@ -64,22 +58,38 @@ template <bool WithSlope, class M>
     }
   } else {
     const Eigen::ColPivHouseholderQR<M> qr(m);
-    const Eigen::Index last = qr.cols() - 1;
+    const auto& r = qr.matrixQR();
+    const Eigen::Index n = m.cols();
     S others(1);
-    for (Eigen::Index i = 0; i < last; ++i) {
-      others *= qr.matrixQR()(i, i);
+    for (Eigen::Index i = 0; i < n - 1; ++i) {
+      others *= abs(r(i, i));
     }
-    others = S(abs(others));
-    const S smallest = abs(qr.matrixQR()(last, last));
+    const S smallest = abs(r(n - 1, n - 1));
     result.volume = others * smallest;
     if constexpr (WithSlope) { // by qr.solve it would lack what is divided by a small pivot
-      square r = square::Identity(last + 1, last + 1) * smallest;
-      qr.matrixQR()
-          .template topLeftCorner<M::ColsAtCompileTime, M::ColsAtCompileTime>(last + 1, last + 1)
-          .template triangularView<Eigen::Upper>()
-          .solveInPlace(r);
-      const M q = qr.householderQ() * M::Identity(m.rows(), m.cols());
-      result.slope = qr.colsPermutation() * (others * r * q.transpose());
+      result.slope = M::Zero(m.rows(), n);
+      for (Eigen::Index j = 0; j < n; ++j) { // column j of |r_last| R⁻ᵀ, then Q times it
+        auto column = result.slope.col(qr.colsPermutation().indices()[j]);
+        for (Eigen::Index i = j; i < n; ++i) {
+          S sum = i == j ? smallest : S(0);
+          for (Eigen::Index k = j; k < i; ++k) {
+            sum -= r(k, i) * column[k];
+          }
+          column[i] = sum / r(i, i);
+        }
+        for (Eigen::Index k = n - 1; k >= 0; --k) { // reflections (1 − h v vᵀ), v = (1, r below)
+          S along = column[k];
+          for (Eigen::Index i = k + 1; i < m.rows(); ++i) {
+            along += r(i, k) * column[i];
+          }
+          along *= qr.hCoeffs()[k];
+          column[k] -= along;
+          for (Eigen::Index i = k + 1; i < m.rows(); ++i) {
+            column[i] -= along * r(i, k);
+          }
+        }
+        column *= others;
+      }
     }
   }
   return result;
@@ -118,7 +128,7 @@ template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
     S trace(0);
     for (Eigen::Index i = 0; i < slope.rows(); ++i) {
       for (Eigen::Index k = 0; k < slope.cols(); ++k) {
-        trace += slope(i, k) * (chain.size() >= 6 ? h(i, k, j) : h(k, i, j));
+        trace += slope(i, k) * (chain.size() >= 6 ? h(k, i, j) : h(i, k, j));
       }
     }
     result.gradient[j] = trace;
