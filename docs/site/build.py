@@ -1,0 +1,263 @@
+#!/usr/bin/env python3
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+"""Writes the documents and the reference as a folder of pages that can be moved anywhere and read from disk.
+
+usage: python3 docs/site/build.py --xml <Doxygen's> --out <folder> [--live <folder with what was built for docs/live>]
+
+docs/index.md is the front page, and its lists are the order of all pages: a page that they leave out is an error, and so
+is a link that leads nowhere or a formula that pandoc does not know. Pages of docs/live have a section of their own.
+"""
+
+import argparse
+import html
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from string import Template
+
+import figures
+import reference
+import text
+
+HERE = Path(__file__).resolve().parent
+TOP = HERE.parent.parent
+FONTS = Path("/usr/share/texmf/fonts/opentype/public")  # Debian's fonts-texgyre, fonts-texgyre-math
+FONT_FILES = [f"tex-gyre/texgyrepagella-{face}.otf" for face in ("regular", "italic", "bold", "bolditalic")] + [
+    "tex-gyre-math/texgyrepagella-math.otf"]
+
+
+def fail(message):
+    sys.exit(f"duet: {message}")
+
+
+class Page:
+    """A page: where it comes from and goes to, both relative to their tops."""
+
+    def __init__(self, title, address, source=None, body="", contents=(), found_as=()):
+        self.title, self.address, self.source = title, address, source
+        self.body, self.contents, self.found_as = body, contents, found_as
+
+    def link_to(self, address):
+        """An address of the folder as seen from this page."""
+        target, hash_mark, anchor = address.partition("#")
+        if target == self.address:
+            return hash_mark + anchor if anchor else os.path.basename(target)
+        return os.path.relpath(target, os.path.dirname(self.address) or ".") + hash_mark + anchor
+
+
+def address_of(source):
+    """docs/a.md is a.html, docs/live/a.md live/a.html, README.md readme.html."""
+    path = source[len("docs/"):] if source.startswith("docs/") else source.lower()
+    return re.sub(r"\.md$", ".html", path)
+
+
+def reading_order():
+    """Sections of pages, as the front page lists them."""
+    sections, listed = [], set()
+    for line in (TOP / "docs/index.md").read_text().splitlines():
+        if named := re.match(r"## (.*)", line):
+            sections.append((named[1], []))
+        elif linked := re.match(r"- \[(.*?)\]\((.*?\.md)\)", line):
+            source = os.path.normpath("docs/" + linked[2])
+            listed.add(source)
+            sections[-1][1].append(Page(linked[1], address_of(source), source))
+    live = [str(path.relative_to(TOP)) for path in sorted((TOP / "docs/live").glob("*.md"))]
+    live = [source for source in live if source not in listed]
+    if live:
+        title = lambda source: re.match(r"# (.*)", (TOP / source).read_text())[1]
+        sections.insert(1, ("Live", [Page(title(source), address_of(source), source) for source in live]))
+    for path in TOP.glob("docs/*.md"):
+        source = str(path.relative_to(TOP))
+        if source not in listed and source != "docs/index.md":
+            fail(f"docs/index.md does not list {source}")
+    return sections
+
+
+def examples():
+    """Pages with the source of every example, by its path without .cpp."""
+    result = {}
+    for path in sorted((TOP / "examples").rglob("*.cpp")):
+        name = str(path.relative_to(TOP).with_suffix(""))
+        folder = path.parent
+        if (folder / "main.cpp").exists():
+            name = str(folder.relative_to(TOP))
+        files = sorted(folder.glob("*.?pp")) if (folder / "main.cpp").exists() else [path]
+        files.sort(key=lambda file: file.name != "main.cpp")
+        result[name] = files
+    return result
+
+
+def example_page(name, files):
+    source = "\n\n".join(f"## {file.name}\n\n```cpp\n{file.read_text()}```" for file in files)
+    body, contents, _ = text.fragment(text.pandoc(f"# {name}\n\n{source}\n", name))
+    return Page(name, f"source/{name.removeprefix('examples/')}.html", None, body, contents if len(files) > 1 else ())
+
+
+class Links:
+    """What links in the sources, names and labels lead to."""
+
+    def __init__(self, pages, headers, example_files):
+        self.pages = {page.source: page.address for page in pages}
+        self.headers = {"include/" + header.path: header.address for header in headers}
+        self.examples = {name: f"source/{name.removeprefix('examples/')}.html" for name in example_files}
+        for name, files in example_files.items():
+            self.examples.update({str(file.relative_to(TOP)): self.examples[name] for file in files})
+        self.names = {}
+        for header in headers:
+            for name in header.names:
+                self.names.setdefault(name, []).append(header)
+
+    def to_file(self, page, address):
+        """Of a link in a document."""
+        if re.match(r"https?:|#|mailto:", address):
+            return address
+        target, hash_mark, anchor = address.partition("#")
+        path = os.path.normpath(os.path.join(os.path.dirname(page.source), target))
+        for known in (self.pages, self.headers, self.examples):
+            if path in known:
+                return page.link_to(known[path] + hash_mark + anchor)
+        if (TOP / path).is_file() and "/" not in path:
+            return page.link_to(path)  # LICENSE
+        fail(f"{page.source} links to {address}, which is not in the folder")
+
+    def to_name(self, page, code, preferred=()):
+        """Of words in code: a name of the library, a header or an example, or nothing."""
+        if code.startswith("duet/") and "include/" + code in self.headers:
+            return page.link_to(self.headers["include/" + code])
+        if example := re.match(r"examples/[\w/]+", code):
+            known = self.examples.get(example[0])
+            return known and page.link_to(known)
+        named = re.match(r"(?:duet::)?((?:expression::)?[a-zA-Z]\w{2,})(?=$|[(<{])", code)
+        headers = self.names.get(named[1], []) if named else []
+        if not headers:
+            return None
+        best = next((h for h in headers if h.path in preferred), headers[0])
+        return page.link_to(best.address + "#" + best.anchors[named[1]])
+
+    def to_label(self, page, label):
+        """Of a formula's label, N7, to its line in the table of all."""
+        return page.link_to(f"formulas.html#{label}")
+
+
+def write_document(page, links):
+    source = (TOP / page.source).read_text()
+    preferred = re.findall(r"`(duet/[\w/]+\.hpp)`", source.split("\n\n", 2)[1])
+    body = text.pandoc(source, page.source)
+    body = text.with_links(body, lambda address: links.to_file(page, address))
+    body = text.with_names(body, lambda code: links.to_name(page, code, preferred))
+    if page.source == "docs/formulas.md":
+        body = text.with_labels(body)
+    body = figures.with_figures(body, (TOP / page.source).parent)
+    page.body, page.contents, page.found_as = text.fragment(body)
+
+
+def navigation(sections, page):
+    result = []
+    for title, pages in sections:
+        items = []
+        for each in pages:
+            here = ' aria-current="page"' if each is page else ""
+            items.append(f'<li><a href="{page.link_to(each.address)}"{here}>{html.escape(each.title)}</a></li>')
+        result.append(f"<h2>{title}</h2>\n<ul>{''.join(items)}</ul>")
+    return "\n".join(result)
+
+
+def contents_of(page):
+    if len(page.contents) < 2:
+        return ""
+    items = "".join(f'<li class="level{level}"><a href="#{anchor}">{title}</a></li>' for level, anchor, title in page.contents)
+    return f'<details class="contents" open><summary>On this page</summary><ul>{items}</ul></details>'
+
+
+def neighbours(page, order):
+    if page not in order:
+        return ""
+    i = order.index(page)
+    parts = []
+    for j, word, kind in ((i - 1, "before", "prev"), (i + 1, "next", "next")):
+        if 0 <= j < len(order):
+            parts.append(f'<a rel="{kind}" href="{page.link_to(order[j].address)}"><span>{word}</span>{html.escape(order[j].title)}</a>')
+    return f'<nav class="neighbours" aria-label="Pages before and after">{"".join(parts)}</nav>'
+
+
+def write_pages(out, pages, sections, order):
+    template = Template((HERE / "page.html").read_text())
+    for page in pages:
+        path = out / page.address
+        path.parent.mkdir(parents=True, exist_ok=True)
+        name = "duet" if page.title == "duet" else f"{page.title} · duet"
+        path.write_text(template.substitute(
+            title=html.escape(name), top=page.link_to("index.html")[:-len("index.html")],
+            kind=page.address.split("/")[0].removesuffix(".html"), navigation=navigation(sections, page),
+            contents=contents_of(page), body=page.body, neighbours=neighbours(page, order)))
+
+
+def search_index(pages):
+    """[title, page's title, address, text] of every part of a page."""
+    entries = []
+    for page in pages:
+        for title, anchor, words in page.found_as:
+            entries.append([title, page.title, page.address + ("#" + anchor if anchor else ""), words])
+    return "search_index = " + json.dumps(entries, ensure_ascii=False, separators=(",", ":")) + ";\n"
+
+
+def copy_assets(out, live):
+    for name in ("style.css", "site.js"):
+        shutil.copy(HERE / name, out)
+    shutil.copy(TOP / "LICENSE", out)
+    if FONTS.exists():
+        (out / "fonts").mkdir(exist_ok=True)
+        for name in FONT_FILES:
+            shutil.copy(FONTS / name, out / "fonts")
+        shutil.copy("/usr/share/doc/fonts-texgyre/copyright", out / "fonts/LICENSE")
+    else:
+        print("duet: no TeX Gyre fonts on this system, the pages will use the reader's")
+    for folder in (TOP / "docs/live", live):
+        if folder and folder.is_dir():
+            (out / "live").mkdir(exist_ok=True)
+            for file in folder.iterdir():
+                if file.suffix in (".js", ".wasm", ".css"):
+                    shutil.copy(file, out / "live")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--xml", type=Path, required=True)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--live", type=Path)
+    arguments = parser.parse_args()
+    out = arguments.out
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+
+    sections = reading_order()
+    front = Page("duet", "index.html", "docs/index.md")
+    order = [front] + [page for _, pages in sections for page in pages]
+    headers = reference.read(arguments.xml)
+    example_files = examples()
+    links = Links(order, headers, example_files)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        written = [pool.submit(write_document, page, links) for page in order]
+        source_pages = list(pool.map(example_page, example_files, example_files.values()))
+        for each in written:
+            each.result()
+    index = Page("Headers", "reference/index.html")
+    header_pages = reference.pages(headers, Page, index, links)
+    for title, pages in sections:
+        if any(page.source == "docs/reference_card.md" for page in pages):
+            pages.append(index)
+    pages = order + [index] + header_pages + source_pages
+    write_pages(out, pages, sections, order)
+    (out / "search_index.js").write_text(search_index(order + header_pages))
+    copy_assets(out, arguments.live)
+    print(f"duet: {len(pages)} pages in {out}")
+
+
+if __name__ == "__main__":
+    main()

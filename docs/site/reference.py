@@ -1,0 +1,295 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+"""The reference: a page for every header, of what Doxygen has found in it."""
+
+import re
+import sys
+import xml.etree.ElementTree as xml
+from html import escape
+
+import text
+
+LAYERS = ["core", "dual", "derivative", "quaternion", "dual_quaternion", "comparison", "expression", "spline",
+          "mechanism", "planning", "interop"]
+LISTS = {"param": "Arguments", "templateparam": "Of the template", "exception": "Throws", "retval": "Returns",
+         "return": "Returns", "note": "Note", "warning": "Mind", "see": "See", "pre": "Needs", "post": "Then"}
+
+
+class Header:
+    """A header with its file's docstring and what it declares."""
+
+    def __init__(self, path, compound):
+        self.path, self.compound = path, compound
+        self.address = "reference/" + path.removeprefix("duet/").replace(".hpp", ".html")
+        self.entries, self.names, self.anchors = [], [], {}
+
+    def order(self):
+        folder = self.path.split("/")[1]
+        return (LAYERS.index(folder) if folder in LAYERS else -1, self.path.count("/"), self.path)
+
+
+def read(folder):
+    """The headers in the order of layers, their entries in the order of lines."""
+    compounds = [xml.parse(path).getroot().find("compounddef") for path in sorted(folder.glob("*.xml"))
+                 if path.stem not in ("index", "Doxyfile")]
+    headers = {}
+    for compound in compounds:
+        if compound.get("kind") == "file":
+            path = compound.find("location").get("file")
+            headers[path] = Header(path, compound)
+    for compound in compounds:
+        kind = compound.get("kind")
+        space = "expression::" if "expression" in compound.findtext("compoundname").split("::")[1:2] else ""
+        if kind in ("class", "struct", "concept"):
+            name = compound.findtext("compoundname").removeprefix("duet::").removeprefix("expression::")
+            add(headers, compound, space, name)
+        elif kind == "namespace":
+            inner = compound.findtext("compoundname").removeprefix("duet").removeprefix("::").removeprefix("expression")
+            for member in compound.iter("memberdef"):
+                add(headers, member, space, inner.removeprefix("::") + "::" * bool(inner) + member.findtext("name"))
+        elif kind == "file":
+            for member in compound.iter("memberdef"):
+                if member.get("kind") == "define":
+                    add(headers, member, "", member.findtext("name"))
+    result = sorted(headers.values(), key=Header.order)
+    for header in result:
+        header.entries.sort(key=lambda entry: int(entry[1].find("location").get("line")))
+        for name, element, space in header.entries:
+            for known in {space + name, name}:
+                if known not in header.anchors:
+                    header.names.append(known)
+                    header.anchors[known] = anchor_of(name)
+    return result
+
+
+def add(headers, element, space, name):
+    header = headers.get(element.find("location").get("file"))
+    if header and not (element.get("kind") == "friend" or name.startswith("operator") and is_undocumented(element)):
+        header.entries.append((name, element, space))
+
+
+def is_undocumented(element):
+    return not "".join(element.find("briefdescription").itertext()).strip()
+
+
+def as_code(part):
+    return escape(part or "", quote=False)
+
+
+def anchor_of(name):
+    return re.sub(r"\W+", lambda part: "-" + "-".join(f"{ord(c):x}" for c in part[0]) if name.startswith("operator") else "-", name).strip("-")
+
+
+class Writer:
+    """Writes the elements of Doxygen's XML as parts of one page."""
+
+    def __init__(self, page, targets, links, header=None):
+        self.page, self.targets, self.links = page, targets, links
+        self.preferred = (header.path,) if header else ()
+
+    def words(self, text_part):
+        """Text, in which labels of formulas and names of documents are links."""
+        def linked(match):
+            if match[0].endswith(".md"):
+                source = match[0]
+                return f'<a href="{self.page.link_to(self.links.pages[source])}">{source}</a>'
+            return f'<a href="{self.links.to_label(self.page, match[0])}">{match[0]}</a>'
+        return re.sub(r"\b(?:N(?:1\d|2[0-5]|[1-9])|P[1-7])\b|\b(?:docs/\w+|CONTRIBUTING|SECURITY|README)\.md\b", linked,
+                      escape(text_part or "", quote=False))
+
+    def inline(self, element, write=None):
+        write = write or self.words
+        result = write(element.text)
+        for child in element:
+            result += self.element(child, write) + write(child.tail)
+        return result
+
+    def element(self, child, write):
+        tag = child.tag
+        if tag == "ref":
+            target = self.targets.get(child.get("refid"))
+            inner = self.inline(child, as_code)
+            return f'<a href="{self.page.link_to(target)}">{inner}</a>' if target else inner
+        if tag == "computeroutput":
+            inner = self.inline(child, as_code)
+            if "<a " not in inner:
+                address = self.links.to_name(self.page, "".join(child.itertext()), self.preferred)
+                if address:
+                    inner = f'<a href="{address}">{inner}</a>'
+            return f"<code>{inner}</code>"
+        simple = {"para": "p", "bold": "strong", "emphasis": "em", "itemizedlist": "ul", "orderedlist": "ol", "listitem": "li",
+                  "row": "tr", "sp": "span"}
+        if tag in simple:
+            return f"<{simple[tag]}>{self.inline(child, write)}</{simple[tag]}>"
+        if tag == "table":
+            return f'<div class="table" tabindex="0"><table>{"".join(self.element(row, write) for row in child)}</table></div>'
+        if tag == "entry":
+            cell = "th" if child.get("thead") == "yes" else "td"
+            return f"<{cell}>{self.inline(child, write)}</{cell}>"
+        if tag == "zwj":
+            return "\u200d"
+        sys.exit(f"duet: {self.page.title}: Doxygen's <{tag}> is not known to docs/site/reference.py")
+
+    def docs(self, *descriptions):
+        """Docstrings: paragraphs, then lists of arguments, results and errors."""
+        paragraphs, lists = [], ""
+        for para in (para for description in descriptions if description is not None for para in description.findall("para")):
+            paragraphs.append(self.words(para.text))
+            for child in para:
+                if child.tag == "parameterlist":
+                    for item in child.findall("parameteritem"):
+                        name = self.inline(item.find("parameternamelist/parametername"), as_code)
+                        said = self.inside(item.find("parameterdescription"))
+                        lists += f"<dt>{LISTS[child.get('kind')]} <code>{name}</code></dt><dd>{said}</dd>"
+                elif child.tag == "simplesect":
+                    lists += f"<dt>{LISTS[child.get('kind')]}</dt><dd>{self.inside(child)}</dd>"
+                else:
+                    paragraphs[-1] += self.element(child, self.words) + self.words(child.tail)
+                    continue
+                paragraphs.append(self.words(child.tail))
+        result = "".join(f"<p>{paragraph}</p>\n" for paragraph in paragraphs if paragraph.strip())
+        return result + (f'<dl class="arguments">{lists}</dl>\n' if lists else "")
+
+    def inside(self, element):
+        return " ".join(self.inline(para) for para in element.findall("para"))
+
+    def code(self, element):
+        """A type or a name of a declaration, with its links, spaced as the headers are."""
+        if element is None:
+            return ""
+        code = self.inline(element, as_code)
+        for said, meant in (("&lt; ", "&lt;"), (" &gt;", "&gt;"), (" &amp;", "&amp;"), (" *", "*"), ("DUET_ALWAYS_INLINE ", "")):
+            code = code.replace(said, meant)
+        return code
+
+    def parameters(self, element):
+        result = []
+        for param in element.findall("param"):
+            kind, name, default = self.code(param.find("type")), param.findtext("declname") or "", param.find("defval")
+            written = f"{kind} {name}".strip() + escape(param.findtext("array") or "", quote=False)
+            result.append(written + (f" = {self.code(default)}" if default is not None else ""))
+        return result
+
+    def declaration(self, element, name):
+        kind, result = element.get("kind"), ""
+        template = element.find("templateparamlist")
+        if template is not None and template.find("param") is not None:
+            result = f"template &lt;{', '.join(self.parameters(template))}&gt;\n"
+        needs = element.find("requiresclause")
+        if needs is not None:
+            result += f"  requires {self.code(needs)}\n"
+        name = escape(name, quote=False)
+        if kind in ("class", "struct"):
+            bases = [self.code(base) if base.get("refid") is None else self.code(base) for base in element.findall("basecompoundref")
+                     if "detail" not in "".join(base.itertext())]
+            return result + f"{kind} <b>{name}</b>" + (f" : {', '.join(bases)}" if bases else "")
+        if kind == "concept":
+            return self.code(element.find("initializer")).replace("template&lt;", "template &lt;")
+        if kind == "define":
+            named = [p.findtext("defname") for p in element.findall("param")]
+            return f"#define <b>{name}</b>" + (f"({', '.join(filter(None, named))})" if any(named) else "")
+        if kind == "typedef":
+            return result + f"using <b>{name}</b> = {self.code(element.find('type'))}"
+        if kind == "enum":
+            return result + f"enum class <b>{name}</b>"
+        before = "static " if element.get("static") == "yes" else ""
+        before += "constexpr " if element.get("constexpr") == "yes" and "constexpr" not in element.findtext("type") else ""
+        typed = self.code(element.find("type"))
+        result += f"{before}{typed} ".lstrip() + f"<b>{name}</b>"
+        if kind == "variable":
+            value = element.find("initializer")
+            short = value is not None and len("".join(value.itertext())) < 60
+            return result + (" " + self.code(value) if short else "")
+        parameters = self.parameters(element)
+        width = len(text.plain(", ".join(parameters))) + len(text.plain(result.split("\n")[-1]))
+        joined = ",\n    ".join(["\n    " + parameters[0], *parameters[1:]]) if width > 84 and len(parameters) > 1 else ", ".join(parameters)
+        after = element.findtext("argsstring").rpartition(")")[2]
+        after = re.sub(r"^\s*(const)?\s*(noexcept)?.*?(=default|=delete)?$", r" \1 \2 \3", after)
+        return result + f"({joined})" + re.sub(r"\s+", " ", after).rstrip()
+
+    def members(self, compound):
+        rows = ""
+        for member in compound.iter("memberdef"):
+            if member.get("prot") != "public" or member.get("kind") == "friend" or is_undocumented(member):
+                continue
+            declared = self.declaration(member, member.findtext("name"))
+            rows += (f'<dt id="{member.get("id")[-33:]}"><code>{declared}</code></dt>'
+                     f"<dd>{self.docs(member.find('briefdescription'), member.find('detaileddescription'))}</dd>\n")
+        return f'<dl class="members">\n{rows}</dl>\n' if rows else ""
+
+    def values(self, enum):
+        rows = "".join(f"<dt><code>{value.findtext('name')}</code></dt><dd>{self.docs(value.find('briefdescription'))}</dd>"
+                       for value in enum.findall("enumvalue"))
+        return f'<dl class="members">{rows}</dl>\n'
+
+    def entry(self, name, element):
+        result = f'<pre class="declaration" tabindex="0"><code>{self.declaration(element, name)}</code></pre>\n'
+        result += self.docs(element.find("briefdescription"), element.find("detaileddescription"))
+        if element.get("kind") in ("class", "struct"):
+            result += self.members(element)
+        if element.get("kind") == "enum":
+            result += self.values(element)
+        return result
+
+
+def targets_of(headers):
+    """Where the elements of Doxygen's XML are."""
+    result = {}
+    for header in headers:
+        result[header.compound.get("id")] = header.address
+        for name, element, _ in header.entries:
+            result[element.get("id")] = f"{header.address}#{anchor_of(name)}"
+            if element.get("kind") in ("class", "struct"):
+                for member in element.iter("memberdef"):
+                    shown = member.get("prot") == "public" and member.get("kind") != "friend" and not is_undocumented(member)
+                    result[member.get("id")] = f"{header.address}#" + (member.get("id")[-33:] if shown else anchor_of(name))
+    return result
+
+
+def pages(headers, make_page, index, links):
+    """A page for each header, and the index of them."""
+    targets, result = targets_of(headers), []
+    read_more = {}
+    for source, address in links.pages.items():
+        if source.startswith("docs/") and source.count("/") == 1:
+            markdown = (text.TOP / source).read_text()
+            line = markdown.split("\n\n", 2)[1]
+            for path in re.findall(r"`(duet/[\w/]+\.hpp)`", line):
+                read_more.setdefault(path, []).append((markdown.split("\n")[0][2:], address))
+    listed = ""
+    layer = None
+    for header in headers:
+        page = make_page(header.path, header.address)
+        writer = Writer(page, targets, links, header)
+        about = writer.docs(header.compound.find("briefdescription"), header.compound.find("detaileddescription"))
+        body = f'<h1><code>{header.path}</code></h1>\n{about}'
+        more = [f'<a href="{page.link_to(address)}">{escape(title)}</a>' for title, address in read_more.get(header.path, ())
+                if header.path != "duet/duet.hpp"]
+        body += f'<p class="more">Read on: {" · ".join(more)}</p>\n' if more else ""
+        contents, found_as, open_name = [], [(header.path, "", text.plain(about))], None
+        for name, element, _ in header.entries:
+            if name != open_name:
+                anchor = anchor_of(name)
+                known = any(anchor == each[1] for each in contents)
+                heading = "" if known else f' id="{anchor}"'
+                body += f'<h2{heading}><code>{escape(name)}</code></h2>\n'
+                if not known:
+                    contents.append((2, anchor, f"<code>{escape(name)}</code>"))
+                open_name = name
+            entry = writer.entry(name, element)
+            body += entry
+            found_as.append((name, anchor_of(name), text.plain(re.sub(r"<pre.*?</pre>", "", entry, flags=re.S))))
+        page.body, page.contents, page.found_as = body, contents, found_as
+        result.append(page)
+        here = header.path.split("/")[1]
+        if here != layer:
+            listed += ("</dl>\n" if layer else "") + (f'<h2 id="{here}">{here}/</h2>\n' if here in LAYERS else "") + '<dl class="headers">'
+            layer = here
+        on_index = Writer(index, targets, links)
+        brief = on_index.docs(header.compound.find("briefdescription"))
+        listed += f'<dt><a href="{index.link_to(header.address)}"><code>{header.path}</code></a></dt><dd>{brief}</dd>\n'
+    index.body = ('<h1>Headers</h1>\n<p><strong>After this page you can</strong> open the reference of any header: what it declares, with formulas, '
+                  f'domains and errors. Every name in a line: <a href="{index.link_to("reference_card.html")}">the reference card</a>.</p>\n{listed}</dl>\n')
+    index.contents = [(2, layer, f"{layer}/") for layer in LAYERS]
+    index.found_as = [("Headers", "", "")]
+    return result
