@@ -46,6 +46,8 @@ def inlined(path, number, alternative):
     svg = re.sub(r"rgb\(\s*(\d+),\s*(\d+),\s*(\d+)\)", lambda c: both(*map(int, c.groups())), svg)
     svg = re.sub(r"(?<=['\":])#([0-9a-fA-F]{6})\b(?!,)",
                  lambda c: both(*(int(c[1][i:i + 2], 16) for i in (0, 2, 4))), svg)
+    svg = re.sub(r"(?<=['\"])black(?=['\"])", both(0x24, 0x29, 0x2f), svg)
+    svg = re.sub(r"(?<=['\"])white(?=['\"])", both(255, 255, 255), svg)
     svg = re.sub(r"\bid=(['\"])", rf"id=\1f{number}_", svg)
     svg = re.sub(r"href=(['\"])#", rf"href=\1#f{number}_", svg)
     svg = re.sub(r"url\(#", f"url(#f{number}_", svg)

@@ -6,10 +6,13 @@ import html
 import re
 import subprocess
 import sys
+import xml.etree.ElementTree as xml
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent.parent
-RELATIONS = "=≤≥<>≈≡∈→↦←∼≠,;"
+RELATIONS = set("=≤≥<>≈≡∈→↦←∼≠,;")
+ACCENTS = {"\u0307": "˙", "\u0308": "¨", "\u20d7": "→", "\u0302": "ˆ", "\u0303": "˜", "\u0304": "¯", "\u0305": "¯"}
+HIGH = {"mfrac", "mtable", "munder", "munderover", "msqrt", "mroot"}
 
 
 def pandoc(markdown, name):
@@ -25,33 +28,55 @@ def pandoc(markdown, name):
 
 
 def math(formula):
-    """A display formula in a box of its own; one in a line may be broken behind its relations, as TeX does."""
-    formula = re.sub(r"<semantics>(.*)<annotation.*?</annotation></semantics>", r"\1", formula, flags=re.S)
-    if 'display="block"' in formula:
-        return f'<span class="formula">{formula}</span>'
-    row = re.fullmatch(r"(<math[^>]*>)<mrow>(.*)</mrow></math>", formula, flags=re.S)
-    if not row:
-        return formula
-    parts, part = [], ""
-    for element in elements(row[2]):
-        part += element
-        symbol = re.fullmatch(r"<mo[^>]*>(.*)</mo>", element)
-        if symbol and html.unescape(symbol[1]) in RELATIONS:
-            parts.append(part)
-            part = ""
-    parts += [part] if part else []
-    return "<wbr>".join(f"{row[1]}<mrow>{part}</mrow></math>" for part in parts)
+    """A formula as TeX would set it. One on a line of its own has a box; one in text may be broken behind its relations."""
+    root = xml.fromstring(re.sub(r' xmlns="[^"]*"', "", formula))
+    row = root.find("semantics/*")
+    if row.tag != "mrow":
+        row, inner = xml.Element("mrow"), row
+        row.append(inner)
+    set_row(row)
+    is_display = root.get("display") == "block"
+    parts = [[]]
+    for element in row:
+        parts[-1].append(xml.tostring(element, encoding="unicode"))
+        if not is_display and element.tag == "mo" and element.text in RELATIONS:
+            parts.append([])
+    written = "<wbr>".join(f"<math{' display=' + repr('block') if is_display else ''}><mrow>{''.join(part)}</mrow></math>"
+                           for part in parts if part)
+    return f'<span class="formula" tabindex="0">{written}</span>' if is_display else written
 
 
-def elements(row):
-    """The elements of a row of MathML."""
-    depth, start, result = 0, 0, []
-    for tag in re.finditer(r"<(/?)\w+[^>]*?(/?)>", row):
-        depth += 0 if tag[2] else -1 if tag[1] else 1
-        if depth == 0:
-            result.append(row[start:tag.end()])
-            start = tag.end()
-    return result
+def set_row(element):
+    """Accents are put above letters as such, names of functions are set off from what they are of, and parentheses are no
+    higher than a line where nothing between them is: pandoc leaves these to browsers, which do otherwise."""
+    for child in element:
+        set_row(child)
+    if element.tag == "mover" and element[1].text in ACCENTS:
+        element.set("accent", "true")
+        element[1].text = ACCENTS[element[1].text]
+        element[1].attrib = {"stretchy": "false"} | ({"mathsize": "60%"} if element[1].text == "→" else {})
+    if element.tag == "mo" and element.text == "\u2225":
+        element.text, element.attrib = "\u2016", {"lspace": "0", "rspace": "0", "stretchy": "false"}
+    if element.tag in ("msup", "msubsup") and element[-1].text == "*":
+        element[-1].text = "\u2217"
+    fences = [child for child in element if child.tag == "mo" and child.get("stretchy") == "true"]
+    if fences and not any(child.tag in HIGH for child in element.iter()):
+        for fence in fences:
+            fence.set("stretchy", "false")
+    for i in reversed(range(len(element))):
+        child = element[i]
+        if child.tag == "mo" and (child.text or "").isalpha() and len(child.text) > 1:
+            child.tag, child.attrib = "mi", {}
+            if element.tag == "mrow":
+                if i + 1 < len(element) and not is_fence(element[i + 1]):
+                    element.insert(i + 1, xml.Element("mspace", width="0.167em"))
+                if i > 0 and element[i - 1].tag != "mo":
+                    element.insert(i, xml.Element("mspace", width="0.167em"))
+
+
+def is_fence(element):
+    first = element[0] if element.tag == "mrow" and len(element) else element
+    return first.tag == "mo"
 
 
 def boxed_table(table):
