@@ -2,13 +2,14 @@
 
 // A point of a turning body draws a curve on the sphere. Its velocity must touch that curve: by the
 // true derivative of the quaternion B-spline (P3) it does, by the formula as printed, which sums
-// rotations as if they commuted, it does not. Writes printed_velocity.csv and, with gnuplot, a
-// picture.
+// rotations as if they commuted, it does not. Writes printed_velocity.csv, moving_point.svg, which
+// moves, and, with gnuplot, a picture.
 
 #include "support/curves.hpp"
 #include "support/drawing.hpp"
 #include "support/folder.hpp"
 #include "support/gnuplot.hpp"
+#include "support/moving_picture.hpp"
 #include "support/program.hpp"
 
 #include <duet/core/text/csv.hpp>
@@ -68,20 +69,14 @@ sample sample_at(const spline& s, double u) {
           velocity(duet::printed_derivative(s, u).from_zero_first)};
 }
 
-/// Meridians and parallels, where they are on the near side.
-void add_grid(example::drawing& d) {
+/// Meridians and parallels.
+std::vector<std::vector<vector3<double>>> circles() {
   const double step = std::numbers::pi / 6;
+  std::vector<std::vector<vector3<double>>> result;
   const auto add = [&](const auto& circle) {
-    std::vector<vector3<double>> part;
+    result.emplace_back();
     for (int i = 0; i <= 120; ++i) {
-      part.push_back(circle(i * std::numbers::pi / 60));
-      if (d.seen(part.back())[2] < 0 || i == 120) {
-        part.pop_back();
-        if (part.size() > 1) {
-          d.line(part, "#a9bccd", "lw 1");
-        }
-        part.clear();
-      }
+      result.back().push_back(circle(i * std::numbers::pi / 60));
     }
   };
   for (int k = -2; k < 4; ++k) {
@@ -95,11 +90,40 @@ void add_grid(example::drawing& d) {
                              std::sin(angle));
     });
   }
+  return result;
+}
+
+/// The circles, where they are on the near side.
+void add_grid(example::drawing& d) {
+  for (const auto& circle : circles()) {
+    std::vector<vector3<double>> part;
+    for (std::size_t i = 0; i < circle.size(); ++i) {
+      part.push_back(circle[i]);
+      if (d.seen(part.back())[2] < 0 || i + 1 == circle.size()) {
+        part.pop_back();
+        if (part.size() > 1) {
+          d.line(part, "#a9bccd", "lw 1");
+        }
+        part.clear();
+      }
+    }
+  }
+}
+
+const vector3<double> view(1, .12, .2);
+
+std::string moving_picture(const std::vector<sample>& samples) {
+  std::vector<example::moving_point> instants;
+  for (std::size_t i = 0; i < samples.size(); i += 3) {
+    const sample& each = samples[i];
+    instants.push_back({each.place, each.velocity, each.printed, each.angle()});
+  }
+  return example::moving_picture(example::drawing(view), instants).svg(circles());
 }
 
 /// The ball with the curve, the rows, and both velocities at even parameters.
 example::drawing drawing_of(const spline& s, const std::vector<sample>& samples) {
-  example::drawing d(vector3<double>(1, .12, .2));
+  example::drawing d(view);
   d.ball(vector3<double>::Zero(), 1, "#c9d7e4");
   add_grid(d);
   std::vector<vector3<double>> curve;
@@ -155,6 +179,7 @@ void run() {
   std::printf("The printed formula's velocity is off by up to %.1f degrees, at u = %.3f\n",
               worst->angle(), worst->u);
   duet::write_file("printed_velocity.csv", csv);
+  duet::write_file("moving_point.svg", moving_picture(samples));
   const example::drawing d = drawing_of(s, samples);
   duet::write_file("printed_velocity_shapes.csv", d.csv());
   if (!example::draw(".", "printed_velocity", 420, picture_script(d, worst->angle()))) {
