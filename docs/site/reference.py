@@ -88,14 +88,16 @@ class Writer:
         self.preferred = (header.path,) if header else ()
 
     def words(self, text_part):
-        """Text, in which labels of formulas and names of documents are links."""
+        """Text, with indices and exponents as such, in which labels of formulas and names of documents are links."""
         def linked(match):
             if match[0].endswith(".md"):
                 source = match[0]
                 return f'<a href="{self.page.link_to(self.links.pages[source])}">{source}</a>'
             return f'<a href="{self.links.to_label(self.page, match[0])}">{match[0]}</a>'
-        return re.sub(r"\b(?:N(?:1\d|2[0-5]|[1-9])|P[1-7])\b|\b(?:docs/\w+|CONTRIBUTING|SECURITY|README)\.md\b", linked,
-                      escape(text_part or "", quote=False))
+        part = escape(text_part or "", quote=False)
+        part = re.sub(r"(?<=[\w)\]*])\^(?:\{([^}]+)\}|(\([^)]+\)|[\w⊤]))", lambda m: f"<sup>{m[1] or m[2]}</sup>", part)
+        part = re.sub(r"(?<!\w)(\w[\u0300-\u036f\u20d7]?[′″]*)_(?:\{([^}]+)\}|(\w)(?!\w))", lambda m: f"{m[1]}<sub>{m[2] or m[3]}</sub>", part)
+        return re.sub(r"\b(?:N(?:1\d|2[0-5]|[1-9])|P[1-7])\b|\b(?:docs/\w+|CONTRIBUTING|SECURITY|README)\.md\b", linked, part)
 
     def inline(self, element, write=None):
         write = write or self.words
@@ -177,7 +179,7 @@ class Writer:
             result = f"template &lt;{', '.join(self.parameters(template))}&gt;\n"
         needs = element.find("requiresclause")
         if needs is not None:
-            result += f"  requires {self.code(needs)}\n"
+            result += f"  requires {self.inline(needs, as_code).replace('&lt; ', '&lt;').replace(' &gt;', '&gt;')}\n"
         name = escape(name, quote=False)
         if kind in ("class", "struct"):
             bases = [self.code(base) if base.get("refid") is None else self.code(base) for base in element.findall("basecompoundref")
@@ -262,7 +264,7 @@ def pages(headers, make_page, index, links):
         page = make_page(header.path, header.address)
         writer = Writer(page, targets, links, header)
         about = writer.docs(header.compound.find("briefdescription"), header.compound.find("detaileddescription"))
-        body = f'<h1><code>{header.path}</code></h1>\n{about}'
+        body = f'<h1><code>{header.path.replace("/", "/<wbr>")}</code></h1>\n{about}'
         more = [f'<a href="{page.link_to(address)}">{escape(title)}</a>' for title, address in read_more.get(header.path, ())
                 if header.path != "duet/duet.hpp"]
         body += f'<p class="more">Read on: {" · ".join(more)}</p>\n' if more else ""

@@ -39,7 +39,7 @@ public:
     std::string result = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 660 400\" "
                          "font-family=\"sans-serif\" font-size=\"20\">\n"
                          "<rect width=\"660\" height=\"400\" fill=\"#ffffff\"/>\n" +
-                         element("circle", "cx=\"200\" cy=\"200\" r=\"185\" fill=\"#f3f6f9\" " +
+                         element("circle", "cx=\"210\" cy=\"200\" r=\"185\" fill=\"#f3f6f9\" " +
                                                stroke("#c4ccd4", 1.5));
     std::string grid;
     for (const auto& circle : circles) {
@@ -51,19 +51,19 @@ public:
       angles.push_back(in_plot(each));
     }
     result += path(grid, "#dbe3ea", 1) + path(line(curve), "#24292f", 3) +
-              path("M430 220V350H645", "#6e7781", 1.5) + path(line(angles), "#d55e00", 2.5);
+              path("M440 220V350H650", "#6e7781", 1.5) + path(line(angles), "#d55e00", 2.5);
     const auto label = [&](const char* place, const char* style, const std::string& text) {
       result += "<text " + std::string(place) + " " + style + ">" + text + "</text>\n";
     };
     char angle[8];
     std::snprintf(angle, sizeof angle, "%.0f°", largest_);
-    label("x=\"420\" y=\"50\"", "fill=\"#24292f\" font-weight=\"bold\"", "A point's velocity");
-    label("x=\"420\" y=\"84\"", "fill=\"#0072b2\"", "by the true derivative");
-    label("x=\"420\" y=\"112\"", "fill=\"#d55e00\"", "by the printed formula");
-    label("x=\"420\" y=\"190\"", "fill=\"#24292f\"", "The angle between them");
-    label("x=\"424\" y=\"232\"", "fill=\"#6e7781\" text-anchor=\"end\" font-size=\"16\"", angle);
-    label("x=\"424\" y=\"355\"", "fill=\"#6e7781\" text-anchor=\"end\" font-size=\"16\"", "0°");
-    label("x=\"645\" y=\"375\"", "fill=\"#6e7781\" text-anchor=\"end\" font-size=\"16\"", "time");
+    label("x=\"430\" y=\"50\"", "fill=\"#24292f\" font-weight=\"bold\"", "A point's velocity");
+    label("x=\"430\" y=\"84\"", "fill=\"#0072b2\"", "by the true derivative");
+    label("x=\"430\" y=\"112\"", "fill=\"#d55e00\"", "by the printed formula");
+    label("x=\"430\" y=\"190\"", "fill=\"#24292f\"", "The angle between them");
+    label("x=\"434\" y=\"232\"", "fill=\"#6e7781\" text-anchor=\"end\" font-size=\"16\"", angle);
+    label("x=\"434\" y=\"355\"", "fill=\"#6e7781\" text-anchor=\"end\" font-size=\"16\"", "0°");
+    label("x=\"650\" y=\"375\"", "fill=\"#6e7781\" text-anchor=\"end\" font-size=\"16\"", "time");
     result += arrow(&moving_point::printed, "#d55e00") + arrow(&moving_point::velocity, "#0072b2");
     return result + dot(curve, 8, "#24292f") + dot(angles, 7, "#d55e00") + "</svg>\n";
   }
@@ -71,12 +71,12 @@ public:
 private:
   [[nodiscard]] point on_page(const point& x) const {
     const point seen = view_.seen(x);
-    return {200 + 185 * seen[0], 200 - 185 * seen[1], seen[2]};
+    return {210 + 185 * seen[0], 200 - 185 * seen[1], seen[2]};
   }
 
   [[nodiscard]] point in_plot(const moving_point& instant) const {
     const auto i = double(&instant - instants_.data());
-    return {430 + 215 * i / double(instants_.size() - 1), 350 - 125 * instant.angle / largest_, 0};
+    return {440 + 210 * i / double(instants_.size() - 1), 350 - 125 * instant.angle / largest_, 0};
   }
 
   static std::string number(double x) {
@@ -138,7 +138,7 @@ private:
   [[nodiscard]] std::string arrow(point moving_point::*velocity, const std::string& colour) const {
     std::vector<std::string> ways;
     for (const moving_point& each : instants_) {
-      const point from = on_page(each.place), to = on_page(each.place + .8 * each.*velocity);
+      const point from = on_page(each.place), to = on_page(each.place + .6 * each.*velocity);
       Eigen::Vector2d along = (to - from).head<2>();
       along *= 14 / std::max(along.norm(), 14.);
       const point back(-along[0], -along[1], 0), aside(-along[1] / 2, along[0] / 2, 0);
