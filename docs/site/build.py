@@ -3,7 +3,7 @@
 
 """Writes the documents and the reference as a folder of pages that can be moved anywhere and read from disk.
 
-usage: python3 docs/site/build.py --xml <Doxygen's> --out <folder> [--live <folder with what was built for docs/live>]
+usage: python3 docs/site/build.py --xml <Doxygen's> --out <folder> [--live <what was built for docs/live>] [--pandoc <program>]
 
 docs/index.md is the front page, and its lists are the order of all pages: a page that they leave out is an error, and so
 is a link that leads nowhere or a formula that pandoc does not know. Pages of docs/live have a section of their own.
@@ -15,7 +15,6 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -30,6 +29,8 @@ TOP = HERE.parent.parent
 FONTS = Path("/usr/share/texmf/fonts/opentype/public")  # Debian's fonts-texgyre, fonts-texgyre-math
 FONT_FILES = [f"tex-gyre/texgyrepagella-{face}.otf" for face in ("regular", "italic", "bold", "bolditalic")] + [
     "tex-gyre-math/texgyrepagella-math.otf"]
+
+ROOT_FILES = ["LICENSE", "CITATION.cff"]
 
 
 def fail(message):
@@ -122,8 +123,8 @@ class Links:
         for known in (self.pages, self.headers, self.examples):
             if path in known:
                 return page.link_to(known[path] + hash_mark + anchor)
-        if (TOP / path).is_file() and "/" not in path:
-            return page.link_to(path)  # LICENSE
+        if path in ROOT_FILES:
+            return page.link_to(path)
         fail(f"{page.source} links to {address}, which is not in the folder")
 
     def to_name(self, page, code, preferred=()):
@@ -133,7 +134,7 @@ class Links:
         if example := re.match(r"examples/[\w/]+", code):
             known = self.examples.get(example[0])
             return known and page.link_to(known)
-        named = re.match(r"(?:duet::)?((?:expression::)?[a-zA-Z]\w{2,})(?=$|[(<{])", code)
+        named = re.match(r"(?:duet::)?((?:\w+::)*[a-zA-Z]\w{2,})(?=$|[(<{])", code)
         headers = self.names.get(named[1], []) if named else []
         if not headers:
             return None
@@ -153,7 +154,7 @@ def write_document(page, links):
     body = text.with_names(body, lambda code: links.to_name(page, code, preferred))
     if page.source == "docs/formulas.md":
         body = text.with_labels(body)
-    body = figures.with_figures(body, (TOP / page.source).parent)
+    body = figures.with_figures(body, TOP / page.source)
     page.body, page.contents, page.found_as = text.fragment(body)
 
 
@@ -210,7 +211,8 @@ def search_index(pages):
 def copy_assets(out, live):
     for name in ("style.css", "site.js"):
         shutil.copy(HERE / name, out)
-    shutil.copy(TOP / "LICENSE", out)
+    for name in ROOT_FILES:
+        shutil.copy(TOP / name, out)
     if FONTS.exists():
         (out / "fonts").mkdir(exist_ok=True)
         for name in FONT_FILES:
@@ -231,7 +233,9 @@ def main():
     parser.add_argument("--xml", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--live", type=Path)
+    parser.add_argument("--pandoc", default="pandoc")
     arguments = parser.parse_args()
+    text.PANDOC = arguments.pandoc
     out = arguments.out
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)

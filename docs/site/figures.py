@@ -3,7 +3,7 @@
 """Pictures as parts of pages, in colours for light and dark."""
 
 import re
-from pathlib import Path
+import sys
 
 
 def linear(byte):
@@ -59,17 +59,24 @@ def inlined(path, number, alternative):
                                 'xmlns:xlink="http://www.w3.org/1999/xlink">').strip()
 
 
-def with_figures(body, folder):
-    """Figures with their captions, the emphasised paragraph below them, and the command of the block below that."""
+def with_figures(body, source):
+    """Figures with their captions, the emphasised paragraph below them, and the command of the block below that. Pictures are
+    SVG; where a forge is shown another kind, as by README.md, there is an SVG of the same name."""
     number = 0
 
-    def figure(match):
+    def picture(address, alternative):
         nonlocal number
         number += 1
-        address, alternative, caption, command = match[1], match[2], match[3], match[4] or ""
-        picture = inlined(Path(folder) / address, number, alternative)
-        return (f'<figure><div class="picture" tabindex="0">{picture}</div>\n'
-                f"<figcaption>{caption}{command}</figcaption></figure>")
-    return re.sub(r'<p><img\s+src="([^"]*\.svg)"\s+alt="([^"]*)"\s*/></p>\s*<p><em>(.*?)</em></p>'
+        path = (source.parent / address).with_suffix(".svg")
+        if not path.is_file():
+            sys.exit(f"duet: {source} shows {address}, and there is no {path}")
+        return f'<div class="picture" tabindex="0">{inlined(path, number, alternative)}</div>'
+
+    def figure(match):
+        if not match[4] and source.name != "README.md":
+            sys.exit(f"duet: {source}: no command below the caption of {match[1]}")
+        return f"<figure>{picture(match[1], match[2])}\n<figcaption>{match[3]}{match[4] or ''}</figcaption></figure>"
+    body = re.sub(r'<p><img\s+src="([^"]*)"\s+alt="([^"]*)"\s*/></p>\s*<p><em>(.*?)</em></p>'
                   r'(?:\s*(<div class="sourceCode"[^>]*><pre\s+class="sourceCode sh">.*?</pre></div>))?',
                   figure, body, flags=re.S)
+    return re.sub(r'<img\s+src="([^"]*)"\s+alt="([^"]*)"\s*/?>', lambda image: picture(image[1], image[2]), body)

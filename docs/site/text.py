@@ -9,6 +9,7 @@ import sys
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
+PANDOC = "pandoc"
 TOP = Path(__file__).resolve().parent.parent.parent
 RELATIONS = set("=≤≥<>≈≡∈→↦←∼≠,;")
 ACCENTS = {"\u0307": "˙", "\u0308": "¨", "\u20d7": "→", "\u0302": "ˆ", "\u0303": "˜", "\u0304": "¯", "\u0305": "¯"}
@@ -18,7 +19,7 @@ HIGH = {"mfrac", "mtable", "munder", "munderover", "msqrt", "mroot"}
 def pandoc(markdown, name):
     """HTML; mathematics is MathML, and a formula that pandoc does not know an error."""
     done = subprocess.run(
-        ["pandoc", "--from=gfm+tex_math_dollars", "--to=html5", "--mathml", "--fail-if-warnings", "--wrap=preserve"],
+        [PANDOC, "--from=gfm+tex_math_dollars", "--to=html5", "--mathml", "--fail-if-warnings", "--wrap=preserve"],
         input=markdown, capture_output=True, text=True)
     if done.returncode or done.stderr:
         sys.exit(f"duet: {name}: {done.stderr}")
@@ -59,6 +60,8 @@ def set_row(element):
         element.text, element.attrib = "\u2016", {"lspace": "0", "rspace": "0", "stretchy": "false"}
     if element.tag in ("msup", "msubsup") and element[-1].text == "*":
         element[-1].text = "\u2217"
+    if element.tag == "msup" and element[0].text == "f" and (element[1].text or "").startswith("′"):
+        element[1].set("style", "padding-left:.1em")
     fences = [child for child in element if child.tag == "mo" and child.get("stretchy") == "true"]
     if fences and not any(child.tag in HIGH for child in element.iter()):
         for fence in fences:

@@ -169,7 +169,8 @@ foreach(header IN LISTS headers)
   endif()
 endforeach()
 
-# Every page begins with the headers it is about, below its title: `duet/a.hpp`, `duet/b.hpp`.
+# Every page begins with the headers it is about, below its title: `duet/a.hpp`, `duet/b.hpp`. Then it says
+# what its reader can do after it.
 file(GLOB pages RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} docs/*.md)
 foreach(page IN LISTS pages)
   file(READ ${page} text)
@@ -177,7 +178,11 @@ foreach(page IN LISTS pages)
     problem("${page} has no line of headers below its title")
     continue()
   endif()
-  string(REGEX MATCHALL "duet/[a-z_/]+[.]hpp" named "${CMAKE_MATCH_1}")
+  set(first_line ${CMAKE_MATCH_1})
+  if(NOT text MATCHES "^# [^\n]*\n\n[^\n]*\n\n\\*\\*After this page you can\\*\\* [^\n]*[.]\n")
+    problem("${page} does not begin with what its reader can do after it")
+  endif()
+  string(REGEX MATCHALL "duet/[a-z_/]+[.]hpp" named "${first_line}")
   foreach(header IN LISTS named)
     if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/include/${header})
       problem("${page} names ${header}, which there is not")
