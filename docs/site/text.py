@@ -87,12 +87,14 @@ def boxed_table(table):
     head = re.search(r"<thead>.*?</thead>", table, flags=re.S)
     if head and not plain(head[0]).strip():
         table = table.replace(head[0], "")
-    return f'<div class="table" tabindex="0">{table}</div>'
+    columns = (table.count("<td") + table.count("<th")) / max(table.count("<tr"), 1)
+    return f'<div class="table{" broad" if columns > 6 else ""}" tabindex="0">{table}</div>'
 
 
 def plain(part):
     """What is read of HTML."""
-    return re.sub(r"\s+", " ", html.unescape(re.sub(r"<[^>]*>", "", part))).strip()
+    part = re.sub(r"<[^>]*>", "", re.sub(r"</(?:p|li|t[dh]|d[dt]|pre)>", " ", part.replace("<sup>", "^")))
+    return re.sub(r"\s+", " ", html.unescape(part)).strip()
 
 
 def with_links(body, found):
