@@ -129,12 +129,13 @@ class Links:
 
     def to_name(self, page, code, preferred=()):
         """Of words in code: a name of the library, a header or an example, or nothing."""
-        if code.startswith("duet/") and "include/" + code in self.headers:
-            return page.link_to(self.headers["include/" + code])
+        for folder in ("include/", "include/duet/"):
+            if "/" in code and folder + code in self.headers:
+                return page.link_to(self.headers[folder + code])
         if example := re.match(r"examples/[\w/]+", code):
             known = self.examples.get(example[0])
             return known and page.link_to(known)
-        named = re.match(r"(?:duet::)?((?:\w+::)*[a-zA-Z]\w{2,})(?=$|[(<{])", code)
+        named = re.match(r"(?:duet::)?((?:\w+::)+\w+|[a-zA-Z]\w{2,})(?=$|[(<{])", code)
         headers = self.names.get(named[1], []) if named else []
         if not headers:
             return None
@@ -146,7 +147,7 @@ class Links:
         return page.link_to(f"formulas.html#{label}")
 
 
-def write_document(page, links):
+def write_document(page, links, live):
     source = (TOP / page.source).read_text()
     preferred = re.findall(r"`(duet/[\w/]+\.hpp)`", source.split("\n\n", 2)[1])
     body = text.pandoc(source, page.source)
@@ -154,6 +155,9 @@ def write_document(page, links):
     body = text.with_names(body, lambda code: links.to_name(page, code, preferred))
     if page.source == "docs/formulas.md":
         body = text.with_labels(body)
+    if page.source.startswith("docs/live/"): # what was not built is not asked for
+        body = re.sub(r'<script src="([\w.]+)"></script>\s*',
+                      lambda script: script[0] * any((folder / script[1]).is_file() for folder in live), body)
     body = figures.with_figures(body, TOP / page.source)
     page.body, page.contents, page.found_as = text.fragment(body)
 
@@ -220,12 +224,10 @@ def copy_assets(out, live):
         shutil.copy("/usr/share/doc/fonts-texgyre/copyright", out / "fonts/LICENSE")
     else:
         print("duet: no TeX Gyre fonts on this system, the pages will use the reader's")
-    for folder in (TOP / "docs/live", live):
-        if folder and folder.is_dir():
+    for file in (file for folder in live for file in folder.iterdir()):
+        if file.suffix in (".js", ".wasm", ".css"):
             (out / "live").mkdir(exist_ok=True)
-            for file in folder.iterdir():
-                if file.suffix in (".js", ".wasm", ".css"):
-                    shutil.copy(file, out / "live")
+            shutil.copy(file, out / "live")
 
 
 def main():
@@ -246,8 +248,9 @@ def main():
     headers = reference.read(arguments.xml)
     example_files = examples()
     links = Links(order, headers, example_files)
+    live = [folder for folder in (TOP / "docs/live", arguments.live) if folder and folder.is_dir()]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        written = [pool.submit(write_document, page, links) for page in order]
+        written = [pool.submit(write_document, page, links, live) for page in order]
         source_pages = list(pool.map(example_page, example_files, example_files.values()))
         for each in written:
             each.result()
@@ -259,7 +262,7 @@ def main():
     pages = order + [index] + header_pages + source_pages
     write_pages(out, pages, sections, order)
     (out / "search_index.js").write_text(search_index(order + header_pages))
-    copy_assets(out, arguments.live)
+    copy_assets(out, live)
     print(f"duet: {len(pages)} pages in {out}")
 
 

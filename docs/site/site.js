@@ -121,7 +121,10 @@
     });
 
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) {
-      document.querySelectorAll("svg").forEach((picture) => picture.pauseAnimations());
+      for (const picture of document.querySelectorAll("svg")) {
+        picture.pauseAnimations();
+        picture.setCurrentTime(5);
+      }
     }
   });
 }

@@ -25,6 +25,8 @@ def pandoc(markdown, name):
         sys.exit(f"duet: {name}: {done.stderr}")
     body = re.sub(r"<math.*?</math>", lambda formula: math(formula[0]), done.stdout, flags=re.S)
     body = re.sub(r"<table>.*?</table>", lambda table: boxed_table(table[0]), body, flags=re.S)
+    body = re.sub(r"<code>([^<]{1,60})</code>", lambda code: code[0] if len(html.unescape(code[1])) > 20
+                  else code[0].replace("<code>", '<code class="short">'), body)
     return re.sub(r"<col(group)?\b.*?>|</colgroup>", "", body)
 
 
@@ -108,7 +110,7 @@ def with_names(body, found):
             return match[0]
         address = found(html.unescape(match[1]))
         return f'<a class="name" href="{address}">{match[0]}</a>' if address else match[0]
-    return re.sub(r"<a .*?</a>|<h\d.*?</h\d>|<pre.*?</pre>|<code>(.*?)</code>", linked, body, flags=re.S)
+    return re.sub(r"<a .*?</a>|<h\d.*?</h\d>|<pre.*?</pre>|<code[^>]*>(.*?)</code>", linked, body, flags=re.S)
 
 
 def with_labels(body):
