@@ -155,6 +155,8 @@ def write_document(page, links, live):
     body = text.with_names(body, lambda code: links.to_name(page, code, preferred))
     if page.source == "docs/formulas.md":
         body = text.with_labels(body)
+    else:
+        body = text.with_label_links(body, lambda label: links.to_label(page, label))
     if page.source.startswith("docs/live/"): # what was not built is not asked for
         body = re.sub(r'<script src="([\w.]+)"></script>\s*',
                       lambda script: script[0] * any((folder / script[1]).is_file() for folder in live), body)
@@ -217,7 +219,7 @@ def copy_assets(out, live):
         shutil.copy(HERE / name, out)
     for name in ROOT_FILES:
         shutil.copy(TOP / name, out)
-    if FONTS.exists():
+    if all((FONTS / name).exists() for name in FONT_FILES):
         (out / "fonts").mkdir(exist_ok=True)
         for name in FONT_FILES:
             shutil.copy(FONTS / name, out / "fonts")

@@ -97,7 +97,7 @@ class Writer:
         part = escape(text_part or "", quote=False)
         part = re.sub(r"(?<=[\w)\]*])\^(?:\{([^}]+)\}|(\([^)]+\)|[\w⊤]))", lambda m: f"<sup>{m[1] or m[2]}</sup>", part)
         part = re.sub(r"(?<!\w)(\w[\u0300-\u036f\u20d7]?[′″]*)_(?:\{([^}]+)\}|(\w)(?!\w))", lambda m: f"{m[1]}<sub>{m[2] or m[3]}</sub>", part)
-        return re.sub(r"\b(?:N(?:1\d|2[0-5]|[1-9])|P[1-7])\b|\b(?:docs/\w+|CONTRIBUTING|SECURITY|README)\.md\b", linked, part)
+        return re.sub(rf"\b(?:{text.LABEL})\b|\b(?:docs/\w+|CONTRIBUTING|SECURITY|README)\.md\b", linked, part)
 
     def inline(self, element, write=None):
         write = write or self.words

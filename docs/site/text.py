@@ -11,6 +11,8 @@ from pathlib import Path
 
 PANDOC = "pandoc"
 TOP = Path(__file__).resolve().parent.parent.parent
+LABEL = r"N(?:1\d|2[0-5]|[1-9])|P[1-7]"
+OPENING, CLOSING = set("([{⟨"), set(")]}⟩")
 RELATIONS = set("=≤≥<>≈≡∈→↦←∼≠,;")
 ACCENTS = {"\u0307": "˙", "\u0308": "¨", "\u20d7": "→", "\u0302": "ˆ", "\u0303": "˜", "\u0304": "¯", "\u0305": "¯"}
 HIGH = {"mfrac", "mtable", "munder", "munderover", "msqrt", "mroot"}
@@ -39,10 +41,12 @@ def math(formula):
         row.append(inner)
     set_row(row)
     is_display = root.get("display") == "block"
-    parts = [[]]
+    parts, depth = [[]], 0
     for element in row:
         parts[-1].append(xml.tostring(element, encoding="unicode"))
-        if not is_display and element.tag == "mo" and element.text in RELATIONS:
+        symbol = element.text if element.tag == "mo" else ""
+        depth += (symbol in OPENING) - (symbol in CLOSING)
+        if symbol in RELATIONS and depth == 0 and not is_display:
             parts.append([])
     written = "<wbr>".join(f"<math{' display=' + repr('block') if is_display else ''}><mrow>{''.join(part)}</mrow></math>"
                            for part in parts if part)
@@ -50,24 +54,31 @@ def math(formula):
 
 
 def set_row(element):
-    """Accents are put above letters as such, names of functions are set off from what they are of, and parentheses are no
+    """Accents are put above letters as such, signs are no operators, names of functions are set off from what they are of, and parentheses are no
     higher than a line where nothing between them is: pandoc leaves these to browsers, which do otherwise."""
     for child in element:
         set_row(child)
     if element.tag == "mover" and element[1].text in ACCENTS:
         element.set("accent", "true")
         element[1].text = ACCENTS[element[1].text]
-        element[1].attrib = {"stretchy": "false"} | ({"mathsize": "60%"} if element[1].text == "→" else {})
+        element[1].attrib = {"stretchy": "false"} | ({"mathsize": "60%"} if element[1].text == "→" else {"style": "padding-bottom:.09em"})
     if element.tag == "mo" and element.text == "\u2225":
-        element.text, element.attrib = "\u2016", {"lspace": "0", "rspace": "0", "stretchy": "false"}
+        element.text, element.attrib = "\u2016", {"lspace": "0", "rspace": "0", "stretchy": "false", "form": element.get("form", "prefix")}
+    if element.tag == "mstyle" and element.get("mathvariant") == "normal" and all(child.tag == "mi" for child in element):
+        element.tag, element.text = "mi", "".join(element.itertext())
+        del element[:]
     if element.tag in ("msup", "msubsup") and element[-1].text == "*":
         element[-1].text = "\u2217"
     if element.tag == "msup" and element[0].text == "f" and (element[1].text or "").startswith("′"):
-        element[1].set("style", "padding-left:.1em")
+        element[1].set("style", "padding:0 .05em 0 .1em")
     fences = [child for child in element if child.tag == "mo" and child.get("stretchy") == "true"]
     if fences and not any(child.tag in HIGH for child in element.iter()):
         for fence in fences:
             fence.set("stretchy", "false")
+    for before, child in zip([None, *element], element): # signs
+        is_after_operator = before is None or before.tag == "mo" and before.get("form") != "postfix" and before.text not in CLOSING | {"!", "…", "⋯"}
+        if child.tag == "mo" and child.text in ("−", "+") and is_after_operator:
+            child.set("form", "prefix")
     for i in reversed(range(len(element))):
         child = element[i]
         if child.tag == "mo" and (child.text or "").isalpha() and len(child.text) > 1:
@@ -111,6 +122,13 @@ def with_names(body, found):
         address = found(html.unescape(match[1]))
         return f'<a class="name" href="{address}">{match[0]}</a>' if address else match[0]
     return re.sub(r"<a .*?</a>|<h\d.*?</h\d>|<pre.*?</pre>|<code[^>]*>(.*?)</code>", linked, body, flags=re.S)
+
+
+def with_label_links(body, found):
+    """Labels of formulas in text lead to the table of all."""
+    def linked(match):
+        return f'<a href="{found(match[2])}">{match[2]}</a>' if match[2] else match[0]
+    return re.sub(rf"<(a|h\d|pre|code|math|svg)\b.*?</\1>|<[^>]*>|\b({LABEL})\b", linked, body, flags=re.S)
 
 
 def with_labels(body):
