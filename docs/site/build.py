@@ -111,7 +111,7 @@ class Links:
             self.examples.update({str(file.relative_to(TOP)): self.examples[name] for file in files})
         self.names = {}
         for header in headers:
-            for name in header.names:
+            for name in header.anchors:
                 self.names.setdefault(name, []).append(header)
 
     def to_file(self, page, address):

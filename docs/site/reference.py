@@ -11,7 +11,8 @@ import text
 
 LAYERS = ["core", "dual", "derivative", "quaternion", "dual_quaternion", "comparison", "expression", "spline",
           "mechanism", "planning", "interop"]
-LISTS = {"param": "Arguments", "templateparam": "Of the template", "exception": "Throws", "retval": "Returns",
+HIDDEN = {"detail", "rule", "op", "internal"}  # namespaces
+LISTS = {"param": "Argument", "templateparam": "Template argument", "exception": "Throws", "retval": "Returns",
          "return": "Returns", "note": "Note", "warning": "Mind", "see": "See", "pre": "Needs", "post": "Then"}
 
 
@@ -21,55 +22,112 @@ class Header:
     def __init__(self, path, compound):
         self.path, self.compound = path, compound
         self.address = "reference/" + path.removeprefix("duet/").replace(".hpp", ".html")
-        self.entries, self.names, self.anchors = [], [], {}
+        self.lines = (text.TOP / "include" / path).read_text().splitlines()
+        self.found, self.entries, self.anchors = [], [], {}
 
     def order(self):
         folder = self.path.split("/")[1]
         return (LAYERS.index(folder) if folder in LAYERS else -1, self.path.count("/"), self.path)
 
 
+class Entry:
+    """What one docstring is about: declarations, and of a class its members."""
+
+    def __init__(self, spaces, elements, by_id, headers):
+        self.elements = elements
+        names = list(dict.fromkeys(map(name_of, elements)))
+        inner = [space for space in spaces if space != "expression"]
+        self.names = ["::".join([*inner, name]) for name in names]
+        self.known_as = self.names + ["::".join([*spaces, name]) for name in names]
+        self.members, self.all_members = [], []
+        if elements[0].get("kind") in ("class", "struct"):
+            for compound in [elements[0], *hidden_bases(elements[0], by_id)]:
+                lines = headers[compound.find("location").get("file")].lines
+                self.all_members += compound.iter("memberdef")
+                self.members += [member for member in sorted(compound.iter("memberdef"), key=line_of)
+                                 if member.get("prot") == "public" and member.get("kind") != "friend"
+                                 and not is_refused(lines, line_of(member))
+                                 and (has_docstring(member) or name_of(member) == names[0])]
+
+
 def read(folder):
-    """The headers in the order of layers, their entries in the order of lines."""
+    """The headers in the order of layers, their entries in the order of lines. What stands in a namespace for the library's own
+    use is left out."""
     compounds = [xml.parse(path).getroot().find("compounddef") for path in sorted(folder.glob("*.xml"))
                  if path.stem not in ("index", "Doxyfile")]
-    headers = {}
+    by_id = {compound.get("id"): compound for compound in compounds}
+    headers = {compound.find("location").get("file"): Header(compound.find("location").get("file"), compound)
+               for compound in compounds if compound.get("kind") == "file"}
     for compound in compounds:
-        if compound.get("kind") == "file":
-            path = compound.find("location").get("file")
-            headers[path] = Header(path, compound)
-    for compound in compounds:
-        kind = compound.get("kind")
-        space = "expression::" if "expression" in compound.findtext("compoundname").split("::")[1:2] else ""
-        if kind in ("class", "struct", "concept"):
-            name = compound.findtext("compoundname").removeprefix("duet::").removeprefix("expression::")
-            add(headers, compound, space, name)
-        elif kind == "namespace":
-            inner = compound.findtext("compoundname").removeprefix("duet").removeprefix("::").removeprefix("expression")
-            for member in compound.iter("memberdef"):
-                add(headers, member, space, inner.removeprefix("::") + "::" * bool(inner) + member.findtext("name"))
-        elif kind == "file":
-            for member in compound.iter("memberdef"):
-                if member.get("kind") == "define":
-                    add(headers, member, "", member.findtext("name"))
+        kind, spaces = compound.get("kind"), re.sub("<.*", "", compound.findtext("compoundname")).split("::")
+        is_of_users = spaces[0] == "duet" and not HIDDEN.intersection(spaces)
+        if kind == "file":
+            found = [([], member) for member in compound.iter("memberdef") if member.get("kind") == "define"]
+        elif kind in ("class", "struct", "concept") and is_of_users:
+            found = [(spaces[1:-1], compound)]
+        elif kind == "namespace" and is_of_users:
+            found = [(spaces[1:], member) for member in compound.iter("memberdef")]
+        else:
+            found = []
+        for spaces, element in found:
+            if header := headers.get(element.find("location").get("file")):
+                header.found.append((spaces, element))
     result = sorted(headers.values(), key=Header.order)
     for header in result:
-        header.entries.sort(key=lambda entry: int(entry[1].find("location").get("line")))
-        for name, element, space in header.entries:
-            for known in {space + name, name}:
-                if known not in header.anchors:
-                    header.names.append(known)
-                    header.anchors[known] = anchor_of(name)
+        spaces_of = {element.get("id"): spaces for spaces, element in header.found}
+        for elements in groups(header.lines, [element for _, element in header.found]):
+            entry = Entry(spaces_of[elements[0].get("id")], elements, by_id, headers)
+            header.entries.append(entry)
+            for name in entry.known_as:
+                header.anchors.setdefault(name, anchor_of(entry.names[0]))
     return result
 
 
-def add(headers, element, space, name):
-    header = headers.get(element.find("location").get("file"))
-    if header and not (element.get("kind") == "friend" or name.startswith("operator") and is_undocumented(element)):
-        header.entries.append((name, element, space))
+def groups(lines, elements):
+    """Declarations that share a docstring, which is for what follows down to an empty line; others have none and are left out,
+    as are those that exist to be refused."""
+    result = []
+    for element in sorted(elements, key=line_of):
+        line = line_of(element)
+        if is_refused(lines, line):
+            continue
+        if has_docstring(element):
+            result.append([element])
+        elif result and "" not in lines[line_of(result[-1][-1]) - 1:line]:
+            result[-1].append(element)
+    return result
 
 
-def is_undocumented(element):
-    return not "".join(element.find("briefdescription").itertext()).strip()
+def has_docstring(element):
+    return any("".join(part.itertext()).strip() for part in descriptions_of(element))
+
+
+def line_of(element):
+    return int(element.find("location").get("line"))
+
+
+def is_refused(lines, line):
+    while not lines[line - 1].endswith((";", "}")) or "DUET_REFUSED" in lines[line - 1]:
+        if "DUET_REFUSED" in lines[line - 1]:
+            return True
+        line -= 1
+        if not lines[line - 1].strip() or lines[line - 1].lstrip().startswith("//"):
+            return False
+    return False
+
+
+def hidden_bases(compound, by_id):
+    """Public bases that are not for users: their members stand with those of the class."""
+    for base in compound.findall("basecompoundref"):
+        found = by_id.get(base.get("refid"))
+        if found is not None and base.get("prot") == "public" and HIDDEN.intersection(found.findtext("compoundname").split("::")):
+            yield found
+            yield from hidden_bases(found, by_id)
+
+
+def name_of(element):
+    name = element.findtext("name") or re.sub(r"^(?:\w+::)+", "", element.findtext("compoundname"))
+    return name.replace("< ", "<").replace(" >", ">")
 
 
 def as_code(part):
@@ -80,12 +138,16 @@ def anchor_of(name):
     return re.sub(r"\W+", lambda part: "-" + "-".join(f"{ord(c):x}" for c in part[0]) if name.startswith("operator") else "-", name).strip("-")
 
 
+def anchor_of_member(member):
+    return member.get("id")[-33:]
+
+
 class Writer:
     """Writes the elements of Doxygen's XML as parts of one page."""
 
     def __init__(self, page, targets, links, header=None):
         self.page, self.targets, self.links = page, targets, links
-        self.preferred = (header.path,) if header else ()
+        self.preferred, self.anchors = (header.path,) if header else (), set()
 
     def words(self, text_part):
         """Text, with indices and exponents as such, in which labels of formulas and names of documents are links."""
@@ -160,9 +222,8 @@ class Writer:
         if element is None:
             return ""
         code = self.inline(element, as_code)
-        for said, meant in (("&lt; ", "&lt;"), (" &gt;", "&gt;"), (" &amp;", "&amp;"), (" *", "*"), ("DUET_ALWAYS_INLINE ", "")):
-            code = code.replace(said, meant)
-        return code
+        code = re.sub(r"(?<! )&lt; ", "&lt;", code)
+        return re.sub(r" (&gt;(?! \d)|&amp;|\*)", r"\1", code)
 
     def parameters(self, element):
         result = []
@@ -179,7 +240,7 @@ class Writer:
             result = f"template &lt;{', '.join(self.parameters(template))}&gt;\n"
         needs = element.find("requiresclause")
         if needs is not None:
-            result += f"  requires {self.inline(needs, as_code).replace('&lt; ', '&lt;').replace(' &gt;', '&gt;')}\n"
+            result += f"  requires {self.inline(needs, as_code).strip()}\n"
         name = escape(name, quote=False)
         if kind in ("class", "struct"):
             bases = [self.code(base) if base.get("refid") is None else self.code(base) for base in element.findall("basecompoundref")
@@ -209,14 +270,14 @@ class Writer:
         after = re.sub(r"^\s*(const)?\s*(noexcept)?.*?(=default|=delete)?$", r" \1 \2 \3", after)
         return result + f"({joined})" + re.sub(r"\s+", " ", after).rstrip()
 
-    def members(self, compound):
+    def members(self, entry):
         rows = ""
-        for member in compound.iter("memberdef"):
-            if member.get("prot") != "public" or member.get("kind") == "friend" or is_undocumented(member):
-                continue
-            declared = self.declaration(member, member.findtext("name"))
-            rows += (f'<dt id="{member.get("id")[-33:]}"><code>{declared}</code></dt>'
-                     f"<dd>{self.docs(member.find('briefdescription'), member.find('detaileddescription'))}</dd>\n")
+        for member in entry.members:
+            anchor = anchor_of_member(member)
+            place = "" if anchor in self.anchors else f' id="{anchor}"'
+            self.anchors.add(anchor)
+            rows += f'<dt{place}><code>{self.declaration(member, name_of(member))}</code></dt>'
+            rows += f"<dd>{self.docs(*descriptions_of(member))}</dd>\n"
         return f'<dl class="members">\n{rows}</dl>\n' if rows else ""
 
     def values(self, enum):
@@ -224,14 +285,15 @@ class Writer:
                        for value in enum.findall("enumvalue"))
         return f'<dl class="members">{rows}</dl>\n'
 
-    def entry(self, name, element):
-        result = f'<pre class="declaration" tabindex="0"><code>{self.declaration(element, name)}</code></pre>\n'
-        result += self.docs(element.find("briefdescription"), element.find("detaileddescription"))
-        if element.get("kind") in ("class", "struct"):
-            result += self.members(element)
-        if element.get("kind") == "enum":
-            result += self.values(element)
-        return result
+    def entry(self, entry):
+        declared = "\n".join(self.declaration(element, name_of(element)) for element in entry.elements)
+        result = f'<pre class="declaration" tabindex="0"><code>{declared}</code></pre>\n'
+        result += self.docs(*descriptions_of(entry.elements[0])) + self.members(entry)
+        return result + (self.values(entry.elements[0]) if entry.elements[0].get("kind") == "enum" else "")
+
+
+def descriptions_of(element):
+    return element.find("briefdescription"), element.find("detaileddescription")
 
 
 def targets_of(headers):
@@ -239,12 +301,10 @@ def targets_of(headers):
     result = {}
     for header in headers:
         result[header.compound.get("id")] = header.address
-        for name, element, _ in header.entries:
-            result[element.get("id")] = f"{header.address}#{anchor_of(name)}"
-            if element.get("kind") in ("class", "struct"):
-                for member in element.iter("memberdef"):
-                    shown = member.get("prot") == "public" and member.get("kind") != "friend" and not is_undocumented(member)
-                    result[member.get("id")] = f"{header.address}#" + (member.get("id")[-33:] if shown else anchor_of(name))
+        for entry in header.entries:
+            here = f"{header.address}#{anchor_of(entry.names[0])}"
+            result |= {element.get("id"): here for element in [*entry.elements, *entry.all_members]}
+            result |= {member.get("id"): f"{header.address}#{anchor_of_member(member)}" for member in entry.members}
     return result
 
 
@@ -269,18 +329,18 @@ def pages(headers, make_page, index, links):
                 if header.path != "duet/duet.hpp"]
         body += f'<p class="more">Read on: {" · ".join(more)}</p>\n' if more else ""
         contents, found_as, open_name = [], [(header.path, "", text.plain(about))], None
-        for name, element, _ in header.entries:
+        for entry in header.entries:
+            name, anchor = ", ".join(entry.names), anchor_of(entry.names[0])
             if name != open_name:
-                anchor = anchor_of(name)
                 known = any(anchor == each[1] for each in contents)
                 heading = "" if known else f' id="{anchor}"'
                 body += f'<h2{heading}><code>{escape(name)}</code></h2>\n'
                 if not known:
                     contents.append((2, anchor, f"<code>{escape(name)}</code>"))
                 open_name = name
-            entry = writer.entry(name, element)
-            body += entry
-            found_as.append((name, anchor_of(name), text.plain(re.sub(r"<pre.*?</pre>", "", entry, flags=re.S))))
+            written = writer.entry(entry)
+            body += written
+            found_as.append((name, anchor, text.plain(re.sub(r"<pre.*?</pre>", "", written, flags=re.S))))
         page.body, page.contents, page.found_as = body, contents, found_as
         result.append(page)
         here = header.path.split("/")[1]

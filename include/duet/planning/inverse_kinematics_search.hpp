@@ -66,7 +66,7 @@ inline void require_options(const inverse_kinematics_options& options) {
 }
 
 /// Numbers from 0 to 1, the same on every machine: SplitMix64 (Steele, Lea, Flood, Fast splittable
-/// pseudorandom number generators, 2014). <random> would cost the compiler more than the search.
+/// pseudorandom number generators, 2014). `<random>` would cost the compiler more than the search.
 class split_mix {
 public:
   explicit split_mix(std::uint64_t seed) : state_(seed) {}
