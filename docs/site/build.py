@@ -20,6 +20,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from string import Template
 
+sys.dont_write_bytecode = True  # into the folder of sources
 import figures
 import reference
 import text
@@ -135,7 +136,7 @@ class Links:
         if example := re.match(r"examples/[\w/]+", code):
             known = self.examples.get(example[0])
             return known and page.link_to(known)
-        named = re.match(r"(?:duet::)?((?:\w+::)+\w+|[a-zA-Z]\w{2,})(?=$|[(<{])", code)
+        named = re.match(r"(?:duet::)?((?:\w+::)+\w+|[a-zA-Z]\w{2,}|[a-zA-Z]\w(?=[(<]))(?=$|[(<{])", code)
         headers = self.names.get(named[1], []) if named else []
         if not headers:
             return None

@@ -16,6 +16,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+sys.dont_write_bytecode = True  # into the folder of sources
 from browser import Browser, Tab
 
 WIDTHS = (390, 1280)
