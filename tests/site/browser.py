@@ -11,7 +11,7 @@ import tempfile
 import threading
 
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-         "--disable-component-update", "--disable-sync", "--hide-scrollbars", "--remote-debugging-pipe"]
+         "--disable-component-update", "--disable-sync", "--disable-renderer-backgrounding", "--hide-scrollbars", "--remote-debugging-pipe"]
 
 
 class Browser:
@@ -113,4 +113,5 @@ class Tab:
 
     def screenshot(self):
         """As PNG, in base 64."""
+        self.call("Page.bringToFront")
         return self.call("Page.captureScreenshot", format="png")["data"]

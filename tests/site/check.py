@@ -149,8 +149,10 @@ def main():
                 return [fault for path in pages[i::2] for fault in faults_of_page(tabs[i], folder, path)]
             for found in pool.map(run, range(2)):
                 faults += found
-            faults += faults_of_search(tabs[0], folder)
-            write_pictures(tabs[0], folder, Path(sys.argv[2]))
+        with Browser() as browser:
+            tab = Tab(browser)
+            faults += faults_of_search(tab, folder)
+            write_pictures(tab, folder, Path(sys.argv[2]))
     for fault in faults:
         print(f"duet: {fault}", file=sys.stderr)
     print(f"{len(pages)} pages, {len(faults)} faults")
