@@ -1,0 +1,157 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// An arm in the browser: its tip along the screw motion to a goal, limits, singular values, and joint
+// coordinates for a pose. Metres, radians, axes of the base; poses are w, x, y, z of the rotation,
+// then the place.
+
+#include "live.hpp"
+
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/quaternion/exponential.hpp>
+
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace {
+
+/// Any of the arms, so that what is done with it is compiled once.
+using arm_chain = duet::serial_chain<-7>;
+using joints = duet::detail::joint_vector<double, -7>;
+using pose_type = duet::dual_quaternion<double>;
+using vector3 = duet::vector3<double>;
+
+arm_chain chain_of(int arm) {
+  return arm == 0   ? arm_chain(duet::robots::panda().table())
+         : arm == 1 ? arm_chain(duet::robots::ur5e().table())
+                    : arm_chain(duet::robots::iiwa14().table());
+}
+
+joints joints_from(const arm_chain& chain, const double* theta) {
+  return Eigen::Map<const joints>(theta, chain.size());
+}
+
+pose_type pose_from(const double* p) {
+  return duet::pose(normalized(duet::quaternion<double>(p[0], p[1], p[2], p[3])),
+                    vector3(p[4], p[5], p[6]));
+}
+
+live::writer& operator<<(live::writer& out, const pose_type& a) {
+  const auto q = duet::rotation(a);
+  return out << q.w() << q.x() << q.y() << q.z() << vector3(duet::translation(a));
+}
+
+} // namespace
+
+/// The arm's joints.
+/// \param arm  0 Panda, 1 UR5e, 2 iiwa 14
+/// \param out  lower limits, upper limits, and coordinates to begin with: three times as many numbers
+/// \return how many joints there are, at most 7
+DUET_LIVE int joints_of_arm(int arm, double* out) {
+  live::writer to(out);
+  const arm_chain chain = chain_of(arm);
+  to << duet::lower_limits(chain) << duet::upper_limits(chain);
+  constexpr double starts[3][7] = {
+      {0, -.7, 0, -2.3, 0, 1.6, .8}, {0, -1.3, 1.9, -2.2, -1.57, 0}, {0, .6, 0, -1.5, 0, 1, 0}};
+  for (int i = 0; i < chain.size(); ++i) {
+    to << starts[arm][i];
+  }
+  return chain.size();
+}
+
+/// Where the arm stands at joint coordinates.
+/// \param out  poses of all links from the base to the last, and of the tip: (joints + 2) times 7
+///             numbers
+DUET_LIVE void links_of_arm(int arm, const double* theta, double* out) {
+  live::writer to(out);
+  const arm_chain chain = chain_of(arm);
+  const joints x = joints_from(chain, theta);
+  for (int link = 0; link <= chain.size(); ++link) {
+    to << pose_type(chain.pose(x, link));
+  }
+  to << pose_type(chain.pose(x));
+}
+
+/// The singular values of the tip's Jacobian in the hybrid frame, translation in metres.
+/// \param out  6 numbers, the largest first
+DUET_LIVE void singular_values_of_arm(int arm, const double* theta, double* out) {
+  live::writer to(out);
+  const arm_chain chain = chain_of(arm);
+  const auto J = duet::jacobian(chain, joints_from(chain, theta), duet::frame::hybrid);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd{Eigen::MatrixXd(J)};
+  to << svd.singularValues();
+}
+
+/// A pose moved and turned.
+/// \param by   by how much the place moves (3), and the rotation vector about the pose's own axes (3)
+/// \param out  a pose
+DUET_LIVE void moved_pose(const double* pose, const double* by, double* out) {
+  live::writer to(out);
+  const pose_type a = pose_from(pose);
+  to << duet::pose(
+      duet::rotation(a) * duet::from_rotation_vector(vector3(by[3], by[4], by[5])),
+      vector3(duet::translation(a) + vector3(by[0], by[1], by[2])));
+}
+
+/// The screw motion from one pose to another.
+/// \param out  the axis's direction (3) and its point nearest to the first pose (3), angle,
+///             translation along the axis, 1 if it turns, else 0; then `count` poses on the way, the
+///             first and the last included: 9 + 7 count numbers
+DUET_LIVE void screw_between(const double* from, const double* goal, int count, double* out) {
+  live::writer to(out);
+  const pose_type a = pose_from(from);
+  const pose_type b = pose_from(goal);
+  const auto s = duet::screw_parameters(b * conj(a));
+  const vector3 start = duet::translation(a);
+  const vector3 foot = s.axis.cross(s.moment);
+  to << s.axis << vector3(foot + s.axis * s.axis.dot(start - foot)) << s.angle << s.translation
+     << (s.angle > 0 ? 1. : 0.);
+  for (int i = 0; i < count; ++i) {
+    to << duet::sclerp(a, b, double(i) / (count - 1));
+  }
+}
+
+/// The plan along the screw motion from where the tip is at the start to a goal.
+/// \param room  for how many waypoints there is room
+/// \param out   why it ended, 0 where the goal is reached, else as `stop_reason` counts; its smallest
+///              singular value and its smallest margin from a limit; then of each waypoint τ and the
+///              coordinates: 3 + (1 + joints) room numbers
+/// \return how many waypoints there are, of which the first `room` are written
+DUET_LIVE int plan_of_arm(int arm, const double* start, const double* goal, int room,
+                          double* out) {
+  live::writer to(out);
+  const arm_chain chain = chain_of(arm);
+  // Finer than is seen would be slower than the pointer.
+  duet::plan_options options;
+  options.deviation = 1e-4;
+  const auto plan =
+      duet::plan_screw_motion(chain, joints_from(chain, start), pose_from(goal), options);
+  to << double(plan.reason) << plan.smallest_singular_value << plan.smallest_limit_margin;
+  const int count = int(plan.tau.size());
+  for (int i = 0; i < std::min(count, room); ++i) {
+    to << plan.tau[std::size_t(i)] << plan.joints[std::size_t(i)];
+  }
+  return count;
+}
+
+/// Joint coordinates for a pose of the tip: the solution that is found from a start.
+/// \param room  for how many solutions there is room
+/// \param out   of each solution its coordinates: joints times room numbers
+/// \return how many were found
+DUET_LIVE int solutions_of_arm(int arm, const double* goal, const double* start, int room,
+                               double* out) {
+  live::writer to(out);
+  const arm_chain chain = chain_of(arm);
+  const auto found = duet::inverse_kinematics(chain, pose_from(goal), joints_from(chain, start));
+  if (found.reason != duet::stop_reason::reached || room < 1) {
+    return 0;
+  }
+  to << found.joints;
+  return 1;
+}

@@ -1,0 +1,59 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/error_handler.hpp>
+
+#include <cmath>
+
+#ifdef __EMSCRIPTEN__
+#include <emscripten.h>
+#endif
+
+/// \file
+/// What pages call: functions in C over numbers and arrays of doubles, compiled for the browser, and
+/// for this machine as a library that tests compare with it.
+
+#ifdef __EMSCRIPTEN__
+
+#define DUET_LIVE extern "C" EMSCRIPTEN_KEEPALIVE
+
+// clang-format off
+EM_JS(void, duet_live_error, (const char* message), { throw new Error(UTF8ToString(message)); })
+// clang-format on
+
+namespace live {
+/// Errors become those of JavaScript, which unwind all that was called.
+inline const bool errors_are_thrown = (duet::set_error_handler(duet_live_error), true);
+} // namespace live
+
+#else
+
+#define DUET_LIVE extern "C"
+
+#endif
+
+namespace live {
+
+/// Writes one number or vector after the other.
+class writer {
+public:
+  explicit writer(double* out) : out_(out) {}
+
+  writer& operator<<(double x) {
+    *out_++ = x;
+    return *this;
+  }
+  template <class V>
+    requires requires(const V& v) { v.size(); }
+  writer& operator<<(const V& v) {
+    for (int i = 0; i < int(v.size()); ++i) {
+      *out_++ = v[i];
+    }
+    return *this;
+  }
+
+private:
+  double* out_;
+};
+
+} // namespace live
