@@ -193,7 +193,7 @@ window.duetLive = (() => {
         parts.push(shape("line", { class: "live-grid", x1: px, x2: px, y1: edge.top, y2: height - edge.bottom }),
           shape("text", { x: px, y: height - edge.bottom + 15, "text-anchor": "middle" }, text));
       }
-      const y_ticks = (log ? decade_ticks : linear_ticks)(y0, y1, Math.max(2, inner[1] / 34));
+      const y_ticks = (log ? decade_ticks : linear_ticks)(y0, y1, Math.max(log ? 2 : 4, inner[1] / 34));
       for (const [y, text] of y_ticks) {
         const py = edge.top + ((y1 - y) / (y1 - y0)) * inner[1];
         parts.push(shape("line", { class: "live-grid", x1: edge.left, x2: width - edge.right, y1: py, y2: py }),
@@ -249,9 +249,9 @@ window.duetLive = (() => {
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const sum = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
 
-  /// A view of what lies within `radius` of `centre`. What is drawn is ordered by depth. Dragging what is
+  /// A view of what lies within `radius` of `centre`, to the left and right within `half_width`. What is drawn is ordered by depth. Dragging what is
   /// no handle turns the view, and arrow keys do.
-  const space = ({ label, height, centre, radius, azimuth, elevation, drawn }) => {
+  const space = ({ label, height, centre, radius, half_width = radius, azimuth, elevation, drawn }) => {
     const shapes = shape("g", {});
     const handles = shape("g", {});
     const svg = shape("svg", { class: "live-space", height, tabindex: 0, role: "group", "aria-label": label + ". Arrow keys turn the view." }, shapes, handles);
@@ -309,7 +309,7 @@ window.duetLive = (() => {
     }
     when_sized(node, (w) => {
       svg.setAttribute("width", (width = w));
-      scale = (0.5 * Math.min(width, height)) / radius;
+      scale = Math.min(width / half_width, height / radius) / 2;
       redraw();
     });
 
@@ -334,7 +334,7 @@ window.duetLive = (() => {
         const [x, y, depth] = seen(p);
         add(depth + shift, shape("text", { x, y, "text-anchor": "middle", ...style }, text));
       },
-      arrow: (from, to, colour, shift = 0) => {
+      arrow: (from, to, colour, style, shift = 0) => {
         const a = seen(from);
         const b = seen(to);
         const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
@@ -342,16 +342,17 @@ window.duetLive = (() => {
         const [ux, uy] = length ? [(b[0] - a[0]) / length, (b[1] - a[1]) / length] : [0, 0];
         const at = (back, side) => `${(b[0] - back * ux - side * uy).toFixed(2)} ${(b[1] - back * uy + side * ux).toFixed(2)}`;
         add((a[2] + b[2]) / 2 + shift,
-          shape("g", { stroke: hue(colour), fill: hue(colour) },
+          shape("g", { stroke: hue(colour), fill: hue(colour), ...style },
             shape("path", { d: `M${a[0].toFixed(2)} ${a[1].toFixed(2)}L${at(head * 0.8, 0)}`, "stroke-width": 2.5, "stroke-linecap": "round" }),
             shape("path", { d: `M${at(0, 0)}L${at(head, head * 0.42)}L${at(head, -head * 0.42)}Z`, stroke: "none" })));
       },
       /// Something to be dragged, or moved by keys: `drag([x, y])` gets places in pixels of the view,
       /// `keys` functions by name of key. `place(p, text)` puts it to a place in space and says where that is.
-      handle: ({ label, colour, drag, keys, focus }) => {
-        const knob = shape("circle", { r: 8, fill: hue(colour), class: "live-knob" });
+      handle: ({ label, text = "", colour, drag, keys, focus }) => {
+        const knob = shape("circle", { r: text ? 9 : 8, fill: hue(colour), class: "live-knob" });
         const g = shape("g", { class: "live-handle", tabindex: 0, role: "slider", "aria-label": label, "aria-valuenow": 0 },
-          shape("circle", { r: 22, fill: "transparent" }), knob);
+          shape("circle", { r: 20, fill: "transparent" }), knob,
+          shape("text", { y: 4, "text-anchor": "middle" }, text));
         g.addEventListener("pointerdown", (event) => {
           event.preventDefault();
           g.focus({ preventScroll: true });

@@ -65,7 +65,7 @@ duetLive.start("wheel_carrier", (host, call) => {
   // The carrier, seen from behind and above.
 
   const space = duetLive.space({
-    label: "The wheel carrier on its five rods", height: 330, centre: [0.17, 0.72, 0], radius: 0.56, azimuth: -1.95, elevation: 0.25,
+    label: "The wheel carrier on its five rods", height: 330, centre: [0.17, 0.72, 0], radius: 0.36, half_width: 0.56, azimuth: -1.95, elevation: 0.25,
     drawn: () => {
       const n = call("carrier_at", [state.u], 35).numbers;
       const w = vector(n, 0);
@@ -87,14 +87,13 @@ duetLive.start("wheel_carrier", (host, call) => {
       });
       space.ball(w, 6, { fill: hue("blue") }, 0.23);
       space.line(way, { stroke: hue("blue"), "stroke-width": 2 }, 0.23);
-      poses.set([
-        [fixed((n[27] * 180) / Math.PI, 2) + "°", fixed((n[28] * 180) / Math.PI, 2) + "°"],
-      ]);
+      const degrees = (x) => fixed((x * 180) / Math.PI, 2) + "°";
+      says.innerHTML = `At u = ${height_text(state.u)}: toe-in <b>${degrees(n[27])}</b>, camber <b>${degrees(n[28])}</b>.`;
     },
   });
   const way = Array.from({ length: 40 }, (_, i) =>
     vector(call("carrier_at", [lowest + ((highest - lowest) * i) / 39], 35).numbers, 0));
-  const poses = duetLive.table(["", "toe-in", "camber"], ["wheel"]);
+  const says = element("p", { class: "live-says" });
 
   // Errors.
 
@@ -158,9 +157,9 @@ duetLive.start("wheel_carrier", (host, call) => {
       figure([duetLive.legend([["blue", "true formula"], ["vermillion", "as printed"]]), velocity.node, acceleration.node],
         "How wrong the spline's angular velocity (above) and angular acceleration (below) are against the mechanism's own: the largest error between any two rows, one step from row to row, on a logarithmic scale. The printed formula is for the cumulative B-spline. Drag across to choose the height."),
       element("div", {},
-        figure([space.node],
-          "The carrier on its five rods, with the way of the wheel's centre as the wheel rises and falls (blue). Dark ends of rods are on the chassis, light ones on the carrier. Drag to look from elsewhere."),
-        errors.node, rates.node, poses.node),
+        figure([space.node, says],
+          "The carrier on its five rods, with the way of the wheel's centre as the wheel rises and falls (blue). Filled ends of rods are on the chassis, open ones on the carrier. Drag to look from elsewhere."),
+        errors.node, rates.node),
     ),
   );
   offer_ends();
