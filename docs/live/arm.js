@@ -8,9 +8,9 @@
 duetLive.start("arm", (host, call) => {
   const { element, shape, figure, fixed, short, hue, sum, dot } = duetLive;
   const arms = [
-    { name: "Franka Emika's Panda", goal: [-0.1, 0.4, 0.12, 0.2, -0.5, 0.9] },
-    { name: "Universal Robots' UR5e", goal: [0.3, 0.35, -0.15, 0.6, 0.3, 0.6] },
-    { name: "KUKA's LBR iiwa 14", goal: [-0.15, 0.45, -0.1, 0.2, -0.5, 0.9] },
+    { name: "Panda", goal: [-0.1, 0.4, 0.12, 0.2, -0.5, 0.9] },
+    { name: "UR5e", goal: [0.3, 0.35, -0.15, 0.6, 0.3, 0.6] },
+    { name: "LBR iiwa 14", goal: [-0.15, 0.45, -0.1, 0.2, -0.5, 0.9] },
   ];
   const reasons = ["", "a joint is at its limit", "the arm is in a singular position", "", "steps became too small", "it took too many steps", "the goal is out of reach"];
   const room = 2000;
@@ -104,15 +104,15 @@ duetLive.start("arm", (host, call) => {
         space.line([[i / 5, -0.6, 0], [i / 5, 0.6, 0]], style, -5);
         space.line([[-0.6, i / 5, 0], [0.6, i / 5, 0]], style, -5);
       }
-      draw_arm(start_links, { opacity: 0.3 }, "rule");
-      solutions.forEach((s) => draw_arm(s.links, { opacity: 0.55 }, "rule"));
-      draw_arm(here.links, {}, "sky");
+      draw_arm(start_links, "rule", "bg", -3);
+      solutions.forEach((s) => draw_arm(s.links, "muted", "rule", -2));
+      draw_arm(here.links, "fg", "sky", 0);
       const tip = here.links[joints + 1];
       triad(tip, 0.09, 1);
       triad(goal, 0.12, 1);
       if (screw.turns) {
         const end = (s) => sum(screw.point, screw.axis, s);
-        space.line([end(-0.35), end(0.35 + Math.max(0, screw.translation))], { stroke: hue("purple"), "stroke-width": 2, "stroke-dasharray": "7 4" });
+        space.line([end(-0.5), end(0.5)], { stroke: hue("purple"), "stroke-width": 2, "stroke-dasharray": "7 4" });
       }
       const stop = Math.round(plan.end * (on_screw - 1));
       space.line(way.slice(stop), { stroke: hue("vermillion"), "stroke-width": 3, "stroke-dasharray": "2 6" }, 1);
@@ -121,17 +121,17 @@ duetLive.start("arm", (host, call) => {
       tip_handle.place(place(tip), "τ = " + fixed(Math.min(state.tau, plan.end), 2), fixed(state.tau, 2));
     },
   });
-  const draw_arm = (frames, style, colour) => {
+  const draw_arm = (frames, edge, colour, shift) => {
     const points = frames.map(place);
+    const width = 0.075 * space.scale();
     points.slice(1).forEach((p, i) => {
       const from = points[i];
       if (Math.hypot(...sum(p, from, -1)) > 1e-6) {
-        const width = 0.075 * space.scale();
-        space.line([from, p], { ...style, stroke: hue("muted"), "stroke-width": width });
-        space.line([from, p], { ...style, stroke: hue(colour), "stroke-width": width - 3 }, 1e-4);
+        space.line([from, p], { stroke: hue(edge), "stroke-width": width }, shift);
+        space.line([from, p], { stroke: hue(colour), "stroke-width": width - 2.5 }, shift + 1e-4);
       }
     });
-    points.slice(1, -1).forEach((p) => space.ball(p, 0.018 * space.scale(), { ...style, fill: hue("muted") }, 0.04));
+    points.slice(1, -1).forEach((p) => space.ball(p, 0.2 * width, { fill: hue(edge) }, shift + 0.04));
   };
   const triad = (pose, size, shift) => {
     ["vermillion", "green", "blue"].forEach((colour, i) => {
@@ -179,7 +179,8 @@ duetLive.start("arm", (host, call) => {
     bars.replaceChildren(...marks.map((m, i) =>
       element("div", { class: "live-bar" },
         element("span", {}, "θ" + "₁₂₃₄₅₆₇"[i]),
-        element("span", { class: "live-track", title: `${degrees(lower[i])} to ${degrees(upper[i])}` }, m.range, m.mark),
+        element("span", { class: "live-track" },
+          element("small", {}, degrees(lower[i])), element("small", {}, degrees(upper[i])), m.range, m.mark),
         m.text)));
   };
   const draw_bars = () => {
@@ -215,10 +216,10 @@ duetLive.start("arm", (host, call) => {
       list.replaceChildren(element("p", {}, "No joint coordinates were found that take the tip to the goal."));
       return;
     }
-    const heads = ["goal", ...lower.map((_, i) => "θ" + "₁₂₃₄₅₆₇"[i])];
+    const heads = ["", ...lower.map((_, i) => "θ" + "₁₂₃₄₅₆₇"[i])];
     const t = duetLive.table(heads, solutions.map((_, i) => `solution ${i + 1}`));
-    t.set(solutions.map((s) => s.joints.map((x) => degrees(x, 1))));
-    list.replaceChildren(t.node);
+    t.set(solutions.map((s) => s.joints.map((x) => degrees(x))));
+    list.replaceChildren(t.node, element("p", { class: "live-note" }, "Joint coordinates that take the tip to the goal, found by inverse_kinematics from where the plan ends."));
   };
 
   // Controls.

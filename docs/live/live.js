@@ -249,14 +249,16 @@ window.duetLive = (() => {
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const sum = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
 
-  /// A view of what lies within `radius` of `centre`, to the left and right within `half_width`. What is drawn is ordered by depth. Dragging what is
+  /// A view of what lies within `radius` of `centre`, to the left and right within `half_width`; at most
+  /// `height` pixels high. What is drawn is ordered by depth. Dragging what is
   /// no handle turns the view, and arrow keys do.
-  const space = ({ label, height, centre, radius, half_width = radius, azimuth, elevation, drawn }) => {
+  const space = ({ label, height: most, centre, radius, half_width = radius, azimuth, elevation, drawn }) => {
     const shapes = shape("g", {});
     const handles = shape("g", {});
-    const svg = shape("svg", { class: "live-space", height, tabindex: 0, role: "group", "aria-label": label + ". Arrow keys turn the view." }, shapes, handles);
+    const svg = shape("svg", { class: "live-space", tabindex: 0, role: "group", "aria-label": label + ". Arrow keys turn the view." }, shapes, handles);
     const node = element("div", {}, svg);
     let width = 0;
+    let height = 0;
     let axes;
     let scale = 1;
     let list = [];
@@ -309,6 +311,7 @@ window.duetLive = (() => {
     }
     when_sized(node, (w) => {
       svg.setAttribute("width", (width = w));
+      svg.setAttribute("height", (height = Math.min(most, Math.round((w * radius) / half_width))));
       scale = Math.min(width / half_width, height / radius) / 2;
       redraw();
     });

@@ -95,10 +95,12 @@ rates true_rates(const Spline& s, double u) {
   return {m.velocity, m.acceleration};
 }
 
-/// Median, maximum, and the height of the maximum.
+/// Median, maximum, and the lowest height where it is, but for rounding.
 void summary_of(const std::vector<double>& values, live::writer& out) {
-  const auto top = std::max_element(values.begin(), values.end());
-  out << summarise(values).median << *top << solved().states()[std::size_t(top - values.begin())].u;
+  const summary s = summarise(values);
+  const auto top = std::find_if(values.begin(), values.end(),
+                                [&](double x) { return x >= (1 - 1e-9) * s.maximum; });
+  out << s.median << s.maximum << solved().states()[std::size_t(top - values.begin())].u;
 }
 
 /// The largest value between any two rows; 0 where there is no sample.

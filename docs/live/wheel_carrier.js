@@ -65,7 +65,7 @@ duetLive.start("wheel_carrier", (host, call) => {
   // The carrier, seen from behind and above.
 
   const space = duetLive.space({
-    label: "The wheel carrier on its five rods", height: 330, centre: [0.17, 0.72, 0], radius: 0.36, half_width: 0.56, azimuth: -1.95, elevation: 0.25,
+    label: "The wheel carrier on its five rods", height: 330, centre: [0.17, 0.72, 0], radius: 0.38, half_width: 0.58, azimuth: -1.95, elevation: 0.25,
     drawn: () => {
       const n = call("carrier_at", [state.u], 35).numbers;
       const w = vector(n, 0);
@@ -99,8 +99,9 @@ duetLive.start("wheel_carrier", (host, call) => {
 
   const velocity = duetLive.plot({ label: "Error of the angular velocity, <i>δ<sub>E</sub></i> [%]", height: 200, log: true, choose: (u) => set_height(u) });
   const acceleration = duetLive.plot({ label: "Error of the angular acceleration, <i>dδ<sub>E</sub></i> [%]", height: 216, log: true, x_label: "u [m]", choose: (u) => set_height(u) });
+  const name = (d, what) => [element("i", {}, d + "δ", element("sub", {}, "E")), " " + what];
   const errors = duetLive.table(["percent", "median", "largest", "at u"], [
-    "velocity, true", "velocity, printed", "acceleration, true", "acceleration, printed"]);
+    name("", "true"), name("", "printed"), name("d", "true"), name("d", "printed")]);
   const rates = duetLive.table(["at this u", "mechanism", "spline", "printed"], [
     [element("i", {}, "|δ|"), " [rad/m]"], [element("i", {}, "|δ′|"), " [rad/m²]"]]);
 
@@ -134,7 +135,12 @@ duetLive.start("wheel_carrier", (host, call) => {
     };
     show(velocity, curves[0], curves[2]);
     show(acceleration, curves[1], curves[3]);
-    const row = (i) => [short(n[i]), short(n[i + 1]), fixed(1000 * n[i + 2], 0) + " mm"];
+    // Smaller ones are partly rounding.
+    const percent = (x, least, least_text) => (x < least ? "< " + least_text : short(x));
+    const row = (i) => {
+      const least = i % 6 ? [1e-4, "10⁻⁴"] : [1e-6, "10⁻⁶"];
+      return [percent(n[i], ...least), percent(n[i + 1], ...least), fixed(1000 * n[i + 2], 0) + " mm"];
+    };
     const none = ["–", "–", "–"];
     errors.set([row(0), printed ? row(6) : none, row(3), printed ? row(9) : none]);
 
