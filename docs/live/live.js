@@ -361,10 +361,13 @@ window.duetLive = (() => {
           g.focus({ preventScroll: true });
           g.setPointerCapture(event.pointerId);
         });
+        // Browsers differ in whether touch-action is minded within an SVG.
+        g.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
         g.addEventListener("pointermove", (event) => {
           if (g.hasPointerCapture(event.pointerId)) {
             const box = svg.getBoundingClientRect();
-            drag([event.clientX - box.left, event.clientY - box.top]);
+            const within = (x, most) => Math.min(most, Math.max(0, x));
+            drag([within(event.clientX - box.left, width), within(event.clientY - box.top, height)]);
           }
         });
         g.addEventListener("keydown", (event) => {

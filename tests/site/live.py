@@ -1,0 +1,308 @@
+#!/usr/bin/env python3
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+"""The pages that compute, in a browser, from disk: whatever their reader moves, the numbers that come out are those of the
+same functions compiled for this machine; no page complains, is too large or wider than the screen; where there is no
+WebAssembly it says so, and shows its picture. Writes pictures of them.
+
+usage: python3 tests/site/live.py <folder of pages and libraries> <folder for pictures>
+"""
+
+import ctypes
+import re
+import sys
+from pathlib import Path
+
+from browser import Browser
+from reader import Reader
+
+SOURCES = Path(__file__).resolve().parent.parent.parent / "docs"
+LARGEST = 1_000_000
+# Of what numbers are relative to; see `scales`.
+TOLERANCE = 1e-12
+NO_WEBASSEMBLY = "delete window.WebAssembly"
+
+
+class Native:
+    """The functions of a page, compiled for this machine."""
+
+    def __init__(self, folder, name):
+        library = ctypes.CDLL(str(folder / f"{name}.so"))
+        kinds = {"int": ctypes.c_int, "double": ctypes.c_double}
+        self.functions = {}
+        source = (SOURCES / f"live/{name}.cpp").read_text()
+        for result, function, parameters in re.findall(r"DUET_LIVE (void|int) (\w+)\((.*?)\)", source, re.DOTALL):
+            self.functions[function] = called = getattr(library, function)
+            called.restype = kinds.get(result)
+            called.argtypes = [ctypes.POINTER(ctypes.c_double) if "*" in each else kinds[each.split()[0]]
+                               for each in parameters.split(",")]
+
+    def __call__(self, function, inputs, size):
+        """Its numbers, and what it returned."""
+        given = [(ctypes.c_double * len(x))(*x) if isinstance(x, list) else x for x in inputs]
+        out = (ctypes.c_double * size)()
+        returned = self.functions[function](*given, out)
+        return list(out), returned
+
+
+def scales(function, inputs, numbers):
+    """What errors of numbers are relative to: the largest of them, but of errors in percent the rates, 100 %, or themselves
+    where they are more."""
+    if function != "errors_of_spline":
+        return [max(map(abs, numbers))] * len(numbers)
+    rows = inputs[0]
+    heights = {2, 5, 8, 11, *range(12, 12 + rows)}
+    return [.2 if i in heights else max(100, abs(x)) for i, x in enumerate(numbers)]
+
+
+class Page:
+    def __init__(self, reader, folder, name):
+        self.reader, self.folder, self.name = reader, folder, name
+        self.address = (folder / f"{name}.html").as_uri()
+        self.native = Native(folder, name)
+        self.compared = set()
+        self.worst = 0
+
+    def open(self, width, is_dark=False):
+        self.reader.is_as_wide_as(width, 844 if width < 600 else 900, is_dark)
+        self.reader.open(self.address)
+        self.reader.wait_for(f"duetLive.pages.{self.name}?.first_figure > 0")
+
+    def value_of(self, expression):
+        return self.reader.value_of(expression)
+
+    def calls(self):
+        """What the page asked duet last, function by function."""
+        self.reader.wait_for_frames()
+        return self.value_of(f"duetLive.pages.{self.name}.calls")
+
+    def compare(self, when):
+        """The page's numbers with this machine's."""
+        for function, call in self.calls().items():
+            numbers, returned = self.native(function, call["inputs"], len(call["numbers"]))
+            expect(call.get("returned") == returned, f"{self.name}, {when}: {function} returns {call.get('returned')}, not {returned}")
+            for i, (x, y, scale) in enumerate(zip(numbers, call["numbers"], scales(function, call["inputs"], numbers))):
+                off = abs(x - y) / scale if scale else abs(x - y)
+                expect(off <= TOLERANCE, f"{self.name}, {when}: {function}{call['inputs']}[{i}] is {y}, not {x}")
+                self.worst = max(self.worst, off)
+            self.compared.add(function)
+
+    def move(self, number, *keys):
+        """Presses keys on one of the sliders and choices."""
+        before = self.calls()
+        self.value_of(f"document.querySelectorAll('.live-control input, .live-control select')[{number}].focus()")
+        for key in keys:
+            self.reader.press(key)
+        expect(self.calls() != before, f"{self.name}: {keys} on control {number} change nothing")
+
+    def set(self, number, value, kind="input"):
+        """Puts one of the sliders and choices to a value."""
+        self.value_of(f"""(control => {{
+          control.value = {value};
+          control.dispatchEvent(new Event("{kind}"));
+        }})(document.querySelectorAll(".live-control input, .live-control select")[{number}])""")
+
+    def cell(self, table, row, column):
+        """The text of a cell."""
+        return self.value_of(f"document.querySelectorAll('.live-table table')[{table}].rows[{row}].cells[{column}].textContent")
+
+    def picture(self, pictures, name):
+        self.reader.wait_for_frames()
+        self.reader.picture(pictures / f"{self.name}_{name}.png")
+
+    def check_width(self, width):
+        wide = self.value_of("document.documentElement.scrollWidth")
+        expect(wide <= width, f"{self.name} is {wide} wide on a screen of {width}")
+
+    def check_complaints(self, when):
+        complaints = self.reader.complained()
+        expect(not complaints, f"{self.name}, {when}, complains: {complaints}")
+
+
+failures = []
+
+
+def expect(holds, what):
+    if not holds:
+        failures.append(what)
+
+
+def number_of(text):
+    """3.2 × 10⁻⁵ and −0.5 mm as numbers."""
+    digits = text.replace("−", "-").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+    return float(re.match(r"[-0-9.e]+", digits.replace(" × 10", "e"))[0])
+
+
+def check_shown(page, text, value, digits=2):
+    """A text is a value in so many significant digits."""
+    shown = number_of(text)
+    expect(abs(shown - value) <= .51 * 10 ** (1 - digits) * abs(value), f"{page.name} shows {text}, which is {value}")
+
+
+def check_size(page):
+    text = (page.folder / f"{page.name}.html").read_text()
+    files = [page.folder / f"{page.name}.html"]
+    files += [(page.folder / address).resolve() for address in re.findall(r"(?:src|href)=\"(.*?)\"", text)]
+    size = sum(file.stat().st_size for file in files)
+    expect(size <= LARGEST, f"{page.name} has {size} bytes")
+    return size
+
+
+def check_drag(page, selector, by, touch=False):
+    """A handle follows the mouse, or a finger, and the page stays where it is."""
+    start = page.reader.middle(selector)
+    before, scrolled = page.calls(), page.value_of("scrollY")
+    end = [start[0] + by[0], start[1] + by[1]]
+    page.reader.swipe(start, end) if touch else page.reader.drag(start, end)
+    expect(page.calls() != before, f"{page.name}: {selector} is not dragged")
+    expect(page.value_of("scrollY") == scrolled, f"{page.name}: dragging {selector} scrolls the page")
+
+
+def check_keys(page, selector, *keys):
+    before = page.calls()
+    page.value_of(f"document.querySelector('{selector}').focus()")
+    for key in keys:
+        page.reader.press(key)
+    expect(page.calls() != before, f"{page.name}: {keys} on {selector} change nothing")
+
+
+def try_wheel_carrier(page):
+    def largest_errors(row):
+        return page.calls()["errors_of_spline"]["numbers"][3 * row + 1]
+
+    # What stands in the document, of 105 rows.
+    document = (SOURCES / "wheel_carrier.md").read_text()
+    line = re.search(r"^\| clamped ends: closed form \|(.*)\|$", document, re.MULTILINE)[1].split("|")
+    for row, column in ((1, 0), (3, 4)):
+        for k in (0, 1):
+            value = float(line[column + k])
+            expect(number_of(page.cell(0, row, k + 1)) == value, f"the document has {value}, the page {page.cell(0, row, k + 1)}")
+
+    for rows, kinds in ((2, range(4)), (9, range(4)), (13, [0])):
+        page.set(0, rows)
+        for kind in kinds:
+            page.set(1, kind, "change")
+            for ends in range(5 if kind == 2 else 1 if kind == 3 else 4):
+                page.set(2, ends, "change")
+                page.compare(f"spline {kind}, ends {ends}")
+    page.set(0, 2)
+    page.set(1, 0, "change")
+    page.set(2, 2, "change")
+    before = largest_errors(0)
+    page.move(0, "ArrowLeft")
+    expect(largest_errors(0) > 1.5 * before, "fewer rows are as good")
+    page.move(3, "ArrowRight", "ArrowRight")
+    page.compare("moved by keys")
+    call = page.calls()["errors_of_spline"]
+    native, _ = page.native("errors_of_spline", call["inputs"], len(call["numbers"]))
+    for row, i in ((1, 0), (2, 6), (3, 3), (4, 9)):
+        check_shown(page, page.cell(0, row, 1), native[i])
+        check_shown(page, page.cell(0, row, 2), native[i + 1])
+    check_drag(page, ".live-chosen", (40, 0))
+    page.compare("height dragged")
+
+
+def try_rotations(page):
+    for reading in range(3):
+        for ends in range(2):
+            page.set(2, reading, "change")
+            page.set(3, ends, "change")
+            page.compare(f"printed {reading}, ends {ends}")
+    page.move(0, "ArrowRight", "ArrowRight")
+    page.move(1, "ArrowLeft")
+    check_drag(page, ".live-handle:nth-child(2)", (25, -30))
+    page.compare("dot dragged")
+    check_keys(page, ".live-handle:nth-child(4)", "ArrowUp", "ArrowRight")
+    page.compare("dot moved by keys")
+
+
+def try_arm(page):
+    for arm in range(3):
+        page.set(0, arm, "change")
+        page.compare(f"arm {arm}")
+        expect(page.calls()["solutions_of_arm"]["returned"] > 0, f"arm {arm}: no joints for the goal at first")
+        expect(page.calls()["plan_of_arm"]["numbers"][0] == 0, f"arm {arm}: the goal at first is not reached")
+    page.set(0, 0, "change")
+    page.move(1, "ArrowRight", "ArrowRight")
+    page.move(4, "ArrowRight")
+    page.compare("moved by keys")
+    theta = page.calls()["singular_values_of_arm"]["inputs"][1]
+    shown = page.value_of("[...document.querySelectorAll('.live-bar output')].map(e => e.textContent)")
+    for text, x in zip(shown, theta, strict=True):
+        expect(abs(number_of(text) - x * 57.29577951308232) < .0501, f"arm shows {text}, which is {x} rad")
+    check_drag(page, ".live-handle:nth-child(1)", (-20, 15))
+    page.compare("goal dragged")
+    check_keys(page, ".live-handle:nth-child(2)", "ArrowRight", "ArrowRight")
+    check_drag(page, ".live-handle:nth-child(2)", (-10, 15))
+    page.compare("tip dragged")
+    # Out of reach, and out of the picture, at whose edge it stays.
+    check_drag(page, ".live-handle:nth-child(1)", (500, 0))
+    expect(page.calls()["plan_of_arm"]["numbers"][0] != 0, "the goal far away is reached")
+    expect("ends at" in page.value_of("document.querySelector('.live-says').textContent"), "the page does not say that the plan ends")
+
+
+def check_without_webassembly(page):
+    script = page.reader.call("Page.addScriptToEvaluateOnNewDocument", source=NO_WEBASSEMBLY)["identifier"]
+    for width in (390, 1280):
+        page.reader.is_as_wide_as(width)
+        page.reader.open(page.address)
+        page.reader.wait_for("[...document.images].every(image => image.complete)")
+        said = page.value_of("document.querySelector('.live-missing').textContent")
+        expect("WebAssembly, which is missing" in said, f"{page.name} without WebAssembly says {said}")
+        shown = page.value_of("document.images.length > 0 && [...document.images].every(i => i.naturalWidth > 0 && i.offsetWidth > 0)")
+        expect(shown, f"{page.name} without WebAssembly shows no picture")
+        expect(not page.value_of("document.querySelectorAll('.live-host').length"), f"{page.name} without WebAssembly is live")
+        page.check_width(width)
+        page.check_complaints("without WebAssembly")
+    page.reader.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+
+
+def check_on_a_phone(page, handle):
+    page.reader.call("Emulation.setTouchEmulationEnabled", enabled=True)
+    page.open(390)
+    page.check_width(390)
+    check_drag(page, handle, (12, 30), touch=True)
+    page.compare("touched")
+    page.check_width(390)
+    page.check_complaints("touched")
+    page.reader.call("Emulation.setTouchEmulationEnabled", enabled=False)
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    folder, pictures = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    pictures.mkdir(parents=True, exist_ok=True)
+    tries = {"wheel_carrier": (try_wheel_carrier, None), "rotations": (try_rotations, ".live-handle:nth-child(3)"),
+             "arm": (try_arm, ".live-handle:nth-child(1)")}
+    with Browser() as browser:
+        reader = Reader(browser)
+        for name, (attempt, handle) in tries.items():
+            page = Page(reader, folder, name)
+            size = check_size(page)
+            page.open(1280)
+            first_figure = page.value_of(f"duetLive.pages.{name}.first_figure")
+            attempt(page)
+            page.check_complaints("moved")
+            expect(page.compared == set(page.native.functions), f"{name}: {set(page.native.functions) - page.compared} were not compared")
+            if handle:
+                check_on_a_phone(page, handle)
+            check_without_webassembly(page)
+            for width in (390, 1280):
+                for is_dark in (False, True):
+                    suffix = f"{width}{'_dark' if is_dark else ''}"
+                    page.open(width, is_dark)
+                    page.check_width(width)
+                    page.picture(pictures, suffix)
+                    page.move(0, *(["ArrowDown"] if name == "arm" else ["ArrowLeft"] * 3))
+                    page.check_width(width)
+                    page.picture(pictures, f"{suffix}_moved")
+                    page.check_complaints(suffix)
+            print(f"{name}: {size} bytes, first figure after {first_figure:.0f} ms, numbers within {page.worst:.1e} of this machine's")
+    for failure in failures:
+        print(f"duet: {failure}", file=sys.stderr)
+    sys.exit(bool(failures))
+
+
+if __name__ == "__main__":
+    main()
