@@ -8,9 +8,9 @@
 duetLive.start("arm", (host, call) => {
   const { element, shape, figure, fixed, short, hue, sum, dot } = duetLive;
   const arms = [
-    { name: "Panda", goal: [-0.1, 0.4, 0.12, 0.2, -0.5, 0.9] },
-    { name: "UR5e", goal: [0.3, 0.35, -0.15, 0.6, 0.3, 0.6] },
-    { name: "LBR iiwa 14", goal: [-0.15, 0.45, -0.1, 0.2, -0.5, 0.9] },
+    { name: "Panda", centre: [0.15, 0.05, 0.42], goal: [-0.1, 0.4, 0.12, 0.2, -0.5, 0.9] },
+    { name: "UR5e", centre: [-0.25, 0, 0.35], goal: [0.1, 0.5, 0.15, 0.4, -0.3, 0.7] },
+    { name: "LBR iiwa 14", centre: [0.15, 0.05, 0.48], goal: [-0.15, 0.45, -0.1, 0.2, -0.5, 0.9] },
   ];
   const reasons = ["", "a joint is at its limit", "the arm is in a singular position", "", "steps became too small", "it took too many steps", "the goal is out of reach"];
   const room = 2000;
@@ -63,6 +63,7 @@ duetLive.start("arm", (host, call) => {
     turns.forEach((turn, i) => turn.set((state.by[3 + i] * 180) / Math.PI));
     start_links = links(state.start);
     start_pose = start_links[joints + 1];
+    space.look_at(arms[arm].centre);
     make_bars();
   };
   let start_links;
@@ -97,12 +98,12 @@ duetLive.start("arm", (host, call) => {
   // The arm.
 
   const space = duetLive.space({
-    label: "The arm, its tip's way and the goal", height: 430, centre: [0.15, 0.05, 0.42], radius: 0.68, azimuth: -0.9, elevation: 0.35,
+    label: "The arm, its tip's way and the goal", height: 430, centre: arms[0].centre, radius: 0.7, azimuth: -0.9, elevation: 0.35,
     drawn: () => {
       for (let i = -3; i <= 3; ++i) {
         const style = { stroke: hue("rule"), "stroke-width": 1 };
-        space.line([[i / 5, -0.6, 0], [i / 5, 0.6, 0]], style, -5);
-        space.line([[-0.6, i / 5, 0], [0.6, i / 5, 0]], style, -5);
+        space.line([[i / 6, -0.5, 0], [i / 6, 0.5, 0]], style, -5);
+        space.line([[-0.5, i / 6, 0], [0.5, i / 6, 0]], style, -5);
       }
       draw_arm(start_links, "rule", "bg", -3);
       solutions.forEach((s) => draw_arm(s.links, "muted", "rule", -2));
@@ -217,9 +218,9 @@ duetLive.start("arm", (host, call) => {
       return;
     }
     const heads = ["", ...lower.map((_, i) => "θ" + "₁₂₃₄₅₆₇"[i])];
-    const t = duetLive.table(heads, solutions.map((_, i) => `solution ${i + 1}`));
+    const t = duetLive.table(heads, solutions.map((_, i) => String(i + 1)));
     t.set(solutions.map((s) => s.joints.map((x) => degrees(x))));
-    list.replaceChildren(t.node, element("p", { class: "live-note" }, "Joint coordinates that take the tip to the goal, found by inverse_kinematics from where the plan ends."));
+    list.replaceChildren(t.node, element("p", { class: "live-note" }, "Solutions: joint coordinates that take the tip to the goal. This one is what inverse_kinematics finds from where the plan ends."));
   };
 
   // Controls.

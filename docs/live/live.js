@@ -323,6 +323,7 @@ window.duetLive = (() => {
       node,
       redraw,
       seen,
+      look_at: (given) => (centre = given),
       axes: () => axes,
       scale: () => scale,
       /// `style` as attributes of SVG; `shift` moves it towards who looks in the order of drawing.

@@ -54,6 +54,15 @@ const reference& solved() {
   return result;
 }
 
+/// The last one is kept, as readers move one slider at a time.
+const table& table_of(int rows) {
+  static table result;
+  if (int(result.u.size()) != rows) {
+    result = solved().rows(rows);
+  }
+  return result;
+}
+
 template <class Spline>
 Spline interpolated(const table& t, int ends) {
   const state& first = solved().states().front();
@@ -165,7 +174,7 @@ DUET_LIVE void carrier_at(double u, double* out) {
 /// \param out  true (6), and of the cumulative spline as printed with functions from B_0 (6), else 0
 DUET_LIVE void rates_at(int rows, int kind, int ends, double u, double* out) {
   live::writer to(out);
-  with_spline(solved().rows(rows), kind, ends, [&](const auto& s) {
+  with_spline(table_of(rows), kind, ends, [&](const auto& s) {
     const rates t = true_rates(s, u);
     rates p{vector3::Zero(), vector3::Zero()};
     if constexpr (requires { duet::printed_derivative(s, u); }) {
@@ -185,7 +194,7 @@ DUET_LIVE void rates_at(int rows, int kind, int ends, double u, double* out) {
 ///             two rows: δ_E, dδ_E, δ_E printed, dδ_E printed: 12 + rows + 4 (rows − 1) numbers
 DUET_LIVE void errors_of_spline(int rows, int kind, int ends, double* out) {
   live::writer to(out);
-  const table t = solved().rows(rows);
+  const table& t = table_of(rows);
   with_spline(t, kind, ends, [&](const auto& s) {
     const error_curve truth = errors_of([&](double u) { return true_rates(s, u); });
     std::vector<double> none(truth.delta.size());

@@ -59,13 +59,13 @@ duetLive.start("wheel_carrier", (host, call) => {
   const set_height = (u) => {
     state.u = u;
     height.set(u);
-    redraw();
+    redraw_height();
   };
 
   // The carrier, seen from behind and above.
 
   const space = duetLive.space({
-    label: "The wheel carrier on its five rods", height: 330, centre: [0.17, 0.72, 0], radius: 0.38, half_width: 0.58, azimuth: -1.95, elevation: 0.25,
+    label: "The wheel carrier on its five rods", height: 330, centre: [0.17, 0.72, 0.03], radius: 0.41, half_width: 0.58, azimuth: -1.95, elevation: 0.25,
     drawn: () => {
       const n = call("carrier_at", [state.u], 35).numbers;
       const w = vector(n, 0);
@@ -120,21 +120,22 @@ duetLive.start("wheel_carrier", (host, call) => {
     });
     return points;
   };
+  const spline = () => [state.rows, state.kind, state.kind === 3 ? 0 : state.ends];
+  let lines;
   const draw_errors = () => {
     const r = state.rows;
-    const n = call("errors_of_spline", [r, state.kind, state.kind === 3 ? 0 : state.ends], 12 + r + 4 * (r - 1)).numbers;
+    const n = call("errors_of_spline", spline(), 12 + r + 4 * (r - 1)).numbers;
     const u = n.slice(12, 12 + r);
     const curves = [0, 1, 2, 3].map((i) => n.slice(12 + r + i * (r - 1), 12 + r + (i + 1) * (r - 1)));
     const printed = state.kind === 0;
-    const show = (plot, truth, print) => {
-      const lines = [{ points: steps(u, truth), colour: "blue" }];
-      if (printed) {
-        lines.unshift({ points: steps(u, print), colour: "vermillion" });
-      }
-      plot.draw({ x: [lowest, highest], y: decades(printed ? [...truth, ...print] : truth), lines, at: state.u });
-    };
-    show(velocity, curves[0], curves[2]);
-    show(acceleration, curves[1], curves[3]);
+    const both = (truth, print) => ({
+      y: decades(printed ? [...truth, ...print] : truth),
+      lines: [
+        ...(printed ? [{ points: steps(u, print), colour: "vermillion" }] : []),
+        { points: steps(u, truth), colour: "blue" },
+      ],
+    });
+    lines = [both(curves[0], curves[2]), both(curves[1], curves[3])];
     // Smaller ones are partly rounding.
     const percent = (x, least, least_text) => (x < least ? "< " + least_text : short(x));
     const row = (i) => {
@@ -143,19 +144,22 @@ duetLive.start("wheel_carrier", (host, call) => {
     };
     const none = ["–", "–", "–"];
     errors.set([row(0), printed ? row(6) : none, row(3), printed ? row(9) : none]);
-
+    draw_height();
+  };
+  const draw_height = () => {
+    space.redraw();
+    [velocity, acceleration].forEach((plot, i) => plot.draw({ x: [lowest, highest], ...lines[i], at: state.u }));
     const exact = call("carrier_at", [state.u], 35).numbers;
-    const s = call("rates_at", [r, state.kind, state.kind === 3 ? 0 : state.ends, state.u], 12).numbers;
+    const s = call("rates_at", [...spline(), state.u], 12).numbers;
     const size = (numbers, i) => short(Math.hypot(...vector(numbers, i)), 5);
+    const printed = (i) => (state.kind === 0 ? size(s, i) : "–");
     rates.set([
-      [size(exact, 29), size(s, 0), printed ? size(s, 6) : "–"],
-      [size(exact, 32), size(s, 3), printed ? size(s, 9) : "–"],
+      [size(exact, 29), size(s, 0), printed(6)],
+      [size(exact, 32), size(s, 3), printed(9)],
     ]);
   };
-  const redraw = duetLive.once_per_frame(() => {
-    space.redraw();
-    draw_errors();
-  });
+  const redraw = duetLive.once_per_frame(draw_errors);
+  const redraw_height = duetLive.once_per_frame(draw_height);
 
   host.append(
     element("div", { class: "live-controls" }, rows.node, kind.node, end.node, height.node),
