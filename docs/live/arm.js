@@ -244,7 +244,7 @@ duetLive.start("arm", (host, call) => {
   const tau_by = (x) => set_tau(Math.min(state.tau, plan.end) + x);
   const turns = ["x", "y", "z"].map((axis, i) =>
     duetLive.slider({
-      label: `Turn of the goal, ${axis}`, min: -120, max: 120, step: 1, value: 0, text: (x) => fixed(x, 0) + "°",
+      label: `Turn of the goal, ${axis}`, min: -180, max: 180, step: 1, value: 0, text: (x) => fixed(x, 0) + "°",
       change: (x) => {
         state.by[3 + i] = (x * Math.PI) / 180;
         redraw();

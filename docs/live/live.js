@@ -148,7 +148,10 @@ window.duetLive = (() => {
     return [1, 2, 5, 10].map((m) => m * power).find((s) => s >= rough * (1 - 1e-9));
   };
   const linear_ticks = (low, high, count) => {
-    const step = nice_step(high - low, count);
+    let step = nice_step(high - low, count);
+    if (Math.floor(high / step) - Math.ceil(low / step) < 2) {
+      step = nice_step(high - low, 2 * count);
+    }
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     const ticks = [];
     for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) {
@@ -440,8 +443,7 @@ window.duetLive = (() => {
   const start = (name, build) => {
     for (const place of document.querySelectorAll(`.live[data-live="${name}"]`)) {
       const stay = (why) => {
-        const note = place.querySelector(".live-missing") || place.appendChild(element("p", { class: "live-missing" }));
-        note.textContent = why + " This is a picture of what it computes.";
+        place.prepend(element("p", { class: "live-missing" }, why + " This is a picture of what it computes."));
       };
       if (typeof WebAssembly !== "object") {
         stay("This page computes in the browser by WebAssembly, which is missing or switched off here.");
