@@ -12,7 +12,8 @@ duetLive.start("arm", (host, call) => {
     { name: "UR5e", centre: [-0.25, 0, 0.35], goal: [0.1, 0.5, 0.15, 0.4, -0.3, 0.7] },
     { name: "LBR iiwa 14", centre: [0.15, 0.05, 0.48], goal: [-0.15, 0.45, -0.1, 0.2, -0.5, 0.9] },
   ];
-  const reasons = ["", "a joint is at its limit", "the arm is in a singular position", "", "steps became too small", "it took too many steps", "the goal is out of reach"];
+  const reasons = ["", "a joint is at its limit", "the arm is in a singular position", "", "steps became too small", "it took too many steps"];
+  const out_of_reach = 6;
   const room = 2000;
   const solution_room = 16;
   const on_screw = 61;
@@ -268,6 +269,7 @@ duetLive.start("arm", (host, call) => {
     const kind = !screw.turns ? `Straight on by <b>${fixed(1000 * screw.translation, 0)} mm</b>, without a turn`
       : `A screw by <b>${degrees(screw.angle)}</b> about the dashed axis and <b>${fixed(1000 * screw.translation, 0)} mm</b> along it`;
     says.innerHTML = kind + (plan.reason === 0 ? ": the goal is reached."
+      : plan.reason === out_of_reach ? ": the goal is out of reach."
       : `: the plan ends at <b>τ = ${fixed(plan.end, 2)}</b>, as ${reasons[plan.reason]}.`);
   };
   const draw_tip = () => {

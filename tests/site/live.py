@@ -238,7 +238,7 @@ def try_arm(page):
     # Out of reach, and out of the picture, at whose edge it stays.
     check_drag(page, ".live-handle:nth-child(1)", (500, 0))
     expect(page.calls()["plan_of_arm"]["numbers"][0] != 0, "the goal far away is reached")
-    expect("ends at" in page.value_of("document.querySelector('.live-says').textContent"), "the page does not say that the plan ends")
+    expect("out of reach" in page.value_of("document.querySelector('.live-says').textContent"), "the page does not say that the goal is out of reach")
 
 
 def check_without_webassembly(page):
