@@ -288,7 +288,8 @@ duetLive.start("arm", (host, call) => {
   const redraw_tip = duetLive.once_per_frame(draw_tip);
 
   host.append(
-    element("div", { class: "live-controls" }, arm.node, tau.node, ...turns.map((t) => t.node)),
+    element("div", { class: "live-controls" }, arm.node, tau.node),
+    element("div", { class: "live-controls", style: "--least: 180px" }, ...turns.map((t) => t.node)),
     says,
     element("div", { class: "live-figures" },
       figure([space.node, buttons],

@@ -202,7 +202,27 @@ def try_wheel_carrier(page):
     page.compare("height dragged")
 
 
+def check_motion(page):
+    """The true rates are those of the curve that is drawn, by differences, and what the page says of the printed ones is what
+    the document does."""
+    numbers = page.calls()["motion_of_curve"]["numbers"]
+    rows = [numbers[i:i + 20] for i in range(0, len(numbers), 20)]
+    step = rows[1][0] - rows[0][0]
+    for before, row, after in zip(rows, rows[1:], rows[2:]):
+        slope = [(b - a) / (2 * step) for a, b in zip(before, after)]
+        mark, omega = row[5:8], row[8:11]
+        velocity = [omega[i - 2] * mark[i - 1] - omega[i - 1] * mark[i - 2] for i in range(3)]
+        near = (row[0] + 2 * step) % 1 < 4 * step  # a row, where the acceleration has a kink
+        for k in range(3):
+            expect(abs(slope[5 + k] - velocity[k]) < 1e-3, f"at u = {row[0]} the mark moves by {slope[5 + k]}, not {velocity[k]}")
+            expect(near or abs(slope[8 + k] - row[11 + k]) < 1e-3, f"at u = {row[0]} α is {row[11 + k]}, not {slope[8 + k]}")
+    document = re.search(r"off by up to\s+(\d+)\s+degrees", (SOURCES / "printed_formulas.md").read_text())[1]
+    said = page.value_of("document.querySelector('.live-says').textContent")
+    expect(f"at most by {document}." in said, f"the document says {document} degrees, the page {said}")
+
+
 def try_rotations(page):
+    check_motion(page)
     for reading in range(3):
         for ends in range(2):
             page.set(2, reading, "change")
@@ -222,6 +242,12 @@ def try_arm(page):
         page.compare(f"arm {arm}")
         expect(page.calls()["solutions_of_arm"]["returned"] > 0, f"arm {arm}: no joints for the goal at first")
         expect(page.calls()["plan_of_arm"]["numbers"][0] == 0, f"arm {arm}: the goal at first is not reached")
+        # At the end the tip is at the goal.
+        page.set(1, 1)
+        calls = page.calls()
+        off = [a - b for a, b in zip(calls["links_of_arm"]["numbers"][-3:], calls["moved_pose"]["numbers"][-3:])]
+        expect(max(map(abs, off)) < 2e-6, f"arm {arm}: at the end the tip is off its goal by {off}")
+        page.set(1, .5)
     page.set(0, 0, "change")
     page.move(1, "ArrowRight", "ArrowRight")
     page.move(4, "ArrowRight")
