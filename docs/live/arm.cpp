@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// An arm in the browser: its tip along the screw motion to a goal, limits, singular values, and joint
-// coordinates for a pose. Metres, radians, axes of the base; poses are w, x, y, z of the rotation,
-// then the place.
+// An arm in the browser: its tip along the screw motion to a goal, limits, singular values, and
+// joint coordinates for a pose. Metres, radians, axes of the base; poses are w, x, y, z of the
+// rotation, then the place.
 
 #include "live.hpp"
 
@@ -51,8 +51,8 @@ live::writer& operator<<(live::writer& out, const pose_type& a) {
 
 /// The arm's joints.
 /// \param arm  0 Panda, 1 UR5e, 2 iiwa 14
-/// \param out  lower limits, upper limits, and coordinates to begin with: three times as many numbers
-/// \return how many joints there are, at most 7
+/// \param out  lower limits, upper limits, and coordinates to begin with: three times as many
+/// numbers \return how many joints there are, at most 7
 DUET_LIVE int joints_of_arm(int arm, double* out) {
   live::writer to(out);
   const arm_chain chain = chain_of(arm);
@@ -89,20 +89,19 @@ DUET_LIVE void singular_values_of_arm(int arm, const double* theta, double* out)
 }
 
 /// A pose moved and turned.
-/// \param by   by how much the place moves (3), and the rotation vector about the pose's own axes (3)
-/// \param out  a pose
+/// \param by   by how much the place moves (3), and the rotation vector about the pose's own axes
+/// (3) \param out  a pose
 DUET_LIVE void moved_pose(const double* pose, const double* by, double* out) {
   live::writer to(out);
   const pose_type a = pose_from(pose);
-  to << duet::pose(
-      duet::rotation(a) * duet::from_rotation_vector(vector3(by[3], by[4], by[5])),
-      vector3(duet::translation(a) + vector3(by[0], by[1], by[2])));
+  to << duet::pose(duet::rotation(a) * duet::from_rotation_vector(vector3(by[3], by[4], by[5])),
+                   vector3(duet::translation(a) + vector3(by[0], by[1], by[2])));
 }
 
 /// The screw motion from one pose to another.
 /// \param out  the axis's direction (3) and its point nearest to the first pose (3), angle,
-///             translation along the axis, 1 if it turns, else 0; then `count` poses on the way, the
-///             first and the last included: 9 + 7 count numbers
+///             translation along the axis, 1 if it turns, else 0; then `count` poses on the way,
+///             the first and the last included: 9 + 7 count numbers
 DUET_LIVE void screw_between(const double* from, const double* goal, int count, double* out) {
   live::writer to(out);
   const pose_type a = pose_from(from);
@@ -119,12 +118,12 @@ DUET_LIVE void screw_between(const double* from, const double* goal, int count, 
 
 /// The plan along the screw motion from where the tip is at the start to a goal.
 /// \param room  for how many waypoints there is room
-/// \param out   why it ended, 0 where the goal is reached, else as `stop_reason` counts; its smallest
-///              singular value and its smallest margin from a limit; then of each waypoint τ and the
-///              coordinates: 3 + (1 + joints) room numbers
+/// \param out   why it ended, 0 where the goal is reached, else as `stop_reason` counts; its
+/// smallest
+///              singular value and its smallest margin from a limit; then of each waypoint τ and
+///              the coordinates: 3 + (1 + joints) room numbers
 /// \return how many waypoints there are, of which the first `room` are written
-DUET_LIVE int plan_of_arm(int arm, const double* start, const double* goal, int room,
-                          double* out) {
+DUET_LIVE int plan_of_arm(int arm, const double* start, const double* goal, int room, double* out) {
   live::writer to(out);
   const arm_chain chain = chain_of(arm);
   // Finer than is seen would be slower than the pointer.

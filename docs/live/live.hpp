@@ -10,8 +10,8 @@
 #endif
 
 /// \file
-/// What pages call: functions in C over numbers and arrays of doubles, compiled for the browser, and
-/// for this machine as a library that tests compare with it.
+/// What pages call: functions in C over numbers and arrays of doubles, compiled for the browser,
+/// and for this machine as a library that tests compare with it.
 
 #ifdef __EMSCRIPTEN__
 

@@ -43,8 +43,7 @@ spline curve_through(int count, const double* rows, int ends) {
 }
 
 /// Q′ and Q″ as printed: 0 with functions from B_0, 1 from B_{−1}, 2 with the basis corrected.
-void printed_rates(const spline& s, double u, int reading, const rotation& q,
-                   live::writer& out) {
+void printed_rates(const spline& s, double u, int reading, const rotation& q, live::writer& out) {
   const auto p = duet::printed_derivative(s, u);
   const rotation& first = reading == 0   ? p.from_zero_first
                           : reading == 1 ? p.literal_first
@@ -87,7 +86,8 @@ DUET_LIVE void motion_at(int count, const double* rows, int ends, int reading, d
   write_motion(curve_through(count, rows, ends), u, reading, to);
 }
 
-/// The motion at `samples` even parameters from the first row to the last: as many times 20 numbers.
+/// The motion at `samples` even parameters from the first row to the last: as many times 20
+/// numbers.
 DUET_LIVE void motion_of_curve(int count, const double* rows, int ends, int reading, int samples,
                                double* out) {
   live::writer to(out);
@@ -98,8 +98,8 @@ DUET_LIVE void motion_of_curve(int count, const double* rows, int ends, int read
   }
 }
 
-/// The rotation q turned the shortest way so that its mark comes to a direction, of any length but 0.
-/// \param out  a rotation
+/// The rotation q turned the shortest way so that its mark comes to a direction, of any length but
+/// 0. \param out  a rotation
 DUET_LIVE void turned_to(const double* q, const double* direction, double* out) {
   live::writer to(out);
   const rotation from = rotation_from(q);
@@ -107,8 +107,8 @@ DUET_LIVE void turned_to(const double* q, const double* direction, double* out) 
   const vector3 b = vector3(direction[0], direction[1], direction[2]).normalized();
   const vector3 axis = a.cross(b);
   const double sine = axis.norm();
-  const vector3 turn = sine > 0 ? vector3(axis * (std::atan2(sine, a.dot(b)) / sine))
-                                : vector3(vector3::Zero());
+  const vector3 turn =
+      sine > 0 ? vector3(axis * (std::atan2(sine, a.dot(b)) / sine)) : vector3(vector3::Zero());
   to << normalized(duet::from_rotation_vector(turn) * from);
 }
 

@@ -33,8 +33,8 @@ public:
 
   reference() : mechanism_(example_hardpoints()), arcs_(mechanism_) {
     for (int i = 0; i < count; ++i) {
-      states_.push_back(mechanism_.at(
-          i + 1 == count ? highest : lowest + (highest - lowest) * i / (count - 1)));
+      states_.push_back(
+          mechanism_.at(i + 1 == count ? highest : lowest + (highest - lowest) * i / (count - 1)));
     }
   }
   reference(const reference&) = delete;
@@ -70,10 +70,14 @@ Spline interpolated(const table& t, int ends) {
   const duet::clamped velocities{first.omega(), last.omega()};
   const duet::end_acceleration accelerations{first.omega_first(), last.omega_first()};
   switch (ends) {
-  case natural: return duet::interpolate<Spline>(t.u, t.q, duet::natural{});
-  case not_a_knot: return duet::interpolate<Spline>(t.u, t.q, duet::not_a_knot{});
-  case clamped: return duet::interpolate<Spline>(t.u, t.q, velocities);
-  case acceleration: return duet::interpolate<Spline>(t.u, t.q, accelerations);
+  case natural:
+    return duet::interpolate<Spline>(t.u, t.q, duet::natural{});
+  case not_a_knot:
+    return duet::interpolate<Spline>(t.u, t.q, duet::not_a_knot{});
+  case clamped:
+    return duet::interpolate<Spline>(t.u, t.q, velocities);
+  case acceleration:
+    return duet::interpolate<Spline>(t.u, t.q, accelerations);
   default:
     return duet::interpolate<Spline>(t.u, t.q, duet::fully_clamped{velocities, accelerations});
   }
@@ -91,10 +95,14 @@ rotation_vector_cubic through_rates(const table& t) {
 template <class F>
 void with_spline(const table& t, int kind, int ends, const F& f) {
   switch (kind) {
-  case cumulative: return f(interpolated<spline>(t, ends));
-  case cubic: return f(interpolated<rotation_vector_cubic>(t, ends));
-  case quintic: return f(interpolated<rotation_vector_quintic>(t, ends));
-  default: return f(through_rates(t));
+  case cumulative:
+    return f(interpolated<spline>(t, ends));
+  case cubic:
+    return f(interpolated<rotation_vector_cubic>(t, ends));
+  case quintic:
+    return f(interpolated<rotation_vector_quintic>(t, ends));
+  default:
+    return f(through_rates(t));
   }
 }
 
@@ -141,7 +149,8 @@ error_curve errors_of(const Rates& at) {
 } // namespace
 
 /// The hardpoints.
-/// \param out  wheel centre (3), then of each rod the end on the chassis (3) and on the carrier (3):
+/// \param out  wheel centre (3), then of each rod the end on the chassis (3) and on the carrier
+/// (3):
 ///             33 numbers
 DUET_LIVE void hardpoints_of_carrier(double* out) {
   live::writer to(out);
@@ -171,7 +180,8 @@ DUET_LIVE void carrier_at(double u, double* out) {
 }
 
 /// δ and ∂δ/∂u of a spline at a height.
-/// \param out  true (6), and of the cumulative spline as printed with functions from B_0 (6), else 0
+/// \param out  true (6), and of the cumulative spline as printed with functions from B_0 (6), else
+/// 0
 DUET_LIVE void rates_at(int rows, int kind, int ends, double u, double* out) {
   live::writer to(out);
   with_spline(table_of(rows), kind, ends, [&](const auto& s) {
@@ -187,9 +197,11 @@ DUET_LIVE void rates_at(int rows, int kind, int ends, double u, double* out) {
 /// Errors of a spline against the mechanism, percent (P6), at 2001 heights.
 /// \param rows  of the table, from 6
 /// \param kind  0 cumulative, 1 rotation-vector cubic, 2 quintic, 3 Hermite
-/// \param ends  0 natural, 1 not-a-knot, 2 clamped, 3 acceleration, 4 both, which is for the quintic;
+/// \param ends  0 natural, 1 not-a-knot, 2 clamped, 3 acceleration, 4 both, which is for the
+/// quintic;
 ///              Hermite has none
-/// \param out  δ_E: median, maximum, height of the maximum; dδ_E: likewise; both as printed (0 where
+/// \param out  δ_E: median, maximum, height of the maximum; dδ_E: likewise; both as printed (0
+/// where
 ///             the spline is not cumulative); the heights of the rows; then the largest between any
 ///             two rows: δ_E, dδ_E, δ_E printed, dδ_E printed: 12 + rows + 4 (rows − 1) numbers
 DUET_LIVE void errors_of_spline(int rows, int kind, int ends, double* out) {
