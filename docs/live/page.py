@@ -7,7 +7,6 @@ usage: page.py <document.md> <page.html>
 
 import re
 import sys
-from pathlib import Path
 
 document, page = sys.argv[1:]
 with open(document, encoding="utf-8") as file:
@@ -15,15 +14,8 @@ with open(document, encoding="utf-8") as file:
 title = re.search(r"^# (.*)$", text, re.MULTILINE).group(1)
 live = re.search(r"^<div class=\"live\".*?^</div>$", text, re.MULTILINE | re.DOTALL).group(0)
 scripts = text[text.index("<noscript>"):]
-
-
-def figure(match):
-    path = Path(document).parent / match[2]
-    address = match[2] if path.is_file() else str(Path(match[2]).with_suffix(".svg"))
-    return f'<figure><img src="{address}" alt="{match[1]}" loading="lazy">\n<figcaption>{match[3]}</figcaption></figure>'
-
-
-live = re.sub(r"!\[(.*?)\]\((.*?)\)\n\n\*(.*?)\*\n\n```sh.*?```\n", figure, live, flags=re.DOTALL)
+live = re.sub(r"!\[(.*?)\]\((.*?)\)\n\n\*(.*?)\*\n\n```sh.*?```\n",
+              r'<figure><img src="\2" alt="\1" loading="lazy">\n<figcaption>\3</figcaption></figure>', live, flags=re.DOTALL)
 with open(page, "w", encoding="utf-8") as file:
     file.write(f"""<!DOCTYPE html>
 <html lang="en">
