@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/core/batch/vector_sine_cosine.hpp>
+#include <duet/core/compiler/vector.hpp>
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
@@ -21,8 +22,8 @@ namespace {
 
 using duet_test::real_50;
 
-typedef double two_lanes __attribute__((vector_size(16)));
-typedef double all_lanes __attribute__((vector_size(DUET_VECTOR_BYTES)));
+using two_lanes = duet::detail::vector_of<double, 2>;
+using all_lanes = duet::detail::vector_of<double, int(DUET_VECTOR_BYTES / sizeof(double))>;
 
 /// Of every size, and next to multiples of π/2, where all leading bits cancel.
 std::vector<double> moderate_inputs() {

@@ -7,8 +7,8 @@
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
 #include <duet/core/compiled.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/progress.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/function.hpp>
 

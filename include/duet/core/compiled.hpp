@@ -21,7 +21,7 @@ DUET_ABI_BEGIN
 /// The library's. For vectors of another width it is of another name: programs that differ in that
 /// do not link.
 extern const char library_for_this_vector_width;
-[[gnu::used]] inline const char* const needed_library = &library_for_this_vector_width;
+DUET_KEPT inline const char* const needed_library = &library_for_this_vector_width;
 
 DUET_ABI_END
 } // namespace duet::detail

@@ -37,7 +37,7 @@ namespace duet::detail {
 
 /// Throws the error; without exceptions, ends in the handler that `set_error_handler` has set.
 template <class Error>
-[[noreturn, gnu::cold, gnu::noinline]] void raise(Error error) {
+[[noreturn]] DUET_COLD DUET_OUT_OF_LINE void raise(Error error) {
 #ifdef __cpp_exceptions
   throw error;
 #else

@@ -57,7 +57,7 @@ private:
 };
 
 /// The parts in a row, whatever the locale. (Compiled once, not for every list of types.)
-[[nodiscard, gnu::cold, gnu::noinline]] inline std::string
+[[nodiscard]] DUET_COLD DUET_OUT_OF_LINE inline std::string
 joined(std::initializer_list<message_part> parts) {
   std::ostringstream text;
   text.imbue(std::locale::classic()); // known by <ios>

@@ -19,7 +19,7 @@ template <Real R>
 
 /// u; the end of [low, high] that it is beyond by 8 ulp at most, of the end of larger magnitude.
 template <Real R>
-[[nodiscard, gnu::cold]] R rounded_into(const R& u, const R& low, const R& high) {
+[[nodiscard]] DUET_COLD R rounded_into(const R& u, const R& low, const R& high) {
   using std::frexp;
   using std::ldexp;
   const R size = -low < high ? high : R(-low);

@@ -4,6 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/own_numbers.hpp>
 
+#include <cmath>
 #include <concepts>
 #include <type_traits>
 
@@ -32,7 +33,7 @@ namespace detail {
 template <class A, class B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto quiet_less(const A& a, const B& b) {
   if constexpr (std::floating_point<A> && std::floating_point<B>) {
-    return std::is_constant_evaluated() ? a < b : __builtin_isless(a, b) != 0;
+    return std::is_constant_evaluated() ? a < b : std::isless(a, b);
   } else {
     return a < b;
   }
@@ -41,7 +42,7 @@ template <class A, class B>
 template <class A, class B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto quiet_less_equal(const A& a, const B& b) {
   if constexpr (std::floating_point<A> && std::floating_point<B>) {
-    return std::is_constant_evaluated() ? a <= b : __builtin_islessequal(a, b) != 0;
+    return std::is_constant_evaluated() ? a <= b : std::islessequal(a, b);
   } else {
     return a <= b;
   }

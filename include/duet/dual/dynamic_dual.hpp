@@ -72,7 +72,7 @@ public:
   /// f of the rows for any f, one element at a time. (Inlined, g++ would warn of what no row
   /// holds.)
   template <class F, class... Rows>
-  [[nodiscard, gnu::noinline, gnu::cold]] static dynamic_partials
+  [[nodiscard]] DUET_OUT_OF_LINE DUET_COLD static dynamic_partials
   map_elements(F&& f, const Rows&... rows) {
     dynamic_partials result;
     result.grow(std::max({rows.size_...}));

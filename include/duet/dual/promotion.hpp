@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/types.hpp>
 #include <duet/core/scalar_traits.hpp>
 
 #include <concepts>
-#include <string_view>
 #include <type_traits>
 
 /// \file
@@ -24,11 +24,6 @@ struct screw_tag {};
 
 namespace detail {
 
-template <class Tag>
-[[nodiscard]] constexpr std::string_view tag_name() {
-  return __PRETTY_FUNCTION__;
-}
-
 /// True where the level of `A` nests outside that of `B`.
 ///
 /// The screw ε is outermost: a derivative dual is a scalar of the screw algebra. Among derivatives
@@ -41,8 +36,8 @@ template <class A, class B>
   if constexpr (std::is_same_v<A, screw_tag> || std::is_same_v<B, screw_tag>) {
     return std::is_same_v<A, screw_tag>;
   } else {
-    constexpr auto a = tag_name<A>();
-    constexpr auto b = tag_name<B>();
+    constexpr auto a = type_text<A>();
+    constexpr auto b = type_text<B>();
     return a.size() != b.size() ? a.size() > b.size() : a > b;
   }
 }

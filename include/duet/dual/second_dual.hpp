@@ -252,7 +252,7 @@ public:
   /// A function of K numbers, of value y and with slopes s_a and second derivatives c_ab there,
   /// where zeros survive: g = Σ s_a g_a, H = Σ s_a H_a + Σ c_ab g_a g_bᵀ.
   template <std::size_t K>
-  [[nodiscard, gnu::noinline]] static second_dual
+  [[nodiscard]] DUET_OUT_OF_LINE static second_dual
   composed(const T& y, const std::array<const second_dual*, K>& x, const std::array<T, K>& slopes,
            const std::array<std::array<T, K>, K>& curvatures) {
     second_dual result(y);

@@ -205,7 +205,7 @@ struct arc_ratio {
 namespace detail {
 
 template <class B>
-[[nodiscard, gnu::noinline]] std::array<B, 2> first_stumpff_pair_of_large(B s) {
+[[nodiscard]] DUET_OUT_OF_LINE std::array<B, 2> first_stumpff_pair_of_large(B s) {
   const B root = sqrt(s);
   const auto both = sine_and_cosine_of(root);
   return {both.cosine, both.sine / root};

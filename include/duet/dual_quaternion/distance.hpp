@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/distance.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -40,8 +40,8 @@ namespace detail {
 /// The distance of poses in units of length 2^e: squares of the largest and the smallest numbers
 /// are out of range.
 template <class T>
-[[nodiscard, gnu::cold]] T distance_of_extreme(const dual_quaternion<T>& a,
-                                               const dual_quaternion<T>& b, double length) {
+[[nodiscard]] DUET_COLD T distance_of_extreme(const dual_quaternion<T>& a,
+                                              const dual_quaternion<T>& b, double length) {
   using std::abs;
   using std::ldexp;
   using std::max;

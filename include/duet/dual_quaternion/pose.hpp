@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
@@ -36,7 +36,7 @@ template <class A, class B>
 }
 
 template <class Q>
-[[noreturn, gnu::cold, gnu::noinline]] void refuse_rotation(Q q) {
+[[noreturn]] DUET_COLD DUET_OUT_OF_LINE void refuse_rotation(Q q) {
   raise(invalid_input(
       message("duet: pose: the rotation ", q, " is no unit quaternion: normalized(q)")));
 }

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/given.hpp>

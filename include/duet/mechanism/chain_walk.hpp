@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/batch/vector_sine_cosine.hpp>
+#include <duet/core/compiler/vector.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/known_constant.hpp>
@@ -72,7 +73,7 @@ class half_turns {
   // Eight lanes would not make it faster.
   static constexpr int lanes = DUET_VECTOR_BYTES < 32 ? 2 : 4;
   static constexpr int vectors = at_once ? (most + lanes - 1) / lanes : 0;
-  typedef double packet __attribute__((vector_size(lanes * sizeof(double))));
+  using packet = vector_of<double, lanes>;
 
 public:
   /// \param size   how many joints there are

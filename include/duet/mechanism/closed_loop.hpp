@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/core/text/number_text.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
-#include <duet/core/refused.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/parts.hpp>

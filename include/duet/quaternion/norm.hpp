@@ -88,7 +88,7 @@ void require_not_zero(const quaternion<T>& q, const char* function) {
 
 /// f(near_one, e) of q = near_one · 2^e.
 template <class F, class T>
-[[nodiscard, gnu::cold, gnu::noinline]] auto of_scaled(F f, const quaternion<T>& q) {
+[[nodiscard]] DUET_COLD DUET_OUT_OF_LINE auto of_scaled(F f, const quaternion<T>& q) {
   const int e = binary_exponent(largest_component(innermost_of(q)));
   return f(scaled_down(q, e), e);
 }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/foreign.hpp>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>

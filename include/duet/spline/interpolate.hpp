@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/spline/blocks/products.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
@@ -79,7 +79,7 @@ template <class Equations, class Newton>
 /// The last row as the first one again.
 /// \throws invalid_row where it is another
 template <class T>
-[[nodiscard, gnu::cold, gnu::noinline]] std::vector<quaternion<T>>
+[[nodiscard]] DUET_COLD DUET_OUT_OF_LINE std::vector<quaternion<T>>
 closed(std::vector<quaternion<T>> q) {
   using std::sqrt;
   const bool is_opposite = innermost(dot(q.front(), q.back())) < 0;

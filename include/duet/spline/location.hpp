@@ -126,7 +126,7 @@ private:
     }
     return span_of(u);
   }
-  [[nodiscard, gnu::cold]] std::size_t span_beside(const R& u) const {
+  [[nodiscard]] DUET_COLD std::size_t span_beside(const R& u) const {
     if (contains(rounded_into_domain(u))) {
       return u < front() ? 0 : span_count() - 1;
     }

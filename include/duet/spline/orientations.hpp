@@ -21,7 +21,7 @@ namespace duet {
 /// A row of a table that no curve can be put through.
 class invalid_row : public invalid_input {
 public:
-  [[gnu::cold]] invalid_row(std::size_t row, const std::string& reason)
+  DUET_COLD invalid_row(std::size_t row, const std::string& reason)
       : invalid_input(detail::message("duet: row ", row, ": ", reason)), row_(row),
         reason_(reason) {}
 
@@ -68,11 +68,11 @@ template <class T>
 
 /// log and exp as they are, but compiled once: where curves are found, calls do not count.
 template <class T>
-[[nodiscard, gnu::noinline]] vector3<T> turn_vector(const quaternion<T>& q) {
+[[nodiscard]] DUET_OUT_OF_LINE vector3<T> turn_vector(const quaternion<T>& q) {
   return log_vector(q, "interpolate");
 }
 template <class T>
-[[nodiscard, gnu::noinline]] quaternion<T> turn_by(const vector3<T>& v) {
+[[nodiscard]] DUET_OUT_OF_LINE quaternion<T> turn_by(const vector3<T>& v) {
   return duet::exp(v);
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/batch/lanes.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
-#include <duet/core/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -177,7 +177,7 @@ private:
     bool is_at_rest;
   };
   /// \throws invalid_input where there is no going on
-  [[nodiscard, gnu::cold]] place place_beside(const R& u) const {
+  [[nodiscard]] DUET_COLD place place_beside(const R& u) const {
     const auto& spans = curve().spans();
     const bool is_before = u < spans.front();
     const std::size_t span = is_before ? 0 : spans.breaks().size() - 2;

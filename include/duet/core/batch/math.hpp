@@ -34,7 +34,7 @@ template <class F, class T, int W, class... Rest>
 
 /// By the C library.
 template <class T, int W>
-[[nodiscard, gnu::noinline]] sine_cosine<batch<T, W>> sine_cosine_of_lanes(batch<T, W> x) {
+[[nodiscard]] DUET_OUT_OF_LINE sine_cosine<batch<T, W>> sine_cosine_of_lanes(batch<T, W> x) {
   return {each_lane([](T a) { return std::sin(a); }, x),
           each_lane([](T a) { return std::cos(a); }, x)};
 }
@@ -56,7 +56,7 @@ sine_cosine_of_small(const batch<T, W>& x) {
 
 /// Where some lanes are large, infinite or not a number.
 template <class T, int W>
-[[nodiscard, gnu::noinline, gnu::cold]] sine_cosine<batch<T, W>>
+[[nodiscard]] DUET_OUT_OF_LINE DUET_COLD sine_cosine<batch<T, W>>
 sine_cosine_of_mixed(const batch<T, W> x, const lane_mask<T, W> is_small) {
   const auto little = sine_cosine_of_small(blended(is_small, x, batch<T, W>(0)));
   const auto large = sine_cosine_of_lanes(x);
@@ -68,7 +68,7 @@ sine_cosine_of_mixed(const batch<T, W> x, const lane_mask<T, W> is_small) {
 template <class T, int W>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<batch<T, W>>
 sine_cosine_of_batch(const batch<T, W>& x) {
-  if constexpr (std::same_as<T, double> && packets<T, W>::is_vector) {
+  if constexpr (std::same_as<T, double> && packets<T, W>::width > 1) {
     const auto is_small = x * x < vector_sine_limit * vector_sine_limit;
     if (all(is_small)) [[likely]] {
       return sine_cosine_of_small(x);
@@ -77,41 +77,6 @@ sine_cosine_of_batch(const batch<T, W>& x) {
   } else {
     return sine_cosine_of_lanes(x);
   }
-}
-
-template <class P>
-[[nodiscard]] DUET_ALWAYS_INLINE P root_of_packet(const P& x) {
-#if defined(__AVX512F__)
-  if constexpr (std::same_as<P, typename packet_type<double, 8>::packet>) {
-    return P(_mm512_maskz_sqrt_pd(__mmask8(-1), x));
-  }
-#endif
-#if defined(__AVX__)
-  if constexpr (std::same_as<P, typename packet_type<double, 4>::packet>) {
-    return P(_mm256_sqrt_pd(x));
-  } else if constexpr (std::same_as<P, typename packet_type<float, 8>::packet>) {
-    return P(_mm256_sqrt_ps(x));
-  }
-#endif
-#if defined(__SSE2__)
-  if constexpr (std::same_as<P, typename packet_type<double, 2>::packet>) {
-    return P(_mm_sqrt_pd(x));
-  } else if constexpr (std::same_as<P, typename packet_type<float, 4>::packet>) {
-    return P(_mm_sqrt_ps(x));
-  }
-#endif
-#if defined(__aarch64__)
-  if constexpr (std::same_as<P, typename packet_type<double, 2>::packet>) {
-    return P(vsqrtq_f64(float64x2_t(x)));
-  } else if constexpr (std::same_as<P, typename packet_type<float, 4>::packet>) {
-    return P(vsqrtq_f32(float32x4_t(x)));
-  }
-#endif
-  P result = x;
-  for (int i = 0; i < int(sizeof(P) / sizeof(x[0])); ++i) {
-    result[i] = std::sqrt(x[i]);
-  }
-  return result;
 }
 
 /// x without its sign bit.

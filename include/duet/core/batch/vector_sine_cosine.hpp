@@ -3,6 +3,8 @@
 
 #include <duet/core/config.hpp>
 
+#include <duet/core/compiler/vector.hpp>
+
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -27,17 +29,17 @@ struct sine_cosine {
 /// bits.
 inline constexpr double vector_sine_limit = 8e5;
 
-/// A vector of doubles, `typedef double V __attribute__((vector_size(32)))`.
+/// A `vector_of<double, W>`.
 template <class V>
 concept VectorOfDoubles = requires(V v) {
   requires std::same_as < std::remove_cvref_t<decltype(v[0])>,
   double > ;
-  v = v < v ? v : -v;
+  v = blended_packets(v < v, v, -v);
 };
 
 /// The lanes that are too large, by the C library.
 template <VectorOfDoubles V>
-[[gnu::noinline, gnu::cold]] inline void replace_sines_of_large(const V& x, sine_cosine<V>& y) {
+DUET_OUT_OF_LINE DUET_COLD inline void replace_sines_of_large(const V& x, sine_cosine<V>& y) {
   for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) {
     if (!(std::abs(x[i]) < vector_sine_limit)) {
       y.sine[i] = std::sin(x[i]);
@@ -88,11 +90,13 @@ template <VectorOfDoubles V>
   // cosine's.
   // Without comparing integers, which SSE2 cannot do in 64 bits: g++ would branch, lane by lane.
   using bits = decltype(x < x);
-  const bits quadrant = bits(shifted);
-  const bits swapped = (bits(sine) ^ bits(cosine)) & -(quadrant & 1);
+  const bits quadrant = with_bits_of<bits>(shifted);
+  const bits sine_bits = with_bits_of<bits>(sine), cosine_bits = with_bits_of<bits>(cosine);
+  const bits swapped = (sine_bits ^ cosine_bits) & -(quadrant & 1);
   const bits sine_sign = (quadrant << 62) & (bits{} + (1LL << 63));
   const bits cosine_sign = ((quadrant + 1) << 62) & (bits{} + (1LL << 63));
-  return {V(bits(sine) ^ swapped ^ sine_sign), V(bits(cosine) ^ swapped ^ cosine_sign)};
+  return {with_bits_of<V>(sine_bits ^ swapped ^ sine_sign),
+          with_bits_of<V>(cosine_bits ^ swapped ^ cosine_sign)};
 }
 
 template <VectorOfDoubles V>
@@ -116,7 +120,7 @@ template <VectorOfDoubles V>
   }
 #else
   using bits = decltype(x < x);
-  const V size = V(bits(x) & (bits{} + ~(1LL << 63)));
+  const V size = with_bits_of<V>(with_bits_of<bits>(x) & (bits{} + ~(1LL << 63)));
   if (are_all_below(size, 0x1.921fb54442d18p-1)) { // π/4: nothing to reduce
     // Compilers leave out a subtracted 0, but not −0, and then fuse other products with sums than
     // above: a lane would depend on its neighbours in the last bit.
@@ -155,7 +159,7 @@ private:
   static constexpr std::size_t vectors = (Count + lanes - 1) / lanes;
   /// More of them would be more code than processors keep decoded.
   static constexpr std::size_t most_in_line = 8;
-  typedef double packet __attribute__((vector_size(lanes * sizeof(double))));
+  using packet = vector_of<double, lanes>;
 
   template <std::size_t... K>
   DUET_ALWAYS_INLINE void take(const std::array<double, lanes * vectors>& x,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+
+#include <duet/core/compiler/pure_functions.hpp>
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
@@ -17,52 +19,6 @@
 /// number the slope is itself a series. Forms are chosen to be accurate over the whole domain.
 
 namespace duet::detail {
-
-// exp, log, √, sin and cos of built-in numbers, told to do nothing but compute.
-//
-// Each of the C library's functions may write errno, so clang reloads after every call what is in
-// memory, and no longer knows that two sines are of one x. Told that nobody looks at errno, it
-// keeps all in registers, makes √ one instruction, and one call of the sine and the cosine of one
-// x. g++ does well by itself.
-
-#if defined(__clang__) && defined(__GLIBC__)
-[[gnu::const]] double pure_exp(double) noexcept __asm__("exp");
-[[gnu::const]] double pure_log(double) noexcept __asm__("log");
-[[gnu::const]] double pure_sqrt(double) noexcept __asm__("sqrt");
-[[gnu::const]] double pure_sin(double) noexcept __asm__("sin");
-[[gnu::const]] double pure_cos(double) noexcept __asm__("cos");
-[[gnu::const]] float pure_exp(float) noexcept __asm__("expf");
-[[gnu::const]] float pure_log(float) noexcept __asm__("logf");
-[[gnu::const]] float pure_sqrt(float) noexcept __asm__("sqrtf");
-[[gnu::const]] float pure_sin(float) noexcept __asm__("sinf");
-[[gnu::const]] float pure_cos(float) noexcept __asm__("cosf");
-#endif
-
-template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE T pure_exp(const T& x) {
-  using std::exp;
-  return exp(x);
-}
-template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE T pure_log(const T& x) {
-  using std::log;
-  return log(x);
-}
-template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE T pure_sqrt(const T& x) {
-  using std::sqrt;
-  return sqrt(x);
-}
-template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE T pure_sin(const T& x) {
-  using std::sin;
-  return sin(x);
-}
-template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE T pure_cos(const T& x) {
-  using std::cos;
-  return cos(x);
-}
 
 /// 1 − x². Factors are accurate near ±1; near 0 the derivative of their product would cancel.
 template <class T>

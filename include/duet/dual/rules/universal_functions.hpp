@@ -30,7 +30,7 @@ using universal_values = std::array<T, Count>;
 
 /// c₀, c₁ and c₁′ beyond z = 1.
 template <class R>
-[[nodiscard, gnu::noinline]] std::array<R, 3> first_stumpff_functions_of_large(R z) {
+[[nodiscard]] DUET_OUT_OF_LINE std::array<R, 3> first_stumpff_functions_of_large(R z) {
   const auto c = first_stumpff_pair(z);
   return {c[0], c[1], rule::stumpff<1>{}.slope(z, c[1])};
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+
+#include <duet/core/compiler/vector.hpp>
 #include <duet/core/scalar_traits.hpp>
 
 #include <array>
@@ -67,7 +69,7 @@ struct packing<T, N> {
   static constexpr int bytes = N * int(sizeof(T)) > 128 ? DUET_BATCH_BYTES : DUET_VECTOR_BYTES;
   static constexpr int native = bytes / int(sizeof(T));
   static constexpr int width = ceil_to_power_of_two(N) < native ? ceil_to_power_of_two(N) : native;
-  typedef T packet __attribute__((vector_size(width * sizeof(T))));
+  using packet = vector_of<T, width>;
 
   [[nodiscard]] static T get(const packet* packets, int i) { return packets[i / width][i % width]; }
   static void set(packet* packets, int i, T x) { packets[i / width][i % width] = x; }
@@ -176,7 +178,7 @@ public:
       unrolled<count>([&](int i)
                           DUET_INLINE_LAMBDA { result.packets_[i] = f(rows.packets_[i]...); });
       if constexpr (sizeof...(Rows) > 1 && is_reread(count)) {
-        __asm__ volatile("" ::: "memory");
+        DUET_REREAD_MEMORY();
       }
     }
     return result;

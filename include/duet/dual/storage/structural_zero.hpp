@@ -2,6 +2,8 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+
+#include <duet/core/compiler/vector.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 
@@ -69,22 +71,16 @@ template <class T>
 }
 
 /// slope · partial for a built-in number, a batch or a packet of them, without a branch: what stays
-/// in one block is merged and scheduled better. A single number takes a packet too, for g++ makes a
-/// branch of its conditional expression.
+/// in one block is merged and scheduled better.
 template <class T, class P>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr P masked_product(const T& slope, const P& partial) {
   if constexpr (lane_traits<T>::is_batch) {
     return blended(partial != T(0), T(slope * partial), T(0));
   } else if constexpr (!std::same_as<P, T>) {
-    return partial != T(0) ? partial * slope : P{};
+    return blended_packets(partial != T(0), P(partial * slope), P{});
   } else {
-    if constexpr (sizeof(T) <= sizeof(double)) {
-      if (!std::is_constant_evaluated()) {
-        typedef T packet __attribute__((vector_size(16)));
-        const T product = slope * partial;
-        const packet mask = {partial, partial}, products = {product, product};
-        return (mask != T(0) ? products : packet{})[0];
-      }
+    if (!std::is_constant_evaluated()) {
+      return unless_zero(partial, T(slope * partial));
     }
     return partial == T(0) ? T(0) : T(slope * partial);
   }
@@ -104,11 +100,9 @@ template <class T>
 /// of 512-bit packets cost more than those of others, and those of 128 bits take copies of their
 /// operands; clang does without that branch better where packets are larger.
 inline constexpr int branch_limit = DUET_VECTOR_BYTES < 32 ? 0 : DUET_VECTOR_BYTES < 64 ? 2 : 1;
-#ifdef __clang__
-inline constexpr int mask_limit = DUET_VECTOR_BYTES > 16 ? std::numeric_limits<int>::max() : 0;
-#else
-inline constexpr int mask_limit = branch_limit;
-#endif
+inline constexpr int mask_limit = !masks_beat_branches     ? branch_limit
+                                  : DUET_VECTOR_BYTES > 16 ? std::numeric_limits<int>::max()
+                                                           : 0;
 
 /// Up to this many packets that is done in place: a call would cost the registers of what lives on
 /// after it, though it is never made.
@@ -179,8 +173,8 @@ template <class Kernel, class Row, class T>
 /// Element by element. Out of line and by value: were the rows passed by reference, they would live
 /// in memory also where all slopes are finite.
 template <class Kernel, class Row, class... Rows>
-[[nodiscard, gnu::noinline, gnu::cold]] constexpr Row guarded_chain(Kernel kernel, Row row,
-                                                                    Rows... rows) {
+[[nodiscard]] DUET_OUT_OF_LINE DUET_COLD constexpr Row guarded_chain(Kernel kernel, Row row,
+                                                                     Rows... rows) {
   const auto product = [](const auto& slope, const auto& p) { return guarded_product(slope, p); };
   return Row::map_elements([&](const auto&... p) { return kernel(product, p...); }, row, rows...);
 }
@@ -227,17 +221,15 @@ template <class T, class Row>
 
 /// sum(product) with a product in which zeros on the right survive. Where the probe, a sum of all
 /// factors on the left, is finite, plain products do; the processor guesses that and the products
-/// need not wait for masks. clang makes less of the branch than of masks.
+/// need not wait for masks.
 template <class T, class Sum>
 DUET_ALWAYS_INLINE constexpr auto with_surviving_products([[maybe_unused]] const T& probe,
                                                           const Sum& sum) {
-#ifndef __clang__
-  if constexpr (std::floating_point<T>) {
+  if constexpr (!masks_beat_branches && std::floating_point<T>) {
     if (is_all_finite(probe)) [[likely]] {
       return sum([](const T& a, const T& b) DUET_INLINE_LAMBDA { return T(a * b); });
     }
   }
-#endif
   return sum([](const T& a, const T& b) DUET_INLINE_LAMBDA { return surviving_product(a, b); });
 }
 

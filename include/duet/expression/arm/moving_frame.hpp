@@ -2,6 +2,8 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+
+#include <duet/core/compiler/vector.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -24,7 +26,7 @@ namespace duet::expression::detail {
 
 #if DUET_VECTOR_BYTES >= 32
 
-typedef double four_lanes __attribute__((vector_size(32)));
+using four_lanes = duet::detail::vector_of<double, 4>;
 
 [[nodiscard]] DUET_ALWAYS_INLINE four_lanes lanes_of(double a, double b, double c, double d) {
   return four_lanes{a, b, c, d};
@@ -33,12 +35,12 @@ typedef double four_lanes __attribute__((vector_size(32)));
 /// Some lanes of a, which are 0 to 3, and of b, 4 to 7.
 template <int I, int J, int K, int L>
 [[nodiscard]] DUET_ALWAYS_INLINE four_lanes shuffled(const four_lanes& a, const four_lanes& b) {
-  return __builtin_shufflevector(a, b, I, J, K, L);
+  return duet::detail::lanes_taken<I, J, K, L>(a, b);
 }
 
 #else
 
-typedef double two_lanes __attribute__((vector_size(16)));
+using two_lanes = duet::detail::vector_of<double, 2>;
 
 struct four_lanes {
   two_lanes lower, upper;
@@ -70,8 +72,9 @@ template <int I>
 /// Some lanes of a, which are 0 to 3, and of b, 4 to 7.
 template <int I, int J, int K, int L>
 [[nodiscard]] DUET_ALWAYS_INLINE four_lanes shuffled(const four_lanes& a, const four_lanes& b) {
-  return {__builtin_shufflevector(half_with<I>(a, b), half_with<J>(a, b), I % 2, 2 + J % 2),
-          __builtin_shufflevector(half_with<K>(a, b), half_with<L>(a, b), K % 2, 2 + L % 2)};
+  using duet::detail::lanes_taken;
+  return {lanes_taken<I % 2, 2 + J % 2>(half_with<I>(a, b), half_with<J>(a, b)),
+          lanes_taken<K % 2, 2 + L % 2>(half_with<K>(a, b), half_with<L>(a, b))};
 }
 
 #endif

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/types.hpp>
 #include <duet/expression/tree/node.hpp>
 
 #include <boost/mp11/algorithm.hpp>
@@ -64,7 +65,7 @@ class node_list {
   // addresses, is a constant under sanitizers too. With one more at the end, as there are no arrays
   // of none.
   template <class Node>
-  static constexpr bool is_it[] = {__is_same(Nodes, Node)..., false};
+  static constexpr bool is_it[] = {DUET_IS_SAME(Nodes, Node)..., false};
 
 public:
   using places = std::make_integer_sequence<int, count>;

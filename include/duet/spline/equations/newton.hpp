@@ -101,7 +101,7 @@ private:
   }
 
   /// λ from 0 to 1: turns to the power λ, where each solution is the start for the next.
-  [[gnu::cold, gnu::noinline]] void continue_from_smaller_turns() {
+  DUET_COLD DUET_OUT_OF_LINE void continue_from_smaller_turns() {
     R lambda(0);
     R h(0.25);
     x_.assign(x_.size(), unknown::Zero());
@@ -135,7 +135,7 @@ private:
     }
   }
 
-  [[noreturn, gnu::cold, gnu::noinline]] void fail(const R& lambda) const {
+  [[noreturn]] DUET_COLD DUET_OUT_OF_LINE void fail(const R& lambda) const {
     const auto [angle, row] = full_.largest_turn();
     const std::string found =
         lambda > 0

@@ -11,4 +11,9 @@
 /// Stands before a declaration whose use is the mistake. It has no body, and a result of the type
 /// that is expected, as far as that is known: else compilers say first that nothing can be done
 /// with it, as in `std::cout << f(x)` or `const auto [y, dy] = f(x)`.
+/// In plain C++20 it is said as a warning, and then what has no body does not link.
+#ifdef DUET_PORTABLE
+#define DUET_REFUSED(sentence) [[deprecated("duet: " sentence)]]
+#else
 #define DUET_REFUSED(sentence) __attribute__((unavailable("duet: " sentence)))
+#endif

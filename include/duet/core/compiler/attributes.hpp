@@ -1,0 +1,55 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiler/target.hpp>
+
+/// \file
+/// What is said to compilers beside the program. In plain C++20 all of it is left out.
+
+/// The arithmetic of small numbers must be inlined whatever the compiler's size heuristics think:
+/// a call spills every partial to memory. Where nothing is optimised, it would only make
+/// compilation slower and the steps of a debugger longer.
+#if defined(__OPTIMIZE__) && !defined(DUET_PORTABLE)
+#define DUET_ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define DUET_ALWAYS_INLINE inline
+#endif
+
+/// Inlines a lambda as DUET_ALWAYS_INLINE does a function; stands between its parameters and its
+/// body.
+#if defined(__OPTIMIZE__) && !defined(DUET_PORTABLE)
+#define DUET_INLINE_LAMBDA __attribute__((always_inline))
+#else
+#define DUET_INLINE_LAMBDA
+#endif
+
+/// At the beginning of a body: its products and sums may be fused with those around them, where the
+/// target multiplies and adds in one step. g++ does so by itself; clang does it within one
+/// expression only, as if bodies were not inlined. Defined as nothing, -ffp-contract alone decides.
+#ifndef DUET_CONTRACTED
+#if defined(__clang__) && !defined(DUET_PORTABLE)
+#define DUET_CONTRACTED _Pragma("clang fp contract(fast)")
+#else
+#define DUET_CONTRACTED
+#endif
+#endif
+
+/// Attributes: a function that stays a call, one that is hardly ever called, a variable that stays
+/// though nobody reads it.
+#ifdef DUET_PORTABLE
+#define DUET_OUT_OF_LINE
+#define DUET_COLD
+#define DUET_KEPT
+#else
+#define DUET_OUT_OF_LINE [[gnu::noinline]]
+#define DUET_COLD [[gnu::cold]]
+#define DUET_KEPT [[gnu::used]]
+#endif
+
+/// Tells the compiler that memory may have changed, so that it reads again what it would have
+/// copied to the stack.
+#ifdef DUET_PORTABLE
+#define DUET_REREAD_MEMORY()
+#else
+#define DUET_REREAD_MEMORY() __asm__ volatile("" ::: "memory")
+#endif
