@@ -174,6 +174,9 @@ TEST_CASE("sine and cosine are right to the last place, whatever the other lanes
   using wide = duet_test::real_50;
   duet_test::random_source random(1);
   duet_test::worst_error worst("sin, cos");
+  // Unknown to the compiler, whose own sine may differ from the C library's.
+  volatile double unknown = 1e9;
+  const double large = unknown;
   const auto check = [&](double x) {
     const B sine = sin(B(x)), cosine = cos(B(x));
     const wide s = sin(wide(x)), c = cos(wide(x));
@@ -181,10 +184,10 @@ TEST_CASE("sine and cosine are right to the last place, whatever the other lanes
     worst.add(duet_test::ulps(cosine[2], c, wide(abs(c))), x);
     // Beside a lane that the kernel is not made for.
     B mixed(x);
-    mixed.set(3, 1e9);
+    mixed.set(3, large);
     CHECK(sin(mixed)[1] == sine[1]);
     CHECK(cos(mixed)[2] == cosine[2]);
-    CHECK(sin(mixed)[3] == std::sin(1e9));
+    CHECK(sin(mixed)[3] == std::sin(large));
   };
   for (int i = 0; i < 300; ++i) {
     const double u = random.uniform(-1, 1);

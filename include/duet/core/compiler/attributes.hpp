@@ -46,6 +46,14 @@
 #define DUET_KEPT [[gnu::used]]
 #endif
 
+/// Before a member that takes no room where its type is empty. For the sake of old layouts MSVC has
+/// another name for it and ignores the standard's.
+#ifdef _MSC_VER
+#define DUET_NO_UNIQUE_ADDRESS [[msvc::no_unique_address]]
+#else
+#define DUET_NO_UNIQUE_ADDRESS [[no_unique_address]]
+#endif
+
 /// Tells the compiler that memory may have changed, so that it reads again what it would have
 /// copied to the stack.
 #ifdef DUET_PORTABLE

@@ -208,7 +208,7 @@ public:
   detail::argument<NodeType, detail::value_of_kind<NodeType::kind_of>> operator=(const T&) const;
 
 private:
-  [[no_unique_address]] Held held_;
+  DUET_NO_UNIQUE_ADDRESS Held held_;
 };
 
 /// A formula of what is already a node.
