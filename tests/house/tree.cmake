@@ -131,9 +131,29 @@ foreach(header IN LISTS headers)
   endforeach()
 endforeach()
 
-# Before C++20 every header says so within five lines: it comes to core/config.hpp first of all, by
-# no more than two others. (That compilers then stop is seen by must_fail/core/before_20.)
+# What only GNU's compilers have, what names a compiler or a processor, stands in core/compiler/ alone: of
+# identifiers with two underscores these few do elsewhere.
+set(standard_words __cplusplus __cpp_exceptions __cpp_rtti __has_include __FAST_MATH__ __FINITE_MATH_ONLY__ __VA_ARGS__)
 foreach(header IN LISTS headers)
+  if(header MATCHES "^duet/core/compiler/")
+    continue()
+  endif()
+  file(READ include/${header} text)
+  string(REGEX REPLACE "//[^\n]*" "" code "${text}")
+  string(REGEX MATCHALL "__[A-Za-z][A-Za-z0-9_]*|_mm[0-9]*_[a-z]|_Pragma|gnu::|#pragma [^o][^\n]*|[a-z0-9_]+intrin\\.h|arm_neon" words "${code}")
+  list(REMOVE_DUPLICATES words)
+  list(REMOVE_ITEM words ${standard_words})
+  if(words)
+    problem("${header} has ${words}, which is for core/compiler/")
+  endif()
+endforeach()
+
+# Before C++20 every header says so within five lines: it comes to core/config.hpp first of all, by
+# no more than two others, or is what that includes itself. (That compilers then stop is seen by must_fail/core/before_20.)
+foreach(header IN LISTS headers)
+  if("<${header}>" IN_LIST includes_of_duet/core/config.hpp)
+    continue()
+  endif()
   set(first ${header})
   foreach(step RANGE 2)
     list(GET includes_of_${first} 0 first)

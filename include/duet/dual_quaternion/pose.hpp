@@ -1,8 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
+
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>

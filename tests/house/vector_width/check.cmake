@@ -1,7 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# The layout of packed duals follows the vector width, so files built for different widths must not
-# link: they would corrupt each other's memory.
+# The layout of packed duals follows the vector width and whether vectors are the compiler's, so files
+# built in different ways must not link: they would corrupt each other's memory.
 #
 # cmake -Dcompile=<compiler and flags> -Dprocessor=<…> -P check.cmake
 
@@ -25,7 +25,7 @@ function(link library_flag user_flag result_variable log_variable)
   set(${log_variable} "${log}" PARENT_SCOPE)
 endfunction()
 
-foreach(flag IN ITEMS -msse2 -mavx)
+foreach(flag IN ITEMS -msse2 -mavx -DDUET_PORTABLE)
   link(${flag} ${flag} result log)
   if(NOT result EQUAL 0)
     message("${log}")
@@ -33,10 +33,12 @@ foreach(flag IN ITEMS -msse2 -mavx)
   endif()
 endforeach()
 
-link(-mavx -msse2 result log)
-if(result EQUAL 0)
-  message(FATAL_ERROR "files built with and without -mavx link, though their duals differ")
-elseif(NOT log MATCHES "undefined reference to [^\n]*first_partial")
-  message("${log}")
-  message(FATAL_ERROR "files built with and without -mavx fail to link for another reason")
-endif()
+foreach(flag IN ITEMS -mavx -DDUET_PORTABLE)
+  link(${flag} -msse2 result log)
+  if(result EQUAL 0)
+    message(FATAL_ERROR "files built with and without ${flag} link, though their duals differ")
+  elseif(NOT log MATCHES "undefined reference to [^\n]*first_partial")
+    message("${log}")
+    message(FATAL_ERROR "files built with and without ${flag} fail to link for another reason")
+  endif()
+endforeach()
