@@ -60,8 +60,9 @@ void print_batches() {
     const auto y = batch::from_lanes([](int i) { return static_cast<T>(input(i + 9)); });
     const auto chosen = select(
         x < y, [&] { return x * y; }, [&] { return x / y; });
-    for (const batch& z : {x + y, x - y, -x, chosen, sin(x), cos(x), sqrt(abs(x)), max(x, y),
-                           exp(y), blended(!(x <= y) || y == y, x, y), blended(x != x, y, -x)}) {
+    for (const batch& z :
+         {x + y, x - y, -x, chosen, sin(x), cos(x), sqrt(abs(x)), max(x, y), exp(y),
+          blended(!(x <= y) || y == y, x, y), blended(x != x, y, -x), blended(x <= x, x, y)}) {
       for (int i = 0; i < W; ++i) {
         print(double(z[i]));
       }

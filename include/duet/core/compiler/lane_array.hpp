@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -23,8 +24,8 @@ template <class T, int W>
 struct lane_array {
   T lanes[std::size_t(W)];
 
-  constexpr const T& operator[](int i) const { return lanes[i]; }
-  constexpr T& operator[](int i) { return lanes[i]; }
+  constexpr const T& operator[](std::integral auto i) const { return lanes[i]; }
+  constexpr T& operator[](std::integral auto i) { return lanes[i]; }
 
   /// Lane i is f(rows[i]...).
   template <class F, class... Rows>
