@@ -10,8 +10,8 @@ set(CMAKE_PREFIX_PATH /usr)
 set(CMAKE_CXX_COMPILER clang++)
 set(CMAKE_CXX_COMPILER_TARGET x86_64-w64-windows-gnu)
 file(GLOB cross /usr/lib/gcc/x86_64-w64-mingw32/*-posix)
-set(CMAKE_CXX_FLAGS_INIT
-  "-stdlib++-isystem ${cross}/include/c++ -stdlib++-isystem ${cross}/include/c++/x86_64-w64-mingw32")
+# (The first flag is harmless: with -Werror in CXXFLAGS CMake drops the one behind that when it looks for folders.)
+set(CMAKE_CXX_FLAGS_INIT "-fexceptions -stdlib++-isystem ${cross}/include/c++ -stdlib++-isystem ${cross}/include/c++/x86_64-w64-mingw32 -Wno-unused-command-line-argument")
 # The GNU linker takes minutes.
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-fuse-ld=lld -static -pthread -L${cross} -B${cross}")
 find_program(DUET_WINE NAMES wine64 wine PATHS /usr/lib/wine)
