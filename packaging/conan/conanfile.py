@@ -37,6 +37,7 @@ class DuetRecipe(ConanFile):
     def requirements(self):
         self.requires("eigen/[>=3.4 <6]", transitive_headers=True)
         self.requires("boost/[>=1.74 <2]", transitive_headers=True)
+        self.requires("expat/[>=2.5 <3]", transitive_headers=True, transitive_libs=True)
 
     def validate(self):
         check_min_cppstd(self, 20)

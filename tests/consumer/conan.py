@@ -44,8 +44,8 @@ class ConanFile:
         self.cpp = SimpleNamespace(build=SimpleNamespace(bindir="."))
         self.required, self.cache, self.generated, self.least_standard = [], {}, [], None
 
-    def requires(self, reference, transitive_headers=False):
-        self.required.append((reference, transitive_headers))
+    def requires(self, reference, transitive_headers=False, transitive_libs=False):
+        self.required.append((reference, transitive_headers, transitive_libs))
 
     def run(self, command, env):
         check(env == "conanrun", "programs run in the environment of the package")
@@ -130,7 +130,9 @@ for compiled in (False, True):
     for step in ("export_sources", "configure", "layout", "requirements", "validate", "generate", "build", "package",
                  "package_id", "package_info"):
         getattr(recipe, step)()
-    check(sorted(recipe.required) == [("boost/[>=1.74 <2]", True), ("eigen/[>=3.4 <6]", True)], "what it requires")
+    check(sorted(recipe.required) == [
+        ("boost/[>=1.74 <2]", True, False), ("eigen/[>=3.4 <6]", True, False), ("expat/[>=2.5 <3]", True, True)],
+        "what it requires")
     check(recipe.least_standard == 20 and recipe.generated == ["CMakeDeps", "CMakeToolchain"], "C++20, by CMake")
     check(recipe.is_same_for_all == (not compiled), "headers are the same for all settings, the library is not")
     cache = (Path(recipe.build_folder) / "CMakeCache.txt").read_text()
@@ -154,4 +156,4 @@ test.tested_reference_str = f"duet/{VERSION}"
 test.cache["duet_DIR"] = str(package / headers.cpp_info.builddirs[0])
 for step in ("requirements", "layout", "build", "test"):
     getattr(test, step)()
-check(test.required == [(f"duet/{VERSION}", False)], "what is tested")
+check(test.required == [(f"duet/{VERSION}", False, False)], "what is tested")

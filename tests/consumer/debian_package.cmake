@@ -17,7 +17,7 @@ run(${CMAKE_CPACK_COMMAND} -G DEB --config ${folder}/build/CPackConfig.cmake -B 
 set(package ${folder}/libduet-dev_${version}-1_all.deb)
 
 foreach(field IN ITEMS "Package;libduet-dev" "Version;${version}-1" "Architecture;all" "Section;libdevel"
-    "Depends;libeigen3-dev (>= 3.4), libboost-dev (>= 1.74)")
+    "Depends;libeigen3-dev (>= 3.4), libboost-dev (>= 1.74), libexpat1-dev")
   list(POP_FRONT field name)
   run(${dpkg-deb} --field ${package} ${name})
   string(STRIP "${output}" output)

@@ -6,7 +6,7 @@
 cmake_minimum_required(VERSION 3.22)
 
 # What each layer may include; `Eigen` and `boost` stand for those libraries, single headers of
-# which may be named. A layer may use whatever a layer it uses may.
+# which may be named, as others. A layer may use whatever a layer it uses may.
 set(core "")
 set(dual core)
 set(derivative dual Eigen)
@@ -15,7 +15,7 @@ set(dual_quaternion quaternion boost/math)
 set(comparison dual_quaternion)
 set(expression dual_quaternion boost/mp11)
 set(spline dual_quaternion)
-set(mechanism dual_quaternion boost/property_tree)
+set(mechanism dual_quaternion expat.h)
 set(planning mechanism)
 set(interop comparison expression spline planning boost)
 set(layers core dual derivative quaternion dual_quaternion comparison expression spline mechanism
@@ -117,6 +117,10 @@ foreach(header IN LISTS headers)
       elseif(CMAKE_MATCH_1 STREQUAL "interop" AND NOT layer STREQUAL "interop")
         problem("${header} includes ${include}, but interop/ is for users alone")
       endif()
+    elseif(include STREQUAL "<expat.h>")
+      if(NOT expat.h IN_LIST ${layer})
+        problem("${header} includes ${include}, but ${layer}/ does without that library")
+      endif()
     elseif(include MATCHES "^<((Eigen|boost)[/a-z0-9_]*)")
       set(library ${CMAKE_MATCH_2})
       string(REGEX MATCH "^[^/]*/?[^/]*" header_or_folder ${CMAKE_MATCH_1})
@@ -126,7 +130,7 @@ foreach(header IN LISTS headers)
       endif()
     elseif(NOT include MATCHES "^<([a-z_]+|(e|i)mmintrin\\.h|arm_neon\\.h|math\\.h|unistd\\.h)>$"
            AND NOT include MATCHES "^\"duet: [^\"]*needs [^\"]*: compile with[^\"]*\"$")
-      problem("${header} includes ${include}, which is neither <duet/…>, nor Eigen, Boost or std")
+      problem("${header} includes ${include}, which is neither <duet/…>, nor Eigen, Boost, expat or std")
     endif()
   endforeach()
 endforeach()

@@ -1,17 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Arithmetic, rotations, curves and arms compile without exceptions and without RTTI, and give what
-// they are known to; errors end in the handler. See without_exceptions.cmake.
+// Arithmetic, rotations, curves, arms and robot descriptions compile without exceptions and without
+// RTTI, and give what they are known to; errors end in the handler. See without_exceptions.cmake.
 //
 // usage: without_exceptions [handled|unhandled|returns <error>]
 
 #include <duet/duet.hpp>
+#include <duet/mechanism/urdf.hpp>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string_view>
 #include <vector>
 
@@ -82,6 +84,16 @@ void check_arms() {
         "pose of the joints found");
 }
 
+void check_descriptions() {
+  std::ofstream("without_exceptions.urdf") << R"(<robot><link name="a"/><link name="b"/>
+    <joint name="q" type="prismatic"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="2"/></joint></robot>)";
+  const auto arm = read_urdf("without_exceptions.urdf", "a", "b");
+  check(are_close(translation(arm.pose(std::vector<double>{.5})), vector3<double>(0, 0, .5)) &&
+            arm.limits(0).upper == 2,
+        "an arm from a file");
+}
+
 void make(std::string_view error) {
   if (error == "zero") {
     (void)normalized(quaternion<double>(0, 0, 0, 0));
@@ -91,6 +103,9 @@ void make(std::string_view error) {
     evaluate<cumulative_bspline<double>>(a_curve(), u, values);
   } else if (error == "joints") {
     (void)robots::panda().pose(std::vector<double>{1, 2});
+  } else if (error == "file") {
+    std::ofstream("without_exceptions.urdf") << "<robot><link name='a'>\n</robot>";
+    (void)read_urdf("without_exceptions.urdf", "a", "a");
   }
 }
 
@@ -114,5 +129,6 @@ int main(int count, char** words) {
   check_arithmetic_and_rotations();
   check_curves();
   check_arms();
+  check_descriptions();
   std::printf("all as expected\n");
 }

@@ -5,8 +5,12 @@
 #include "support/allocations.hpp"
 
 #include <duet/mechanism/sweep.hpp>
+#include <duet/mechanism/urdf.hpp>
 
 #include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
 #include <vector>
 
 namespace test_mechanism_allocation {
@@ -41,6 +45,30 @@ TEST_CASE("sweeps on one core allocate nothing") {
   const std::size_t during = duet_test::allocations - before;
   CHECK(during == 0);
   CHECK(columns.back().norm() > 1);
+}
+
+TEST_CASE("memory and time of descriptions grow with their length, not its square") {
+  const std::string path = "test_mechanism_allocation.urdf";
+  const auto allocations_of = [&](int count) {
+    std::string text = "<robot name=\"r\"><link name=\"l0\"/>";
+    for (int i = 1; i <= count; ++i) {
+      const std::string name = "l" + std::to_string(i);
+      text += "<link name=\"" + name + "\"/><joint type=\"fixed\" name=\"" + name +
+              "\"><parent link=\"l" + std::to_string(i - 1) + "\"/><child link=\"" + name +
+              "\"/></joint>";
+    }
+    std::ofstream(path) << text << "</robot>";
+    const std::size_t before = duet_test::allocations;
+    CHECK(read_urdf(path, "l0", "l" + std::to_string(count)).links().size() ==
+          std::size_t(count + 1));
+    return double(duet_test::allocations - before);
+  };
+  const double few = allocations_of(2500);
+  const double many = allocations_of(20000);
+  CHECK(few > 2500); // each has its own names
+  CHECK(many / few > 7.9);
+  CHECK(many / few < 8.1);
+  std::filesystem::remove(path);
 }
 
 } // namespace test_mechanism_allocation

@@ -49,21 +49,22 @@ please="duet: not all that is needed is here. Please install it:"
 
 # Nothing there: all of it, each package once.
 system fedora 1000 dnf
-expect fedora 1 "$please sudo dnf install gcc-c++ cmake ninja-build gnuplot python3 eigen3-devel boost-devel doctest-devel" demo
-expect fedora 1 "$please sudo dnf install gcc-c++ cmake ninja-build gnuplot python3 eigen3-devel boost-devel doctest-devel clang glibc-locale-source" \
+expect fedora 1 "$please sudo dnf install gcc-c++ cmake ninja-build gnuplot python3 eigen3-devel boost-devel expat-devel doctest-devel" demo
+expect fedora 1 "$please sudo dnf install gcc-c++ cmake ninja-build gnuplot python3 eigen3-devel boost-devel expat-devel doctest-devel clang glibc-locale-source" \
   setup clang locales
 system arch 1000 pacman
-expect arch 1 "$please sudo pacman -S --needed gcc cmake ninja gnuplot python eigen boost doctest" demo --help
+expect arch 1 "$please sudo pacman -S --needed gcc cmake ninja gnuplot python eigen boost expat doctest" demo --help
 system mac 501 brew "[ \"\$*\" = --prefix ] && echo /opt/homebrew"
 expect mac 1 "$please brew install gcc cmake ninja gnuplot python eigen boost doctest" demo
 system none 1000 true
-expect none 1 "duet: not all that is needed is here. There is no apt-get, dnf, pacman or brew here; Debian calls it: g++ cmake ninja-build gnuplot-nox python3 libeigen3-dev libboost-dev libboost-program-options-dev doctest-dev" demo
+expect none 1 "duet: not all that is needed is here. There is no apt-get, dnf, pacman or brew here; Debian calls it: g++ cmake ninja-build gnuplot-nox python3 libeigen3-dev libboost-dev libexpat1-dev libboost-program-options-dev doctest-dev" demo
 
 # Commands there, headers in part; root needs no sudo.
 system container 0 dnf
 for name in g++ cmake ninja gnuplot python3; do command_of container $name; done
 header_of container /usr/include/eigen3/Eigen/Core
 header_of container /usr/local/include/doctest/doctest.h
+header_of container /usr/include/expat.h
 header_of container /usr/include/boost/version.hpp # and no program options
 expect container 1 "$please dnf install boost-devel" setup
 
@@ -85,7 +86,7 @@ for name in debian ubuntu; do
   command_of $name cut 'echo 12' # the release of g++
   ln -s "$(command -v env)" "$folder/$name/bin/env"
 done
-missing="gnuplot-nox libeigen3-dev libboost-dev libboost-program-options-dev"
+missing="gnuplot-nox libeigen3-dev libboost-dev libexpat1-dev libboost-program-options-dev"
 installing="duet: installing $missing
 apt-get update -qq
 apt-get install -y -qq --no-install-recommends $missing"

@@ -33,9 +33,9 @@ template <int Capacity>
 class urdf_chain : public serial_chain<-Capacity> {
 public:
   urdf_chain(const serial_chain<-Capacity>& chain, std::vector<std::string> joint_names,
-             std::vector<urdf_link> links)
+             std::vector<urdf_link> links, std::vector<urdf_unknown_element> unknown = {})
       : serial_chain<-Capacity>(chain), joint_names_(std::move(joint_names)),
-        links_(std::move(links)) {}
+        links_(std::move(links)), unknown_(std::move(unknown)) {}
 
   using serial_chain<-Capacity>::link;
   /// The frame of a link by its name, those that are fixed to another one included.
@@ -58,27 +58,32 @@ public:
   [[nodiscard]] const std::vector<std::string>& joint_names() const { return joint_names_; }
   /// All links from the base to the tip, each with its name and frame.
   [[nodiscard]] const std::vector<urdf_link>& links() const { return links_; }
+  /// Elements of the whole file that were not read, as URDF has them not.
+  [[nodiscard]] const std::vector<urdf_unknown_element>& unknown() const { return unknown_; }
 
 private:
   std::vector<std::string> joint_names_;
   std::vector<urdf_link> links_;
+  std::vector<urdf_unknown_element> unknown_;
 };
 
 /// The chain from one link of a robot description to another, both by their names; metres and
-/// radians. Joint limits are those of the `limit` elements.
+/// radians. Joint limits are those of `limit`, narrowed by the soft ones of `safety_controller`; a
+/// number beyond ±1e6 stands for none. XML is read by expat: programs link it, or duet::compiled.
 ///
 /// \tparam Capacity  how many moving joints there may be; their number is known at run time
-/// \throws file_error with the element for what cannot be read: XML that is not well
-/// formed, nested more than 100 deep or has a document type, missing elements and
-/// attributes, bad numbers, axes that are no unit vectors, unknown links, cycles, links with two
-/// joints above them, joints that mimic others or are of other kinds than revolute, continuous,
-/// prismatic and fixed; and for too many joints
+/// \throws file_error with line and element for what is wrong anywhere in the file: XML that is not
+/// well formed, nested more than 100 deep or has a document type; attributes of links and joints
+/// that URDF has not; missing elements and attributes, and repeated ones; names that are there
+/// twice; links that are not there, or have two joints above them; and in the chain for bad
+/// numbers, axes that are no unit vectors, cycles, joints that mimic others or are of other kinds
+/// than revolute, continuous, prismatic and fixed; and for too many joints
 template <int Capacity = 16>
 [[nodiscard]] urdf_chain<Capacity> read_urdf(const std::string& path, const std::string& base,
                                              const std::string& tip) {
   auto read = detail::read_urdf_contents<detail::xml_library>(path, base, tip, Capacity);
   return {serial_chain<-Capacity>(std::span<const joint<double>>(read.joints)),
-          std::move(read.joint_names), std::move(read.links)};
+          std::move(read.joint_names), std::move(read.links), std::move(read.unknown)};
 }
 
 /// The links and joints of a robot description, to choose a base and a tip from.

@@ -22,10 +22,18 @@ struct urdf_joint_name {
   std::string child;  ///< the link that it moves
 };
 
+/// An element of a robot description that URDF has not, perhaps misspelt: nothing is read of it.
+struct urdf_unknown_element {
+  std::string name;   ///< `tool` of `<tool>`
+  std::string within; ///< the element that it is in: `<robot>`, a link or a joint with its name
+  std::size_t line;   ///< where it begins
+};
+
 /// What a robot description has, in the order of the file.
 struct urdf_names {
-  std::vector<std::string> links;      ///< names of the links
-  std::vector<urdf_joint_name> joints; ///< fixed ones included
+  std::vector<std::string> links;            ///< names of the links
+  std::vector<urdf_joint_name> joints;       ///< fixed ones included
+  std::vector<urdf_unknown_element> unknown; ///< elements that are not read, as URDF has them not
 };
 
 /// A link of a chain that was read.
@@ -34,7 +42,8 @@ struct urdf_link {
   attached_frame<double> frame; ///< where it is attached: what `pose` and `jacobian` take
 };
 
-/// One link or joint a line, `shoulder_pan_joint: revolute, base_link -> shoulder_link`.
+/// One link or joint a line, `shoulder_pan_joint: revolute, base_link -> shoulder_link`, and what
+/// is not read, if there is something: `line 12: <tool> in <link name="hand">`.
 [[nodiscard]] inline std::string to_text(const urdf_names& robot) {
   std::string text = "links:\n";
   for (const std::string& link : robot.links) {
@@ -43,6 +52,13 @@ struct urdf_link {
   text += "joints:\n";
   for (const urdf_joint_name& each : robot.joints) {
     text += "  " + each.name + ": " + each.type + ", " + each.parent + " -> " + each.child + "\n";
+  }
+  if (!robot.unknown.empty()) {
+    text += "unknown elements:\n";
+  }
+  for (const urdf_unknown_element& each : robot.unknown) {
+    text +=
+        "  line " + std::to_string(each.line) + ": <" + each.name + "> in " + each.within + "\n";
   }
   return text;
 }
@@ -56,6 +72,7 @@ struct urdf_contents {
   std::vector<joint<double>> joints;    ///< fixed ones included
   std::vector<std::string> joint_names; ///< of those that move
   std::vector<urdf_link> links;         ///< from the base on
+  std::vector<urdf_unknown_element> unknown;
 };
 
 /// By which library XML is read: in `urdf_library.hpp`.

@@ -1,0 +1,178 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/mechanism/urdf_contents.hpp>
+#include <duet/mechanism/xml_element.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Elements and attributes of URDF as such, and what may be wrong with them.
+
+namespace duet::detail {
+
+/// An element of a description, and the joint that it is in, for messages.
+struct urdf_place {
+  const xml_element& element;
+  const xml_element* joint = nullptr;
+};
+
+/// An element that is read: its attributes, others being mistakes, and what may be in it.
+struct urdf_element_kind {
+  std::string_view name;
+  std::array<std::string_view, 7> attributes;
+  std::array<std::string_view, 9> children = {};
+};
+inline constexpr std::array<urdf_element_kind, 10> urdf_element_kinds{
+    {{"robot",
+      {"name", "version"},
+      {"link", "joint", "material", "transmission", "gazebo", "sensor"}},
+     {"link", {"name", "type"}, {"inertial", "visual", "collision"}},
+     {"joint",
+      {"name", "type"},
+      {"origin", "parent", "child", "axis", "limit", "mimic", "safety_controller", "dynamics",
+       "calibration"}},
+     {"parent", {"link"}},
+     {"child", {"link"}},
+     {"origin", {"xyz", "rpy"}},
+     {"axis", {"xyz"}},
+     {"limit", {"lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk"}},
+     {"mimic", {"joint", "multiplier", "offset"}},
+     {"safety_controller", {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}}}};
+
+/// A description whose elements and attributes are those of the format.
+class urdf_document {
+public:
+  /// \throws file_error for another root than <robot>, and for attributes that the format has not
+  urdf_document(std::string path, xml_element robot)
+      : path_(std::move(path)), robot_(std::move(robot)) {
+    if (robot_.name != "robot") {
+      fail(robot_.line, "the root is <" + robot_.name + ">, not <robot>");
+    }
+    check(robot_);
+  }
+
+  [[nodiscard]] const xml_element& robot() const { return robot_; }
+  [[nodiscard]] const std::vector<urdf_unknown_element>& unknown() const { return unknown_; }
+
+  [[noreturn]] void fail(const std::string& what) const { raise(file_error(path_, what)); }
+  [[noreturn]] void fail(const urdf_place& place, const std::string& what) const {
+    fail(place.element.line, name_of(place) + ": " + what);
+  }
+
+  [[nodiscard]] const std::string& attribute(const urdf_place& place, std::string_view key) const {
+    const std::string* const value = place.element.attribute(key);
+    if (value == nullptr) {
+      fail(place, "no attribute \"" + std::string(key) + "\"");
+    }
+    return *value;
+  }
+
+  /// A limit, infinite beyond 1e6 on the side of `sign`: as a number that stands for none.
+  [[nodiscard]] double limit(const urdf_place& place, std::string_view key, double otherwise,
+                             int sign) const {
+    const std::string* const text = place.element.attribute(key);
+    if (text == nullptr) {
+      return otherwise;
+    }
+    const auto value = parse_number(*text);
+    return value && sign * *value > most ? sign * std::numeric_limits<double>::infinity()
+                                         : number(*text, place, key);
+  }
+
+  /// The three numbers of an attribute.
+  [[nodiscard]] std::array<double, 3> numbers(const urdf_place& place, std::string_view key,
+                                              const std::array<double, 3>& otherwise) const {
+    const std::string* const text = place.element.attribute(key);
+    if (text == nullptr) {
+      return otherwise;
+    }
+    constexpr std::string_view blanks = " \t\r\n";
+    std::array<double, 3> result{};
+    std::size_t count = 0, end = 0;
+    for (std::size_t first; (first = text->find_first_not_of(blanks, end)) != std::string::npos;) {
+      end = std::min(text->find_first_of(blanks, first), text->size());
+      if (count == 3) {
+        ++count;
+        break;
+      }
+      result[count++] = number(text->substr(first, end - first), place, key);
+    }
+    if (count != 3) {
+      fail(place, std::string(key) + "=\"" + *text + "\" is not three numbers");
+    }
+    return result;
+  }
+
+private:
+  static constexpr double most = 1e6;
+
+  [[nodiscard]] static std::string name_of(const urdf_place& place) {
+    const std::string* const name = place.element.attribute("name");
+    return (place.joint != nullptr ? name_of({*place.joint}) + " " : "") + "<" +
+           place.element.name + (name != nullptr ? " name=\"" + *name + "\"" : "") + ">";
+  }
+  [[noreturn]] void fail(std::size_t line, const std::string& what) const {
+    raise(file_error(path_, line, what));
+  }
+
+  [[nodiscard]] double number(const std::string& text, const urdf_place& place,
+                              std::string_view key) const {
+    const auto value = parse_number(text);
+    if (!value || !(std::abs(*value) <= most)) {
+      fail(place, std::string(key) + "=\"" + text + "\" is no number up to 1e6");
+    }
+    return *value;
+  }
+
+  /// An element, and those in it that are read. What has a prefix, and attributes that declare one,
+  /// are other programs'.
+  void check(const xml_element& element, const xml_element* joint = nullptr) {
+    const auto kind =
+        std::find_if(urdf_element_kinds.begin(), urdf_element_kinds.end(),
+                     [&](const urdf_element_kind& each) { return each.name == element.name; });
+    if (kind == urdf_element_kinds.end()) {
+      return;
+    }
+    for (const auto& [key, value] : element.attributes) {
+      if (key != "xmlns" && key.find(':') == std::string::npos && !has(kind->attributes, key)) {
+        std::vector<std::string> known(kind->attributes.begin(), kind->attributes.end());
+        std::erase(known, "");
+        fail({element, joint}, "unknown attribute \"" + key + "\": " + nearest_names(key, known));
+      }
+    }
+    if (joint != nullptr) {
+      if (const xml_element* first = joint->child(element.name); first != &element) {
+        fail({element, joint}, "is there twice, first in line " + std::to_string(first->line));
+      }
+    } else {
+      for (const xml_element& each : element.children) {
+        if (!has(kind->children, each.name)) {
+          unknown_.push_back({each.name, name_of({element}), each.line});
+        } else {
+          check(each, element.name == "joint" ? &element : nullptr);
+        }
+      }
+    }
+  }
+  [[nodiscard]] static bool has(const auto& words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  }
+
+  std::string path_;
+  xml_element robot_;
+  std::vector<urdf_unknown_element> unknown_;
+};
+
+} // namespace duet::detail

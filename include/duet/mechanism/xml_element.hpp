@@ -1,0 +1,43 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// XML that was read, whatever read it.
+
+namespace duet::detail {
+
+struct xml_element {
+  std::string name;
+  std::size_t line = 0; ///< where it begins
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::vector<xml_element> children;
+
+  /// The value of an attribute, or nothing.
+  [[nodiscard]] const std::string* attribute(std::string_view key) const {
+    for (const auto& [name_of_it, value] : attributes) {
+      if (name_of_it == key) {
+        return &value;
+      }
+    }
+    return nullptr;
+  }
+  /// The first child of a name, or nothing.
+  [[nodiscard]] const xml_element* child(std::string_view tag) const {
+    for (const xml_element& each : children) {
+      if (each.name == tag) {
+        return &each;
+      }
+    }
+    return nullptr;
+  }
+};
+
+} // namespace duet::detail

@@ -1,0 +1,139 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/text_rows.hpp>
+#include <duet/mechanism/xml_element.hpp>
+
+#if !__has_include(<expat.h>)
+// After an #error compilers would go on, with what is not declared.
+#include "duet: read_urdf needs expat (Debian: libexpat1-dev; Fedora: expat-devel; elsewhere: expat): compile with its headers, link with -lexpat"
+#endif
+#include <expat.h>
+
+#include <array>
+#include <cstddef>
+#include <fstream>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// XML, by the parser expat: all that the standard calls an error is one.
+
+namespace duet::detail {
+
+/// Reads one file.
+class xml_parser {
+public:
+  static constexpr std::size_t most_bytes = std::size_t(1) << 24U;
+  static constexpr std::size_t most_depth = 100;
+
+  explicit xml_parser(const std::string& path)
+      : path_(path), parser_(XML_ParserCreate(nullptr)) { // the encoding is the file's to say
+    if (parser_ == nullptr) {
+      raise(std::bad_alloc());
+    }
+    XML_SetUserData(parser_, this);
+    XML_SetElementHandler(parser_, open_element, close_element);
+    XML_SetStartDoctypeDeclHandler(parser_, refuse_document_type);
+  }
+  xml_parser(const xml_parser&) = delete;
+  xml_parser& operator=(const xml_parser&) = delete;
+  ~xml_parser() { XML_ParserFree(parser_); }
+
+  /// The root with all that is in it.
+  /// \throws file_error for what is not well formed, has a document type (and with it entities), is
+  /// nested too deep or too large
+  [[nodiscard]] xml_element root() {
+    const std::string text = content();
+    const bool is_good =
+        XML_Parse(parser_, text.data(), int(text.size()), XML_TRUE) == XML_STATUS_OK;
+    if (is_out_of_memory_) {
+      raise(std::bad_alloc());
+    }
+    if (!is_good) {
+      const std::string reason =
+          reason_.empty() ? XML_ErrorString(XML_GetErrorCode(parser_)) : reason_;
+      raise(file_error(path_, line(), reason + place()));
+    }
+    return std::move(document_.children.front());
+  }
+
+private:
+  [[nodiscard]] std::string content() const {
+    std::ifstream in;
+    if (const std::string fault = open_input(path_, in); !fault.empty()) {
+      raise(file_error(path_, fault));
+    }
+    std::string text;
+    for (std::array<char, 4096> part{}; in.read(part.data(), part.size()), in.gcount() > 0;) {
+      text.append(part.data(), std::size_t(in.gcount()));
+      if (text.size() > most_bytes) {
+        raise(file_error(path_, "has more than 16 MB"));
+      }
+    }
+    if (in.bad()) {
+      raise(file_error(path_, "cannot be read"));
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::size_t line() const { return XML_GetCurrentLineNumber(parser_); }
+
+  /// In which element the parser is.
+  [[nodiscard]] std::string place() const {
+    return open_.size() < 2
+               ? ""
+               : ", in <" + open_.back()->name + "> of line " + std::to_string(open_.back()->line);
+  }
+
+  /// Calls what may not throw, as it is called from C.
+  template <class Body>
+  void guarded(const Body& body) {
+    catching<void>(body, [&] {
+      is_out_of_memory_ = true; // nothing else is thrown there
+      XML_StopParser(parser_, XML_FALSE);
+    });
+  }
+  void stop(const char* reason) {
+    reason_ = reason;
+    XML_StopParser(parser_, XML_FALSE);
+  }
+
+  static void XMLCALL open_element(void* data, const XML_Char* name, const XML_Char** attributes) {
+    auto& self = *static_cast<xml_parser*>(data);
+    self.guarded([&] {
+      if (self.open_.size() > most_depth) {
+        return self.stop("elements are nested more than 100 deep");
+      }
+      // The parent is open, so what is before it in its own parent stays where it is.
+      xml_element& element = self.open_.back()->children.emplace_back();
+      self.open_.push_back(&element);
+      element.name = name;
+      element.line = self.line();
+      for (; *attributes != nullptr; attributes += 2) {
+        element.attributes.emplace_back(attributes[0], attributes[1]);
+      }
+    });
+  }
+  static void XMLCALL close_element(void* data, const XML_Char*) {
+    static_cast<xml_parser*>(data)->open_.pop_back();
+  }
+  static void XMLCALL refuse_document_type(void* data, const XML_Char*, const XML_Char*,
+                                           const XML_Char*, int) {
+    auto& self = *static_cast<xml_parser*>(data);
+    self.guarded([&] { self.stop("document types, <!DOCTYPE, are not supported"); });
+  }
+
+  std::string path_;
+  XML_Parser parser_;
+  xml_element document_; ///< what the root is in
+  std::vector<xml_element*> open_{&document_};
+  std::string reason_;
+  bool is_out_of_memory_ = false;
+};
+
+} // namespace duet::detail
