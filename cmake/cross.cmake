@@ -11,3 +11,4 @@ set(CMAKE_CXX_COMPILER clang++)
 set(CMAKE_CXX_COMPILER_TARGET ${DUET_PROCESSOR}-linux-gnu)
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-${DUET_PROCESSOR}-static -L /usr/${DUET_PROCESSOR}-linux-gnu)
 set(DUET_LLD "" CACHE STRING "lld before LLVM 18 links neither RISC-V's libraries nor s390x")
+set(CMAKE_DISABLE_FIND_PACKAGE_EXPAT ON) # pkg-config would name this machine's; no test of these reads URDF

@@ -8,7 +8,7 @@
 
 #if !__has_include(<expat.h>)
 // After an #error compilers would go on, with what is not declared.
-#include "duet: read_urdf needs expat (Debian: libexpat1-dev; Fedora: expat-devel; elsewhere: expat): compile with its headers, link with -lexpat"
+#include "duet: read_urdf needs expat (libexpat1-dev or expat-devel or expat): compile with its headers, link with -lexpat"
 #endif
 #include <expat.h>
 
