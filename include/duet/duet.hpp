@@ -50,6 +50,7 @@
 #include <duet/expression/special_functions.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/text.hpp>
+#include <duet/mechanism/adapted.hpp>
 #include <duet/mechanism/analytic_jacobian.hpp>
 #include <duet/mechanism/closed_loop.hpp>
 #include <duet/mechanism/jacobian.hpp>

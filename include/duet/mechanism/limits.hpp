@@ -2,14 +2,20 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/printable.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/mechanism/chain_walk.hpp>
 #include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/joint_checks.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
+#include <string_view>
 
 /// \file
 /// Chains whose joints have other limits.
@@ -28,24 +34,62 @@ template <SerialChain C>
   }
 }
 
+/// What says which joint of a chain is meant: its number or, where it has one, its name.
+template <class Which, class C>
+concept JointOf = std::integral<Which> ||
+    (std::convertible_to<const Which&, std::string_view>&& requires(const C& chain) {
+      chain.joint_names();
+    });
+
+/// The name of a joint, empty where it has none.
+template <class C>
+[[nodiscard]] constexpr std::string_view joint_name([[maybe_unused]] const C& chain,
+                                                    [[maybe_unused]] int i) {
+  if constexpr (requires { chain.joint_names(); }) {
+    return chain.joint_names()[std::size_t(i)];
+  } else {
+    return {};
+  }
+}
+
+/// The number of a joint.
+/// \throws invalid_input for one that there is none of
+template <class C, JointOf<C> Which>
+[[nodiscard]] constexpr int joint_number(const C& chain, const Which& which, const char* function) {
+  if constexpr (std::integral<Which>) {
+    if (which < 0 || which >= chain.size()) {
+      raise(invalid_input(message("duet: ", function, ": no joint ", which, " in a chain of ",
+                                  chain.size(), " moving joints")));
+    }
+    return int(which);
+  } else {
+    const auto& names = chain.joint_names();
+    const auto found = std::find(names.begin(), names.end(), std::string_view(which));
+    if (found == names.end()) {
+      raise(invalid_input(
+          printable(message("duet: ", function, ": no joint \"", std::string_view(which),
+                            "\": ", nearest_names(which, names)))));
+    }
+    return int(found - names.begin());
+  }
+}
+
 } // namespace detail
 
-/// The chain with other limits of joint i: all three of them, so velocities are not limited where
+/// The chain with other limits of a joint, given by its number, or by its name where the chain is
+/// from a file: all three of them, so velocities are not limited where
 /// none is given. A `continuous` joint that gets a lower or an upper limit becomes `revolute`.
 ///
 /// Example: `auto limits = arm.limits(3); limits.upper = -0.5; arm = with_limits(arm, 3, limits);`
 /// \return a chain of the same type, with the same names; of a `compiled_chain` a `serial_chain`
 /// \throws invalid_input for a joint that there is none of, and limits that hold no motion: a lower
 /// one above the upper one, NaN, a velocity below zero
-template <SerialChain C>
-[[nodiscard]] constexpr auto with_limits(const C& chain, int i,
+template <SerialChain C, detail::JointOf<C> Which>
+[[nodiscard]] constexpr auto with_limits(const C& chain, const Which& which,
                                          const joint_limits<typename C::scalar_type>& limits) {
   auto result = detail::copy_of_chain(chain);
-  if (i < 0 || i >= chain.size()) {
-    detail::raise(invalid_input(detail::message(
-        "duet: with_limits: no joint ", i, " in a chain of ", chain.size(), " moving joints")));
-  }
-  detail::require_limits(limits, std::size_t(i), "with_limits");
+  const int i = detail::joint_number(chain, which, "with_limits");
+  detail::require_limits(limits, std::size_t(i), "with_limits", detail::joint_name(chain, i));
   result.set_limits(i, limits);
   return result;
 }
@@ -68,7 +112,7 @@ template <SerialChain C, VectorLike Lower, VectorLike Upper>
   for (int i = 0; i < chain.size(); ++i) {
     const joint_limits<T> limits{T(below::get(lower, i)), T(above::get(upper, i)),
                                  chain.limits(i).velocity};
-    detail::require_limits(limits, std::size_t(i), "with_limits");
+    detail::require_limits(limits, std::size_t(i), "with_limits", detail::joint_name(chain, i));
     result.set_limits(i, limits);
   }
   return result;

@@ -7,11 +7,11 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/chain_walk.hpp>
 #include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/joint_checks.hpp>
 #include <duet/mechanism/joint_step.hpp>
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -30,45 +30,6 @@ namespace detail {
 template <class S, int N>
 using joint_vector =
     Eigen::Matrix<S, (N > 0 ? N : Eigen::Dynamic), 1, Eigen::ColMajor, (N > 0 ? N : -N), 1>;
-
-[[noreturn]] inline void bad_joint(std::size_t i, const std::string& reason,
-                                   const char* function = "serial_chain") {
-  raise(invalid_input(message("duet: ", function, ": joint ", i, ": ", reason)));
-}
-
-/// Can a joint be somewhere within its limits? NaN and infinite ends on the wrong side leave none.
-template <class T>
-constexpr void require_limits(const joint_limits<T>& given, std::size_t i,
-                              const char* function = "serial_chain") {
-  const T infinity = std::numeric_limits<T>::infinity();
-  if (!(given.lower <= given.upper && infinity > given.lower && given.upper > -infinity)) {
-    bad_joint(i, message("no motion is within its limits, ", given.lower, " to ", given.upper),
-              function);
-  }
-  if (!(given.velocity >= 0)) {
-    bad_joint(i, message("its limit of velocity is ", given.velocity), function);
-  }
-}
-
-template <class T>
-constexpr void require_joint(const joint<T>& given, std::size_t i) {
-  const auto& t = given.origin.translation;
-  if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
-    bad_joint(i, "its origin is not finite");
-  }
-  if (!is_nearly_one(norm2(given.origin.rotation))) {
-    bad_joint(i, message("the rotation ", given.origin.rotation,
-                         " of its origin is no unit quaternion: normalized(q)"));
-  }
-  const auto n = components(given.axis);
-  if (given.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
-    bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is no unit vector"));
-  }
-  if (!(given.pitch - given.pitch == 0)) {
-    bad_joint(i, "its pitch is not finite");
-  }
-  require_limits(given.limits, i);
-}
 
 /// Poses of the links of a chain.
 template <class C>
@@ -151,11 +112,8 @@ public:
   template <int M>
     requires(M != N && N < 0 && (M > 0 ? M : -M) <= -N)
   constexpr serial_chain(const serial_chain<M, T>& other) : tip_(other.tip()), size_(other.size()) {
-    for (std::size_t i = 0; i < std::size_t(size_); ++i) {
-      steps_[i] = other.steps()[i];
-      frames_[i] = other.link(int(i) + 1).offset;
-      kinds_[i] = other.kind(int(i));
-      limits_[i] = other.limits(int(i));
+    for (int i = 0; i < size_; ++i) {
+      take(other, i, std::size_t(i));
     }
   }
 
@@ -183,6 +141,25 @@ public:
 
   /// The table that evaluation reads.
   [[nodiscard]] constexpr const auto& steps() const { return steps_; }
+  /// Another chain without joint i, at which what follows stands at `held`.
+  template <int M>
+  constexpr serial_chain(const serial_chain<M, T>& other, int i, const placement<T>& held)
+      : tip_{other.size() - 1, other.tip().offset}, size_(other.size() - 1) {
+    for (int to = 0; to < size_; ++to) {
+      take(other, to < i ? to : to + 1, std::size_t(to));
+    }
+    displace(i, held);
+  }
+  /// Displaces all that follows link i, in the frame of that.
+  constexpr void displace(int i, const placement<T>& by) {
+    if (i == size_) {
+      tip_.offset = by * tip_.offset;
+    } else {
+      steps_[std::size_t(i)] = detail::displaced(by, steps_[std::size_t(i)]);
+    }
+  }
+  /// Puts another tip in place of that.
+  constexpr void set_tip_offset(const placement<T>& offset) { tip_.offset = offset; }
   /// Puts other limits in place of those of joint i, which must be good. With one a joint is no
   /// more `continuous`.
   constexpr void set_limits(int i, const joint_limits<T>& limits) {
@@ -195,6 +172,13 @@ public:
   }
 
 private:
+  template <int M>
+  constexpr void take(const serial_chain<M, T>& other, int from, std::size_t to) {
+    steps_[to] = other.steps()[std::size_t(from)];
+    frames_[to] = other.link(from + 1).offset;
+    kinds_[to] = other.kind(from);
+    limits_[to] = other.limits(from);
+  }
   constexpr void add(const joint<T>& given, const placement<T>& origin) {
     const auto i = std::size_t(size_);
     const T to_unit = detail::inverse_root_near_one(norm2(origin.rotation));

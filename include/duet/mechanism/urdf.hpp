@@ -37,6 +37,19 @@ public:
       : serial_chain<-Capacity>(chain), joint_names_(std::move(joint_names)),
         links_(std::move(links)), unknown_(std::move(unknown)) {}
 
+  /// For those who extend duet: another chain without joint i, whose link stays at `held`.
+  urdf_chain(const urdf_chain& other, int i, const placement<double>& held)
+      : serial_chain<-Capacity>(other, i, held), joint_names_(other.joint_names_),
+        links_(other.links_), unknown_(other.unknown_) {
+    joint_names_.erase(joint_names_.begin() + i);
+    for (urdf_link& each : links_) {
+      if (each.frame.link == i + 1) {
+        each.frame.offset = held * each.frame.offset;
+      }
+      each.frame.link -= each.frame.link > i ? 1 : 0;
+    }
+  }
+
   using serial_chain<-Capacity>::link;
   /// The frame of a link by its name, those that are fixed to another one included.
   /// \throws invalid_input where the chain has none of that name
@@ -60,6 +73,18 @@ public:
   [[nodiscard]] const std::vector<urdf_link>& links() const { return links_; }
   /// Elements of the whole file that were not read, as URDF has them not.
   [[nodiscard]] const std::vector<urdf_unknown_element>& unknown() const { return unknown_; }
+
+  // For those who extend duet.
+
+  /// Displaces all that follows link i, and what is fixed to it.
+  void displace(int i, const placement<double>& by) {
+    serial_chain<-Capacity>::displace(i, by);
+    for (urdf_link& each : links_) {
+      if (each.frame.link == i) {
+        each.frame.offset = by * each.frame.offset;
+      }
+    }
+  }
 
 private:
   std::vector<std::string> joint_names_;

@@ -1,0 +1,91 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/mechanism/chain_walk.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/joint_checks.hpp>
+#include <duet/mechanism/limits.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+/// \file
+/// Chains made of another: with a tool, on a base, with a joint that is locked.
+
+namespace duet {
+
+namespace detail {
+
+/// \throws invalid_input where the translation is not finite
+template <class T>
+constexpr void require_finite(const placement<T>& given, const char* function) {
+  const auto& t = given.translation;
+  if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
+    raise(invalid_input(
+        message("duet: ", function, ": its translation is (", t[0], ", ", t[1], ", ", t[2], ")")));
+  }
+}
+
+} // namespace detail
+
+/// The chain with a tool at its tip: the new tip stands at `tool` in the frame of the former, A(θ)
+/// T.
+///
+/// Example: `const auto arm = with_tool(robots::panda(), {quaternion<double>(1), {0, 0, .1}});`
+/// \return a chain of the same type, with the same names; of a `compiled_chain` a `serial_chain`
+/// \throws invalid_input for a translation that is not finite
+template <SerialChain C>
+[[nodiscard]] constexpr auto with_tool(const C& chain,
+                                       const placement<typename C::scalar_type>& tool) {
+  detail::require_finite(tool, "with_tool");
+  auto result = detail::copy_of_chain(chain);
+  result.set_tip_offset(chain.tip().offset * tool);
+  return result;
+}
+
+/// The chain on a base: what was its base stands at `base` in the frame that poses are now in,
+/// B A(θ). That frame is link 0.
+/// \return as `with_tool`
+/// \throws invalid_input for a translation that is not finite
+template <SerialChain C>
+[[nodiscard]] constexpr auto with_base(const C& chain,
+                                       const placement<typename C::scalar_type>& base) {
+  detail::require_finite(base, "with_base");
+  auto result = detail::copy_of_chain(chain);
+  result.displace(0, base);
+  return result;
+}
+
+/// The chain with a joint, given by its number or its name, that stays at a coordinate, radians or
+/// units of length. It has a joint less, and those behind it have numbers one lower; of several
+/// lock the last one first.
+///
+/// Example: `const serial_chain<6> arm = with_locked(robots::panda(), 2, 0);`
+/// \return of a chain whose number of joints is in its type one with a joint less, otherwise one of
+/// the same type, with the names that are left
+/// \throws invalid_input for a joint that there is none of, and a coordinate beyond its limits
+template <SerialChain C, detail::JointOf<C> Which>
+[[nodiscard]] constexpr auto with_locked(const C& chain, const Which& which,
+                                         const typename C::scalar_type& theta) {
+  static_assert(C::joints != 1, "duet: with_locked: no joint would be left to move");
+  using T = typename C::scalar_type;
+  const int i = detail::joint_number(chain, which, "with_locked");
+  const auto& limits = chain.limits(i);
+  if (!(limits.lower <= theta && theta <= limits.upper && theta - theta == 0)) {
+    detail::bad_joint(
+        std::size_t(i),
+        detail::message(theta, " is not within its limits, ", limits.lower, " to ", limits.upper),
+        "with_locked", detail::joint_name(chain, i));
+  }
+  const auto held = detail::placement_at(chain.steps()[std::size_t(i)], theta);
+  if constexpr (C::joints > 1) {
+    return serial_chain<C::joints - 1, T>(detail::copy_of_chain(chain), i, held);
+  } else {
+    return C(chain, i, held);
+  }
+}
+
+} // namespace duet

@@ -1,0 +1,85 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/joint_step.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+
+/// \file
+/// What may be wrong with a joint of a table, and a joint that stands elsewhere.
+
+namespace duet::detail {
+
+/// \param name  of the joint, if it has one
+[[noreturn]] inline void bad_joint(std::size_t i, const std::string& reason,
+                                   const char* function = "serial_chain",
+                                   std::string_view name = {}) {
+  const std::string named = name.empty() ? "" : message(" \"", name, "\"");
+  raise(invalid_input(message("duet: ", function, ": joint ", i, named, ": ", reason)));
+}
+
+/// Can a joint be somewhere within its limits? NaN and infinite ends on the wrong side leave none.
+template <class T>
+constexpr void require_limits(const joint_limits<T>& given, std::size_t i,
+                              const char* function = "serial_chain", std::string_view name = {}) {
+  const T infinity = std::numeric_limits<T>::infinity();
+  if (!(given.lower <= given.upper && infinity > given.lower && given.upper > -infinity)) {
+    bad_joint(i, message("no motion is within its limits, ", given.lower, " to ", given.upper),
+              function, name);
+  }
+  if (!(given.velocity >= 0)) {
+    bad_joint(i, message("its limit of velocity is ", given.velocity), function, name);
+  }
+}
+
+template <class T>
+constexpr void require_joint(const joint<T>& given, std::size_t i) {
+  const auto& t = given.origin.translation;
+  if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
+    bad_joint(i, "its origin is not finite");
+  }
+  if (!is_nearly_one(norm2(given.origin.rotation))) {
+    bad_joint(i, message("the rotation ", given.origin.rotation,
+                         " of its origin is no unit quaternion: normalized(q)"));
+  }
+  const auto n = components(given.axis);
+  if (given.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
+    bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is no unit vector"));
+  }
+  if (!(given.pitch - given.pitch == 0)) {
+    bad_joint(i, "its pitch is not finite");
+  }
+  require_limits(given.limits, i);
+}
+
+/// A joint whose frame before is displaced.
+template <class T>
+[[nodiscard]] constexpr joint_step<T> displaced(const placement<T>& by, joint_step<T> step) {
+  const displacement stands{by.rotation, components(by.translation)};
+  step.a = by.rotation * step.a;
+  step.an = by.rotation * step.an;
+  step.offset = stands.point(step.offset);
+  step.axis = cleaned_direction(rotated(by.rotation, step.axis));
+  return step;
+}
+
+/// Where a joint at the coordinate θ puts its frame, in the frame before.
+template <class T>
+[[nodiscard]] constexpr placement<T> placement_at(const joint_step<T>& step, const T& theta) {
+  const auto half = sine_and_cosine_of_constant(T(theta / 2));
+  const quaternion<T> r = step.turns ? half.cosine * step.a + half.sine * step.an : step.a;
+  const T way = step.slides ? T(theta * step.pitch) : T(0);
+  const three_vector<T> t = step.offset + way * step.axis;
+  return {r, {t.x, t.y, t.z}};
+}
+
+} // namespace duet::detail
