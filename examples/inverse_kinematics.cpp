@@ -93,7 +93,7 @@ void solve(const example::command_line& given) {
   const Eigen::VectorXd start = example::coordinates(arm, given, "start");
   const std::vector<goal> goals = goals_of(given, arm);
   inverse_kinematics_options options;
-  options.tolerance = given.get<double>("tolerance").value_or(options.tolerance);
+  options.tolerance = given.get<double>("tolerance").value_or(options.tolerance.length);
   options.restarts = given.get<int>("restarts").value_or(options.restarts);
   options.seed = given.get<std::uint64_t>("seed").value_or(options.seed);
 

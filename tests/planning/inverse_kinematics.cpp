@@ -135,6 +135,13 @@ TEST_CASE("either sign of the goal, and small tolerances") {
   CHECK(are_identical(found, inverse_kinematics(arm, -goal, start)));
   const auto close = inverse_kinematics(arm, goal, start, {.tolerance = 1e-13});
   CHECK(is_solution(arm, close, goal, 1e-13));
+  // Each for itself.
+  const auto moved = at(.01, 0, 0) * arm.pose(start);
+  CHECK(inverse_kinematics(arm, moved, start, {.tolerance = {.011, 1e-9}}).iterations == 0);
+  CHECK(inverse_kinematics(arm, moved, start, {.tolerance = {.009, 1}}).iterations > 0);
+  const auto turned = arm.pose(start) * at(0, 0, 0, {0, .02, 0});
+  CHECK(inverse_kinematics(arm, turned, start, {.tolerance = {1e-9, .021}}).iterations == 0);
+  CHECK(inverse_kinematics(arm, turned, start, {.tolerance = {1, .019}}).iterations > 0);
 }
 
 TEST_CASE("every kind of joint, without limits; turning joints are turned back into theirs") {
@@ -183,16 +190,88 @@ TEST_CASE("units of length do not matter") {
   CHECK(found.joints == inverse_kinematics(metres, metres.pose(theta), start, few).joints);
 }
 
+TEST_CASE("nor do they where joints slide, or only slide, and what is out of reach") {
+  // In units that are powers of two apart results are equal to the last bit.
+  const auto stanford = [](double unit) {
+    const std::array<dh_row<>, 6> rows{
+        {{.d = .412 * unit, .alpha = -pi / 2, .limits = {-2.9, 2.9}},
+         {.d = .154 * unit, .alpha = pi / 2, .limits = {-2.9, 2.9}},
+         {.limits = {.3048 * unit, 1.27 * unit}, .kind = joint_kind::prismatic},
+         {.alpha = -pi / 2, .limits = {-2.9, 2.9}},
+         {.alpha = pi / 2, .limits = {-1.5, 1.5}},
+         {.d = .263 * unit, .limits = {-2.9, 2.9}}}};
+    return chain(from_dh(rows));
+  };
+  const auto portal = [](double unit) {
+    std::array<joint<>, 6> joints;
+    for (std::size_t i = 0; i < 6; ++i) {
+      joints[i].kind = i < 3 ? joint_kind::prismatic : joint_kind::revolute;
+      joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
+      joints[i].limits = i < 3 ? joint_limits<>{-unit, 2 * unit} : joint_limits<>{-3, 3};
+    }
+    return chain(serial_chain<6>(joints));
+  };
+  const auto screw = [](double unit) {
+    std::array<joint<>, 6> joints;
+    for (std::size_t i = 0; i < 6; ++i) {
+      joints[i].kind = i % 2 == 0 ? joint_kind::helical : joint_kind::revolute;
+      joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
+      joints[i].origin.translation = {.3 * unit, 0, .2 * unit};
+      joints[i].limits = {-2.5, 2};
+      joints[i].pitch = .1 * unit;
+    }
+    return chain(serial_chain<6>(joints));
+  };
+  const double unit = 1024;
+  const auto compare = [&](const chain& one, const chain& other, bool may_fail) {
+    duet_test::random_source random(41);
+    int restarts = 0, solved = 0;
+    for (int k = 0; k < 40; ++k) {
+      vector start(6), theta(6), start_there(6), theta_there(6);
+      for (int i = 0; i < 6; ++i) {
+        const auto& limits = one.limits(i);
+        const double scale = one.kind(i) == joint_kind::prismatic ? unit : 1;
+        CHECK(other.limits(i).upper == scale * limits.upper);
+        start[i] = random.uniform(limits.lower, limits.upper);
+        theta[i] = random.uniform(limits.lower, limits.upper);
+        start_there[i] = scale * start[i];
+        theta_there[i] = scale * theta[i];
+      }
+      const bool is_far = k % 8 == 7; // out of reach
+      const auto goal = is_far ? at(9, -k, 3, {.1, 2, .3}) : one.pose(theta);
+      const auto goal_there =
+          is_far ? at(9 * unit, -k * unit, 3 * unit, {.1, 2, .3}) : other.pose(theta_there);
+      const auto x = inverse_kinematics(one, goal, start, {.tolerance = {1e-6, 1e-7}});
+      const auto y =
+          inverse_kinematics(other, goal_there, start_there, {.tolerance = {1e-6 * unit, 1e-7}});
+      CHECK(x.reason == (is_far ? stop_reason::out_of_reach : y.reason));
+      CHECK(x.reason == y.reason);
+      CHECK(x.iterations == y.iterations);
+      CHECK(x.restarts == y.restarts);
+      CHECK(y.deviation.length == unit * x.deviation.length);
+      CHECK(y.deviation.angle == x.deviation.angle);
+      for (int i = 0; i < 6; ++i) {
+        CHECK(y.joints[i] == (one.kind(i) == joint_kind::prismatic ? unit : 1) * x.joints[i]);
+      }
+      restarts += is_far ? 0 : x.restarts;
+      solved += is_far || x.reason == stop_reason::reached;
+    }
+    CHECK((may_fail || solved == 40));
+    return restarts;
+  };
+  CHECK(compare(stanford(1), stanford(unit), false) > 0); // random configurations, too
+  compare(portal(1), portal(unit), false);
+  compare(screw(1), screw(unit), true);
+}
+
 TEST_CASE("what cannot be reached, and why") {
   const chain panda = robots::panda().table();
   const vector middle = (lower_limits(panda) + upper_limits(panda)) / 2;
   const auto far = inverse_kinematics(panda, at(1.3, 0, .3), middle);
   CHECK(far.reason == stop_reason::out_of_reach);
   CHECK(std::string(to_text(far.reason)) == "out_of_reach");
-  CHECK(far.iterations == 0);
-  CHECK(far.joints == middle);
-  CHECK(far.deviation.length ==
-        doctest::Approx(translation(panda.pose(middle) - at(1.3, 0, .3)).norm()).epsilon(1));
+  CHECK(far.restarts == 100);
+  CHECK(is_within_limits(panda, far.joints));
 
   // Three tenths of the way are missing.
   const chain stretched = gantry(-1, .5);
@@ -228,6 +307,100 @@ TEST_CASE("what cannot be reached, and why") {
   CHECK(hurried.reason == stop_reason::iteration_limit);
   CHECK(hurried.iterations == 2);
   CHECK(hurried.restarts == 0);
+}
+
+TEST_CASE("the nearest pose to a goal out of reach") {
+  // Of three slides it is known, and their limits hold at once.
+  std::array<joint<>, 6> joints;
+  for (std::size_t i = 0; i < 6; ++i) {
+    joints[i].kind = i < 3 ? joint_kind::prismatic : joint_kind::revolute;
+    joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
+    joints[i].limits = i < 3 ? joint_limits<>{-1, 1} : joint_limits<>{-1.2, 1.2};
+  }
+  const chain portal = serial_chain<6>(joints);
+  const auto slid = inverse_kinematics(portal, at(3, .25, -5, {.3, -.2, .4}),
+                                       vector::Zero(6).eval(), {.restarts = 0});
+  CHECK(slid.reason == stop_reason::out_of_reach);
+  CHECK(slid.joints[0] == 1);
+  CHECK(slid.joints[1] == doctest::Approx(.25).epsilon(1e-12));
+  CHECK(slid.joints[2] == -1);
+  CHECK(slid.deviation.length == doctest::Approx(std::hypot(2, 4)).epsilon(1e-14));
+  CHECK(slid.deviation.angle < 1e-11);
+  CHECK(slid.restarts == 0);
+
+  // Of arms: nothing near is nearer, to first order by duals, nor anything of thousands elsewhere.
+  duet_test::random_source random(42);
+  for (const chain& arm : arms()) {
+    double scale = detail::length_of(detail::components(arm.tip().offset.translation));
+    for (int i = 1; i < arm.size(); ++i) {
+      scale += detail::length_of(arm.steps()[std::size_t(i)].offset);
+    }
+    for (int k = 0; k < 4; ++k) {
+      const auto n = random.direction<3>(), t = random.direction<3>();
+      const double distance = 1.5 + 2 * k;
+      const auto goal = at(distance * n[0], distance * n[1], distance * n[2],
+                           Eigen::Vector3d(3 * t[0], 3 * t[1], 3 * t[2]));
+      const auto error = [&](const auto& theta) {
+        const auto tip = arm.pose(theta);
+        const auto way = (translation(tip) - translation(goal)).eval();
+        const auto turn = rotation_vector(rotation(goal) * conj(rotation(tip)));
+        return way.squaredNorm() / (scale * scale) + turn.squaredNorm();
+      };
+      const vector start = configuration(arm, random);
+      const auto found = inverse_kinematics(arm, goal, start, {.restarts = 50});
+      CHECK(found.reason == stop_reason::out_of_reach);
+      CHECK(is_within_limits(arm, found.joints));
+      const pose_deviation left = deviation_by_matrices(arm, found.joints, goal);
+      CHECK(left.length == doctest::Approx(found.deviation.length).epsilon(1e-12));
+      CHECK(left.angle == doctest::Approx(found.deviation.angle).epsilon(1e-7));
+      const auto [value, slope] = gradient(error, found.joints);
+      for (int i = 0; i < arm.size(); ++i) {
+        const bool is_held = slope[i] > 0 ? found.joints[i] == arm.limits(i).lower
+                                          : found.joints[i] == arm.limits(i).upper;
+        CHECK((is_held || std::abs(slope[i]) < 1e-9 * (1 + value)));
+      }
+      for (int j = 0; j < 1000; ++j) {
+        CHECK(value <= error(configuration(arm, random)));
+      }
+      const auto other = inverse_kinematics(arm, goal, configuration(arm, random), {.seed = 9});
+      CHECK(error(other.joints) == doctest::Approx(value).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("how far a pose is from a goal, to second order") {
+  duet_test::random_source random(43);
+  const auto check = [&](const chain& arm, double turn) {
+    const detail::chain_model<chain> model(arm);
+    for (int k = 0; k < 5; ++k) {
+      const vector theta = configuration(arm, random);
+      const auto t = random.direction<3>();
+      const auto goal = at(t[1], 2 * t[2], t[0], {0, 0, 0}) * arm.pose(theta) *
+                        at(0, 0, 0, Eigen::Vector3d(turn * t[0], turn * t[1], turn * t[2]));
+      const auto state = model.at(detail::planned_joints<16>(theta, arm.size()));
+      const auto twist = detail::error_twist(state.tip, detail::place_of(goal));
+      const auto way = detail::place_of(goal).translation - state.tip.translation;
+      const auto found = detail::squared_error_of(
+          state.jacobian, detail::small_twist{{way.x, way.y, way.z, twist[3], twist[4], twist[5]}});
+      const auto half_square = [&](const auto& x) {
+        const auto tip = arm.pose(x);
+        const auto apart = (translation(goal) - translation(tip)).eval();
+        const auto about = rotation_vector(rotation(goal) * conj(rotation(tip)));
+        return (apart.squaredNorm() + about.squaredNorm()) / 2;
+      };
+      const auto expected = hessian(half_square, theta);
+      for (int i = 0; i < arm.size(); ++i) {
+        CHECK(std::abs(found.slope[i] - expected.gradient[i]) < 2e-14 * (1 + 4 * turn));
+        for (int j = 0; j <= i; ++j) {
+          CHECK(std::abs(found.curvature(i, j) - expected.hessian(i, j)) < 1e-12);
+        }
+      }
+    }
+  };
+  for (const double turn : {1e-6, 1e-2, 1., 3.}) {
+    check(robots::panda().table(), turn);
+    check(duet_test::every_joint(), turn);
+  }
 }
 
 TEST_CASE("many goals: as one by one, on any number of cores") {
@@ -300,7 +473,10 @@ TEST_CASE("bad problems") {
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, broken),
                        "duet: inverse_kinematics: the start has inf for joint 4", invalid_input);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = 0}),
-                       "duet: inverse_kinematics: tolerance is 0, not a number above 0",
+                       "duet: inverse_kinematics: tolerance.length is 0, not a number above 0",
+                       invalid_input);
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = {1e-6, -1}}),
+                       "duet: inverse_kinematics: tolerance.angle is -1, not a number above 0",
                        invalid_input);
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = std::nan("")}),
                   invalid_input);

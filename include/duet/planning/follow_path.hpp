@@ -89,10 +89,9 @@ template <class C, class Start, class Objective, class Scene>
   const std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>
       model(chain, around);
   const auto gap = deviation_between(model.at(theta).tip, place_of(target(stops.front())));
-  require(gap.length <= options.tolerance && gap.angle <= options.tolerance,
-          "duet: follow_path: the path begins ", gap.length, " units of length and ", gap.angle,
-          " rad away from the tip at the start");
-  model.require_clearance(theta, options.tolerance);
+  require(options.tolerance.times(gap) <= 1, "duet: follow_path: the path begins ", gap.length,
+          " units of length and ", gap.angle, " rad away from the tip at the start");
+  model.require_clearance(theta, options.tolerance.length);
   std::function<vector(const vector&)> slope;
   if constexpr (!std::same_as<Objective, no_objective>) {
     slope = [&](const vector& x) {
@@ -149,7 +148,7 @@ template <PosePath Path>
 /// note 1).
 ///
 /// Waypoints are within `tolerance` of the path, the straight joint paths between them within about
-/// `deviation`, both in length and angle, at the same parameter. Each waypoint is met by Newton's
+/// `deviation`, each in length and angle, at the same parameter. Each waypoint is met by Newton's
 /// method on the exact twist 2 log(A_target A*), with steps of least norm that keep the limits and
 /// are damped where the smallest singular value is small. What freedom is left lowers the
 /// objectives. Where the joints get stuck and one or more are redundant, those configurations

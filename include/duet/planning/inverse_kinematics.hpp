@@ -58,10 +58,12 @@ private:
 ///
 /// \param start  put within the limits; joints whose range holds a whole turn by turning them back
 /// \return the joints; where `reason` is not `reached`, the nearest to the goal that were met with.
-/// `out_of_reach` is certain, that the others mean there is no solution is not: `joint_limit`,
-/// `singular` and `no_progress` say what is in the way there, `iteration_limit` that nothing is
-/// \throws invalid_input for a start that is not finite or of another size, for a goal that is no
-/// pose, and for bad options
+/// `out_of_reach` is certain; the joints are then those of the nearest pose, `deviation` by how
+/// much it misses the goal: by Newton's method from the start and `restarts` random configurations,
+/// that of the least (length / L)² + angle², L the sum of the chain's lengths. That the others mean
+/// there is no solution is not: `joint_limit`, `singular` and `no_progress` say what is in the way
+/// there, `iteration_limit` that nothing is \throws invalid_input for a start that is not finite or
+/// of another size, for a goal that is no pose, and for bad options
 template <SerialChain C, VectorLike Start>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,

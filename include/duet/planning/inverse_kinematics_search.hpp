@@ -5,11 +5,14 @@
 #include <duet/core/errors.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/bounded_step.hpp>
+#include <duet/planning/inverse_kinematics_result.hpp>
 #include <duet/planning/motion_plan.hpp>
+#include <duet/planning/nearest_pose.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/small_vector.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -21,49 +24,7 @@
 
 namespace duet {
 
-/// Settings of `inverse_kinematics`.
-struct inverse_kinematics_options {
-  /// How close the tip comes to the goal, in units of length and radians.
-  double tolerance = 1e-6;
-  /// How many random configurations to begin anew from once the given start has led nowhere.
-  int restarts = 100;
-  /// The most from each of them.
-  int iterations = 50;
-  /// Of the random configurations.
-  std::uint64_t seed = 1;
-};
-
-/// What was found; where `reason` is not `reached`, the nearest to the goal that was met with.
-///
-/// \tparam N  as of `serial_chain`
-template <int N>
-struct inverse_kinematics_result {
-  detail::joint_vector<double, N> joints; ///< within the limits
-  pose_deviation deviation;               ///< of the tip from the goal
-  int iterations = 0;                     ///< from all configurations together
-  int restarts = 0;                       ///< how many random configurations it began anew from
-  /// Why it ended: `reached` where the tip is at the goal, else what is in the way.
-  stop_reason reason = stop_reason::no_progress;
-
-  /// For those who extend duet: for `to_text`.
-  void for_each_field(const auto& f) const {
-    f("joints", joints);
-    f("deviation", deviation);
-    f("iterations", iterations);
-    f("restarts", restarts);
-    f("reason", reason);
-  }
-};
-
 namespace detail {
-
-/// \throws invalid_input
-inline void require_options(const inverse_kinematics_options& options) {
-  constexpr const char* caller = "inverse_kinematics";
-  require_positive(caller, "tolerance", options.tolerance);
-  require_positive(caller, "iterations", options.iterations);
-  require_option(caller, "restarts", options.restarts, options.restarts >= 0, "a number from 0 up");
-}
 
 /// Numbers from 0 to 1, the same on every machine: SplitMix64 (Steele, Lea, Flood, Fast splittable
 /// pseudorandom number generators, 2014). `<random>` would cost the compiler more than the search.
@@ -110,7 +71,8 @@ public:
           turns && !model.slides[std::size_t(i)] && model.upper[i] - model.lower[i] >= turn;
       turn_[i] = has_turn ? turn : 0;
       beyond_[i] = has_turn ? std::numeric_limits<double>::infinity() : 0;
-      spread_[i] = turns ? std::numbers::pi : model.reach.scale();
+      unit_[i] = turns ? 1 : model.reach.scale();
+      spread_[i] = turns ? std::numbers::pi : unit_[i];
     }
     start_ = within_limits(start_);
   }
@@ -118,7 +80,8 @@ public:
   [[nodiscard]] attempt operator()(const tip_place& goal) const;
 
 private:
-  /// What is left to do at some θ: J Δ = e. Lengths count as parts of the chain's.
+  /// What is left to do at some θ: J Δ = e. Lengths count as parts of the chain's, those that
+  /// joints slide, too.
   struct equations {
     chain_state<Room> at;
     small_twist e;
@@ -134,17 +97,28 @@ private:
     for (std::ptrdiff_t k = 0; k < 3; ++k) {
       result.e[k] *= per_length;
       for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
-        result.at.jacobian(k, i) *= per_length;
+        result.at.jacobian(k, i) *= per_length * unit_[i]; // of joints that slide ω is 0
       }
     }
     return result;
   }
 
   /// Levenberg and Marquardt's step.
-  [[nodiscard]] bounded_step_result<vector> step(const equations& x) const {
-    const vector& theta = x.at.theta;
-    return bounded_step(x.at.jacobian, x.e, model_.lower - theta - beyond_,
-                        model_.upper - theta + beyond_, std::min(.02 * dot(x.e, x.e), .08) + 1e-9);
+  [[nodiscard]] bounded_step_result<vector> step(const equations& x, double lambda) const {
+    vector down = model_.lower - x.at.theta - beyond_, up = model_.upper - x.at.theta + beyond_;
+    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+      down[i] /= unit_[i];
+      up[i] /= unit_[i];
+    }
+    auto result = bounded_step(x.at.jacobian, x.e, down, up, lambda);
+    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+      result.step[i] *= unit_[i];
+    }
+    return result;
+  }
+  /// The damping that grows with the error.
+  [[nodiscard]] static double damping(const equations& x) {
+    return std::min(.02 * dot(x.e, x.e), .08) + 1e-9;
   }
 
   [[nodiscard]] attempt approach(vector theta, const tip_place& goal) const {
@@ -154,8 +128,7 @@ private:
     for (int iteration = 0;; ++iteration) {
       const equations now = equations_at(theta, goal);
       const double error = dot(now.e, now.e);
-      const bool is_reached =
-          now.left.length <= options_.tolerance && now.left.angle <= options_.tolerance;
+      const bool is_reached = options_.tolerance.times(now.left) <= 1;
       if (iteration == 0 || error < best.error || is_reached) {
         best = {theta, now.left, error};
       }
@@ -171,14 +144,73 @@ private:
         return best;
       }
       ++since;
-      theta = within_limits(theta + step(now).step);
+      theta = within_limits(theta + step(now, damping(now)).step);
     }
+  }
+
+  /// The nearest place from a start on, by the least |way|² + |ω|², lengths as parts of the
+  /// chain's: Newton's method with a damping that lets no step raise it. Joints at limits that are
+  /// in the way are held there.
+  [[nodiscard]] attempt nearest(const vector& start, const tip_place& goal) const {
+    point here = point_at(start, goal);
+    double lambda = 0;
+    int iterations = 0;
+    for (bool is_lower = true;
+         is_lower && iterations < options_.iterations && here.steepest > 1e-12 * (1 + here.error);
+         ++iterations) {
+      is_lower = false;
+      for (; !is_lower && lambda < 1e6 * (1 + here.error); lambda = std::max(4 * lambda, 1e-3)) {
+        const auto step = newton_step(here.to_second_order, here.is_held, lambda);
+        if (!step) {
+          continue;
+        }
+        vector theta = here.theta;
+        for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+          theta[i] += unit_[i] * (*step)[i];
+        }
+        const point there = point_at(within_limits(theta), goal);
+        // At the end the error no longer shows what is lower, but its slope does.
+        const bool is_even = there.error <= here.error * (1 + 1e-14);
+        is_lower =
+            there.error < here.error * (1 - 1e-14) || (is_even && there.steepest < here.steepest);
+        if (is_lower) {
+          here = there;
+        }
+      }
+      lambda = lambda < 1e-2 ? 0 : lambda / 16;
+    }
+    return {here.theta, here.left, here.error, iterations, 0, stop_reason::out_of_reach};
+  }
+
+  struct point {
+    vector theta;
+    pose_deviation left;
+    double error; ///< |way|² + |ω|²
+    squared_error<Room> to_second_order;
+    std::array<bool, std::size_t(Room)> is_held{}; ///< by a limit that is in the way
+    double steepest = 0;                           ///< of the slopes of those that are not
+  };
+  [[nodiscard]] point point_at(const vector& theta, const tip_place& goal) const {
+    const equations x = equations_at(theta, goal);
+    const three_vector<double> way =
+        1 / model_.reach.scale() * (goal.translation - x.at.tip.translation);
+    const small_twist e{{way.x, way.y, way.z, x.e[3], x.e[4], x.e[5]}};
+    point result{theta, x.left, dot(e, e), squared_error_of(x.at.jacobian, e)};
+    for (std::ptrdiff_t i = 0; i < Room; ++i) {
+      const double slope = result.to_second_order.slope[i];
+      const bool is_at_limit =
+          turn_[i] == 0 && (slope > 0 ? theta[i] <= model_.lower[i] : theta[i] >= model_.upper[i]);
+      bool& is_held = result.is_held[std::size_t(i)];
+      is_held = i >= model_.size || is_at_limit;
+      result.steepest = std::max(result.steepest, is_held ? 0 : std::abs(slope));
+    }
+    return result;
   }
 
   /// Why there is no way on from a configuration.
   [[nodiscard]] stop_reason obstacle(const vector& theta, const tip_place& goal) const {
     const equations here = equations_at(theta, goal);
-    if (step(here).is_bounded) {
+    if (step(here, damping(here)).is_bounded) {
       return stop_reason::joint_limit;
     }
     const damped_gram gram(gram_of(here.at.jacobian));
@@ -218,6 +250,7 @@ private:
   inverse_kinematics_options options_;
   vector turn_;   ///< a whole turn where it leads to the same pose within limits, else 0
   vector beyond_; ///< how far steps may go beyond limits: any way if they are turned back
+  vector unit_;   ///< in which a coordinate is counted: the chain's length, or a radian
   vector spread_; ///< how far from the start random coordinates are that have no limits
   vector start_;
 };
@@ -225,14 +258,15 @@ private:
 template <int Room>
 typename inverse_kinematics_search<Room>::attempt
 inverse_kinematics_search<Room>::operator()(const tip_place& goal) const {
-  if (model_.reach.is_beyond(goal, options_.tolerance)) {
-    return {start_, equations_at(start_, goal).left, 0, 0, 0, stop_reason::out_of_reach};
-  }
-  attempt best = approach(start_, goal);
+  const bool is_beyond = model_.reach.is_beyond(goal, options_.tolerance);
+  const auto search = [&](const vector& from) {
+    return is_beyond ? nearest(from, goal) : approach(from, goal);
+  };
+  attempt best = search(start_);
   int iterations = best.iterations, restarts = 0;
   split_mix random(options_.seed);
   while (best.reason != stop_reason::reached && restarts < options_.restarts) {
-    const attempt next = approach(configuration(random), goal);
+    const attempt next = search(configuration(random));
     iterations += next.iterations;
     ++restarts;
     if (!(best.error <= next.error)) { // nor is it a number if coordinates overflow

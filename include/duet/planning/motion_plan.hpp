@@ -23,12 +23,40 @@
 
 namespace duet {
 
+/// How far one pose is from another: its origin in units of length, its axes in radians.
+struct pose_deviation {
+  double length = 0; ///< from origin to origin, in units of length
+  double angle = 0;  ///< between the axes, radians
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("length", length);
+    f("angle", angle);
+  }
+};
+
+/// How far one pose may be from another, lengths and angles apart: `{.1, 1e-3}` is a tenth of a
+/// unit of length and a milliradian. One number stands for both.
+struct pose_tolerance {
+  double length; ///< from origin to origin, in units of length
+  double angle;  ///< between the axes, radians
+
+  constexpr pose_tolerance(double both) : length(both), angle(both) {}
+  constexpr pose_tolerance(double of_length, double of_angle)
+      : length(of_length), angle(of_angle) {}
+
+  /// How many times as far as that is a deviation? Up to 1 it is within.
+  [[nodiscard]] double times(const pose_deviation& left) const {
+    return std::max(left.length / length, left.angle / angle);
+  }
+};
+
 /// Settings of `follow_path` and `plan_screw_motion`. Steps along the path are fractions of it.
 struct plan_options {
-  /// How close waypoints come to the path, in units of length and radians.
-  double tolerance = 1e-6;
+  /// How close waypoints come to the path.
+  pose_tolerance tolerance = 1e-6;
   /// How far the tip may be from it where joints move straight on between waypoints.
-  double deviation = 1e-5;
+  pose_tolerance deviation = 1e-5;
   /// From one waypoint to the next.
   double largest_step = .1;
   /// Below it there is no going on without moving in place.
@@ -62,17 +90,6 @@ enum class stop_reason {
   return names[std::size_t(reason)];
 }
 
-/// How far one pose is from another: its origin in units of length, its axes in radians.
-struct pose_deviation {
-  double length = 0; ///< from origin to origin, in units of length
-  double angle = 0;  ///< between the axes, radians
-
-  /// For those who extend duet: for `to_text`.
-  void for_each_field(const auto& f) const {
-    f("length", length);
-    f("angle", angle);
-  }
-};
 /// How far a pose is from another, length and angle apart; the same for a and b as for b and a.
 template <std::floating_point T>
 [[nodiscard]] pose_deviation deviation_between(const dual_quaternion<T>& a,
@@ -186,6 +203,13 @@ inline void require_option(const char* caller, const char* name, double value, b
 }
 inline void require_positive(const char* caller, const char* name, double value) {
   require_option(caller, name, value, value > 0, "a number above 0");
+}
+inline void require_positive(const char* caller, const char* name, const pose_tolerance& value) {
+  const bool is_length = !(value.length > 0);
+  if (is_length || !(value.angle > 0)) {
+    const std::string part = std::string(name) + (is_length ? ".length" : ".angle");
+    require_positive(caller, part.c_str(), is_length ? value.length : value.angle);
+  }
 }
 
 } // namespace detail

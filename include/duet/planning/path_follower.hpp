@@ -145,9 +145,8 @@ private:
         const vector middle = .5 * (theta + there.state.theta);
         const pose_deviation half_way =
             deviation_between(solver_.model.at(middle).tip, place_of(target_((here.u + u) / 2)));
-        const double excess =
-            std::max({half_way.length, half_way.angle, solver_.model.shortfall(middle)}) /
-            options_.deviation;
+        const double excess = std::max(options_.deviation.times(half_way),
+                                       solver_.model.shortfall(middle) / options_.deviation.length);
         // Between waypoints the deviation grows with the square of the step.
         change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
         if (excess <= .95) { // half way is not quite where it is largest
@@ -157,12 +156,13 @@ private:
       }
       x.step = std::min(options_.largest_step, x.step * change);
       if (way < 1 && (iterations_left_ <= 0 || x.step < options_.smallest_step)) {
-        x.reason =
-            iterations_left_ <= 0 ? stop_reason::iteration_limit
-            : there.is_blocked || there.shortfall > options_.tolerance ? stop_reason::obstacle
-            : there.is_bounded                                         ? stop_reason::joint_limit
-            : there.smallest_singular_value < 10 * damping_threshold   ? stop_reason::singular
-                                                                       : stop_reason::no_progress;
+        x.reason = iterations_left_ <= 0 ? stop_reason::iteration_limit
+                   : there.is_blocked || there.shortfall > options_.tolerance.length
+                       ? stop_reason::obstacle
+                   : there.is_bounded ? stop_reason::joint_limit
+                   : there.smallest_singular_value < 10 * damping_threshold
+                       ? stop_reason::singular
+                       : stop_reason::no_progress;
         return false;
       }
     }

@@ -45,8 +45,12 @@ struct attempt {
   double shortfall = 0;    ///< of the margin to obstacles
   int iterations = 0;
 
-  [[nodiscard]] bool is_within(double tolerance) const {
-    return left.length <= tolerance && left.angle <= tolerance && shortfall <= tolerance;
+  /// How many times the tolerance is what is left?
+  [[nodiscard]] double excess(const pose_tolerance& tolerance) const {
+    return std::max(tolerance.times(left), shortfall / tolerance.length);
+  }
+  [[nodiscard]] bool is_within(const pose_tolerance& tolerance) const {
+    return excess(tolerance) <= 1;
   }
 };
 
@@ -56,7 +60,7 @@ struct pose_solver {
   using vector = small_vector<Room>;
 
   const planning_model<Room>& model;
-  double tolerance;
+  pose_tolerance tolerance;
 
   /// From a state nearby, the step nearest to `wish` that takes the tip to the target to first
   /// order, and then Newton's method by least steps. None leaves the limits.
@@ -71,9 +75,9 @@ struct pose_solver {
       const small_twist error = error_twist(result.state.tip, target);
       result.left = deviation_of(error);
       result.shortfall = model.shortfall(result.state.theta);
-      const double size = std::max({result.left.length, result.left.angle, result.shortfall});
+      const double size = result.excess(tolerance);
       // What does not at least halve the error will not get there.
-      if (size <= tolerance || result.iterations == most || size > before / 2 ||
+      if (size <= 1 || result.iterations == most || size > before / 2 ||
           !move(result, result.state, error, {})) {
         return result;
       }

@@ -108,15 +108,21 @@ struct chain_reach {
   three_vector<double> back;  ///< of the last one, in the tip's frame
   double links = 0, tool = 0; ///< lengths
   double travel = 0;          ///< of sliding joints
+  double limited_travel = 0;  ///< of those that have limits
   bool has_joints = false;
 
-  /// Is it certain that no pose of the tip is as near to the goal as that, in length and radians?
-  [[nodiscard]] bool is_beyond(const tip_place& goal, double tolerance) const {
+  /// Is it certain that no pose of the tip is as near to the goal as that?
+  [[nodiscard]] bool is_beyond(const tip_place& goal, const pose_tolerance& tolerance) const {
     const double distance = length_of(goal.point(back) - first);
-    return has_joints && distance > (links + travel) * (1 + 1e-12) + tolerance * (1 + tool);
+    return has_joints &&
+           distance > (links + travel) * (1 + 1e-12) + tolerance.length + tolerance.angle * tool;
   }
-  /// A length typical of the chain, 1 where there is none in its table.
-  [[nodiscard]] double scale() const { return links + tool > 0 ? links + tool : 1; }
+  /// A length typical of the chain, 1 where there is none in its table. In other units it is that
+  /// many times as large.
+  [[nodiscard]] double scale() const {
+    const double all = links + tool + limited_travel;
+    return all > 0 ? all : 1;
+  }
 };
 
 /// A step in the presence of obstacles.
@@ -151,7 +157,9 @@ public:
         reach.links += length_of(offset);
       }
       if (step.slides) {
-        reach.travel += std::abs(step.pitch) * std::max(std::abs(lower[i]), std::abs(upper[i]));
+        const double way = std::abs(step.pitch) * std::max(std::abs(lower[i]), std::abs(upper[i]));
+        reach.travel += way;
+        reach.limited_travel += way - way == 0 ? way : 0;
       }
     }
     const auto& offset = chain.tip().offset;

@@ -21,10 +21,10 @@ namespace duet {
 
 /// Settings of `printed_screw_plan` and `printed_path_plan`.
 struct printed_plan_options {
-  double tau = .01;        ///< of the small step of ScLERP; paths given by poses have none
-  double beta = 1;         ///< N23
-  double tolerance = 1e-4; ///< how close the tip must come, in units of length and radians
-  int iterations = 10000;  ///< the most steps
+  double tau = .01;                ///< of the small step of ScLERP; paths given by poses have none
+  double beta = 1;                 ///< N23
+  pose_tolerance tolerance = 1e-4; ///< how close the tip must come
+  int iterations = 10000;          ///< the most steps
 };
 
 namespace detail {
@@ -40,7 +40,7 @@ template <class C, class Next, class Keep>
   keep(0, theta, here);
   for (int k = 0;; ++k) {
     const pose_deviation left = deviation_between(here, goal);
-    if (k >= fewest && left.length <= options.tolerance && left.angle <= options.tolerance) {
+    if (k >= fewest && options.tolerance.times(left) <= 1) {
       return stop_reason::reached;
     }
     if (k == options.iterations) {
