@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/mechanism/chain_walk.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/joint_checks.hpp>
@@ -87,5 +88,9 @@ template <SerialChain C, detail::JointOf<C> Which>
     return C(chain, i, held);
   }
 }
+
+template <SerialChain C, detail::NameInVain<C> Which>
+DUET_REFUSED("only chains of read_urdf have names: with_locked(chain, number, coordinate)")
+C with_locked(const C&, const Which&, const typename C::scalar_type&);
 
 } // namespace duet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/text/nearest_names.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/derivative/argument.hpp>
@@ -40,6 +41,10 @@ concept JointOf = std::integral<Which> ||
     (std::convertible_to<const Which&, std::string_view>&& requires(const C& chain) {
       chain.joint_names();
     });
+
+/// A name for a joint of a chain that has none.
+template <class Which, class C>
+concept NameInVain = std::convertible_to<const Which&, std::string_view> && !JointOf<Which, C>;
 
 /// The name of a joint, empty where it has none.
 template <class C>
@@ -117,5 +122,9 @@ template <SerialChain C, VectorLike Lower, VectorLike Upper>
   }
   return result;
 }
+
+template <SerialChain C, detail::NameInVain<C> Which>
+DUET_REFUSED("only chains of read_urdf have names: with_limits(chain, number, limits)")
+C with_limits(const C&, const Which&, const joint_limits<typename C::scalar_type>&);
 
 } // namespace duet

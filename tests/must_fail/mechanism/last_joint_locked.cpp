@@ -1,0 +1,14 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+// expect: duet: with_locked: no joint would be left to move
+
+#include <duet/mechanism/adapted.hpp>
+
+#include <array>
+
+#ifdef DUET_MUST_FAIL
+using joints = std::array<duet::joint<>, 1>;
+#else
+using joints = std::array<duet::joint<>, 2>;
+#endif
+
+const auto locked = with_locked(duet::serial_chain(joints{}), 0, .5);
