@@ -33,21 +33,27 @@ struct urdf_element_kind {
   std::string_view name;
   std::array<std::string_view, 7> attributes;
   std::array<std::string_view, 9> children = {};
+  /// Attributes that files of known robots have for other programs.
+  std::array<std::string_view, 3> foreign = {};
 };
 inline constexpr std::array<urdf_element_kind, 10> urdf_element_kinds{
     {{"robot",
       {"name", "version"},
       {"link", "joint", "material", "transmission", "gazebo", "sensor"}},
-     {"link", {"name", "type"}, {"inertial", "visual", "collision"}},
+     {"link", {"name", "type"}, {"inertial", "visual", "collision"}, {"concave"}},
      {"joint",
       {"name", "type"},
       {"origin", "parent", "child", "axis", "limit", "mimic", "safety_controller", "dynamics",
-       "calibration"}},
+       "calibration"},
+      {"dont_collapse"}},
      {"parent", {"link"}},
      {"child", {"link"}},
      {"origin", {"xyz", "rpy"}},
-     {"axis", {"xyz"}},
-     {"limit", {"lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk"}},
+     {"axis", {"xyz"}, {}, {"rpy"}},
+     {"limit",
+      {"lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk"},
+      {},
+      {"command_effort", "current", "gear_velocity"}},
      {"mimic", {"joint", "multiplier", "offset"}},
      {"safety_controller", {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}}}};
 
@@ -146,7 +152,8 @@ private:
       return;
     }
     for (const auto& [key, value] : element.attributes) {
-      if (key != "xmlns" && key.find(':') == std::string::npos && !has(kind->attributes, key)) {
+      if (key != "xmlns" && key.find(':') == std::string::npos && !has(kind->foreign, key) &&
+          !has(kind->attributes, key)) {
         std::vector<std::string> known(kind->attributes.begin(), kind->attributes.end());
         std::erase(known, "");
         fail({element, joint}, "unknown attribute \"" + key + "\": " + nearest_names(key, known));

@@ -37,12 +37,6 @@ public:
         add_joint(each);
       }
     }
-    for (const xml_element& each : document_.robot().children) {
-      if (each.name == "joint") {
-        require_link({*each.child("parent"), &each});
-        require_link({*each.child("child"), &each});
-      }
-    }
   }
   urdf_reader(const urdf_reader&) = delete;
   urdf_reader& operator=(const urdf_reader&) = delete;
@@ -71,6 +65,7 @@ public:
       }
       const xml_element& joint = *above->second;
       result.push_back(&joint);
+      require_link({*joint.child("parent"), &joint});
       link = *joint.child("parent")->attribute("link");
       if (!seen.insert(link).second) {
         document_.fail({joint}, "closes a cycle at the link \"" + std::string(link) + "\"");
