@@ -100,7 +100,7 @@ private:
 /// \throws file_error with line and element for what is wrong anywhere in the file: XML that is not
 /// well formed, nested more than 100 deep or has a document type; attributes of links and joints
 /// that URDF has not; missing elements and attributes, and repeated ones; names that are there
-/// twice; links that are not there, or have two joints above them; and in the chain for bad
+/// twice; links with two joints above them; and in the chain for links that are not there, bad
 /// numbers, axes that are no unit vectors, cycles, joints that mimic others or are of other kinds
 /// than revolute, continuous, prismatic and fixed; and for too many joints
 template <int Capacity = 16>
