@@ -16,7 +16,8 @@
 ///
 /// A rule has `value(x)`, the function over any scalar, and `slope(x, y)`, its derivative at x
 /// where the value there is y. Both are generic: for a nested scalar they recurse, for a taylor
-/// number the slope is itself a series. Forms are chosen to be accurate over the whole domain.
+/// number the slope is itself a series. Forms are chosen to be accurate over the whole domain. Sine
+/// and cosine, each the slope of the other, have no slopes here: lift.hpp computes both at once.
 
 namespace duet::detail {
 
@@ -144,11 +145,6 @@ struct sin {
     using std::sin;
     return sin(x);
   }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::cos;
-    return cos(x);
-  }
 };
 
 struct cos {
@@ -156,11 +152,6 @@ struct cos {
   T value(const T& x) const {
     using std::cos;
     return cos(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::sin;
-    return -sin(x);
   }
 };
 

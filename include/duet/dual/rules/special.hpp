@@ -149,11 +149,6 @@ struct sinh {
     using std::sinh;
     return sinh(x);
   }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::cosh;
-    return cosh(x);
-  }
 };
 
 struct cosh {
@@ -161,11 +156,6 @@ struct cosh {
   T value(const T& x) const {
     using std::cosh;
     return cosh(x);
-  }
-  template <class T>
-  T slope(const T& x, const T&) const {
-    using std::sinh;
-    return sinh(x);
   }
 };
 
