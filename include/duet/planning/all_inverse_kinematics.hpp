@@ -1,0 +1,204 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/compiler/refused.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/branches/branch_search.hpp>
+#include <duet/planning/branches/chain_loop.hpp>
+#include <duet/planning/branches/singular_value.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/quaternion/norm.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+/// \file
+/// All joint coordinates of arms of six joints for a pose of the tip.
+
+namespace duet {
+
+/// One of the ways in which an arm reaches a pose.
+///
+/// \tparam N  as of `serial_chain`
+template <int N>
+struct inverse_kinematics_branch {
+  /// Coordinates: of turning joints within (−π, π], or a turn from there where that is within the
+  /// limits.
+  detail::joint_vector<double, N> joints;
+  /// How far the tip is from the goal: radians, and lengths in parts of the arm's size, whichever
+  /// is larger.
+  double residual = 0;
+  /// Of the Jacobian in `frame::hybrid`: 0 where branches meet.
+  double smallest_singular_value = 0;
+  /// 2 where branches meet: between it and another solution the tip stays within 3e-13 of the goal.
+  int multiplicity = 1;
+  bool within_limits = true; ///< are all joints within their limits?
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("joints", joints);
+    f("residual", residual);
+    f("smallest_singular_value", smallest_singular_value);
+    f("multiplicity", multiplicity);
+    f("within_limits", within_limits);
+  }
+};
+
+/// All ways in which an arm reaches a pose.
+///
+/// \tparam N  as of `serial_chain`
+template <int N>
+struct all_inverse_kinematics_result {
+  /// In the order of their first coordinates, those that agree there of the second …
+  std::vector<inverse_kinematics_branch<N>> solutions;
+  /// How many more the equations have that are complex. (For arms of special geometry, but not in
+  /// closed form, from above.)
+  int complex_solutions = 0;
+  branch_method method = branch_method::elimination; ///< how they were found
+  /// Is it certain, but for rounding, that there are no others? Where joints can move with the tip
+  /// in place it is not.
+  bool is_complete = false;
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("solutions", solutions);
+    f("complex_solutions", complex_solutions);
+    f("method", method);
+    f("is_complete", is_complete);
+  }
+};
+
+namespace detail {
+
+/// \throws invalid_input for a chain that has not six joints, each of which turns or slides
+template <class C>
+void require_six_joints(const C& chain) {
+  require(chain.size() == 6, "duet: all_inverse_kinematics: the chain has ", chain.size(),
+          " moving joints, not 6");
+  int sliding = 0;
+  for (int i = 0; i < chain.size(); ++i) {
+    require(chain.kind(i) != joint_kind::helical, "duet: all_inverse_kinematics: joint ", i,
+            " is helical: its equations are not algebraic");
+    sliding += chain.kind(i) == joint_kind::prismatic;
+  }
+  require(sliding <= 3, "duet: all_inverse_kinematics: ", sliding,
+          " sliding joints, of which 3 are the most");
+}
+
+/// θ turned by whole turns into the limits, if that is possible.
+[[nodiscard]] inline double turned_within(double theta, const joint_limits<double>& limits) {
+  constexpr double turn = 2 * std::numbers::pi;
+  for (const double x : {theta, theta + turn, theta - turn}) {
+    if (x >= limits.lower && x <= limits.upper) {
+      return x;
+    }
+  }
+  return theta;
+}
+
+template <class C>
+class branches_of_chain {
+public:
+  using branch = inverse_kinematics_branch<C::joints>;
+
+  branches_of_chain(const C& chain, const dual_quaternion<double>& goal)
+      : chain_(chain), goal_(place_of(normalized(goal))),
+        axes_(chain, joint_vector<double, C::joints>::Zero(chain.size()).eval(), -1),
+        loop_(axes_.loop_to(goal_)) {}
+
+  [[nodiscard]] const joint_loop& loop() const { return loop_; }
+
+  [[nodiscard]] branch operator()(const loop_solution& x) const {
+    constexpr double rounding = 2e-13; // closed forms have more near singularities
+    branch result = described(x);
+    if (result.residual > rounding) {
+      loop_solution refined = x;
+      static_cast<void>(close_loop(loop_, refined.theta));
+      result = described(refined);
+    }
+    return result;
+  }
+
+private:
+  [[nodiscard]] branch described(const loop_solution& x) const {
+    branch result;
+    result.joints.resize(chain_.size());
+    result.multiplicity = x.multiplicity;
+    for (int i = 0; i < 6; ++i) {
+      const auto& limits = chain_.limits(i);
+      const bool turns = loop_.joints[std::size_t(i)].turns;
+      double& theta = result.joints[i];
+      theta = turns ? turned_within(turned_back(x.theta[i]), limits) : axes_.size * x.theta[i];
+      result.within_limits = result.within_limits && theta >= limits.lower && theta <= limits.upper;
+    }
+    joint_columns<double, 6, C::joints> jacobian;
+    const tip_place tip =
+        fill_jacobian<hybrid_frame, true, double>(jacobian, chain_, result.joints, tip_of_chain{});
+    const pose_deviation left = deviation_of(error_twist(tip, goal_));
+    result.residual = std::max(left.length / axes_.size, left.angle);
+    result.smallest_singular_value = smallest_singular_value(jacobian);
+    return result;
+  }
+
+  const C& chain_;
+  tip_place goal_;
+  chain_axes axes_;
+  joint_loop loop_;
+};
+
+} // namespace detail
+
+/// All joint coordinates that take the tip of an arm of six joints to the pose `goal`, within
+/// limits or not.
+///
+/// Spherical wrists, three parallel axes one after the other and three sliding joints are
+/// recognised, by 1e-9 of the arm's size, and solved in closed form. Any other arm: elimination
+/// after Raghavan and Roth, the determinant's zeros on the unit circle, Newton's method from there
+/// (docs/all_inverse_kinematics.md). Joints beyond their limits are told by `within_limits`. Where
+/// joints can move with the tip in place, some of these configurations are returned.
+///
+/// \param chain  six joints that turn or slide, at most three of which slide; two that slide stand
+/// one behind the other
+/// \throws invalid_input for other chains, and for a goal that is no pose
+template <SerialChain C>
+[[nodiscard]] all_inverse_kinematics_result<C::joints>
+all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {
+  detail::require_six_joints(chain);
+  detail::require_pose(goal, "all_inverse_kinematics", "the goal");
+  const detail::branches_of_chain<C> branches(chain, goal);
+  const detail::branch_search<detail::joint_loop> search(branches.loop());
+  all_inverse_kinematics_result<C::joints> result;
+  result.complex_solutions = search.answer().complex_solutions;
+  result.method = search.method();
+  result.is_complete = search.answer().is_complete;
+  result.solutions.reserve(search.answer().solutions.size());
+  for (const detail::loop_solution& x : search.answer().solutions) {
+    result.solutions.push_back(branches(x));
+  }
+  std::sort(result.solutions.begin(), result.solutions.end(), [](const auto& a, const auto& b) {
+    return std::lexicographical_compare(a.joints.begin(), a.joints.end(), b.joints.begin(),
+                                        b.joints.end());
+  });
+  return result;
+}
+
+DUET_ASKS_FOR_ONE_CONFIGURATION(all_inverse_kinematics, all_inverse_kinematics_result<C::joints>)
+
+template <SerialChain C, VectorLike Start>
+DUET_REFUSED("all solutions are found without a start: all_inverse_kinematics(chain, goal)")
+all_inverse_kinematics_result<C::joints> all_inverse_kinematics(const C&,
+                                                                const dual_quaternion<double>&,
+                                                                const Start&);
+template <SerialChain C, Real T>
+DUET_REFUSED("the goal is a rotation, which says nothing of where: pose(q, t)")
+all_inverse_kinematics_result<C::joints> all_inverse_kinematics(const C&, const quaternion<T>&);
+
+} // namespace duet

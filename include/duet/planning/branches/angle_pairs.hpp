@@ -1,0 +1,135 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/planning/branches/circle_roots.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+
+/// \file
+/// Angles by equations that are linear in their cosines and sines.
+
+namespace duet::detail {
+
+/// a + b cos θ + c sin θ
+struct turning_value {
+  double a = 0, b = 0, c = 0;
+
+  [[nodiscard]] double at(double theta) const {
+    return a + b * std::cos(theta) + c * std::sin(theta);
+  }
+};
+
+/// Zeros nearer than that count as one, of multiplicity 2: rounding takes them that far apart.
+inline constexpr double one_angle = 3e-7;
+
+/// Calls visit(θ, multiplicity) where a + b cos θ + c sin θ = 0.
+/// \return false where all of it is zero but for rounding
+template <class Visit>
+bool visit_zeros(const turning_value& f, const Visit& visit) {
+  constexpr double rounding = 1e-12;
+  const double r = std::hypot(f.b, f.c);
+  if (!(r > rounding)) {
+    return std::abs(f.a) > rounding;
+  }
+  const double cosine = -f.a / r, middle = std::atan2(f.c, f.b);
+  if (std::abs(cosine) <= 1 - one_angle * one_angle) {
+    const double turn = std::acos(cosine);
+    visit(middle + turn, 1);
+    visit(middle - turn, 1);
+  } else if (std::abs(cosine) <= 1 + one_angle * one_angle) {
+    visit(cosine > 0 ? middle : middle + std::acos(-1.), 2);
+  }
+  return true;
+}
+
+/// Two equations f(θ) = g(φ).
+struct angle_pairs {
+  std::array<turning_value, 2> f, g;
+
+  /// Calls visit(θ, φ, multiplicity) for each solution.
+  /// \return false where one of the angles is undetermined
+  template <class Visit>
+  bool operator()(const Visit& visit) const {
+    if (is_singular(f)) {
+      return by_one(f, g, [&](double x, double y, int m) { visit(x, y, m); });
+    }
+    if (is_singular(g)) {
+      return by_one(g, f, [&](double x, double y, int m) { visit(y, x, m); });
+    }
+    by_both(visit);
+    return true;
+  }
+
+private:
+  using two_values = std::array<turning_value, 2>;
+
+  [[nodiscard]] static double determinant(const two_values& f) {
+    return f[0].b * f[1].c - f[0].c * f[1].b;
+  }
+  [[nodiscard]] static bool is_singular(const two_values& f) {
+    constexpr double rounding = 1e-9;
+    const double size =
+        std::max(f[0].b * f[0].b + f[0].c * f[0].c, f[1].b * f[1].b + f[1].c * f[1].c);
+    return std::abs(determinant(f)) <= rounding * std::max(size, rounding);
+  }
+
+  /// A sum of both equations has no θ.
+  template <class Visit>
+  static bool by_one(const two_values& f, const two_values& g, const Visit& visit) {
+    const double at_0 = std::hypot(f[0].b, f[0].c), at_1 = std::hypot(f[1].b, f[1].c);
+    const std::size_t larger = at_0 >= at_1 ? 0 : 1, other = 1 - larger;
+    const turning_value &fl = f[larger], &fo = f[other], &gl = g[larger], &go = g[other];
+    const double size = fl.b * fl.b + fl.c * fl.c;
+    const double ratio = size > 0 ? (fl.b * fo.b + fl.c * fo.c) / size : 0;
+    bool is_determined = true;
+    const turning_value left{go.a - fo.a - ratio * (gl.a - fl.a), go.b - ratio * gl.b,
+                             go.c - ratio * gl.c};
+    const bool has_phi = visit_zeros(left, [&](double phi, int m) {
+      const bool has_theta = visit_zeros({fl.a - gl.at(phi), fl.b, fl.c},
+                                         [&](double theta, int n) { visit(theta, phi, m * n); });
+      is_determined = is_determined && has_theta;
+    });
+    return has_phi && is_determined;
+  }
+
+  /// (cos θ, sin θ) = u + V (cos φ, sin φ), whose square is 1.
+  template <class Visit>
+  void by_both(const Visit& visit) const {
+    const double d = determinant(f);
+    const auto solved = [&](double r0, double r1) {
+      return std::array{(r0 * f[1].c - r1 * f[0].c) / d, (f[0].b * r1 - f[1].b * r0) / d};
+    };
+    const auto u = solved(g[0].a - f[0].a, g[1].a - f[1].a);
+    const auto v = solved(g[0].b, g[1].b), w = solved(g[0].c, g[1].c);
+    // u + q z + q̄/z
+    using complex = std::complex<double>;
+    const complex q0(v[0] / 2, -w[0] / 2), q1(v[1] / 2, -w[1] / 2);
+    const circle_roots<2> roots(
+        {u[0] * u[0] + u[1] * u[1] + 2 * (std::norm(q0) + std::norm(q1)) - 1,
+         2. * (u[0] * q0 + u[1] * q1), q0 * q0 + q1 * q1});
+    std::array<bool, 4> is_done{};
+    for (int i = 0; i < 4; ++i) {
+      const complex z = roots[i];
+      const double error = std::min(1e-5, 1e-9 + 1e-13 * roots.sensitivity(i));
+      if (is_done[std::size_t(i)] || !(std::abs(std::abs(z) - 1) < error)) {
+        continue;
+      }
+      int multiplicity = 1;
+      for (int j = i + 1; j < 4; ++j) {
+        if (std::abs(roots[j] - z) < one_angle) {
+          is_done[std::size_t(j)] = true;
+          ++multiplicity;
+        }
+      }
+      const double phi = std::arg(z), c = std::cos(phi), s = std::sin(phi);
+      visit(std::atan2(u[1] + v[1] * c + w[1] * s, u[0] + v[0] * c + w[0] * s), phi, multiplicity);
+    }
+  }
+};
+
+} // namespace duet::detail

@@ -1,0 +1,196 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/branches/angle_pairs.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/turns.hpp>
+#include <duet/planning/planning_model.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <array>
+#include <cstddef>
+
+/// \file
+/// Loops in which three joints, one after the other, have axes that meet in a point or are
+/// parallel, or in which three joints slide.
+///
+/// Axes that meet leave a point where it is, parallel ones a plane. Where the other three joints
+/// have to take that, is two equations in the first and third of them: of what turns about the
+/// second axis two numbers do not change. (Page: all_inverse_kinematics.)
+
+namespace duet::detail {
+
+/// Solutions in closed form of a loop whose joints 4 to 6 have axes that meet.
+class spherical_loop {
+public:
+  explicit spherical_loop(const joint_loop& loop, const vector3d& centre)
+      : loop_(loop), centre_(centre) {}
+
+  /// exp(θ₁S₁) exp(θ₂S₂) exp(θ₃S₃) takes the centre to its goal, what is left is a rotation.
+  /// \return false where coordinates are undetermined
+  template <class Visit>
+  bool operator()(const Visit& visit) const {
+    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
+    const vector3d goal = loop_.closing.point(centre_);
+    // In a frame with its origin on the second axis: those points e₃ c and e₁⁻¹ goal agree along
+    // that axis, and in their squares.
+    const turned_vector from(third.axis, centre_ - third.point);
+    const turned_vector to(-1 * first.axis, goal - first.point);
+    const auto height = [&](const turned_vector& x, const vector3d& offset) {
+      return turning_value{dot(second.axis, x.along + offset), dot(second.axis, x.across),
+                           dot(second.axis, x.beside)};
+    };
+    const auto square = [&](const turned_vector& x, const vector3d& offset) {
+      const double still = dot(x.across, x.across) + dot(x.along + offset, x.along + offset);
+      return turning_value{still, 2 * dot(offset, x.across), 2 * dot(offset, x.beside)};
+    };
+    const vector3d at_first = first.point - second.point, at_third = third.point - second.point;
+    const angle_pairs pairs{{height(to, at_first), square(to, at_first)},
+                            {height(from, at_third), square(from, at_third)}};
+    bool is_determined = true;
+    const bool has_pairs = pairs([&](double theta1, double theta3, int multiplicity) {
+      six_coordinates theta;
+      theta[0] = theta1;
+      theta[2] = theta3;
+      const vector3d start = from.at(theta3) + at_third, end = to.at(theta1) + at_first;
+      theta[1] = angle_about(second.axis, start, end);
+      is_determined = is_determined && !is_on(second.axis, start);
+      is_determined = wrist(theta, multiplicity, visit) && is_determined;
+    });
+    return has_pairs && is_determined;
+  }
+
+private:
+  template <class Visit>
+  bool wrist(six_coordinates& theta, int multiplicity, const Visit& visit) const {
+    const quaternion<double> turn =
+        conj(product_of_joints(loop_, theta, 0, 3).rotation) * loop_.closing.rotation;
+    return visit_three_turns(loop_.joints[3], loop_.joints[4], loop_.joints[5], turn,
+                             [&](double alpha, double beta, double gamma, int m) {
+                               theta.tail<3>() << alpha, beta, gamma;
+                               visit(theta, multiplicity * m);
+                             });
+  }
+
+  const joint_loop& loop_;
+  vector3d centre_;
+};
+
+/// Solutions in closed form of a loop whose joints 1 to 3 have parallel axes.
+class planar_loop {
+public:
+  explicit planar_loop(const joint_loop& loop) : loop_(loop) {}
+
+  /// exp(θ₅S₅) exp(θ₆S₆) closing⁻¹ takes the plane across the three axes where exp(−θ₄S₄) does;
+  /// what is left is a motion of that plane. \return false where coordinates are undetermined
+  template <class Visit>
+  bool operator()(const Visit& visit) const {
+    const auto &fourth = loop_.joints[3], &fifth = loop_.joints[4], &sixth = loop_.joints[5];
+    const vector3d n = loop_.joints[0].axis;
+    const tip_place opening = inverse_place(loop_.closing);
+    const vector3d far = rotated(opening.rotation, n);
+    const double far_distance = dot(far, opening.translation);
+    // Of planes that turn about the fifth axis, the normal along it does not change, nor the
+    // distance from a point on it.
+    const turned_vector from(sixth.axis, far), to(-1 * fourth.axis, n);
+    const auto slope = [&](const turned_vector& x) {
+      return turning_value{dot(fifth.axis, x.along), dot(fifth.axis, x.across),
+                           dot(fifth.axis, x.beside)};
+    };
+    const auto distance = [&](const turned_vector& x, double before, const vector3d& offset) {
+      return turning_value{before + dot(x.along, offset), dot(x.across, offset),
+                           dot(x.beside, offset)};
+    };
+    const angle_pairs pairs{
+        {slope(to), distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
+        {slope(from),
+         distance(from, far_distance - dot(far, sixth.point), sixth.point - fifth.point)}};
+    bool is_determined = true;
+    const bool has_pairs = pairs([&](double theta4, double theta6, int multiplicity) {
+      six_coordinates theta;
+      theta[3] = theta4;
+      theta[5] = theta6;
+      const vector3d start = from.at(theta6);
+      theta[4] = angle_about(fifth.axis, start, to.at(theta4));
+      is_determined = is_determined && !is_on(fifth.axis, start);
+      is_determined = plane(theta, multiplicity, visit) && is_determined;
+    });
+    return has_pairs && is_determined;
+  }
+
+private:
+  template <class Visit>
+  bool plane(six_coordinates& theta, int multiplicity, const Visit& visit) const {
+    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
+    const tip_place motion = loop_.closing * inverse_place(product_of_joints(loop_, theta, 3, 3));
+    const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
+    const turned_vector arm(second.axis, third.point - second.point);
+    const vector3d offset = second.point - first.point;
+    const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
+    const vector3d across = in_plane(offset), goal = in_plane(to);
+    bool is_determined = true;
+    const bool has_second =
+        visit_zeros({dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
+                     2 * dot(across, arm.across), 2 * dot(across, arm.beside)},
+                    [&](double theta2, int m) {
+                      const vector3d from = offset + arm.at(theta2);
+                      theta[1] = theta2;
+                      theta[0] = angle_about(n, from, to);
+                      is_determined = is_determined && !is_on(n, from);
+                      const quaternion<double> before =
+                          moved_by(first, theta[0]).rotation * moved_by(second, theta2).rotation;
+                      theta[2] = angle_of(conj(before) * motion.rotation, third.axis);
+                      visit(theta, multiplicity * m);
+                    });
+    return has_second && is_determined;
+  }
+
+  const joint_loop& loop_;
+};
+
+/// Solutions in closed form of a loop of three joints that turn and three that slide.
+class sliding_loop {
+public:
+  explicit sliding_loop(const joint_loop& loop) : loop_(loop) {}
+
+  /// Turns alone make the rotation, ways along the slides the rest.
+  /// \return false where coordinates are undetermined
+  template <class Visit>
+  bool operator()(const Visit& visit) const {
+    std::array<int, 3> turning{}, sliding{};
+    for (int i = 0, turns = 0, slides = 0; i < 6; ++i) {
+      (loop_.joints[std::size_t(i)].turns ? turning[std::size_t(turns++)]
+                                          : sliding[std::size_t(slides++)]) = i;
+    }
+    const auto joint = [&](std::size_t k) { return loop_.joints[std::size_t(turning[k])]; };
+    bool is_determined = true;
+    const bool has_turns =
+        visit_three_turns(joint(0), joint(1), joint(2), loop_.closing.rotation,
+                          [&](double alpha, double beta, double gamma, int multiplicity) {
+                            six_coordinates theta = six_coordinates::Zero();
+                            theta[turning[0]] = alpha;
+                            theta[turning[1]] = beta;
+                            theta[turning[2]] = gamma;
+                            const loop_gap gap(loop_, theta);
+                            Eigen::Matrix3d ways;
+                            for (int k = 0; k < 3; ++k) {
+                              ways.col(k) = gap.jacobian.col(sliding[std::size_t(k)]).head<3>();
+                            }
+                            const Eigen::FullPivLU<Eigen::Matrix3d> lu(ways);
+                            is_determined = is_determined && lu.isInvertible();
+                            const Eigen::Vector3d d = lu.solve(gap.twist.head<3>());
+                            for (int k = 0; k < 3; ++k) {
+                              theta[sliding[std::size_t(k)]] = d[k];
+                            }
+                            visit(theta, multiplicity);
+                          });
+    return has_turns && is_determined;
+  }
+
+private:
+  const joint_loop& loop_;
+};
+
+} // namespace duet::detail

@@ -1,0 +1,154 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/branches/elimination.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_solutions.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// All solutions of a loop of six joints in general position.
+
+namespace duet::detail {
+
+/// A loop run through from one of its joints on, forwards or backwards.
+struct loop_order {
+  joint_loop loop;
+  int first = 0;
+  bool is_reversed = false;
+  /// How well the elimination of its first two joints goes: |(p₁ − p₂)·(n₁ × n₂)|, which is 0 where
+  /// their axes meet or are parallel; where they slide |n₁ × n₂|, less for one of them.
+  double quality = 0;
+
+  [[nodiscard]] six_coordinates in_loop(const six_coordinates& theta) const {
+    six_coordinates result;
+    for (int k = 0; k < 6; ++k) {
+      result[(k + first) % 6] = theta[is_reversed ? 5 - k : k];
+    }
+    return result;
+  }
+};
+
+/// The orders of a loop whose third and sixth joints turn, the best first.
+[[nodiscard]] inline std::vector<loop_order> orders_of(const joint_loop& loop) {
+  std::vector<loop_order> result;
+  result.reserve(12);
+  const auto add = [&](const joint_loop& l, int first, bool is_reversed) {
+    const loop_joint &a = l.joints[0], &b = l.joints[1];
+    if (!l.joints[2].turns || !l.joints[5].turns) {
+      return;
+    }
+    const auto across = cross(a.axis, b.axis);
+    const double quality = a.turns && b.turns   ? std::abs(dot(a.point - b.point, across))
+                           : a.turns || b.turns ? length_of(across) / 4
+                                                : length_of(across);
+    result.push_back({l, first, is_reversed, quality});
+  };
+  joint_loop from = loop;
+  for (int first = 0; first < 6; ++first) {
+    add(from, first, false);
+    add(from.reversed(), first, true);
+    from = from.shifted();
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const auto& a, const auto& b) { return a.quality > b.quality; });
+  constexpr double usable = 1e-6; // worse ones lose solutions, and serve where there is no other
+  const auto is_usable = [](const loop_order& o) { return o.quality > usable; };
+  const auto worse = std::find_if_not(result.begin(), result.end(), is_usable);
+  if (worse != result.begin()) {
+    result.erase(worse, result.end());
+  }
+  return result;
+}
+
+/// What one order of a loop says of the number of its solutions.
+struct solution_count {
+  int real = 0; ///< zeros that are real, but for rounding
+  int all = 0;  ///< complex ones included
+};
+
+/// Adds the solutions that one order of a loop leads to.
+[[nodiscard]] inline solution_count solve_in_order(const loop_order& order,
+                                                   loop_solutions& solutions) {
+  solution_count result;
+  const elimination system(order.loop);
+  const auto determinants = system.determinants();
+  if (determinants[0] == 0) {
+    return result;
+  }
+  using all_roots = elimination::roots;
+  const all_roots roots(all_roots::interpolated(determinants));
+  constexpr double rounding = 1e-13, farthest = .05;
+  std::vector<int> near;
+  near.reserve(std::size_t(all_roots::count));
+  const auto error_of = [&](int i) { return std::min(.03, rounding * roots.sensitivity(i)); };
+  const auto from_circle = [&](int i) { return std::abs(std::log(std::abs(roots[i]))); };
+  for (int i = 0; i < all_roots::count; ++i) {
+    const double distance = from_circle(i);
+    result.all += distance < 5;
+    if (distance < farthest) {
+      near.push_back(i);
+    }
+  }
+  std::sort(near.begin(), near.end(),
+            [&](int i, int j) { return std::arg(roots[i]) < std::arg(roots[j]); });
+  const auto add = [&](const six_coordinates& theta) { solutions.add(order.in_loop(theta)); };
+  // Solutions with one θ₃ are a zero of higher order, which rounding takes apart.
+  for (std::size_t i = 0, end = 0; i < near.size(); i = end) {
+    std::complex<double> sum = 0;
+    int real = 0;
+    bool is_one = true;
+    for (end = i; end < near.size() && is_one; end += is_one) {
+      is_one = end == i ||
+               std::abs(roots[near[end]] - roots[near[end - 1]]) < 1e-4 + error_of(near[end]);
+      if (is_one) {
+        real = system.solutions_at(std::arg(roots[near[end]]), 1, add);
+        sum += roots[near[end]];
+      }
+    }
+    if (end > i + 1) {
+      real = system.solutions_at(std::arg(sum), int(end - i), add);
+    }
+    if (from_circle(near[i]) < 1e-8 + 10 * error_of(near[i])) {
+      result.real += real;
+    }
+  }
+  return result;
+}
+
+/// All solutions of a loop in which the third and sixth joints of some order turn. They are
+/// complete where as many are found as there are real zeros; else the next order is tried. Axes
+/// that meet or are parallel may hide solutions from an order: then two have to agree.
+[[nodiscard]] inline loop_answer solve_general_loop(const joint_loop& loop) {
+  loop_solutions found(loop);
+  loop_answer result;
+  const auto orders = orders_of(loop);
+  const int needed = orders.size() < 8 ? 2 : 1; // of 12, or of 8 where one joint slides
+  int expected = 0, all = 0, agreeing = 0;
+  for (const loop_order& order : orders) {
+    const int before = found.count();
+    const solution_count count = solve_in_order(order, found);
+    if (count.all == 0) {
+      continue;
+    }
+    expected = std::max(expected, count.real);
+    all = all == 0 ? count.all : std::min(all, count.all);
+    agreeing = agreeing > 0 && found.count() == before ? agreeing + 1 : 1;
+    if (found.count() >= expected && found.count() % 2 == 0 && agreeing >= needed) {
+      result.is_complete = true;
+      break;
+    }
+  }
+  result.solutions = found.all();
+  result.complex_solutions = std::max(0, all - found.count());
+  return result;
+}
+
+} // namespace duet::detail

@@ -1,0 +1,141 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+/// \file
+/// Six joints whose displacements, one after the other, are a given one: what is left of a chain
+/// and a goal where every solution is looked for.
+
+namespace duet::detail {
+
+/// A joint where all coordinates are zero: it turns about the line through `point` along `axis`, or
+/// slides along `axis`. All in one frame.
+struct loop_joint {
+  bool turns = true;
+  three_vector<double> axis{}, point{};
+};
+
+/// Where x ↦ R x + t is undone.
+[[nodiscard]] inline tip_place inverse_place(const tip_place& a) {
+  return {conj(a.rotation), -1 * rotated(conj(a.rotation), a.translation)};
+}
+
+[[nodiscard]] inline loop_joint displaced(const tip_place& by, const loop_joint& j) {
+  return {j.turns, rotated(by.rotation, j.axis), by.point(j.point)};
+}
+
+using six_coordinates = Eigen::Matrix<double, 6, 1>;
+using six_columns = Eigen::Matrix<double, 6, 6>;
+
+/// exp(θ₁S₁) … exp(θ₆S₆) = closing.
+struct joint_loop {
+  std::array<loop_joint, 6> joints{};
+  tip_place closing{quaternion<double>(1), {0, 0, 0}};
+
+  /// The loop that begins with the second joint: exp(θ₂S₂) … exp(θ₆S₆) exp(θ₁ Ad(closing⁻¹)S₁) is
+  /// the same displacement.
+  [[nodiscard]] joint_loop shifted() const {
+    joint_loop result = *this;
+    std::rotate(result.joints.begin(), result.joints.begin() + 1, result.joints.end());
+    result.joints[5] = displaced(inverse_place(closing), joints[0]);
+    return result;
+  }
+  /// The loop run through from its end, exp(−θ₆S₆) … exp(−θ₁S₁) = closing⁻¹.
+  [[nodiscard]] joint_loop reversed() const {
+    joint_loop result{joints, inverse_place(closing)};
+    std::reverse(result.joints.begin(), result.joints.end());
+    for (loop_joint& j : result.joints) {
+      j.axis = -1 * j.axis;
+    }
+    return result;
+  }
+};
+
+/// The displacement by a joint.
+[[nodiscard]] inline tip_place moved_by(const loop_joint& j, double theta) {
+  if (!j.turns) {
+    return {quaternion<double>(1), theta * j.axis};
+  }
+  const double s = std::sin(theta / 2);
+  const quaternion<double> q(std::cos(theta / 2), s * j.axis.x, s * j.axis.y, s * j.axis.z);
+  return {q, j.point - rotated(q, j.point)};
+}
+
+/// The product of the displacements of `count` joints from the one numbered `first` on.
+template <class Coordinates>
+[[nodiscard]] tip_place product_of_joints(const joint_loop& loop, const Coordinates& theta,
+                                          std::size_t first, std::size_t count) {
+  tip_place result{quaternion<double>(1), {0, 0, 0}};
+  for (std::size_t i = first; i < first + count; ++i) {
+    result = result * moved_by(loop.joints[i], theta[Eigen::Index(i)]);
+  }
+  return result;
+}
+
+/// How far a loop is from being closed: the twist [v; ω] that closes it, and its change with the
+/// coordinates, in the frame of the axes.
+struct loop_gap {
+  six_coordinates twist;
+  six_columns jacobian;
+
+  loop_gap(const joint_loop& loop, const six_coordinates& theta) {
+    tip_place link{quaternion<double>(1), {0, 0, 0}};
+    for (std::size_t i = 0; i < 6; ++i) {
+      const loop_joint& j = loop.joints[i];
+      const auto column = Eigen::Index(i);
+      const three_vector<double> n = rotated(link.rotation, j.axis);
+      if (!j.turns) {
+        jacobian.col(column) << n.x, n.y, n.z, 0, 0, 0;
+        link.translation = link.translation + theta[column] * n;
+        continue;
+      }
+      const three_vector<double> p = link.point(j.point), m = cross(p, n);
+      jacobian.col(column) << m.x, m.y, m.z, n.x, n.y, n.z;
+      const double s = std::sin(theta[column] / 2);
+      link.rotation = link.rotation * quaternion<double>(std::cos(theta[column] / 2), s * j.axis.x,
+                                                         s * j.axis.y, s * j.axis.z);
+      link.translation = p - rotated(link.rotation, j.point);
+    }
+    const tip_place left = loop.closing * inverse_place(link);
+    const double twice = left.rotation.w() < 0 ? -2 : 2; // 2 sin(angle/2) grows up to half a turn
+    twist << left.translation.x, left.translation.y, left.translation.z, twice * left.rotation.x(),
+        twice * left.rotation.y(), twice * left.rotation.z();
+  }
+};
+
+/// Newton's method from θ to a solution, to the level of rounding.
+/// \return did it get there?
+[[nodiscard]] inline bool close_loop(const joint_loop& loop, six_coordinates& theta) {
+  constexpr double rounding = 2e-15, good = 1e-13;
+  double before = HUGE_VAL;
+  for (int k = 0; k < 40; ++k) {
+    const loop_gap gap(loop, theta);
+    const double left = gap.twist.norm();
+    if (left <= rounding || (left <= good && left >= before / 2)) {
+      return true;
+    }
+    before = left;
+    six_coordinates step = Eigen::PartialPivLU<six_columns>(gap.jacobian).solve(gap.twist);
+    const double length = step.norm();
+    if (!(length < 1e6)) {
+      return false;
+    }
+    theta += std::min(1.0, .5 / length) * step;
+  }
+  return false;
+}
+
+} // namespace duet::detail

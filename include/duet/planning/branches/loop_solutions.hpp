@@ -1,0 +1,126 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/branches/joint_loop.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+/// \file
+/// Solutions of a loop of six joints as they are gathered: each once, with those beside it.
+
+namespace duet::detail {
+
+/// A solution of a loop, and how many coincide in it.
+struct loop_solution {
+  six_coordinates theta;
+  int multiplicity = 1;
+};
+
+/// What is known of the solutions of a loop.
+struct loop_answer {
+  std::vector<loop_solution> solutions;
+  int complex_solutions = 0;
+  bool is_complete = false;
+};
+
+/// The angle between −π and π, π included.
+[[nodiscard]] inline double turned_back(double x) {
+  const double r = std::remainder(x, 2 * std::numbers::pi);
+  return r <= -std::numbers::pi ? std::numbers::pi : r;
+}
+
+/// The solutions of a loop that were found so far.
+class loop_solutions {
+public:
+  explicit loop_solutions(const joint_loop& loop) : loop_(loop) {}
+
+  [[nodiscard]] const std::vector<loop_solution>& all() const { return all_; }
+  /// How many there are, each as often as it counts.
+  [[nodiscard]] int count() const {
+    int result = 0;
+    for (const loop_solution& x : all_) {
+      result += x.multiplicity;
+    }
+    return result;
+  }
+
+  /// Refines θ and adds what it is near to, and the solution beside that near a singularity.
+  void add(six_coordinates theta) {
+    if (!close_loop(loop_, theta)) {
+      return;
+    }
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      if (loop_.joints[std::size_t(i)].turns) {
+        theta[i] = turned_back(theta[i]);
+      }
+    }
+    for (const loop_solution& x : all_) {
+      if (is_same(x.theta, theta)) {
+        return;
+      }
+    }
+    all_.push_back({theta, 1});
+    look_beside(all_.size() - 1);
+  }
+
+private:
+  /// Are two solutions one, but for rounding? Then what is in their middle is one, too.
+  [[nodiscard]] bool is_same(const six_coordinates& a, const six_coordinates& b) const {
+    constexpr double near = 1e-3;
+    six_coordinates half = (b - a) / 2;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      if (loop_.joints[std::size_t(i)].turns) {
+        half[i] = turned_back(2 * half[i]) / 2;
+      }
+    }
+    return half.cwiseAbs().maxCoeff() < near && is_closed(a + half);
+  }
+  [[nodiscard]] bool is_closed(const six_coordinates& theta) const {
+    constexpr double rounding = 3e-13;
+    return loop_gap(loop_, theta).twist.norm() < rounding;
+  }
+
+  /// Along the direction v that changes the loop least, by u σ t, it changes by u (σ t + κ t²/2) to
+  /// second order: near t = −2σ/κ is another solution.
+  void look_beside(std::size_t at) {
+    constexpr double near = .05, h = 1e-3, nudge = 1e-9; // which leaves no pivot zero
+    const six_coordinates theta = all_[at].theta;
+    const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
+    const Eigen::PartialPivLU<six_columns> lu(loop_gap(loop_, nearby).jacobian);
+    six_coordinates v, u;
+    v << 1, .7, -.4, .9, -.6, .5;
+    double sigma = 0;
+    for (int k = 0; k < 3; ++k) {
+      u = lu.transpose().solve(v).normalized();
+      v = lu.solve(u);
+      sigma = 1 / v.norm();
+      v *= sigma;
+    }
+    if (!(sigma < near)) {
+      return;
+    }
+    const auto along = [&](double t) { return u.dot(loop_gap(loop_, theta + t * v).twist); };
+    const double slope = u.dot(loop_gap(loop_, theta).jacobian * v);
+    const double t = 2 * slope * h * h / (along(h) + along(-h));
+    if (!(std::abs(t) < 1)) {
+      return;
+    }
+    if (is_closed(theta + t / 2 * v)) {
+      all_[at].multiplicity = 2;
+    } else {
+      add(theta + t * v);
+    }
+  }
+
+  joint_loop loop_;
+  std::vector<loop_solution> all_;
+};
+
+} // namespace duet::detail

@@ -1,0 +1,279 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/random.hpp"
+
+#include <duet/mechanism/denavit_hartenberg.hpp>
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/all_inverse_kinematics.hpp>
+#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace test_planning_all_inverse_kinematics {
+namespace {
+
+using namespace duet;
+using std::numbers::pi;
+/// Of any number of joints, so that all is compiled once.
+using chain = serial_chain<-16>;
+using vector = detail::joint_vector<double, -16>;
+using result = all_inverse_kinematics_result<-16>;
+
+struct arm_kind {
+  const char* name;
+  bool parallel_2_3 = false, meet_1_2 = false, meet_4_5 = false, right_angles = false;
+  std::vector<std::size_t> sliding = {};
+  int most = 16; ///< solutions
+};
+
+/// Joints in random places, and in special ones to each other.
+chain random_arm(const arm_kind& kind, duet_test::random_source& random) {
+  std::array<joint<>, 6> joints;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto a = random.direction<4>();
+    const auto at = [&] { return random.uniform(-1, 1); };
+    joints[i].origin = {quaternion<double>(a[0], a[1], a[2], a[3]), {at(), at(), at()}};
+    if (kind.right_angles) { // each axis at right angles to the one before
+      joints[i].origin = {quaternion<double>(std::sqrt(.5), random.sign() * std::sqrt(.5), 0, 0),
+                          {at(), at(), at()}};
+    }
+  }
+  if (kind.parallel_2_3) {
+    joints[2].origin.rotation = quaternion<double>(1);
+  }
+  if (kind.meet_1_2) {
+    joints[1].origin.translation = {0, 0, 0};
+  }
+  if (kind.meet_4_5) {
+    joints[4].origin.translation = {0, 0, 0};
+  }
+  for (const std::size_t i : kind.sliding) {
+    joints[i].kind = joint_kind::prismatic;
+  }
+  const auto tool = random.direction<4>();
+  return serial_chain<6>(joints, {quaternion<double>(tool[0], tool[1], tool[2], tool[3]),
+                                  {random.uniform(-1, 1), .2, .3}});
+}
+
+vector configuration(const chain& arm, duet_test::random_source& random) {
+  vector theta(arm.size());
+  for (int i = 0; i < arm.size(); ++i) {
+    const double most = arm.kind(i) == joint_kind::prismatic ? 1 : pi;
+    theta[i] = random.uniform(-most, most);
+  }
+  return theta;
+}
+
+/// The largest difference, whole turns left out.
+double distance(const chain& arm, const vector& a, const vector& b) {
+  double largest = 0;
+  for (int i = 0; i < arm.size(); ++i) {
+    const double d = a[i] - b[i];
+    largest = std::max(
+        largest, std::abs(arm.kind(i) == joint_kind::prismatic ? d : std::remainder(d, 2 * pi)));
+  }
+  return largest;
+}
+
+bool holds(const chain& arm, const result& found, const vector& theta, double tolerance = 1e-7) {
+  return std::any_of(found.solutions.begin(), found.solutions.end(),
+                     [&](const auto& s) { return distance(arm, s.joints, theta) < tolerance; });
+}
+
+double smallest_singular_value(const chain& arm, const vector& theta) {
+  const Eigen::MatrixXd j = jacobian(arm, theta, frame::hybrid);
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues().minCoeff();
+}
+
+/// How far the tip is from the goal, by matrices.
+double gap_by_matrices(const chain& arm, const vector& theta, const dual_quaternion<double>& goal) {
+  return (transform_matrix(arm.pose(theta)) - transform_matrix(goal)).norm();
+}
+
+/// Is what is said of every solution true, are all different and in order?
+void check_solutions(const chain& arm, const result& found, const dual_quaternion<double>& goal) {
+  for (std::size_t k = 0; k < found.solutions.size(); ++k) {
+    const auto& s = found.solutions[k];
+    CHECK(s.residual <= 1e-12);
+    CHECK(gap_by_matrices(arm, s.joints, goal) <= 1e-11);
+    CHECK(s.smallest_singular_value ==
+          doctest::Approx(smallest_singular_value(arm, s.joints)).epsilon(1e-6));
+    for (int i = 0; i < arm.size(); ++i) {
+      const bool is_angle = arm.kind(i) != joint_kind::prismatic;
+      CHECK((!is_angle || (s.joints[i] > -pi && s.joints[i] <= pi)));
+    }
+    for (std::size_t other = 0; other < k; ++other) {
+      CHECK(distance(arm, s.joints, found.solutions[other].joints) > 1e-7);
+      CHECK_FALSE(std::lexicographical_compare(s.joints.begin(), s.joints.end(),
+                                               found.solutions[other].joints.begin(),
+                                               found.solutions[other].joints.end()));
+    }
+  }
+}
+
+/// The arm of R. Manseur and K. L. Doty, A robot manipulator with 16 real inverse kinematic
+/// solution sets, 1989.
+chain manseur_doty() {
+  const double one = pi / 180;
+  const std::array<dh_row<>, 6> rows{{{.a = .3, .alpha = pi / 2},
+                                      {.a = 1, .alpha = one},
+                                      {.d = .2, .alpha = pi / 2},
+                                      {.a = 1.5, .alpha = one},
+                                      {.alpha = pi / 2},
+                                      {.alpha = one}}};
+  return from_dh(rows);
+}
+
+TEST_CASE("an arm with sixteen solutions") {
+  Eigen::Matrix3d turn;
+  turn << -.760117, -.641689, .102262, .133333, 0, .991071, -.635959, .766965, .085558;
+  const auto goal = normalized(pose(from_rotation_matrix(turn), Eigen::Vector3d(-1.140175, 0, 0)));
+  const chain arm = manseur_doty();
+  const result found = all_inverse_kinematics(arm, goal);
+  CHECK(found.solutions.size() == 16);
+  CHECK(found.complex_solutions == 0);
+  CHECK(found.is_complete);
+  check_solutions(arm, found, goal);
+}
+
+TEST_CASE("the coordinates that the goal is made of are found") {
+  const std::array<arm_kind, 9> kinds{{{"general"},
+                                       {.name = "2 and 3 parallel", .parallel_2_3 = true},
+                                       {.name = "1 and 2 meet", .meet_1_2 = true},
+                                       {.name = "right angles", .right_angles = true},
+                                       {.name = "as in industry",
+                                        .parallel_2_3 = true,
+                                        .meet_1_2 = true,
+                                        .meet_4_5 = true,
+                                        .right_angles = true},
+                                       {.name = "1 slides", .sliding = {0}},
+                                       {.name = "3 slides", .sliding = {2}},
+                                       {.name = "6 slides", .sliding = {5}},
+                                       {.name = "3 and 4 slide", .sliding = {2, 3}}}};
+  for (const arm_kind& kind : kinds) {
+    const std::string name = kind.name;
+    CAPTURE(name);
+    duet_test::random_source random(7);
+    for (int k = 0; k < 20; ++k) {
+      CAPTURE(k);
+      const chain arm = random_arm(kind, random);
+      const vector theta = configuration(arm, random);
+      const auto goal = arm.pose(theta);
+      const result found = all_inverse_kinematics(arm, goal);
+      CHECK(holds(arm, found, theta));
+      CHECK(found.is_complete);
+      CHECK(found.solutions.size() % 2 == 0);
+      CHECK(int(found.solutions.size()) + found.complex_solutions <= kind.most);
+      if (kind.name == kinds[0].name) {
+        CHECK(int(found.solutions.size()) + found.complex_solutions == 16);
+      }
+      check_solutions(arm, found, goal);
+    }
+  }
+}
+
+TEST_CASE("whatever a search from random starts finds is among them") {
+  duet_test::random_source random(3);
+  const chain arm = random_arm({"general"}, random);
+  const auto goal = arm.pose(configuration(arm, random));
+  const result found = all_inverse_kinematics(arm, goal);
+  std::vector<bool> is_met(found.solutions.size());
+  for (int k = 0; k < 60; ++k) {
+    const auto one =
+        inverse_kinematics(arm, goal, configuration(arm, random), {.tolerance = 1e-10});
+    if (one.reason == stop_reason::reached) {
+      CHECK(holds(arm, found, one.joints, 1e-6));
+      for (std::size_t i = 0; i < is_met.size(); ++i) {
+        is_met[i] = is_met[i] || distance(arm, one.joints, found.solutions[i].joints) < 1e-6;
+      }
+    }
+  }
+  CHECK(std::all_of(is_met.begin(), is_met.end(), [](bool b) { return b; }));
+}
+
+/// A general arm at a configuration where two branches meet, nearly: along the direction of its
+/// Jacobian that moves the tip least, its determinant changes sign.
+TEST_CASE("branches that meet") {
+  duet_test::random_source random(5);
+  for (int k = 0; k < 5; ++k) {
+    const chain arm = random_arm({"general"}, random);
+    vector theta = configuration(arm, random);
+    const auto determinant = [&](double x) {
+      vector at = theta;
+      at[3] = x;
+      return Eigen::Matrix<double, 6, 6>(jacobian(arm, at, frame::spatial)).determinant();
+    };
+    double low = -pi, high = low;
+    while (high < pi && determinant(low) * determinant(high) > 0) {
+      high += .1;
+    }
+    if (high >= pi) {
+      continue; // no singularity on this way
+    }
+    low = high - .1;
+    for (int i = 0; i < 200; ++i) {
+      const double middle = (low + high) / 2;
+      (determinant(low) * determinant(middle) > 0 ? low : high) = middle;
+    }
+    for (const double away : {0., 1e-9, 1e-5, 1e-3}) {
+      CAPTURE(k);
+      CAPTURE(away);
+      theta[3] = low + away;
+      const auto goal = arm.pose(theta);
+      const result found = all_inverse_kinematics(arm, goal);
+      CHECK(holds(arm, found, theta, 2e-6));
+      int count = 0, nearest = 0;
+      for (const auto& s : found.solutions) {
+        count += s.multiplicity;
+        nearest = distance(arm, s.joints, theta) < 2e-6 ? s.multiplicity : nearest;
+      }
+      CHECK(count % 2 == 0);
+      CHECK(nearest == (away < 1e-8 ? 2 : 1));
+    }
+  }
+}
+
+TEST_CASE("limits") {
+  duet_test::random_source random(8);
+  chain arm = random_arm({"general"}, random);
+  const vector theta = configuration(arm, random);
+  const auto goal = arm.pose(theta);
+  arm.set_limits(2, {theta[2] - 1e-3, theta[2] + 1e-3});
+  arm.set_limits(3, {theta[3] + 2 * pi - 1, theta[3] + 2 * pi + 1});
+  const result found = all_inverse_kinematics(arm, goal);
+  int inside = 0;
+  for (const auto& s : found.solutions) {
+    bool is_inside = true;
+    for (int i = 0; i < 6; ++i) {
+      is_inside =
+          is_inside && s.joints[i] >= arm.limits(i).lower && s.joints[i] <= arm.limits(i).upper;
+    }
+    CHECK(s.within_limits == is_inside);
+    inside += is_inside;
+  }
+  CHECK(inside >= 1);
+  CHECK(inside < int(found.solutions.size()));
+}
+
+TEST_CASE("nothing beyond reach") {
+  const chain arm = manseur_doty();
+  const result found =
+      all_inverse_kinematics(arm, pose(quaternion<double>(1), Eigen::Vector3d(20, 1, 2)));
+  CHECK(found.solutions.empty());
+  CHECK(found.complex_solutions == 16);
+  CHECK(found.is_complete);
+}
+
+} // namespace
+} // namespace test_planning_all_inverse_kinematics
