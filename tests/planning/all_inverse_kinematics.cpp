@@ -34,6 +34,8 @@ struct arm_kind {
   const char* name;
   bool parallel_2_3 = false, meet_1_2 = false, meet_4_5 = false, right_angles = false;
   std::vector<std::size_t> sliding = {};
+  int meeting = -1, parallel = -1; ///< the first of three axes
+  branch_method method = branch_method::elimination;
   int most = 16; ///< solutions
 };
 
@@ -57,6 +59,15 @@ chain random_arm(const arm_kind& kind, duet_test::random_source& random) {
   }
   if (kind.meet_4_5) {
     joints[4].origin.translation = {0, 0, 0};
+  }
+  for (const int k : {1, 2}) {
+    if (kind.meeting >= 0) {
+      joints[std::size_t(kind.meeting + k)].origin.translation = {0, 0, 0};
+    }
+    if (kind.parallel >= 0) { // or against each other
+      joints[std::size_t(kind.parallel + k)].origin.rotation =
+          k == 1 ? quaternion<double>(1) : quaternion<double>(0, 1, 0, 0);
+    }
   }
   for (const std::size_t i : kind.sliding) {
     joints[i].kind = joint_kind::prismatic;
@@ -107,6 +118,7 @@ void check_solutions(const chain& arm, const result& found, const dual_quaternio
     const auto& s = found.solutions[k];
     CHECK(s.residual <= 1e-12);
     CHECK(gap_by_matrices(arm, s.joints, goal) <= 1e-11);
+    CHECK(s.multiplicity == 1);
     CHECK(s.smallest_singular_value ==
           doctest::Approx(smallest_singular_value(arm, s.joints)).epsilon(1e-6));
     for (int i = 0; i < arm.size(); ++i) {
@@ -147,40 +159,146 @@ TEST_CASE("an arm with sixteen solutions") {
   check_solutions(arm, found, goal);
 }
 
-TEST_CASE("the coordinates that the goal is made of are found") {
-  const std::array<arm_kind, 9> kinds{{{"general"},
-                                       {.name = "2 and 3 parallel", .parallel_2_3 = true},
-                                       {.name = "1 and 2 meet", .meet_1_2 = true},
-                                       {.name = "right angles", .right_angles = true},
-                                       {.name = "as in industry",
-                                        .parallel_2_3 = true,
-                                        .meet_1_2 = true,
-                                        .meet_4_5 = true,
-                                        .right_angles = true},
-                                       {.name = "1 slides", .sliding = {0}},
-                                       {.name = "3 slides", .sliding = {2}},
-                                       {.name = "6 slides", .sliding = {5}},
-                                       {.name = "3 and 4 slide", .sliding = {2, 3}}}};
-  for (const arm_kind& kind : kinds) {
-    const std::string name = kind.name;
-    CAPTURE(name);
-    duet_test::random_source random(7);
-    for (int k = 0; k < 20; ++k) {
-      CAPTURE(k);
-      const chain arm = random_arm(kind, random);
-      const vector theta = configuration(arm, random);
-      const auto goal = arm.pose(theta);
-      const result found = all_inverse_kinematics(arm, goal);
-      CHECK(holds(arm, found, theta));
-      CHECK(found.is_complete);
-      CHECK(found.solutions.size() % 2 == 0);
-      CHECK(int(found.solutions.size()) + found.complex_solutions <= kind.most);
-      if (kind.name == kinds[0].name) {
-        CHECK(int(found.solutions.size()) + found.complex_solutions == 16);
-      }
-      check_solutions(arm, found, goal);
+void check_kind(const arm_kind& kind, int count) {
+  const std::string name = kind.name;
+  CAPTURE(name);
+  duet_test::random_source random(7);
+  for (int k = 0; k < count; ++k) {
+    CAPTURE(k);
+    const chain arm = random_arm(kind, random);
+    const vector theta = configuration(arm, random);
+    const auto goal = arm.pose(theta);
+    const result found = all_inverse_kinematics(arm, goal);
+    CHECK(holds(arm, found, theta));
+    CHECK(found.is_complete);
+    CHECK(found.method == kind.method);
+    CHECK(found.solutions.size() % 2 == 0);
+    const int all = int(found.solutions.size()) + found.complex_solutions;
+    CHECK(all <= kind.most);
+    if (name == "general" || kind.method != branch_method::elimination) {
+      CHECK(all == kind.most);
     }
+    check_solutions(arm, found, goal);
   }
+}
+
+TEST_CASE("the coordinates that the goal is made of are found") {
+  check_kind({"general"}, 40);
+  check_kind({.name = "2 and 3 parallel", .parallel_2_3 = true}, 20);
+  check_kind({.name = "1 and 2 meet", .meet_1_2 = true}, 20);
+  check_kind({.name = "right angles", .right_angles = true}, 20);
+  check_kind({.name = "as in industry",
+              .parallel_2_3 = true,
+              .meet_1_2 = true,
+              .meet_4_5 = true,
+              .right_angles = true},
+             20);
+  check_kind({.name = "1 slides", .sliding = {0}}, 10);
+  check_kind({.name = "3 slides", .sliding = {2}}, 10);
+  check_kind({.name = "6 slides", .sliding = {5}}, 10);
+  check_kind({.name = "3 and 4 slide", .sliding = {2, 3}}, 10);
+  check_kind({.name = "1 and 6 slide", .sliding = {0, 5}}, 10);
+}
+
+TEST_CASE("closed forms") {
+  for (const int first : {0, 1, 2, 3}) {
+    CAPTURE(first);
+    check_kind({.name = "three axes meet",
+                .meeting = first,
+                .method = branch_method::spherical_wrist,
+                .most = 8},
+               20);
+    check_kind({.name = "three axes are parallel",
+                .parallel = first,
+                .method = branch_method::parallel_axes,
+                .most = 8},
+               20);
+  }
+  check_kind({.name = "as in industry",
+              .parallel_2_3 = true,
+              .meet_1_2 = true,
+              .right_angles = true,
+              .meeting = 3,
+              .method = branch_method::spherical_wrist,
+              .most = 8},
+             20);
+  for (const auto& sliding : {std::vector<std::size_t>{0, 1, 2}, std::vector<std::size_t>{0, 2, 4},
+                              std::vector<std::size_t>{2, 3, 5}}) {
+    check_kind({.name = "three slide",
+                .sliding = sliding,
+                .method = branch_method::three_slides,
+                .most = 2},
+               10);
+  }
+}
+
+/// What the elimination finds is a part of what the closed form does: it loses solutions of special
+/// arms, never makes any up.
+TEST_CASE("closed forms and elimination") {
+  duet_test::random_source random(11);
+  int all = 0, both = 0;
+  for (int k = 0; k < 10; ++k) {
+    const arm_kind kind = k % 2 == 0 ? arm_kind{.name = "meet", .meeting = 3}
+                                     : arm_kind{.name = "parallel", .parallel = 1};
+    const chain arm = random_arm(kind, random);
+    const vector theta = configuration(arm, random);
+    const auto goal = arm.pose(theta);
+    const result found = all_inverse_kinematics(arm, goal);
+    const detail::branches_of_chain<chain> branches(arm, goal);
+    for (const auto& x : detail::solve_general_loop(branches.loop()).solutions) {
+      CHECK(holds(arm, found, branches(x).joints));
+      ++both;
+    }
+    all += int(found.solutions.size());
+  }
+  CHECK(both == all);
+}
+
+/// Unimation's PUMA 560, in metres.
+chain puma() {
+  const std::array<dh_row<>, 6> rows{{{.alpha = pi / 2},
+                                      {.a = .4318},
+                                      {.a = .0203, .d = .15005, .alpha = -pi / 2},
+                                      {.d = .4318, .alpha = pi / 2},
+                                      {.alpha = -pi / 2},
+                                      {.d = .1}}};
+  return from_dh(rows);
+}
+
+TEST_CASE("arms in use") {
+  const chain ur5e = robots::ur5e().table();
+  vector theta(6);
+  theta << .3, -1.1, 1.4, -.5, .9, .2;
+  for (const chain& arm : {ur5e, puma()}) {
+    const auto goal = arm.pose(theta);
+    const result found = all_inverse_kinematics(arm, goal);
+    CHECK(found.solutions.size() == 8);
+    CHECK(found.is_complete);
+    CHECK(holds(arm, found, theta));
+    check_solutions(arm, found, goal);
+  }
+  CHECK(all_inverse_kinematics(ur5e, ur5e.pose(theta)).method == branch_method::parallel_axes);
+  CHECK(all_inverse_kinematics(puma(), puma().pose(theta)).method ==
+        branch_method::spherical_wrist);
+}
+
+/// The outer joints of a wrist turn against each other with the tip in place.
+TEST_CASE("configurations of which there are infinitely many") {
+  const chain arm = puma();
+  vector theta(6);
+  theta << .3, .4, -.7, .6, 0, .5;
+  const auto goal = arm.pose(theta);
+  const result found = all_inverse_kinematics(arm, goal);
+  CHECK_FALSE(found.is_complete);
+  bool is_met = false;
+  for (const auto& s : found.solutions) {
+    CHECK(s.residual < 1e-12);
+    CHECK(s.smallest_singular_value >= 0);
+    is_met = is_met || ((s.joints - theta).head<3>().norm() < 1e-6 &&
+                        std::abs(s.joints[3] + s.joints[5] - theta[3] - theta[5]) < 1e-6 &&
+                        s.smallest_singular_value < 1e-8);
+  }
+  CHECK(is_met);
 }
 
 TEST_CASE("whatever a search from random starts finds is among them") {
@@ -266,12 +384,39 @@ TEST_CASE("limits") {
   CHECK(inside < int(found.solutions.size()));
 }
 
+TEST_CASE("what is no goal, and no arm of six joints") {
+  const auto goal = pose(quaternion<double>(1), Eigen::Vector3d(.1, .2, .3));
+  CHECK_THROWS_WITH_AS(
+      all_inverse_kinematics(chain(robots::panda().table()), goal),
+      "duet: all_inverse_kinematics: the chain has 7 moving joints, not 6", invalid_input);
+  CHECK_THROWS_WITH_AS(all_inverse_kinematics(puma(), 2 * goal),
+                       "duet: all_inverse_kinematics: the goal is no unit dual quaternion: "
+                       "|p|^2 = 4, p.q = 0",
+                       invalid_input);
+  duet_test::random_source random(1);
+  CHECK_THROWS_WITH_AS(
+      all_inverse_kinematics(random_arm({.name = "", .sliding = {1, 3}}, random), goal),
+      "duet: all_inverse_kinematics: joints 1 and 3 slide: two that do must be neighbours, or first "
+      "and last",
+      invalid_input);
+  CHECK_THROWS_WITH_AS(
+      all_inverse_kinematics(random_arm({.name = "", .sliding = {0, 1, 2, 3}}, random), goal),
+      "duet: all_inverse_kinematics: 4 sliding joints, of which 3 are the most", invalid_input);
+  std::array<joint<>, 6> joints;
+  joints[4].kind = joint_kind::helical;
+  CHECK_THROWS_WITH_AS(
+      all_inverse_kinematics(chain(serial_chain<6>(joints)), goal),
+      "duet: all_inverse_kinematics: joint 4 is helical: its equations are not algebraic",
+      invalid_input);
+}
+
 TEST_CASE("nothing beyond reach") {
   const chain arm = manseur_doty();
   const result found =
       all_inverse_kinematics(arm, pose(quaternion<double>(1), Eigen::Vector3d(20, 1, 2)));
   CHECK(found.solutions.empty());
   CHECK(found.complex_solutions == 16);
+  CHECK(to_text(found.method) == std::string("elimination"));
   CHECK(found.is_complete);
 }
 

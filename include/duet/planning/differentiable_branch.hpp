@@ -1,0 +1,57 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/derivative/implicit_function.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+
+/// \file
+/// Branches of inverse kinematics with derivatives.
+
+namespace duet {
+
+/// The six joint coordinates of a branch as a function of the goal, and of the arm's geometry, by
+/// the implicit function theorem: those near `joints` with A(θ) = `goal`, over all their scalars.
+///
+/// Example: `jacobian([&](const auto& goal) { return differentiable_branch(arm, theta, goal); },
+/// goal)` with `theta` from `all_inverse_kinematics`.
+/// \param forward  the chain; or a callable that returns the pose A of the tip for an Eigen vector
+/// of six coordinates of any scalar, with the derivatives by geometry in what it captures
+/// \param joints   of a branch, in double
+/// \param goal     a pose, of any scalar of duet
+/// \return an Eigen vector of six coordinates
+/// \throws no_convergence where branches meet: the Jacobian is singular there; invalid_input for
+/// another number of coordinates than six
+template <class Forward, VectorLike X, class S>
+[[nodiscard]] auto differentiable_branch(const Forward& forward, const X& joints,
+                                         const dual_quaternion<S>& goal) {
+  using coordinates = detail::vector_argument<X>;
+  detail::require(coordinates::size(joints) == 6, "duet: differentiable_branch: ",
+                  coordinates::size(joints), " coordinates, not 6");
+  Eigen::Matrix<double, 6, 1> start;
+  for (int i = 0; i < 6; ++i) {
+    start[i] = coordinates::get(joints, i);
+  }
+  // Of the pose of the tip in the frame of the goal, ±1 where they agree, what vanishes there.
+  const auto gap = [&](const auto& theta, const auto& to) {
+    const auto pose_of_tip = [&] {
+      if constexpr (SerialChain<Forward>) {
+        return forward.pose(theta);
+      } else {
+        return forward(theta);
+      }
+    };
+    const auto left = conj(to) * pose_of_tip();
+    const auto p = real_part(left), q = dual_part(left);
+    return std::array{q.x(), q.y(), q.z(), p.x(), p.y(), p.z()};
+  };
+  return implicit_solution(gap, start, goal);
+}
+
+} // namespace duet

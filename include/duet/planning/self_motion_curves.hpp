@@ -1,0 +1,141 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/compiler/refused.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/branches/branch_search.hpp>
+#include <duet/planning/branches/chain_loop.hpp>
+#include <duet/planning/branches/curve_tracer.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/quaternion/norm.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+/// \file
+/// All ways in which an arm of seven joints reaches a pose: curves of joint coordinates.
+
+namespace duet {
+
+/// Settings of `self_motion_curves`.
+struct self_motion_options {
+  /// From one point of a curve to the next at most, and between the values at which each joint is
+  /// held in turn to find curves: radians, lengths in parts of the arm's size.
+  double resolution = .1;
+};
+
+/// A curve of joint coordinates on which the tip stays at its pose.
+///
+/// \tparam N  as of `serial_chain`
+template <int N>
+struct self_motion_curve {
+  /// One after the other, without jumps of whole turns.
+  std::vector<detail::joint_vector<double, N>> joints;
+  /// Does the last point lead to the first, but for whole turns? Else the curve ends at
+  /// singularities.
+  bool is_closed = false;
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("joints", joints);
+    f("is_closed", is_closed);
+  }
+};
+
+namespace detail {
+
+/// \throws invalid_input for a chain that has not seven joints that turn, but for one that slides
+template <class C>
+void require_seven_joints(const C& chain) {
+  require(chain.size() == 7, "duet: self_motion_curves: the chain has ", chain.size(),
+          " moving joints, not 7");
+  int sliding = 0;
+  for (int i = 0; i < chain.size(); ++i) {
+    require(chain.kind(i) != joint_kind::helical, "duet: self_motion_curves: joint ", i,
+            " is helical: its equations are not algebraic");
+    sliding += chain.kind(i) == joint_kind::prismatic;
+  }
+  require(sliding <= 1, "duet: self_motion_curves: ", sliding,
+          " sliding joints, of which 1 is the most");
+}
+
+/// The configurations with joint `held` at a value, from all solutions of the other six.
+template <class C>
+void add_held(const C& chain, const tip_place& goal, int held, double value,
+              std::vector<seven_coordinates>& found) {
+  joint_vector<double, C::joints> theta = joint_vector<double, C::joints>::Zero(chain.size());
+  theta[held] = value;
+  const chain_axes axes(chain, theta, held);
+  const branch_search<joint_loop> search(axes.loop_to(goal));
+  if (!search.answer().is_complete) {
+    return; // this joint stands still, or cannot be held there
+  }
+  for (const loop_solution& x : search.answer().solutions) {
+    seven_coordinates result;
+    for (int i = 0, k = 0; i < 7; ++i) {
+      const bool turns = chain.steps()[std::size_t(i)].turns;
+      result[i] = i == held ? value : x.theta[k] * (turns ? 1 : axes.size);
+      k += i != held;
+    }
+    found.push_back(result);
+  }
+}
+
+} // namespace detail
+
+/// All curves of joint coordinates on which an arm of seven joints holds its tip at the pose
+/// `goal`, within limits or not; their number is that of the components of its self-motion.
+///
+/// Each joint that turns is held in turn at values a `resolution` apart, where all solutions of the
+/// other six are found as by `all_inverse_kinematics`; from these the curves are followed by steps
+/// along the Jacobian's kernel and Newton's method. A component on which every joint moves less
+/// than `resolution` may be missed.
+///
+/// \param chain  seven joints that turn, or one of which slides
+/// \return a vector of `self_motion_curve`
+/// \throws invalid_input for other chains, a goal that is no pose, and a resolution outside (0, 1]
+template <SerialChain C>
+[[nodiscard]] std::vector<self_motion_curve<C::joints>>
+self_motion_curves(const C& chain, const dual_quaternion<double>& goal,
+                   const self_motion_options& options = {}) {
+  detail::require_seven_joints(chain);
+  detail::require_pose(goal, "self_motion_curves", "the goal");
+  detail::require_option("self_motion_curves", "resolution", options.resolution,
+                         options.resolution > 0 && options.resolution <= 1, "within (0, 1]");
+  const detail::tip_place place = detail::place_of(normalized(goal));
+  const detail::curve_tracer<C> tracer(chain, place, options.resolution);
+  std::vector<detail::seven_coordinates> seeds;
+  const int count = int(std::ceil(2 * std::numbers::pi / options.resolution));
+  for (int held = 0; held < 7; ++held) {
+    for (int k = 0; k < count && tracer.turns(held); ++k) {
+      // not at a table's round numbers, where arms are singular
+      const double turn = 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi;
+      detail::add_held(chain, place, held, turn, seeds);
+    }
+  }
+  std::vector<self_motion_curve<C::joints>> result;
+  while (!seeds.empty()) {
+    const detail::traced_curve curve = tracer.trace(seeds.back());
+    seeds.pop_back();
+    std::erase_if(seeds, [&](const auto& seed) { return tracer.is_on(curve, seed); });
+    self_motion_curve<C::joints> own;
+    own.is_closed = curve.is_closed;
+    for (const auto& x : curve.points) {
+      own.joints.push_back(detail::own_joints(chain, x));
+    }
+    result.push_back(std::move(own));
+  }
+  return result;
+}
+
+DUET_ASKS_FOR_ONE_CONFIGURATION(self_motion_curves, std::vector<self_motion_curve<C::joints>>)
+
+} // namespace duet
