@@ -36,7 +36,8 @@ struct arm_kind {
   std::vector<std::size_t> sliding = {};
   int meeting = -1, parallel = -1; ///< the first of three axes
   branch_method method = branch_method::elimination;
-  int most = 16; ///< solutions
+  int most = 16;       ///< solutions
+  bool certain = true; ///< is their number?
 };
 
 /// Joints in random places, and in special ones to each other.
@@ -170,7 +171,7 @@ void check_kind(const arm_kind& kind, int count) {
     const auto goal = arm.pose(theta);
     const result found = all_inverse_kinematics(arm, goal);
     CHECK(holds(arm, found, theta));
-    CHECK(found.is_complete);
+    CHECK((found.is_complete || !kind.certain));
     CHECK(found.method == kind.method);
     CHECK(found.solutions.size() % 2 == 0);
     const int all = int(found.solutions.size()) + found.complex_solutions;
@@ -196,8 +197,8 @@ TEST_CASE("the coordinates that the goal is made of are found") {
   check_kind({.name = "1 slides", .sliding = {0}}, 10);
   check_kind({.name = "3 slides", .sliding = {2}}, 10);
   check_kind({.name = "6 slides", .sliding = {5}}, 10);
-  check_kind({.name = "3 and 4 slide", .sliding = {2, 3}}, 10);
-  check_kind({.name = "1 and 6 slide", .sliding = {0, 5}}, 10);
+  check_kind({.name = "3 and 4 slide", .sliding = {2, 3}, .certain = false}, 10);
+  check_kind({.name = "1 and 6 slide", .sliding = {0, 5}, .certain = false}, 10);
 }
 
 TEST_CASE("closed forms") {
@@ -387,25 +388,27 @@ TEST_CASE("limits") {
 TEST_CASE("what is no goal, and no arm of six joints") {
   const auto goal = pose(quaternion<double>(1), Eigen::Vector3d(.1, .2, .3));
   CHECK_THROWS_WITH_AS(
-      all_inverse_kinematics(chain(robots::panda().table()), goal),
+      static_cast<void>(all_inverse_kinematics(chain(robots::panda().table()), goal)),
       "duet: all_inverse_kinematics: the chain has 7 moving joints, not 6", invalid_input);
-  CHECK_THROWS_WITH_AS(all_inverse_kinematics(puma(), 2 * goal),
+  CHECK_THROWS_WITH_AS(static_cast<void>(all_inverse_kinematics(puma(), 2 * goal)),
                        "duet: all_inverse_kinematics: the goal is no unit dual quaternion: "
                        "|p|^2 = 4, p.q = 0",
                        invalid_input);
   duet_test::random_source random(1);
-  CHECK_THROWS_WITH_AS(
-      all_inverse_kinematics(random_arm({.name = "", .sliding = {1, 3}}, random), goal),
-      "duet: all_inverse_kinematics: joints 1 and 3 slide: two that do must be neighbours, or first "
-      "and last",
-      invalid_input);
-  CHECK_THROWS_WITH_AS(
-      all_inverse_kinematics(random_arm({.name = "", .sliding = {0, 1, 2, 3}}, random), goal),
-      "duet: all_inverse_kinematics: 4 sliding joints, of which 3 are the most", invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(all_inverse_kinematics(
+                           random_arm({.name = "", .sliding = {1, 3}}, random), goal)),
+                       "duet: all_inverse_kinematics: joints 1 and 3 slide: two that do must be "
+                       "neighbours, or first "
+                       "and last",
+                       invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(all_inverse_kinematics(
+                           random_arm({.name = "", .sliding = {0, 1, 2, 3}}, random), goal)),
+                       "duet: all_inverse_kinematics: 4 sliding joints, of which 3 are the most",
+                       invalid_input);
   std::array<joint<>, 6> joints;
   joints[4].kind = joint_kind::helical;
   CHECK_THROWS_WITH_AS(
-      all_inverse_kinematics(chain(serial_chain<6>(joints)), goal),
+      static_cast<void>(all_inverse_kinematics(chain(serial_chain<6>(joints)), goal)),
       "duet: all_inverse_kinematics: joint 4 is helical: its equations are not algebraic",
       invalid_input);
 }

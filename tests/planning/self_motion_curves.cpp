@@ -56,8 +56,7 @@ void check_curves(const chain& arm, const vector& theta,
       const pose_deviation left = deviation_between(arm.pose(curve.joints[k]), goal);
       CHECK(left.length < 1e-10);
       CHECK(left.angle < 1e-10);
-      const vector step =
-          difference(curve.joints[(k + 1) % curve.joints.size()], curve.joints[k]);
+      const vector step = difference(curve.joints[(k + 1) % curve.joints.size()], curve.joints[k]);
       CHECK(step.norm() > 0);
       CHECK(step.norm() <= resolution * (1 + 1e-9));
     }
@@ -97,10 +96,10 @@ TEST_CASE("a general arm; finer curves are as many") {
 TEST_CASE("what is refused") {
   const chain arm = robots::panda().table();
   const auto goal = arm.pose(vector::Zero().eval());
-  CHECK_THROWS_WITH_AS(self_motion_curves(robots::ur5e().table(), goal),
+  CHECK_THROWS_WITH_AS(static_cast<void>(self_motion_curves(robots::ur5e().table(), goal)),
                        "duet: self_motion_curves: the chain has 6 moving joints, not 7",
                        invalid_input);
-  CHECK_THROWS_WITH_AS(self_motion_curves(arm, goal, {.resolution = 0}),
+  CHECK_THROWS_WITH_AS(static_cast<void>(self_motion_curves(arm, goal, {.resolution = 0})),
                        "duet: self_motion_curves: resolution is 0, not within (0, 1]",
                        invalid_input);
 }

@@ -172,9 +172,9 @@ private:
 /// (docs/all_inverse_kinematics.md). Joints beyond their limits are told by `within_limits`. Where
 /// joints can move with the tip in place, some of these configurations are returned.
 ///
-/// \param chain  six joints that turn or slide: one that slides, or three, or two that are neighbours
-/// or the first and the last
-/// \throws invalid_input for other chains, and for a goal that is no pose
+/// \param chain  six joints that turn or slide: one that slides, or three, or two that are
+/// neighbours or the first and the last \throws invalid_input for other chains, and for a goal that
+/// is no pose
 template <SerialChain C>
 [[nodiscard]] all_inverse_kinematics_result<C::joints>
 all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {

@@ -6,10 +6,12 @@
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/serial_chain.hpp>
+#include <duet/quaternion/quaternion.hpp>
 
 #include <Eigen/Core>
 
 #include <array>
+#include <type_traits>
 
 /// \file
 /// Branches of inverse kinematics with derivatives.
@@ -32,26 +34,32 @@ template <class Forward, VectorLike X, class S>
 [[nodiscard]] auto differentiable_branch(const Forward& forward, const X& joints,
                                          const dual_quaternion<S>& goal) {
   using coordinates = detail::vector_argument<X>;
-  detail::require(coordinates::size(joints) == 6, "duet: differentiable_branch: ",
-                  coordinates::size(joints), " coordinates, not 6");
+  detail::require(coordinates::size(joints) == 6,
+                  "duet: differentiable_branch: ", coordinates::size(joints),
+                  " coordinates, not 6");
   Eigen::Matrix<double, 6, 1> start;
   for (int i = 0; i < 6; ++i) {
     start[i] = coordinates::get(joints, i);
   }
+  // The goal as numbers: its infinitesimal of rigid motion is none to differentiate by.
+  const auto p = real_part(goal), q = dual_part(goal);
+  const std::array<S, 8> numbers{p.w(), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
   // Of the pose of the tip in the frame of the goal, ±1 where they agree, what vanishes there.
   const auto gap = [&](const auto& theta, const auto& to) {
-    const auto pose_of_tip = [&] {
+    using T = std::decay_t<decltype(to[0])>;
+    const auto opposite = conj(make_dual_quaternion(quaternion<T>(to[0], to[1], to[2], to[3]),
+                                                    quaternion<T>(to[4], to[5], to[6], to[7])));
+    const auto left = opposite * [&] {
       if constexpr (SerialChain<Forward>) {
         return forward.pose(theta);
       } else {
         return forward(theta);
       }
-    };
-    const auto left = conj(to) * pose_of_tip();
-    const auto p = real_part(left), q = dual_part(left);
-    return std::array{q.x(), q.y(), q.z(), p.x(), p.y(), p.z()};
+    }();
+    const auto turn = real_part(left), move = dual_part(left);
+    return std::array{move.x(), move.y(), move.z(), turn.x(), turn.y(), turn.z()};
   };
-  return implicit_solution(gap, start, goal);
+  return implicit_solution(gap, start, numbers);
 }
 
 } // namespace duet

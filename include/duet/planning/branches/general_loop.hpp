@@ -92,7 +92,7 @@ struct solution_count {
   const auto from_circle = [&](int i) { return std::abs(std::log(std::abs(roots[i]))); };
   for (int i = 0; i < all_roots::count; ++i) {
     const double distance = from_circle(i);
-    result.all += distance < 5;
+    result.all += distance < 9; // others are at infinity
     if (distance < farthest) {
       near.push_back(i);
     }
