@@ -134,7 +134,26 @@ public:
     return result;
   }
 
+  /// Is it a solution, and none of these?
+  [[nodiscard]] bool is_new(const branch& found, const std::vector<branch>& others) const {
+    constexpr double rounding = 1e-8;
+    return found.residual < rounding &&
+           std::none_of(others.begin(), others.end(),
+                        [&](const branch& other) { return distance(found, other) < rounding; });
+  }
+
 private:
+  /// The largest difference of coordinates, but for whole turns.
+  [[nodiscard]] double distance(const branch& a, const branch& b) const {
+    double largest = 0;
+    for (int i = 0; i < 6; ++i) {
+      const double d = a.joints[i] - b.joints[i];
+      const bool turns = loop_.joints[std::size_t(i)].turns;
+      largest = std::max(largest, std::abs(turns ? turned_back(d) : d / axes_.size));
+    }
+    return largest;
+  }
+
   [[nodiscard]] branch described(const loop_solution& x) const {
     branch result;
     result.joints.resize(chain_.size());
@@ -188,7 +207,12 @@ all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {
   result.is_complete = search.answer().is_complete;
   result.solutions.reserve(search.answer().solutions.size());
   for (const detail::loop_solution& x : search.answer().solutions) {
-    result.solutions.push_back(branches(x));
+    const auto found = branches(x);
+    if (branches.is_new(found, result.solutions)) {
+      result.solutions.push_back(found);
+    } else {
+      result.complex_solutions += x.multiplicity; // two that nearly coincide, not quite real
+    }
   }
   std::sort(result.solutions.begin(), result.solutions.end(), [](const auto& a, const auto& b) {
     return std::lexicographical_compare(a.joints.begin(), a.joints.end(), b.joints.begin(),

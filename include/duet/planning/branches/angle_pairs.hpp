@@ -55,14 +55,18 @@ struct angle_pairs {
   /// \return false where one of the angles is undetermined
   template <class Visit>
   bool operator()(const Visit& visit) const {
-    if (is_singular(f)) {
-      return by_one(f, g, [&](double x, double y, int m) { visit(x, y, m); });
+    const double by_theta = regularity(f), by_phi = regularity(g);
+    const auto swapped = [&](double x, double y, int m) { visit(y, x, m); };
+    constexpr double singular = 1e-9;
+    if (std::min(by_theta, by_phi) > singular) {
+      if (by_theta >= by_phi) {
+        by_both(f, g, visit);
+      } else {
+        by_both(g, f, swapped);
+      }
+      return true;
     }
-    if (is_singular(g)) {
-      return by_one(g, f, [&](double x, double y, int m) { visit(y, x, m); });
-    }
-    by_both(visit);
-    return true;
+    return by_theta < by_phi ? by_one(f, g, visit) : by_one(g, f, swapped);
   }
 
 private:
@@ -71,11 +75,10 @@ private:
   [[nodiscard]] static double determinant(const two_values& f) {
     return f[0].b * f[1].c - f[0].c * f[1].b;
   }
-  [[nodiscard]] static bool is_singular(const two_values& f) {
-    constexpr double rounding = 1e-9;
-    const double size =
-        std::max(f[0].b * f[0].b + f[0].c * f[0].c, f[1].b * f[1].b + f[1].c * f[1].c);
-    return std::abs(determinant(f)) <= rounding * std::max(size, rounding);
+  /// The determinant in parts of the squared size of its rows.
+  [[nodiscard]] static double regularity(const two_values& f) {
+    const double size = f[0].b * f[0].b + f[0].c * f[0].c + f[1].b * f[1].b + f[1].c * f[1].c;
+    return size > 1e-18 ? std::abs(determinant(f)) / size : 0;
   }
 
   /// A sum of both equations has no θ.
@@ -99,7 +102,7 @@ private:
 
   /// (cos θ, sin θ) = u + V (cos φ, sin φ), whose square is 1.
   template <class Visit>
-  void by_both(const Visit& visit) const {
+  static void by_both(const two_values& f, const two_values& g, const Visit& visit) {
     const double d = determinant(f);
     const auto solved = [&](double r0, double r1) {
       return std::array{(r0 * f[1].c - r1 * f[0].c) / d, (f[0].b * r1 - f[1].b * r0) / d};
@@ -115,8 +118,19 @@ private:
     std::array<bool, 4> is_done{};
     for (int i = 0; i < 4; ++i) {
       const complex z = roots[i];
-      const double error = std::min(1e-5, 1e-9 + 1e-13 * roots.sensitivity(i));
-      if (is_done[std::size_t(i)] || !(std::abs(std::abs(z) - 1) < error)) {
+      const double off = std::abs(z) - 1,
+                   error = std::min(1e-5, 1e-9 + 1e-13 * roots.sensitivity(i));
+      const auto visit_at = [&](double phi, int multiplicity) {
+        const double c = std::cos(phi), s = std::sin(phi);
+        visit(std::atan2(u[1] + v[1] * c + w[1] * s, u[0] + v[0] * c + w[0] * s), phi,
+              multiplicity);
+      };
+      // Two zeros that nearly coincide, which rounding may have made complex: z and 1/z̄.
+      if (off > error && off < std::min(1e-4, 1e-11 * roots.sensitivity(i))) {
+        visit_at(std::arg(z) - off, 1);
+        visit_at(std::arg(z) + off, 1);
+      }
+      if (is_done[std::size_t(i)] || !(std::abs(off) < error)) {
         continue;
       }
       int multiplicity = 1;
@@ -126,8 +140,7 @@ private:
           ++multiplicity;
         }
       }
-      const double phi = std::arg(z), c = std::cos(phi), s = std::sin(phi);
-      visit(std::atan2(u[1] + v[1] * c + w[1] * s, u[0] + v[0] * c + w[0] * s), phi, multiplicity);
+      visit_at(std::arg(z), multiplicity);
     }
   }
 };
