@@ -123,9 +123,8 @@ private:
       }
       x_[i] -= wx;
       y_[i] -= wy;
-      if (size[i] < 3 && size[i] > .3) {
-        largest = std::max(largest, std::hypot(wx, wy) / size[i]);
-      }
+      const bool is_near = size[i] < 3 && size[i] > .3; // others need not be as accurate
+      largest = std::max(largest, (is_near ? 1 : 1e-6) * std::hypot(wx, wy) / size[i]);
     }
     return largest;
   }
