@@ -10,6 +10,7 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/robots.hpp>
+#include <duet/planning/all_inverse_kinematics.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -139,14 +140,24 @@ DUET_LIVE int plan_of_arm(int arm, const double* start, const double* goal, int 
   return count;
 }
 
-/// Joint coordinates for a pose of the tip: the solution that is found from a start.
-/// \param room  for how many solutions there is room
-/// \param out   of each solution its coordinates: joints times room numbers
+/// Joint coordinates for a pose of the tip: of six joints all solutions within the limits, of
+/// seven, which have curves of them, the one that is found from a start. \param room  for how many
+/// solutions there is room \param out   of each solution its coordinates: joints times room numbers
 /// \return how many were found
 DUET_LIVE int solutions_of_arm(int arm, const double* goal, const double* start, int room,
                                double* out) {
   live::writer to(out);
   const arm_chain chain = chain_of(arm);
+  if (chain.size() == 6) {
+    int count = 0;
+    for (const auto& each : duet::all_inverse_kinematics(chain, pose_from(goal)).solutions) {
+      if (each.within_limits && count < room) {
+        to << each.joints;
+        ++count;
+      }
+    }
+    return count;
+  }
   const auto found = duet::inverse_kinematics(chain, pose_from(goal), joints_from(chain, start));
   if (found.reason != duet::stop_reason::reached || room < 1) {
     return 0;

@@ -221,7 +221,9 @@ duetLive.start("arm", (host, call) => {
     const heads = ["", ...lower.map((_, i) => "θ" + "₁₂₃₄₅₆₇"[i])];
     const t = duetLive.table(heads, solutions.map((_, i) => String(i + 1)));
     t.set(solutions.map((s) => s.joints.map((x) => degrees(x))));
-    list.replaceChildren(t.node, element("p", { class: "live-note" }, "Solutions: joint coordinates that take the tip to the goal. This one is what inverse_kinematics finds from where the plan ends."));
+    list.replaceChildren(t.node, element("p", { class: "live-note" }, joints === 6
+      ? "All joint coordinates within the limits that take the tip to the goal, by all_inverse_kinematics."
+      : "Joint coordinates that take the tip to the goal. Of seven joints there are curves of them; this one is what inverse_kinematics finds from where the plan ends."));
   };
 
   // Controls.
