@@ -33,13 +33,12 @@ namespace duet {
 template <class Forward, VectorLike X, class S>
 [[nodiscard]] auto differentiable_branch(const Forward& forward, const X& joints,
                                          const dual_quaternion<S>& goal) {
-  using coordinates = detail::vector_argument<X>;
-  detail::require(coordinates::size(joints) == 6,
-                  "duet: differentiable_branch: ", coordinates::size(joints),
-                  " coordinates, not 6");
+  using argument = detail::vector_argument<X>;
+  detail::require(argument::size(joints) == 6,
+                  "duet: differentiable_branch: ", argument::size(joints), " coordinates, not 6");
   Eigen::Matrix<double, 6, 1> start;
   for (int i = 0; i < 6; ++i) {
-    start[i] = coordinates::get(joints, i);
+    start[i] = argument::get(joints, i);
   }
   // The goal as numbers: its infinitesimal of rigid motion is none to differentiate by.
   const auto p = real_part(goal), q = dual_part(goal);
