@@ -90,11 +90,11 @@ public:
     const auto &fourth = loop_.joints[3], &fifth = loop_.joints[4], &sixth = loop_.joints[5];
     const vector3d n = loop_.joints[0].axis;
     const tip_place opening = inverse_place(loop_.closing);
-    const vector3d far = rotated(opening.rotation, n);
-    const double far_distance = dot(far, opening.translation);
+    const vector3d goal_normal = rotated(opening.rotation, n);
+    const double goal_distance = dot(goal_normal, opening.translation);
     // Of planes that turn about the fifth axis, the normal along it does not change, nor the
     // distance from a point on it.
-    const turned_vector from(sixth.axis, far), to(-1 * fourth.axis, n);
+    const turned_vector from(sixth.axis, goal_normal), to(-1 * fourth.axis, n);
     const auto slope = [&](const turned_vector& x) {
       return turning_value{dot(fifth.axis, x.along), dot(fifth.axis, x.across),
                            dot(fifth.axis, x.beside)};
@@ -106,7 +106,7 @@ public:
     const angle_pairs pairs{
         {slope(to), distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
         {slope(from),
-         distance(from, far_distance - dot(far, sixth.point), sixth.point - fifth.point)}};
+         distance(from, goal_distance - dot(goal_normal, sixth.point), sixth.point - fifth.point)}};
     bool is_determined = true;
     const bool has_pairs = pairs([&](double theta4, double theta6, int multiplicity) {
       six_coordinates theta;

@@ -70,8 +70,8 @@ public:
       }
       // What of the curve is nearest to x, is x: from there Newton's method leads to it.
       const double part = std::clamp(to_x.dot(way) / way.squaredNorm(), 0., 1.);
-      const auto near = corrected(moved(a, part * way));
-      if (near && nearer(*near, x)) {
+      const auto between = corrected(moved(a, part * way));
+      if (between && nearer(*between, x)) {
         return true;
       }
     }

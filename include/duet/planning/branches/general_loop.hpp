@@ -86,37 +86,37 @@ struct solution_count {
   using all_roots = elimination::roots;
   const all_roots roots(all_roots::interpolated(determinants));
   constexpr double rounding = 1e-13, farthest = .05;
-  std::vector<int> near;
-  near.reserve(std::size_t(all_roots::count));
+  std::vector<int> candidates;
+  candidates.reserve(std::size_t(all_roots::count));
   const auto error_of = [&](int i) { return std::min(.03, rounding * roots.sensitivity(i)); };
   const auto from_circle = [&](int i) { return std::abs(std::log(std::abs(roots[i]))); };
   for (int i = 0; i < all_roots::count; ++i) {
     const double distance = from_circle(i);
     result.all += distance < 9; // others are at infinity
     if (distance < farthest) {
-      near.push_back(i);
+      candidates.push_back(i);
     }
   }
-  std::sort(near.begin(), near.end(),
+  std::sort(candidates.begin(), candidates.end(),
             [&](int i, int j) { return std::arg(roots[i]) < std::arg(roots[j]); });
   const auto add = [&](const six_coordinates& theta) { solutions.add(order.in_loop(theta)); };
   // Solutions with one θ₃ are a zero of higher order, which rounding takes apart.
-  for (std::size_t i = 0, end = 0; i < near.size(); i = end) {
+  for (std::size_t i = 0, end = 0; i < candidates.size(); i = end) {
     std::complex<double> sum = 0;
     int real = 0;
     bool is_one = true;
-    for (end = i; end < near.size() && is_one; end += is_one) {
-      is_one = end == i ||
-               std::abs(roots[near[end]] - roots[near[end - 1]]) < 1e-4 + error_of(near[end]);
+    for (end = i; end < candidates.size() && is_one; end += is_one) {
+      is_one = end == i || std::abs(roots[candidates[end]] - roots[candidates[end - 1]]) <
+                               1e-4 + error_of(candidates[end]);
       if (is_one) {
-        real = system.solutions_at(std::arg(roots[near[end]]), 1, add);
-        sum += roots[near[end]];
+        real = system.solutions_at(std::arg(roots[candidates[end]]), 1, add);
+        sum += roots[candidates[end]];
       }
     }
     if (end > i + 1) {
       real = system.solutions_at(std::arg(sum), int(end - i), add);
     }
-    if (from_circle(near[i]) < 1e-8 + 10 * error_of(near[i])) {
+    if (from_circle(candidates[i]) < 1e-8 + 10 * error_of(candidates[i])) {
       result.real += real;
     }
   }

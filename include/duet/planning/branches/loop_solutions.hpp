@@ -73,14 +73,14 @@ public:
 private:
   /// Are two solutions one, but for rounding? Then what is in their middle is one, too.
   [[nodiscard]] bool is_same(const six_coordinates& a, const six_coordinates& b) const {
-    constexpr double near = 1e-3;
+    constexpr double close_by = 1e-3;
     six_coordinates half = (b - a) / 2;
     for (Eigen::Index i = 0; i < 6; ++i) {
       if (loop_.joints[std::size_t(i)].turns) {
         half[i] = turned_back(2 * half[i]) / 2;
       }
     }
-    return half.cwiseAbs().maxCoeff() < near && is_closed(a + half);
+    return half.cwiseAbs().maxCoeff() < close_by && is_closed(a + half);
   }
   [[nodiscard]] bool is_closed(const six_coordinates& theta) const {
     constexpr double rounding = 3e-13;
@@ -90,7 +90,7 @@ private:
   /// Along the direction v that changes the loop least, by u σ t, it changes by u (σ t + κ t²/2) to
   /// second order: near t = −2σ/κ is another solution.
   void look_beside(std::size_t at) {
-    constexpr double near = .05, h = 1e-3, nudge = 1e-9; // which leaves no pivot zero
+    constexpr double close_by = .05, h = 1e-3, nudge = 1e-9; // which leaves no pivot zero
     const six_coordinates theta = all_[at].theta;
     const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
     const Eigen::PartialPivLU<six_columns> lu(loop_gap(loop_, nearby).jacobian);
@@ -103,7 +103,7 @@ private:
       sigma = 1 / v.norm();
       v *= sigma;
     }
-    if (!(sigma < near)) {
+    if (!(sigma < close_by)) {
       return;
     }
     const auto along = [&](double t) { return u.dot(loop_gap(loop_, theta + t * v).twist); };
