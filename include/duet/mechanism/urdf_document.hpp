@@ -60,7 +60,7 @@ inline constexpr std::array<urdf_element_kind, 10> urdf_element_kinds{
 /// A description whose elements and attributes are those of the format.
 class urdf_document {
 public:
-  /// \throws file_error for another root than <robot>, and for attributes that the format has not
+  /// \throws file_error for another root than `<robot>`, and for attributes that the format has not
   urdf_document(std::string path, xml_element robot)
       : path_(std::move(path)), robot_(std::move(robot)) {
     if (robot_.name != "robot") {

@@ -164,7 +164,7 @@ private:
                    "type \"" + type + "\" is none of revolute, continuous, prismatic and fixed");
   }
 
-  /// Those of <limit>, narrowed by the soft ones of <safety_controller>.
+  /// Those of `<limit>`, narrowed by the soft ones of `<safety_controller>`.
   [[nodiscard]] joint_limits<double> limits(const xml_element& element, joint_kind kind) const {
     joint_limits<double> result;
     const bool is_bounded = kind != joint_kind::continuous;
