@@ -7,7 +7,7 @@
 cmake_minimum_required(VERSION 3.22)
 
 execute_process(
-  COMMAND ${CMAKE_COMMAND} "-Dcompile=${compile}" -Dsnippet=${snippet}
+  COMMAND ${CMAKE_COMMAND} "-Dcompile=${compile}" -Dsnippet=${snippet} -Dcontrol=ON
     -P ${CMAKE_CURRENT_LIST_DIR}/../check.cmake
   RESULT_VARIABLE result ERROR_VARIABLE log)
 if(result EQUAL 0)
