@@ -79,8 +79,7 @@ TEST_CASE(
   CHECK(std::abs(slope - 2) <= 1e-9);
   CHECK(error < 1e-9);
   CHECK(central_difference_derivative(kink, 0.5 + 3e-3).error > 1e-3);
-  const auto at_pole =
-      central_difference_derivative([](double x) { return 1 / (x * x - x * x); }, 1.0);
+  const auto at_pole = central_difference_derivative([](double x) { return 1 / (x - x); }, 1.0);
   CHECK(std::isinf(at_pole.error));
 }
 

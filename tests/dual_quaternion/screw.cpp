@@ -138,7 +138,8 @@ TEST_CASE("the derivative of ScLERP is a constant twist, judged in fifty digits"
   const auto closed_form = [&](const auto& w, const auto& t, const auto& tau) {
     const auto [a, b] = ends(w, t);
     const auto aligned = innermost(dot(a, b)) < 0 ? -b : b;
-    auto relative = log(conj(a) * aligned);
+    const auto logarithm = log(conj(a) * aligned);
+    const auto relative = (logarithm - conj(logarithm)) / 2.0; // less the logarithm of the norm
     const auto rate = sclerp(a, b, tau) * relative;
     return std::array{duet::real_part(rate), duet::dual_part(rate)};
   };

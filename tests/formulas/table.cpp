@@ -5,6 +5,7 @@
 // off than its bounds, where a label has no row, and where docs/formulas.md has another row.
 
 #include "formulas/table.hpp"
+#include "support/identical.hpp"
 
 #include "formulas/labels.hpp"
 
@@ -339,7 +340,7 @@ TEST_CASE("every formula is as close to 50 digits as promised, and is in the tab
       CHECK(worst.dual <= f.limits.slope);
       CHECK(worst.taylor <= second_derivative_limit);
       CHECK(worst.nested <= second_derivative_limit);
-      CHECK(worst.expression <= f.limits.expression);
+      CHECK(worst.expression <= f.limits.expression * (1 + duet_test::if_fused(.5)));
     }
   }
   table << "\n| | as an expression | its derivative by | from the dual | worst input |\n"

@@ -131,14 +131,14 @@ TEST_CASE("bad paths") {
   const auto still = [&](double) { return first; };
   CHECK_THROWS_WITH_AS((void)follow_path(arm, start, poses{}),
                        "duet: follow_path: the list of poses is empty", invalid_input);
-  CHECK_THROWS_WITH_AS((void)follow_path(arm, start, poses{first, first * 2.0}),
-                       "duet: follow_path: pose 1 is no unit dual quaternion: |p|^2 = 4, p.q = 0",
-                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)follow_path(arm, start, poses{first, first * 2.0}),
+      doctest::Contains("duet: follow_path: pose 1 is no unit dual quaternion: |p|^2 = 4, p.q = "),
+      invalid_input);
   CHECK_THROWS_WITH_AS(
       (void)follow_path(arm, start,
                         poses{pose(quaternion<double>(1), Eigen::Vector3d(0, 0, .5)) * first}),
-      "duet: follow_path: the path begins 0.5 units of length and 0 rad away from the tip at the "
-      "start",
+      doctest::Contains("duet: follow_path: the path begins 0.5 units of length and "),
       invalid_input);
   CHECK_THROWS_WITH_AS((void)follow_path(arm, start, still, 1, 1),
                        "duet: follow_path: the path's parameter goes from 1 to 1", invalid_input);

@@ -16,10 +16,14 @@ namespace duet_test {
 
 /// May the compiler multiply and add in one step? Then the same sum of products rounds in one place
 /// of a program otherwise than in another, and bits tell nothing.
-#if defined(__FMA__) || defined(__FP_FAST_FMA) || defined(__aarch64__)
+#if defined(__FMA__) || defined(__FP_FAST_FMA) || defined(__aarch64__) || defined(__riscv) ||      \
+    defined(__s390x__)
 inline constexpr bool may_fuse = true;
 #else
 inline constexpr bool may_fuse = false;
 #endif
+
+/// A bound for results that are the same to the last bit where nothing is fused: 0 there.
+[[nodiscard]] constexpr double if_fused(double bound) { return may_fuse ? bound : 0; }
 
 } // namespace duet_test

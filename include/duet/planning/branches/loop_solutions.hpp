@@ -52,35 +52,42 @@ public:
   }
 
   /// Refines θ and adds what it is near to, and the solution beside that near a singularity.
-  void add(six_coordinates theta) {
+  void add(six_coordinates theta) { static_cast<void>(place_of_added(theta)); }
+
+private:
+  static constexpr std::size_t nowhere = std::size_t(-1);
+  static constexpr double close_together = 1e-3; // half of how far what is one may be apart
+
+  /// Where the solution that θ is near to stands, or `nowhere` if there is none.
+  std::size_t place_of_added(six_coordinates theta) {
     if (!close_loop(loop_, theta)) {
-      return;
+      return nowhere;
     }
     for (Eigen::Index i = 0; i < 6; ++i) {
       if (loop_.joints[std::size_t(i)].turns) {
         theta[i] = turned_back(theta[i]);
       }
     }
-    for (const loop_solution& x : all_) {
-      if (is_same(x.theta, theta)) {
-        return;
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      if (is_same(all_[i].theta, theta)) {
+        return i;
       }
     }
+    const std::size_t last = all_.size();
     all_.push_back({theta, 1});
-    look_beside(all_.size() - 1);
+    look_beside(last);
+    return last;
   }
 
-private:
   /// Are two solutions one, but for rounding? Then what is in their middle is one, too.
   [[nodiscard]] bool is_same(const six_coordinates& a, const six_coordinates& b) const {
-    constexpr double close_by = 1e-3;
     six_coordinates half = (b - a) / 2;
     for (Eigen::Index i = 0; i < 6; ++i) {
       if (loop_.joints[std::size_t(i)].turns) {
         half[i] = turned_back(2 * half[i]) / 2;
       }
     }
-    return half.cwiseAbs().maxCoeff() < close_by && is_closed(a + half);
+    return half.cwiseAbs().maxCoeff() < close_together && is_closed(a + half);
   }
   [[nodiscard]] bool is_closed(const six_coordinates& theta) const {
     constexpr double rounding = 3e-13;
@@ -112,10 +119,11 @@ private:
     if (!(std::abs(t) < 1)) {
       return;
     }
-    if (is_closed(theta + t / 2 * v)) {
+    // That solution may be the same one once it is refined.
+    const bool is_one = is_closed(theta + t / 2 * v) ||
+                        (place_of_added(theta + t * v) == at && std::abs(t) < 2 * close_together);
+    if (is_one) {
       all_[at].multiplicity = 2;
-    } else {
-      add(theta + t * v);
     }
   }
 
