@@ -4,8 +4,9 @@
 /// \file
 /// All of duet but what programs ask for by name, as it takes compilers long or is rare: sparse
 /// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (mechanism/urdf.hpp),
-/// arms in many configurations (mechanism/sweep.hpp), curves near rows (spline/fit.hpp), all
-/// solutions of inverse kinematics and what moves along them (planning/all_inverse_kinematics.hpp,
+/// trees of links and joints (mechanism/tree_jacobian.hpp, mechanism/centre_of_mass.hpp), arms in
+/// many configurations (mechanism/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
+/// inverse kinematics and what moves along them (planning/all_inverse_kinematics.hpp,
 /// planning/differentiable_branch.hpp, planning/self_motion_curves.hpp), plans over time
 /// (planning/time_parametrised.hpp), tables, recordings and plans as files (spline/table_file.hpp,
 /// spline/recording.hpp, planning/save_plan.hpp, core/text/csv.hpp), progress_line

@@ -158,7 +158,10 @@ enum class joint_kind {
   continuous, ///< turns about its axis, as often as it likes
   prismatic,  ///< slides along its axis
   helical,    ///< turns about its axis and slides along it by `pitch` per radian
-  fixed       ///< does not move
+  fixed,      ///< does not move
+  planar,     ///< slides across its axis and turns about it: x, y, angle. In trees only
+  spherical,  ///< turns about its origin: a rotation vector. In trees only
+  floating    ///< moves as it likes: x, y, z, then a rotation vector. In trees only
 };
 
 /// Limits of the coordinate θ of a joint: radians, or units of length for a prismatic one.
@@ -179,6 +182,20 @@ struct joint {
   joint_limits<T> limits = {};                ///< of its coordinate
   T pitch = T(0);                             ///< of a helical joint, in units of length per radian
 
+  /// How many coordinates it has.
+  [[nodiscard]] constexpr int coordinates() const {
+    switch (kind) {
+    case joint_kind::fixed:
+      return 0;
+    case joint_kind::planar:
+    case joint_kind::spherical:
+      return 3;
+    case joint_kind::floating:
+      return 6;
+    default:
+      return 1;
+    }
+  }
   /// Does it turn about its axis?
   [[nodiscard]] constexpr bool turns() const {
     return kind == joint_kind::revolute || kind == joint_kind::continuous ||

@@ -42,23 +42,27 @@ constexpr void require_limits(const joint_limits<T>& given, std::size_t i,
 }
 
 template <class T>
-constexpr void require_joint(const joint<T>& given, std::size_t i) {
+constexpr void require_joint(const joint<T>& given, std::size_t i,
+                             const char* function = "serial_chain", std::string_view name = {}) {
   const auto& t = given.origin.translation;
   if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
-    bad_joint(i, "its origin is not finite");
+    bad_joint(i, "its origin is not finite", function, name);
   }
   if (!is_nearly_one(norm2(given.origin.rotation))) {
-    bad_joint(i, message("the rotation ", given.origin.rotation,
-                         " of its origin is no unit quaternion: normalized(q)"));
+    bad_joint(i,
+              message("the rotation ", given.origin.rotation,
+                      " of its origin is no unit quaternion: normalized(q)"),
+              function, name);
   }
   const auto n = components(given.axis);
   if (given.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
-    bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is no unit vector"));
+    bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is no unit vector"), function,
+              name);
   }
   if (!(given.pitch - given.pitch == 0)) {
-    bad_joint(i, "its pitch is not finite");
+    bad_joint(i, "its pitch is not finite", function, name);
   }
-  require_limits(given.limits, i);
+  require_limits(given.limits, i, function, name);
 }
 
 /// A joint whose frame before is displaced.

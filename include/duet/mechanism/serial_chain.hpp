@@ -86,6 +86,9 @@ public:
     placement<T> carried{};
     for (std::size_t i = 0; i < given.size(); ++i) {
       detail::require_joint(given[i], i);
+      if (given[i].coordinates() > 1) {
+        detail::bad_joint(i, "has several coordinates, which joints of a kinematic_tree may have");
+      }
       carried = carried * given[i].origin;
       if (given[i].kind != joint_kind::fixed) {
         if (size_ == int(capacity)) {

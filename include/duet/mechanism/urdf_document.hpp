@@ -22,10 +22,10 @@
 
 namespace duet::detail {
 
-/// An element of a description, and the joint that it is in, for messages.
+/// An element of a description, and the joint or link that it is in, for messages.
 struct urdf_place {
   const xml_element& element;
-  const xml_element* joint = nullptr;
+  const xml_element* owner = nullptr;
 };
 
 /// An element that is read: its attributes, others being mistakes, and what may be in it.
@@ -36,11 +36,14 @@ struct urdf_element_kind {
   /// Attributes that files of known robots have for other programs.
   std::array<std::string_view, 3> foreign = {};
 };
-inline constexpr std::array<urdf_element_kind, 10> urdf_element_kinds{
+inline constexpr std::array<urdf_element_kind, 13> urdf_element_kinds{
     {{"robot",
       {"name", "version"},
       {"link", "joint", "material", "transmission", "gazebo", "sensor"}},
      {"link", {"name", "type"}, {"inertial", "visual", "collision"}, {"concave"}},
+     {"inertial", {}, {"origin", "mass", "inertia"}},
+     {"mass", {"value"}},
+     {"inertia", {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}},
      {"joint",
       {"name", "type"},
       {"origin", "parent", "child", "axis", "limit", "mimic", "safety_controller", "dynamics",
@@ -121,12 +124,22 @@ public:
     return result;
   }
 
+  /// A number, which must be there.
+  [[nodiscard]] double number(const urdf_place& place, std::string_view key) const {
+    return number(attribute(place, key), place, key);
+  }
+  [[nodiscard]] double number(const urdf_place& place, std::string_view key,
+                              double otherwise) const {
+    const std::string* const text = place.element.attribute(key);
+    return text == nullptr ? otherwise : number(*text, place, key);
+  }
+
 private:
   static constexpr double most = 1e6;
 
   [[nodiscard]] static std::string name_of(const urdf_place& place) {
     const std::string* const name = place.element.attribute("name");
-    return (place.joint != nullptr ? name_of({*place.joint}) + " " : "") + "<" +
+    return (place.owner != nullptr ? name_of({*place.owner}) + " " : "") + "<" +
            place.element.name + (name != nullptr ? " name=\"" + *name + "\"" : "") + ">";
   }
   [[noreturn]] void fail(std::size_t line, const std::string& what) const {
@@ -144,7 +157,7 @@ private:
 
   /// An element, and those in it that are read. What has a prefix, and attributes that declare one,
   /// are other programs'.
-  void check(const xml_element& element, const xml_element* joint = nullptr) {
+  void check(const xml_element& element, const xml_element* owner = nullptr) {
     const auto kind =
         std::find_if(urdf_element_kinds.begin(), urdf_element_kinds.end(),
                      [&](const urdf_element_kind& each) { return each.name == element.name; });
@@ -156,21 +169,23 @@ private:
           !has(kind->attributes, key)) {
         std::vector<std::string> known(kind->attributes.begin(), kind->attributes.end());
         std::erase(known, "");
-        fail({element, joint}, "unknown attribute \"" + key + "\": " + nearest_names(key, known));
+        fail({element, owner}, "unknown attribute \"" + key + "\": " + nearest_names(key, known));
       }
     }
-    if (joint != nullptr) {
-      if (const xml_element* first = joint->child(element.name); first != &element) {
-        fail({element, joint}, "is there twice, first in line " + std::to_string(first->line));
+    const bool is_part = element.name == "link" || element.name == "joint";
+    for (const xml_element& each : element.children) {
+      if (!has(kind->children, each.name)) {
+        unknown_.push_back({each.name, name_of({element, owner}), each.line});
+        continue;
       }
-    } else {
-      for (const xml_element& each : element.children) {
-        if (!has(kind->children, each.name)) {
-          unknown_.push_back({each.name, name_of({element}), each.line});
-        } else {
-          check(each, element.name == "joint" ? &element : nullptr);
-        }
+      const urdf_place place{each, is_part ? &element : owner};
+      const bool is_one_of_many =
+          element.name == "robot" || each.name == "visual" || each.name == "collision";
+      if (const xml_element* first = is_one_of_many ? &each : element.child(each.name);
+          first != &each) {
+        fail(place, "is there twice, first in line " + std::to_string(first->line));
       }
+      check(each, place.owner);
     }
   }
   [[nodiscard]] static bool has(const auto& words, std::string_view word) {

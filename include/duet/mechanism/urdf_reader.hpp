@@ -4,7 +4,8 @@
 #include <duet/core/text/nearest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/mechanism/joint.hpp>
-#include <duet/mechanism/serial_chain.hpp>
+#include <duet/mechanism/robot_description.hpp>
+#include <duet/mechanism/tree_chain.hpp>
 #include <duet/mechanism/urdf_contents.hpp>
 #include <duet/mechanism/urdf_document.hpp>
 #include <duet/mechanism/xml_element.hpp>
@@ -16,19 +17,19 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
 /// \file
-/// Links and joints of a robot description, and the way from one link to another.
+/// Links and joints of a robot description: all, or those from one link to another.
 
 namespace duet::detail {
 
 class urdf_reader {
 public:
   /// \throws file_error for what is wrong anywhere in the description, numbers aside
-  urdf_reader(const std::string& path, xml_element robot) : document_(path, std::move(robot)) {
+  urdf_reader(const std::string& path, xml_element robot)
+      : path_(path), document_(path, std::move(robot)) {
     names_.unknown = document_.unknown();
     for (const xml_element& each : document_.robot().children) {
       if (each.name == "link") {
@@ -43,49 +44,113 @@ public:
 
   [[nodiscard]] const urdf_names& names() const { return names_; }
 
-  /// The joints from the link `base` to the link `tip`, in that order.
-  [[nodiscard]] std::vector<const xml_element*> path(const std::string& base,
-                                                     const std::string& tip) const {
+  /// The chain from the link `base` to the link `tip`.
+  [[nodiscard]] urdf_contents chain(const std::string& base, const std::string& tip,
+                                    std::size_t most) const {
     for (const std::string& link : {base, tip}) {
       if (!links_.contains(link)) {
         document_.fail(no_link(link));
       }
     }
-    std::vector<const xml_element*> result;
-    std::unordered_set<std::string_view> seen{tip};
-    for (std::string_view link = tip; link != base;) {
-      const auto above = joint_above_.find(link);
-      if (above == joint_above_.end()) {
-        if (hangs_on(base, tip)) {
-          document_.fail("the tip \"" + tip + "\" is an ancestor of the base \"" + base +
-                         "\": exchange them");
-        }
-        document_.fail("the link \"" + tip + "\" does not hang on \"" + base + "\": above \"" +
-                       std::string(link) + "\" there is no joint");
+    const auto pass = [&](std::size_t i) {
+      require_link({*elements_[i]->child("parent"), elements_[i]});
+    };
+    struct {
+      const urdf_reader& reader;
+      void operator()(std::size_t i, const std::string& what) const {
+        reader.document_.fail({*reader.elements_[i]}, what);
       }
-      const xml_element& joint = *above->second;
-      result.push_back(&joint);
-      require_link({*joint.child("parent"), &joint});
-      link = *joint.child("parent")->attribute("link");
-      if (!seen.insert(link).second) {
-        document_.fail({joint}, "closes a cycle at the link \"" + std::string(link) + "\"");
+      void operator()(const std::string& what) const { reader.document_.fail(what); }
+    } const fail{*this};
+    const way_between_links way = way_between(names_.joints, base, tip, pass, fail);
+    urdf_contents result = contents_of_way(way, base, [&](std::size_t i) {
+      const tree_joint joint = read_joint(*elements_[i]);
+      if (const std::string reason = not_in_a_chain(joint); !reason.empty()) {
+        document_.fail({*elements_[i]}, reason);
       }
+      return joint;
+    });
+    if (const std::size_t count = result.joint_names.size(); count > most) {
+      document_.fail(std::to_string(count) + " moving joints from \"" + base + "\" to \"" + tip +
+                     "\": use read_urdf<" + std::to_string(count) + ">");
     }
-    std::reverse(result.begin(), result.end());
+    result.unknown = names_.unknown;
     return result;
   }
 
-  [[nodiscard]] joint<double> read(const xml_element& element) const {
-    if (const xml_element* mimic = element.child("mimic")) {
-      document_.fail({*mimic, &element}, "joints that follow others are not supported in a chain");
+  /// All links and joints.
+  [[nodiscard]] robot_description description() const {
+    robot_description result;
+    result.file = path_;
+    result.unknown = names_.unknown;
+    for (const xml_element& each : document_.robot().children) {
+      if (each.name == "link") {
+        result.links.push_back(read_link(each));
+      } else if (each.name == "joint") {
+        result.joints.push_back(read_joint(each));
+      }
     }
+    return result;
+  }
+
+private:
+  using elements = std::unordered_map<std::string_view, const xml_element*>;
+
+  [[nodiscard]] placement<double> read_origin(const xml_element& in,
+                                              const xml_element& owner) const {
+    const xml_element* const origin = in.child("origin");
+    if (origin == nullptr) {
+      return {};
+    }
+    const auto rpy = document_.numbers({*origin, &owner}, "rpy", {0, 0, 0});
+    return {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]),
+            document_.numbers({*origin, &owner}, "xyz", {0, 0, 0})};
+  }
+
+  [[nodiscard]] tree_link read_link(const xml_element& element) const {
+    tree_link result{*element.attribute("name"), {}, element.line};
+    const xml_element* const inertial = element.child("inertial");
+    if (inertial == nullptr) {
+      return result;
+    }
+    link_inertia& inertia = result.inertia.emplace();
+    inertia.frame = read_origin(*inertial, element);
+    const xml_element* const mass = inertial->child("mass");
+    if (mass == nullptr) {
+      document_.fail({*inertial, &element}, "no element <mass>");
+    }
+    inertia.mass = document_.number({*mass, &element}, "value");
+    if (inertia.mass < 0) {
+      document_.fail({*mass, &element}, "is negative");
+    }
+    if (const xml_element* const moments = inertial->child("inertia")) {
+      constexpr std::array<const char*, 6> keys = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
+      for (std::size_t i = 0; i < keys.size(); ++i) {
+        inertia.moments[i] = document_.number({*moments, &element}, keys[i]);
+      }
+    }
+    return result;
+  }
+
+  [[nodiscard]] tree_joint read_joint(const xml_element& element) const {
+    tree_joint result;
+    result.name = name(element);
+    result.parent = *element.child("parent")->attribute("link");
+    result.child = child(element);
+    result.line = element.line;
+    result.motion = read_motion(element);
+    if (const xml_element* const mimic = element.child("mimic")) {
+      const urdf_place place{*mimic, &element};
+      result.mimic = {document_.attribute(place, "joint"), document_.number(place, "multiplier", 1),
+                      document_.number(place, "offset", 0)};
+    }
+    return result;
+  }
+
+  [[nodiscard]] joint<double> read_motion(const xml_element& element) const {
     joint<double> result;
     result.kind = kind(element);
-    if (const xml_element* origin = element.child("origin")) {
-      const auto rpy = document_.numbers({*origin, &element}, "rpy", {0, 0, 0});
-      result.origin = {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]),
-                       document_.numbers({*origin, &element}, "xyz", {0, 0, 0})};
-    }
+    result.origin = read_origin(element, element);
     if (result.kind != joint_kind::fixed) {
       result.axis = {1, 0, 0}; // where nothing is said
       if (const xml_element* axis = element.child("axis")) {
@@ -95,7 +160,9 @@ public:
           document_.fail({*axis, &element}, "length " + to_text(length) + ", not 1");
         }
       }
-      result.limits = limits(element, result.kind);
+      if (result.coordinates() == 1) { // the format says nothing of limits for several
+        result.limits = limits(element, result.kind);
+      }
     }
     return result;
   }
@@ -106,10 +173,6 @@ public:
   [[nodiscard]] static const std::string& child(const xml_element& joint) {
     return *joint.child("child")->attribute("link");
   }
-  [[noreturn]] void fail(const std::string& what) const { document_.fail(what); }
-
-private:
-  using elements = std::unordered_map<std::string_view, const xml_element*>;
 
   [[nodiscard]] std::string no_link(const std::string& link) const {
     return "no link \"" + link + "\": " + nearest_names(link, names_.links);
@@ -144,6 +207,7 @@ private:
                                     "\" has a joint above it already, \"" + name(*first->second) +
                                     "\" of line " + std::to_string(first->second->line));
     }
+    elements_.push_back(&element);
     names_.joints.push_back({name(element), document_.attribute({element}, "type"),
                              *element.child("parent")->attribute("link"), child(element)});
   }
@@ -151,17 +215,17 @@ private:
   [[nodiscard]] joint_kind kind(const xml_element& element) const {
     const std::string& type = document_.attribute({element}, "type");
     constexpr std::pair<std::string_view, joint_kind> kinds[] = {
-        {"revolute", joint_kind::revolute},
-        {"continuous", joint_kind::continuous},
-        {"prismatic", joint_kind::prismatic},
-        {"fixed", joint_kind::fixed}};
+        {"revolute", joint_kind::revolute},   {"continuous", joint_kind::continuous},
+        {"prismatic", joint_kind::prismatic}, {"fixed", joint_kind::fixed},
+        {"planar", joint_kind::planar},       {"floating", joint_kind::floating}};
     for (const auto& [word, meant] : kinds) {
       if (word == type) {
         return meant;
       }
     }
-    document_.fail({element},
-                   "type \"" + type + "\" is none of revolute, continuous, prismatic and fixed");
+    document_.fail({element}, "type \"" + type +
+                                  "\" is none of revolute, continuous, prismatic, "
+                                  "fixed, planar and floating");
   }
 
   /// Those of `<limit>`, narrowed by the soft ones of `<safety_controller>`.
@@ -202,22 +266,12 @@ private:
     return result;
   }
 
-  /// Is there a way up from one link to another?
-  [[nodiscard]] bool hangs_on(std::string_view link, const std::string& ancestor) const {
-    for (std::size_t steps = 0; link != ancestor; ++steps) {
-      const auto above = joint_above_.find(link);
-      if (above == joint_above_.end() || steps == links_.size()) { // at the root, or in a cycle
-        return false;
-      }
-      link = *above->second->child("parent")->attribute("link");
-    }
-    return true;
-  }
-
+  std::string path_;
   urdf_document document_;
   urdf_names names_;
-  elements links_, joints_; ///< by name
-  elements joint_above_;    ///< by the link that it moves
+  std::vector<const xml_element*> elements_; ///< of the joints, as in `names_`
+  elements links_, joints_;                  ///< by name
+  elements joint_above_;                     ///< by the link that it moves
 };
 
 } // namespace duet::detail

@@ -1,0 +1,251 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiler/refused.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/printable.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/robot_description.hpp>
+#include <duet/mechanism/tree_builder.hpp>
+#include <duet/mechanism/tree_chain.hpp>
+#include <duet/mechanism/tree_table.hpp>
+#include <duet/mechanism/tree_walk.hpp>
+#include <duet/mechanism/urdf_chain.hpp>
+#include <duet/mechanism/urdf_contents.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Trees of links and joints, and where their links stand.
+
+namespace duet {
+
+/// A frame on a link of a tree, as it is seen from another one: what `pose`, `jacobian` and the
+/// like take in place of a frame.
+///
+/// Example: `tree.pose(q, relative_frame{tree.link("hand"), tree.link("head")})`
+struct relative_frame {
+  attached_frame<double> frame;    ///< the one that is looked at
+  attached_frame<double> observer; ///< the one that it is seen from, which takes the root's place
+};
+
+/// What a function of a tree may be about: the link of a number, a frame on a link, one that is
+/// seen from another.
+template <class At>
+concept PlaceOnTree = std::integral<At> || std::same_as<At, attached_frame<double>> ||
+    std::same_as<At, relative_frame>;
+
+namespace detail {
+
+/// Of what a function of a tree is asked, and the node above both, −1 the root.
+struct tree_view {
+  place_on_node frame;
+  place_on_node observer;
+  int top = -1;
+};
+
+} // namespace detail
+
+/// Links and joints that hang on a root link, each but that on one other.
+///
+/// Joints have 0 to 6 coordinates: none if fixed; x, y and the angle of a planar one, which slides
+/// across its axis n along e_x and e_y, carried by the shortest turn of e_z to n (by a half turn
+/// about x to −e_z), then turns about n; the rotation vector of a spherical one; x, y, z and the
+/// rotation vector of a floating one, which slides first, then turns. Those of a joint that mimics
+/// another are no coordinates of the tree, but multiples of one. All others are, in the order of
+/// the description: radians and units of length.
+///
+/// Links are numbered from 0, as in `links()`. Coordinates q are Eigen vectors, `std::array`s or
+/// `std::vector`s over any scalar. Limits are kept as given, narrowed by those of joints that
+/// mimic; they are not enforced. Work on one frame takes time proportional to the joints between it
+/// and the root (or what it is seen from); no depth is too much.
+class kinematic_tree {
+public:
+  using scalar_type = double;
+  using own_jacobian = void;
+
+  /// \throws invalid_input (`file_error` with the line if it is from a file) where links or joints
+  /// have one name, links are not there, have two joints above them, or none and are not the only
+  /// such; where joints close a cycle, numbers are bad, joints follow what there is not, themselves
+  /// or others of several coordinates, or limits leave no motion
+  explicit kinematic_tree(robot_description given)
+      : description_(std::move(given)), table_(detail::tree_builder(description_).table()) {}
+
+  /// Number of coordinates.
+  [[nodiscard]] int size() const { return int(table_.names.size()); }
+  /// Names of the coordinates: those of their joints; `name.x`, `name.angle`, `name.rx` … of joints
+  /// that have several.
+  [[nodiscard]] const std::vector<std::string>& coordinate_names() const { return table_.names; }
+  /// The number of a coordinate by its name.
+  /// \throws invalid_input where there is none of that name
+  [[nodiscard]] int coordinate(std::string_view name) const {
+    const auto found = std::find(table_.names.begin(), table_.names.end(), name);
+    if (found == table_.names.end()) {
+      fail("coordinate", name, table_.names);
+    }
+    return int(found - table_.names.begin());
+  }
+  /// The limits of coordinate i, within which those of joints that mimic it hold, too.
+  [[nodiscard]] const joint_limits<double>& limits(int i) const {
+    return table_.limits[std::size_t(i)];
+  }
+  /// All links, fixed ones included.
+  [[nodiscard]] const std::vector<tree_link>& links() const { return description_.links; }
+  /// All joints, fixed ones included.
+  [[nodiscard]] const std::vector<tree_joint>& joints() const { return description_.joints; }
+  /// What the tree was made of.
+  [[nodiscard]] const robot_description& description() const { return description_; }
+  /// The frame of link i.
+  /// \throws invalid_input for i outside `links()`
+  [[nodiscard]] attached_frame<double> link(int i) const {
+    detail::require(0 <= i && i < int(links().size()), "duet: kinematic_tree: no link ", i, " of ",
+                    links().size());
+    return {i, {}};
+  }
+  /// The frame of a link by its name.
+  /// \throws invalid_input where there is none of that name
+  [[nodiscard]] attached_frame<double> link(std::string_view name) const {
+    const auto found = table_.link_numbers.find(std::string(name));
+    if (found == table_.link_numbers.end()) {
+      std::vector<std::string> names;
+      for (const tree_link& each : links()) {
+        names.push_back(each.name);
+      }
+      fail("link", name, names);
+    }
+    return {found->second, {}};
+  }
+
+  /// The pose at coordinates q of a link by its number, of an `attached_frame`, or of a
+  /// `relative_frame`, in the frame of the root or of what that is seen from.
+  /// \throws invalid_input for another number of coordinates than `size()`, and for a link that
+  /// there is none of
+  template <VectorLike X, PlaceOnTree At>
+  [[nodiscard]] auto pose(const X& q, const At& at) const {
+    using S = detail::tree_scalar<X>;
+    const detail::tree_view view = this->view(at);
+    const detail::joint_coordinates<S, X> x(table_, q);
+    auto stands = detail::displacement_below<S>(table_, x, view.frame, view.top);
+    if constexpr (std::same_as<At, relative_frame>) {
+      const auto observer = detail::displacement_below<S>(table_, x, view.observer, view.top);
+      const quaternion<S> back = conj(observer.rotation);
+      stands = {back * stands.rotation,
+                detail::rotated(back, stands.translation - observer.translation)};
+    }
+    return detail::pose_of_unit(stands.rotation, stands.translation.eigen());
+  }
+
+  /// The poses of all links at coordinates q, in the order of `links()`, in one pass.
+  /// \return a `std::vector` of poses
+  /// \throws invalid_input for another number of coordinates than `size()`
+  template <VectorLike X>
+  [[nodiscard]] auto poses(const X& q) const {
+    using S = detail::tree_scalar<X>;
+    const detail::joint_coordinates<S, X> x(table_, q);
+    std::vector<detail::link_displacement<S>> frames;
+    frames.reserve(table_.nodes.size());
+    const auto stands = [&](int node, const placement<double>& offset) {
+      return node < 0 ? detail::standing_still<S>(offset)
+                      : detail::attached(frames[std::size_t(node)], offset);
+    };
+    for (const detail::tree_node& node : table_.nodes) {
+      frames.push_back(detail::moved<S>(stands(node.parent, node.origin), node, x));
+    }
+    std::vector<dual_quaternion<S>> result;
+    result.reserve(table_.links.size());
+    for (const detail::place_on_node& link : table_.links) {
+      const auto at = stands(link.node, link.offset);
+      result.push_back(detail::pose_of_unit(at.rotation, at.translation.eigen()));
+    }
+    return result;
+  }
+  template <class... X>
+    requires(detail::is_matrix_argument<X> || ...)
+  DUET_REFUSED("pose takes the coordinates of one configuration: tree.pose(qs.col(i), link)")
+  dual_quaternion<double> pose(const X&...) const;
+
+  /// The serial chain from one link to another, both by their names, with the limits of its joints
+  /// as the description has them. Joints that lead up, from the base to where both ways meet, turn
+  /// and slide about the opposite of their axes, so that coordinates mean the same.
+  ///
+  /// \tparam Capacity  how many moving joints there may be
+  /// \throws invalid_input for links that are not there, too many joints, and joints of several
+  /// coordinates or that mimic others between the two
+  template <int Capacity = 16>
+  [[nodiscard]] urdf_chain<Capacity> chain(const std::string& base, const std::string& tip) const {
+    (void)link(base);
+    (void)link(tip);
+    return urdf_chain<Capacity>(
+        detail::chain_contents(description_, base, tip, std::size_t(Capacity)));
+  }
+
+  // For those who extend duet.
+
+  /// The table that evaluation reads.
+  [[nodiscard]] const detail::tree_table& table() const { return table_; }
+  /// Where a place is.
+  [[nodiscard]] detail::place_on_node place(const attached_frame<double>& at) const {
+    const detail::place_on_node& link = table_.links[std::size_t(this->link(at.link).link)];
+    return {link.node, link.offset * at.offset};
+  }
+  /// What is between a frame and what it is seen from.
+  template <PlaceOnTree At>
+  [[nodiscard]] detail::tree_view view(const At& at) const {
+    if constexpr (std::integral<At>) {
+      return {place(link(int(at))), {}};
+    } else if constexpr (std::same_as<At, attached_frame<double>>) {
+      return {place(at), {}};
+    } else {
+      const detail::tree_view result{place(at.frame), place(at.observer)};
+      int a = result.frame.node;
+      int b = result.observer.node;
+      while (a != b) { // parents have lower numbers
+        int& lower = a > b ? a : b;
+        lower = table_.nodes[std::size_t(lower)].parent;
+      }
+      return {result.frame, result.observer, a};
+    }
+  }
+
+private:
+  [[noreturn]] static void fail(const char* what, std::string_view name,
+                                const std::vector<std::string>& names) {
+    detail::raise(
+        invalid_input(printable("duet: kinematic_tree: no " + std::string(what) + " \"" +
+                                std::string(name) + "\": " + detail::nearest_names(name, names))));
+  }
+
+  robot_description description_;
+  detail::tree_table table_;
+};
+
+/// The lower limits of all coordinates of a tree.
+[[nodiscard]] inline Eigen::VectorXd lower_limits(const kinematic_tree& tree) {
+  Eigen::VectorXd result(tree.size());
+  for (int i = 0; i < tree.size(); ++i) {
+    result[i] = tree.limits(i).lower;
+  }
+  return result;
+}
+/// The upper limits of all coordinates of a tree.
+[[nodiscard]] inline Eigen::VectorXd upper_limits(const kinematic_tree& tree) {
+  Eigen::VectorXd result(tree.size());
+  for (int i = 0; i < tree.size(); ++i) {
+    result[i] = tree.limits(i).upper;
+  }
+  return result;
+}
+
+} // namespace duet

@@ -1,0 +1,169 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/robot_description.hpp>
+#include <duet/mechanism/urdf_contents.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The way from one link to another, and the serial chain along it. For those who extend duet.
+
+namespace duet::detail {
+
+/// Joints by their numbers, in the order in which the way passes them.
+struct way_between_links {
+  std::vector<std::size_t> up;   ///< from the base to the link above both
+  std::vector<std::size_t> down; ///< from there to the tip
+};
+
+/// Which joints lead from one link to another.
+///
+/// \param joints  what has `parent` and `child`, names of links
+/// \param pass    called with the number of each joint that is passed, before its parent is used
+/// \param fail    called with the number of a joint and what is wrong with it, or with what is
+/// wrong
+template <class Joints, class Pass, class Fail>
+[[nodiscard]] way_between_links way_between(const Joints& joints, const std::string& base,
+                                            const std::string& tip, const Pass& pass,
+                                            const Fail& fail) {
+  std::unordered_map<std::string_view, std::size_t> above; // the joint, by the link that it moves
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    above.emplace(joints[j].child, j);
+  }
+  // Up from a link, to one that `ends` or to a root.
+  const auto climb = [&](std::string_view link, std::vector<std::size_t>& way, const auto& ends) {
+    std::unordered_set<std::string_view> seen{link};
+    while (!ends(link)) {
+      const auto joint = above.find(link);
+      if (joint == above.end()) {
+        break;
+      }
+      pass(joint->second);
+      way.push_back(joint->second);
+      link = joints[joint->second].parent;
+      if (!seen.insert(link).second) {
+        fail(joint->second, "closes a cycle at the link \"" + std::string(link) + "\"");
+      }
+    }
+    return link;
+  };
+  way_between_links result;
+  const std::string_view top =
+      climb(tip, result.down, [&](std::string_view link) { return link == base; });
+  if (top != base) {
+    std::unordered_map<std::string_view, std::size_t> above_tip{{tip, 0}};
+    for (std::size_t i = 0; i < result.down.size(); ++i) {
+      above_tip.emplace(joints[result.down[i]].parent, i + 1);
+    }
+    const std::string_view meeting =
+        climb(base, result.up, [&](std::string_view link) { return above_tip.contains(link); });
+    const auto found = above_tip.find(meeting);
+    if (found == above_tip.end()) {
+      fail("no joints connect the links \"" + base + "\" and \"" + tip + "\": above \"" +
+           std::string(top) + "\" there is none");
+    }
+    result.down.resize(found->second);
+  }
+  std::reverse(result.down.begin(), result.down.end());
+  return result;
+}
+
+[[nodiscard]] inline placement<double> inverse(const placement<double>& a) {
+  const quaternion<double> back = conj(a.rotation);
+  const auto t = rotated(back, components(a.translation));
+  return {back, {-t.x, -t.y, -t.z}};
+}
+
+/// The chain along a way.
+///
+/// \param joint_at  the joint of a number, as it must be in a chain: with one coordinate of its
+///                  own, or fixed
+template <class JointAt>
+[[nodiscard]] urdf_contents contents_of_way(const way_between_links& way, const std::string& base,
+                                            const JointAt& joint_at) {
+  urdf_contents result;
+  result.links.push_back({base, {}});
+  placement<double> since_joint; // fixed joints since the last one that moves
+  const auto move = [&](const tree_joint& given, const joint<double>& motion) {
+    if (motion.kind != joint_kind::fixed) {
+      since_joint = {};
+      result.joint_names.push_back(given.name);
+    } else {
+      since_joint = since_joint * motion.origin;
+    }
+    result.joints.push_back(motion);
+  };
+  const auto arrive = [&](const std::string& link) {
+    result.links.push_back({link, {int(result.joint_names.size()), since_joint}});
+  };
+  for (const std::size_t i : way.up) { // x ↦ O M(θ) x from the parent becomes M(θ)⁻¹ O⁻¹
+    const tree_joint& given = joint_at(i);
+    joint<double> motion = given.motion;
+    if (motion.kind != joint_kind::fixed) {
+      motion.origin = {};
+      motion.axis = {-motion.axis[0], -motion.axis[1], -motion.axis[2]};
+      move(given, motion);
+    }
+    move(given, {joint_kind::fixed, inverse(given.motion.origin)});
+    arrive(given.parent);
+  }
+  for (const std::size_t i : way.down) {
+    const tree_joint& given = joint_at(i);
+    move(given, given.motion);
+    arrive(given.child);
+  }
+  return result;
+}
+
+/// What keeps a joint from being one of a chain; empty where nothing does.
+[[nodiscard]] inline std::string not_in_a_chain(const tree_joint& joint) {
+  if (joint.motion.coordinates() > 1) {
+    return "has " + std::to_string(joint.motion.coordinates()) +
+           " coordinates: that takes a kinematic_tree, not a chain";
+  }
+  return joint.mimic && joint.motion.kind != joint_kind::fixed
+             ? "follows \"" + joint.mimic->joint + "\": that takes a kinematic_tree, not a chain"
+             : "";
+}
+
+/// The chain between two links of a tree.
+/// \throws invalid_input as `kinematic_tree::chain`
+[[nodiscard]] inline urdf_contents chain_contents(const robot_description& robot,
+                                                  const std::string& base, const std::string& tip,
+                                                  std::size_t most) {
+  struct {
+    void operator()(std::size_t, const std::string& what) const { raise(invalid_input(what)); }
+    void operator()(const std::string& what) const { raise(invalid_input(what)); }
+  } const fail; // of a tree neither is called
+  const auto way = way_between(
+      robot.joints, base, tip, [](std::size_t) {}, fail);
+  urdf_contents result = contents_of_way(way, base, [&](std::size_t i) -> const tree_joint& {
+    if (const std::string reason = not_in_a_chain(robot.joints[i]); !reason.empty()) {
+      bad_part(robot, robot.joints[i], reason);
+    }
+    return robot.joints[i];
+  });
+  if (result.joint_names.size() > most) {
+    bad_robot(robot, std::to_string(result.joint_names.size()) + " moving joints from \"" + base +
+                         "\" to \"" + tip + "\": use chain<" +
+                         std::to_string(result.joint_names.size()) + ">");
+  }
+  result.unknown = robot.unknown;
+  return result;
+}
+
+} // namespace duet::detail

@@ -1,0 +1,226 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiler/refused.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/derivative/jacobian.hpp>
+#include <duet/dual/promotion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/jacobian_rate.hpp>
+#include <duet/mechanism/kinematic_tree.hpp>
+#include <duet/mechanism/tree_rates.hpp>
+#include <duet/mechanism/tree_table.hpp>
+#include <duet/mechanism/tree_walk.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// The geometric Jacobians of frames on a tree in closed form, their rates and Hessians.
+
+namespace duet {
+
+namespace detail {
+
+/// A matrix of one column per coordinate of a tree.
+template <class S, int Rows>
+using tree_columns = Eigen::Matrix<S, Rows, Eigen::Dynamic>;
+
+/// A frame of a tree, what it is seen from, and all that moves between them.
+template <class S>
+struct viewed_motion {
+  tree_motion<S> to_frame, to_observer;
+  link_displacement<S> frame, observer; ///< in the frame of what is above both
+
+  template <class X>
+  viewed_motion(const tree_table& table, const X& x, const tree_view& view)
+      : to_frame(motion_to<S>(table, x, view.frame.node, view.top)),
+        to_observer(motion_to<S>(table, x, view.observer.node, view.top)),
+        frame(stands(to_frame, view.frame.offset)),
+        observer(stands(to_observer, view.observer.offset)) {}
+
+  /// The frame as the observer sees it.
+  [[nodiscard]] dual_quaternion<S> pose() const {
+    const quaternion<S> back = conj(observer.rotation);
+    return pose_of_unit(back * frame.rotation,
+                        rotated(back, frame.translation - observer.translation).eigen());
+  }
+  /// Its axes are those that columns for `Frame` are in.
+  template <class Frame>
+  [[nodiscard]] const link_displacement<S>& axes() const {
+    return std::same_as<Frame, body_frame> ? frame : observer;
+  }
+  /// Its origin is where columns for `Frame` have their v.
+  template <class Frame>
+  [[nodiscard]] const link_displacement<S>& origin() const {
+    return std::same_as<Frame, spatial_frame> ? observer : frame;
+  }
+
+private:
+  [[nodiscard]] static link_displacement<S> stands(const tree_motion<S>& motion,
+                                                   const placement<double>& offset) {
+    return motion.frames.empty() ? standing_still<S>(offset)
+                                 : attached(motion.frames.back(), offset);
+  }
+};
+
+template <class J, class S>
+void add_to_column(J& m, const coordinate_source& source, double sign, const twist_column<S>& a) {
+  const double factor = sign * source.multiplier;
+  const std::array<const S*, 6> rows{&a.v.x, &a.v.y, &a.v.z, &a.omega.x, &a.omega.y, &a.omega.z};
+  for (int i = 0; i < 6; ++i) {
+    m(i, source.own) += *rows[std::size_t(i)] * factor;
+  }
+}
+
+/// Rᵀ(v + ω × p), Rᵀω
+template <class S>
+[[nodiscard]] twist_column<S> seen(const twist_column<S>& a, const three_vector<S>& p,
+                                   const quaternion<S>& back) {
+  return {rotated(back, a.v + cross(a.omega, p)), rotated(back, a.omega)};
+}
+
+template <class Frame, class S>
+[[nodiscard]] tree_columns<S, 6> jacobian_of(const tree_table& table,
+                                             const viewed_motion<S>& motion) {
+  tree_columns<S, 6> result(6, Eigen::Index(table.names.size()));
+  result.setConstant(S(0));
+  const three_vector<S>& p = motion.template origin<Frame>().translation;
+  const quaternion<S> back = conj(motion.template axes<Frame>().rotation);
+  const auto add = [&](const tree_motion<S>& branch, double sign) {
+    for (const tree_screw<S>& screw : branch.screws) {
+      add_to_column(result, table.sources[std::size_t(screw.coordinate)], sign,
+                    seen(screw.twist, p, back));
+    }
+  };
+  add(motion.to_frame, 1);
+  add(motion.to_observer, -1);
+  return result;
+}
+
+/// The rate of Rᵀ(v + ω × p), Rᵀω, where p moves by ṗ and R turns by Ω:
+/// Rᵀ(v̇ + ω̇ × p + ω × ṗ − Ω × (v + ω × p)), Rᵀ(ω̇ − Ω × ω).
+template <class Frame, class S, class X, class V>
+[[nodiscard]] tree_columns<S, 6> jacobian_rate_of(const tree_table& table,
+                                                  const viewed_motion<S>& motion, const X& x,
+                                                  const V& x_dot) {
+  tree_columns<S, 6> result(6, Eigen::Index(table.names.size()));
+  result.setConstant(S(0));
+  const auto to_frame = rates_of<S>(table, motion.to_frame, x, x_dot);
+  const auto to_observer = rates_of<S>(table, motion.to_observer, x, x_dot);
+  const auto last = [](const tree_rates<S>& rates) {
+    return rates.node(int(rates.nodes.size()) - 1);
+  };
+  const twist_column<S> of_frame = last(to_frame);
+  const twist_column<S> of_observer = last(to_observer);
+  const three_vector<S>& p = motion.template origin<Frame>().translation;
+  const quaternion<S> back = conj(motion.template axes<Frame>().rotation);
+  const twist_column<S>& of_origin = std::same_as<Frame, spatial_frame> ? of_observer : of_frame;
+  const three_vector<S> p_dot = of_origin.v + cross(of_origin.omega, p);
+  const three_vector<S>& turning =
+      std::same_as<Frame, body_frame> ? of_frame.omega : of_observer.omega;
+  const auto add = [&](const tree_motion<S>& branch, const tree_rates<S>& rates, double sign) {
+    for (std::size_t i = 0; i < branch.screws.size(); ++i) {
+      const twist_column<S>& s = branch.screws[i].twist;
+      const twist_column<S>& s_dot = rates.screws[i];
+      const three_vector<S> at_p = s.v + cross(s.omega, p);
+      const twist_column<S> change{s_dot.v + cross(s_dot.omega, p) + cross(s.omega, p_dot) -
+                                       cross(turning, at_p),
+                                   s_dot.omega - cross(turning, s.omega)};
+      add_to_column(result, table.sources[std::size_t(branch.screws[i].coordinate)], sign,
+                    twist_column<S>{rotated(back, change.v), rotated(back, change.omega)});
+    }
+  };
+  add(motion.to_frame, to_frame, 1);
+  add(motion.to_observer, to_observer, -1);
+  return result;
+}
+
+} // namespace detail
+
+/// The matrix J of 6 rows with the twist [v; ω] = J q̇ of a frame on a tree (N18, N20).
+///
+/// \tparam Frame  `frame::spatial`, `frame::body` or `frame::hybrid`, as of a chain; of a
+///                `relative_frame` the observer is what stands still
+/// \param at      the number of a link, an `attached_frame`, as `tree.link("hand").at_point({x, y,
+///                z})`, or a `relative_frame`
+/// Columns of coordinates that do not move the frame are zero. Units: those of q in the
+/// denominator.
+/// \throws invalid_input for another number of coordinates than `size()`, and for a link that there
+/// is none of
+template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
+[[nodiscard]] auto jacobian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
+  using S = detail::tree_scalar<X>;
+  const detail::joint_coordinates<S, X> x(tree.table(), q);
+  return detail::jacobian_of<Frame>(tree.table(),
+                                    detail::viewed_motion<S>(tree.table(), x, tree.view(at)));
+}
+
+/// The pose A of a frame on a tree, and its Jacobian there. Arguments as `jacobian`.
+/// \return `value_and_jacobian`
+template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
+[[nodiscard]] auto pose_and_jacobian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
+  using S = detail::tree_scalar<X>;
+  const detail::joint_coordinates<S, X> x(tree.table(), q);
+  const detail::viewed_motion<S> motion(tree.table(), x, tree.view(at));
+  return value_and_jacobian<dual_quaternion<S>, detail::tree_columns<S, 6>>{
+      motion.pose(), detail::jacobian_of<Frame>(tree.table(), motion)};
+}
+
+/// J and J̇ along q̇ of a frame on a tree, so that J q̈ + J̇ q̇ is the derivative of the twist J q̇. In
+/// `frame::hybrid` its linear part is p̈ of the frame's origin. Arguments as `jacobian`.
+/// \return `jacobian_and_rate`
+template <VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree At>
+[[nodiscard]] auto jacobian_with_rate(const kinematic_tree& tree, const X& q, const V& q_dot, Frame,
+                                      const At& at) {
+  using S = promote_t<detail::tree_scalar<X>, typename detail::vector_argument<V>::scalar>;
+  const detail::joint_coordinates<S, X> x(tree.table(), q);
+  const detail::joint_velocities<S, V> x_dot(tree.table(), q_dot);
+  const detail::viewed_motion<S> motion(tree.table(), x, tree.view(at));
+  return jacobian_and_rate<detail::tree_columns<S, 6>>{
+      detail::jacobian_of<Frame>(tree.table(), motion),
+      detail::jacobian_rate_of<Frame>(tree.table(), motion, x, x_dot)};
+}
+
+/// J̇ of `jacobian_with_rate`.
+/// \return a matrix of 6 rows and a column for each coordinate
+template <VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree At>
+[[nodiscard]] auto jacobian_rate(const kinematic_tree& tree, const X& q, const V& q_dot,
+                                 Frame frame_of_result, const At& at) {
+  return jacobian_with_rate(tree, q, q_dot, frame_of_result, at).rate;
+}
+
+/// ∂J/∂q_j of a frame on a tree for all j, each a matrix of 6 rows and a column for each
+/// coordinate. Only in `frame::hybrid` is the linear part of column k ∂²p/∂q_j∂q_k of the frame's
+/// origin p. Arguments as `jacobian`.
+/// \return a `std::vector` of matrices
+template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
+[[nodiscard]] auto kinematic_hessian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
+  using S = detail::tree_scalar<X>;
+  const detail::joint_coordinates<S, X> x(tree.table(), q);
+  const detail::viewed_motion<S> motion(tree.table(), x, tree.view(at));
+  std::vector<detail::tree_columns<S, 6>> result;
+  for (int j = 0; j < tree.size(); ++j) {
+    result.push_back(detail::jacobian_rate_of<Frame>(tree.table(), motion, x,
+                                                     detail::unit_velocities(tree.table(), j)));
+  }
+  return result;
+}
+
+template <VectorLike X>
+DUET_REFUSED(
+    "of which frame, and in which axes? jacobian(tree, q, frame::hybrid, tree.link(\"hand\"))")
+Eigen::MatrixXd jacobian(const kinematic_tree&, const X&);
+template <VectorLike X, FrameConstant Frame>
+DUET_REFUSED("of which frame? jacobian(tree, q, frame::hybrid, tree.link(\"hand\"))")
+Eigen::MatrixXd jacobian(const kinematic_tree&, const X&, Frame);
+
+} // namespace duet

@@ -1,0 +1,113 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual_quaternion/displacement.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <cmath>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+/// \file
+/// The table that a tree is evaluated by. For those who extend duet.
+
+namespace duet::detail {
+
+/// A part of a joint: what turns about an axis, slides along it or both, by one coordinate; or a
+/// ball, by a rotation vector. A planar joint is two that slide and one that turns, a floating one
+/// three that slide and a ball.
+struct tree_node {
+  int parent = -1;    ///< the node that it hangs on; −1: the root of the tree
+  int coordinate = 0; ///< number of its first coordinate among those of all joints
+  bool is_ball = false;
+  bool turns = false;
+  bool slides = false;
+  double pitch = 0;            ///< travel along the axis per unit of its coordinate
+  three_vector<double> axis{}; ///< in its own frame
+  placement<double> origin{};  ///< of its frame in that of the parent
+};
+
+/// A frame fixed to a node.
+struct place_on_node {
+  int node = -1; ///< −1: the root of the tree
+  placement<double> offset{};
+};
+
+/// A coordinate of a joint is multiplier × a coordinate of the tree + offset.
+struct coordinate_source {
+  int own = -1;
+  double multiplier = 1;
+  double offset = 0;
+};
+
+/// Of all that is fixed to a node, in its frame.
+struct mass_on_node {
+  double mass = 0;
+  three_vector<double> moment{}; ///< Σ mass × centre
+};
+
+struct tree_table {
+  std::vector<tree_node> nodes;             ///< parents first
+  std::vector<mass_on_node> masses;         ///< of the root, then of each node
+  std::vector<place_on_node> links;         ///< where each link is
+  std::vector<coordinate_source> sources;   ///< of the coordinates of all joints
+  std::vector<std::string> names;           ///< of the coordinates of the tree
+  std::vector<joint_limits<double>> limits; ///< of the coordinates of the tree
+  std::unordered_map<std::string, int> link_numbers;
+};
+
+/// Carries e by the shortest turn that takes z to n: (1 + n·z, z × n), halved; of −z by a half
+/// turn about x.
+[[nodiscard]] inline three_vector<double> in_plane(const three_vector<double>& n,
+                                                   const three_vector<double>& e) {
+  const double w = n.z > 0 ? 1 + n.z : (n.x * n.x + n.y * n.y) / (1 - n.z); // both are 1 + n·z
+  const double length = std::sqrt(2 * w);
+  const quaternion<double> turn =
+      w > 0 ? quaternion<double>(w / length, -n.y / length, n.x / length, 0)
+            : quaternion<double>(0, 1, 0, 0);
+  return cleaned_direction(rotated(turn, e));
+}
+
+/// The nodes of a joint that stands at a place.
+inline void add_nodes_of_joint(std::vector<tree_node>& nodes, const joint<double>& motion,
+                               int coordinate, const place_on_node& place) {
+  tree_node node{place.node, coordinate};
+  node.origin = place.offset;
+  const auto add = [&](const three_vector<double>& axis) {
+    node.axis = axis;
+    nodes.push_back(node);
+    node.origin = {};
+    node.parent = int(nodes.size()) - 1;
+    ++node.coordinate;
+  };
+  const auto given = components(motion.axis);
+  const three_vector<double> axis =
+      cleaned_direction(inverse_root_near_one(dot(given, given)) * given);
+  switch (motion.kind) {
+  case joint_kind::planar:
+  case joint_kind::floating:
+    node.slides = true;
+    node.pitch = 1;
+    for (int k = 0; k < (motion.kind == joint_kind::planar ? 2 : 3); ++k) {
+      const three_vector<double> along{k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.};
+      add(motion.kind == joint_kind::planar ? in_plane(axis, along) : along);
+    }
+    node.slides = false;
+    node.pitch = 0;
+    node.turns = true;
+    node.is_ball = motion.kind == joint_kind::floating;
+    return add(axis);
+  case joint_kind::spherical:
+    node.is_ball = true;
+    return add(axis);
+  default:
+    node.turns = motion.turns();
+    node.slides = motion.slides();
+    node.pitch = motion.travel();
+    return add(axis);
+  }
+}
+} // namespace duet::detail

@@ -1,0 +1,93 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/printable.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/mechanism/urdf_contents.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Chains whose joints and links have names.
+
+namespace duet {
+
+/// A chain that was read, with the names of its joints and links.
+///
+/// \tparam Capacity  how many moving joints there may be
+template <int Capacity>
+class urdf_chain : public serial_chain<-Capacity> {
+public:
+  urdf_chain(const serial_chain<-Capacity>& chain, std::vector<std::string> joint_names,
+             std::vector<urdf_link> links, std::vector<urdf_unknown_element> unknown = {})
+      : serial_chain<-Capacity>(chain), joint_names_(std::move(joint_names)),
+        links_(std::move(links)), unknown_(std::move(unknown)) {}
+
+  /// For those who extend duet: made of what was read.
+  explicit urdf_chain(detail::urdf_contents read)
+      : urdf_chain(serial_chain<-Capacity>(std::span<const joint<double>>(read.joints)),
+                   std::move(read.joint_names), std::move(read.links), std::move(read.unknown)) {}
+  /// For those who extend duet: another chain without joint i, whose link stays at `held`.
+  urdf_chain(const urdf_chain& other, int i, const placement<double>& held)
+      : serial_chain<-Capacity>(other, i, held), joint_names_(other.joint_names_),
+        links_(other.links_), unknown_(other.unknown_) {
+    joint_names_.erase(joint_names_.begin() + i);
+    for (urdf_link& each : links_) {
+      if (each.frame.link == i + 1) {
+        each.frame.offset = held * each.frame.offset;
+      }
+      each.frame.link -= each.frame.link > i ? 1 : 0;
+    }
+  }
+
+  using serial_chain<-Capacity>::link;
+  /// The frame of a link by its name, those that are fixed to another one included.
+  /// \throws invalid_input where the chain has none of that name
+  [[nodiscard]] attached_frame<double> link(std::string_view name) const {
+    const auto found = std::find_if(links_.begin(), links_.end(),
+                                    [&](const urdf_link& each) { return each.name == name; });
+    if (found == links_.end()) {
+      std::vector<std::string> names;
+      for (const urdf_link& each : links_) {
+        names.push_back(each.name);
+      }
+      detail::raise(
+          invalid_input(printable("duet: no link \"" + std::string(name) +
+                                  "\" in the chain: " + detail::nearest_names(name, names))));
+    }
+    return found->frame;
+  }
+  /// Names of the joints that move, in order.
+  [[nodiscard]] const std::vector<std::string>& joint_names() const { return joint_names_; }
+  /// All links from the base to the tip, each with its name and frame.
+  [[nodiscard]] const std::vector<urdf_link>& links() const { return links_; }
+  /// Elements of the whole file that were not read, as URDF has them not.
+  [[nodiscard]] const std::vector<urdf_unknown_element>& unknown() const { return unknown_; }
+
+  // For those who extend duet.
+
+  /// Displaces all that follows link i, and what is fixed to it.
+  void displace(int i, const placement<double>& by) {
+    serial_chain<-Capacity>::displace(i, by);
+    for (urdf_link& each : links_) {
+      if (each.frame.link == i) {
+        each.frame.offset = by * each.frame.offset;
+      }
+    }
+  }
+
+private:
+  std::vector<std::string> joint_names_;
+  std::vector<urdf_link> links_;
+  std::vector<urdf_unknown_element> unknown_;
+};
+
+} // namespace duet
