@@ -5,7 +5,9 @@
 
 #if DUET_TEST_KDL
 
+#include <duet/mechanism/centre_of_mass.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
+#include <duet/mechanism/tree_jacobian.hpp>
 #include <duet/mechanism/urdf.hpp>
 
 #include <boost/property_tree/ptree.hpp>
@@ -15,8 +17,12 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacdotsolver.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
+#include <kdl/tree.hpp>
+#include <kdl/treefksolverpos_recursive.hpp>
+#include <kdl/treejnttojacsolver.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <sstream>
 #include <string>
@@ -48,6 +54,7 @@ public:
     for (const auto& [tag, child] : document.get_child("robot")) {
       if (tag == "link") {
         links.push_back(child.get<std::string>("<xmlattr>.name"));
+        link_of[links.back()] = child;
       } else if (tag == "joint") {
         joint_above[child.get<std::string>("child.<xmlattr>.link")] = child;
       }
@@ -73,23 +80,45 @@ public:
       return {};
     }
     KDL::Chain chain = chain_to(parent(link));
+    chain.addSegment(segment(link));
+    return chain;
+  }
+
+  /// All links that hang on a root, its name aside.
+  [[nodiscard]] KDL::Tree tree() const {
+    KDL::Tree result(root());
+    add_below(result, root());
+    return result;
+  }
+
+  std::vector<std::string> links;
+  std::map<std::string, element> joint_above, link_of;
+
+private:
+  void add_below(KDL::Tree& tree, const std::string& link) const {
+    for (const auto& [child, joint] : joint_above) {
+      if (parent(child) == link) {
+        REQUIRE(tree.addSegment(segment(child), link));
+        add_below(tree, child);
+      }
+    }
+  }
+
+  [[nodiscard]] KDL::Segment segment(const std::string& link) const {
     const element& joint = joint_above.at(link);
     const KDL::Vector rpy = three_numbers(joint, "origin.<xmlattr>.rpy", "0 0 0");
     const KDL::Frame origin(KDL::Rotation::RPY(rpy.x(), rpy.y(), rpy.z()),
                             three_numbers(joint, "origin.<xmlattr>.xyz", "0 0 0"));
     const KDL::Vector axis = origin.M * three_numbers(joint, "axis.<xmlattr>.xyz", "1 0 0");
     const std::string type = joint.get<std::string>("<xmlattr>.type");
+    const std::string name = joint.get<std::string>("<xmlattr>.name");
     const KDL::Joint moves =
         type == "fixed"
-            ? KDL::Joint(KDL::Joint::Fixed)
-            : KDL::Joint(origin.p, axis,
+            ? KDL::Joint(name, KDL::Joint::Fixed)
+            : KDL::Joint(name, origin.p, axis,
                          type == "prismatic" ? KDL::Joint::TransAxis : KDL::Joint::RotAxis);
-    chain.addSegment(KDL::Segment(moves, origin));
-    return chain;
+    return KDL::Segment(link, moves, origin);
   }
-
-  std::vector<std::string> links;
-  std::map<std::string, element> joint_above;
 };
 
 KDL::JntArray as_kdl(const vector& x) {
@@ -179,6 +208,80 @@ TEST_CASE("poses, Jacobians and their rates of every link are Orocos KDL's") {
   CHECK(moving["kinova"] == 6);
   CHECK(moving["tiago_no_hand"] == 8);
   CHECK(moving["double_pendulum"] == 2);
+}
+
+TEST_CASE("trees of every robot file are Orocos KDL's, the joints that follow others too") {
+  const auto data = duet_test::outside_data("urdf");
+  if (!data) {
+    return;
+  }
+  duet_test::random_source random(4);
+  int frames = 0, followers = 0;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(*data)) {
+    if (file.path().extension() != ".urdf") {
+      continue;
+    }
+    const std::string path = file.path().string();
+    CAPTURE(path);
+    const description robot(path);
+    const KDL::Tree other = robot.tree();
+    const kinematic_tree tree = read_urdf_tree(path);
+    REQUIRE(other.getNrOfSegments() + 1 == tree.links().size());
+    // Coordinates of KDL's tree by those of ours, q = M y + c.
+    Eigen::MatrixXd to_all = Eigen::MatrixXd::Zero(other.getNrOfJoints(), tree.size());
+    vector offset = vector::Zero(other.getNrOfJoints());
+    for (const auto& [link, joint] : robot.joint_above) {
+      if (joint.get<std::string>("<xmlattr>.type") == "fixed") {
+        continue;
+      }
+      const Eigen::Index row = GetTreeElementQNr(other.getSegment(link)->second);
+      std::string name = joint.get<std::string>("<xmlattr>.name");
+      double multiplier = 1;
+      if (const auto mimic = joint.get_child_optional("mimic.<xmlattr>")) {
+        name = mimic->get<std::string>("joint");
+        multiplier = mimic->get<double>("multiplier", 1);
+        offset[row] = mimic->get<double>("offset", 0);
+        ++followers;
+      }
+      to_all(row, tree.coordinate(name)) = multiplier;
+    }
+    KDL::TreeFkSolverPos_recursive forward(other);
+    KDL::TreeJntToJacSolver by_angles(other);
+    for (int which = 0; which < 6 && tree.size() > 0; ++which) {
+      const vector y = configuration(which, tree.size(), random);
+      const auto q = as_kdl(vector(to_all * y + offset));
+      const auto poses = tree.poses(y);
+      double mass = 0;
+      Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+      for (const std::string& link : robot.links) {
+        CAPTURE(link);
+        KDL::Frame expected;
+        REQUIRE(forward.JntToCart(q, expected, link) >= 0);
+        const int at = tree.link(link).link;
+        CHECK(gap(transform_matrix(tree.pose(y, at)), matrix_of(expected)) < 1e-12);
+        CHECK(gap(transform_matrix(poses[std::size_t(at)]), matrix_of(expected)) < 1e-12);
+        KDL::Jacobian columns(other.getNrOfJoints());
+        if (link != robot.root()) {
+          REQUIRE(by_angles.JntToJac(q, columns, link) >= 0);
+        }
+        CHECK(gap(jacobian(tree, y, frame::hybrid, at), Eigen::MatrixXd(columns.data * to_all)) <
+              1e-12);
+        ++frames;
+        const double weight =
+            robot.link_of.at(link).get<double>("inertial.mass.<xmlattr>.value", 0);
+        mass += weight;
+        const KDL::Vector centre =
+            expected *
+            three_numbers(robot.link_of.at(link), "inertial.origin.<xmlattr>.xyz", "0 0 0");
+        moment += weight * Eigen::Vector3d(centre.x(), centre.y(), centre.z());
+      }
+      if (mass > 0) {
+        CHECK(gap(centre_of_mass(tree, y), Eigen::Vector3d(moment / mass)) < 1e-12);
+      }
+    }
+  }
+  CHECK(frames >= 6 * 70);
+  CHECK(followers >= 1);
 }
 
 } // namespace test_mechanism_kdl
