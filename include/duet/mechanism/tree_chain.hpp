@@ -82,7 +82,7 @@ template <class Joints, class Pass, class Fail>
   return result;
 }
 
-[[nodiscard]] inline placement<double> inverse(const placement<double>& a) {
+[[nodiscard]] inline placement<double> inverse_placement(const placement<double>& a) {
   const quaternion<double> back = conj(a.rotation);
   const auto t = rotated(back, components(a.translation));
   return {back, {-t.x, -t.y, -t.z}};
@@ -118,7 +118,7 @@ template <class JointAt>
       motion.axis = {-motion.axis[0], -motion.axis[1], -motion.axis[2]};
       move(given, motion);
     }
-    move(given, {joint_kind::fixed, inverse(given.motion.origin)});
+    move(given, {joint_kind::fixed, inverse_placement(given.motion.origin)});
     arrive(given.parent);
   }
   for (const std::size_t i : way.down) {
