@@ -62,7 +62,7 @@ TEST_CASE("a function of four numbers moves all joints: against dual numbers thr
         const auto closed = pose_and_jacobian(tree, y, frame, at);
         CHECK(gap(transform_matrix(closed.value), transform_matrix(by_duals.value)) < 2e-14);
         CHECK(gap(closed.jacobian, by_duals.jacobian) < 1e-13);
-        CHECK(gap(jacobian(tree, y, frame, at), closed.jacobian) == 0);
+        CHECK(gap(jacobian(tree, y, frame, at), closed.jacobian) < 1e-13);
         const auto rate =
             derivative([&](const auto& t) { return jacobian(tree, along(y, v, t), frame, at); }, 0.)
                 .derivative;
@@ -70,7 +70,7 @@ TEST_CASE("a function of four numbers moves all joints: against dual numbers thr
         const double scale = 1 + rate.cwiseAbs().maxCoeff();
         CHECK(gap(both.rate, rate) < 1e-13 * scale);
         CHECK(gap(both.jacobian, closed.jacobian) < 1e-13);
-        CHECK(gap(jacobian_rate(tree, y, v, frame, at), both.rate) == 0);
+        CHECK(gap(jacobian_rate(tree, y, v, frame, at), both.rate) < 1e-13 * scale);
         const auto h = kinematic_hessian(tree, y, frame, at);
         Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(6, 4);
         for (int j = 0; j < 4; ++j) {
