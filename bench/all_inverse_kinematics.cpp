@@ -147,6 +147,18 @@ int main(int argc, char** argv) {
          align(j, 1);
          align(j, 2);
        }},
+      {"two that are no neighbours slide",
+       [](auto& j, auto& random) {
+         const auto i = std::size_t(random.integer(0, 3));
+         const auto other = std::size_t(random.integer(int(i) + 2, 5));
+         j[i].kind = j[other].kind = joint_kind::prismatic;
+       }},
+      {"right angles, half of all lengths 0, two slide",
+       [](auto& j, auto& random) {
+         by_halves(j, random);
+         const auto i = std::size_t(random.integer(0, 4));
+         j[i].kind = j[std::size_t(random.integer(int(i) + 1, 5))].kind = joint_kind::prismatic;
+       }},
       {"three joints slide", [](auto& j, auto& random) {
          std::array<std::size_t, 6> order{0, 1, 2, 3, 4, 5};
          for (std::size_t i = 5; i > 0; --i) {

@@ -83,21 +83,14 @@ template <class C>
 void require_six_joints(const C& chain) {
   require(chain.size() == 6, "duet: all_inverse_kinematics: the chain has ", chain.size(),
           " moving joints, not 6");
-  int sliding = 0, sum = 0, last = 0;
+  int sliding = 0;
   for (int i = 0; i < chain.size(); ++i) {
     require(chain.kind(i) != joint_kind::helical, "duet: all_inverse_kinematics: joint ", i,
             " is helical: its equations are not algebraic");
-    if (chain.kind(i) == joint_kind::prismatic) {
-      ++sliding;
-      sum += i;
-      last = i;
-    }
+    sliding += chain.kind(i) == joint_kind::prismatic ? 1 : 0;
   }
   require(sliding <= 3, "duet: all_inverse_kinematics: ", sliding,
           " sliding joints, of which 3 are the most");
-  const int apart = 2 * last - sum; // of two
-  require(sliding != 2 || apart == 1 || apart == 5, "duet: all_inverse_kinematics: joints ",
-          last - apart, " and ", last, " slide: two that do must be neighbours, or first and last");
 }
 
 /// θ turned by whole turns into the limits, if that is possible.
@@ -186,14 +179,14 @@ private:
 /// limits or not.
 ///
 /// Spherical wrists, three parallel axes one after the other and three sliding joints are
-/// recognised, by 1e-9 of the arm's size, and solved in closed form. Any other arm: elimination
+/// recognised, by 1e-9 of the arm's size, and solved in closed form. Two sliding joints: zeros of a
+/// polynomial of degree 8. Any other arm: elimination
 /// after Raghavan and Roth, the determinant's zeros on the unit circle, Newton's method from there
 /// (docs/all_inverse_kinematics.md). Joints beyond their limits are told by `within_limits`. Where
 /// joints can move with the tip in place, some of these configurations are returned.
 ///
-/// \param chain  six joints that turn or slide: one that slides, or three, or two that are
-/// neighbours or the first and the last \throws invalid_input for other chains, and for a goal that
-/// is no pose
+/// \param chain  six joints that turn or slide, at most three of them sliding
+/// \throws invalid_input for other chains, and for a goal that is no pose
 template <SerialChain C>
 [[nodiscard]] all_inverse_kinematics_result<C::joints>
 all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {

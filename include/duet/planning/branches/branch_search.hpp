@@ -26,12 +26,14 @@ enum class branch_method {
   spherical_wrist, ///< closed form: three axes, one after the other, meet in a point
   parallel_axes,   ///< closed form: three axes, one after the other, are parallel
   three_slides,    ///< closed form: three joints slide
+  two_slides,      ///< zeros of a polynomial: two joints slide
   elimination      ///< zeros of a determinant
 };
 
 /// The name of a `branch_method`.
 [[nodiscard]] inline const char* to_text(branch_method method) {
-  constexpr std::array names{"spherical_wrist", "parallel_axes", "three_slides", "elimination"};
+  constexpr std::array names{"spherical_wrist", "parallel_axes", "three_slides", "two_slides",
+                             "elimination"};
   return names[std::size_t(method)];
 }
 
@@ -112,6 +114,11 @@ branch_search<Loop>::branch_search(const Loop& loop) {
     solve<sliding_loop>(branch_method::three_slides, 0, loop);
     return;
   }
+  if (sliding == 2) {
+    answer_ = solve_general_loop<two_slides>(loop);
+    method_ = branch_method::two_slides;
+    return;
+  }
   const auto from = [&](int first) {
     Loop result = loop;
     for (int k = 0; k < first; ++k) {
@@ -133,7 +140,7 @@ branch_search<Loop>::branch_search(const Loop& loop) {
       }
     }
   }
-  answer_ = solve_general_loop(loop);
+  answer_ = solve_general_loop<elimination>(loop);
 }
 
 #ifdef DUET_COMPILED

@@ -62,14 +62,15 @@ private:
       sum += across * p;
     }
     middle = components(Eigen::Vector3d(squares.ldlt().solve(sum)));
-    double largest = 0;
+    double largest = 0, reach = length_of(middle);
     for (loop_joint& j : joints) {
+      reach = std::max(reach, length_of(j.point));
       const auto from_middle = j.point - middle;
       j.point = from_middle - dot(from_middle, j.axis) * j.axis;
       largest = std::max(largest, length_of(j.point));
     }
-    const auto to_tip = tip.translation - middle;
-    size = largest > 0 ? largest : std::max(length_of(to_tip), 1e-300);
+    const double to_tip = length_of(tip.translation - middle), rounding = 1e-12 * reach;
+    size = largest > rounding ? largest : to_tip > rounding ? to_tip : 1; // all axes meet
     for (loop_joint& j : joints) {
       j.point = 1 / size * j.point;
     }

@@ -4,6 +4,7 @@
 #include <duet/planning/branches/elimination.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/loop_solutions.hpp>
+#include <duet/planning/branches/two_slides.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <algorithm>
@@ -23,9 +24,7 @@ struct loop_order {
   joint_loop loop;
   int first = 0;
   bool is_reversed = false;
-  /// How well the elimination of its first two joints goes: |(p₁ − p₂)·(n₁ × n₂)|, which is 0 where
-  /// their axes meet or are parallel; where they slide |n₁ × n₂|, less for one of them.
-  double quality = 0;
+  double quality = 0; ///< how well equations can be solved that way; 0 if not at all
 
   [[nodiscard]] six_coordinates in_loop(const six_coordinates& theta) const {
     six_coordinates result;
@@ -36,20 +35,41 @@ struct loop_order {
   }
 };
 
-/// The orders of a loop whose third and sixth joints turn, the best first.
-[[nodiscard]] inline std::vector<loop_order> orders_of(const joint_loop& loop) {
+/// Of the elimination of the first two joints: |(p₁ − p₂)·(n₁ × n₂)|, which is 0 where their axes
+/// meet or are parallel; where they slide |n₁ × n₂|, less for one of them. The third and the sixth
+/// joint have to turn.
+[[nodiscard]] inline double quality_of(const joint_loop& loop, const elimination*) {
+  const loop_joint &a = loop.joints[0], &b = loop.joints[1];
+  const auto across = cross(a.axis, b.axis);
+  return !loop.joints[2].turns || !loop.joints[5].turns ? 0
+         : a.turns && b.turns                           ? std::abs(dot(a.point - b.point, across))
+         : a.turns || b.turns                           ? length_of(across) / 4
+                                                        : length_of(across);
+}
+/// Of three turns after that of the first joint: none of their axes is parallel to the next.
+[[nodiscard]] inline double quality_of(const joint_loop& loop, const two_slides*) {
+  double result = loop.joints[0].turns ? 1 : 0;
+  const loop_joint* before = nullptr;
+  for (std::size_t i = 1; i < 6; ++i) {
+    const loop_joint& j = loop.joints[i];
+    if (j.turns) {
+      result = std::min(result, before == nullptr ? 1 : length_of(cross(before->axis, j.axis)));
+      before = &j;
+    }
+  }
+  return result;
+}
+
+/// The orders of a loop in which a system of equations can be solved, the best first.
+template <class System>
+[[nodiscard]] std::vector<loop_order> orders_of(const joint_loop& loop) {
   std::vector<loop_order> result;
   result.reserve(12);
   const auto add = [&](const joint_loop& l, int first, bool is_reversed) {
-    const loop_joint &a = l.joints[0], &b = l.joints[1];
-    if (!l.joints[2].turns || !l.joints[5].turns) {
-      return;
+    const double quality = quality_of(l, static_cast<const System*>(nullptr));
+    if (quality > 0) {
+      result.push_back({l, first, is_reversed, quality});
     }
-    const auto across = cross(a.axis, b.axis);
-    const double quality = a.turns && b.turns   ? std::abs(dot(a.point - b.point, across))
-                           : a.turns || b.turns ? length_of(across) / 4
-                                                : length_of(across);
-    result.push_back({l, first, is_reversed, quality});
   };
   joint_loop from = loop;
   for (int first = 0; first < 6; ++first) {
@@ -75,15 +95,15 @@ struct solution_count {
 };
 
 /// Adds the solutions that one order of a loop leads to.
-[[nodiscard]] inline solution_count solve_in_order(const loop_order& order,
-                                                   loop_solutions& solutions) {
+template <class System>
+[[nodiscard]] solution_count solve_in_order(const loop_order& order, loop_solutions& solutions) {
   solution_count result;
-  const elimination system(order.loop);
+  const System system(order.loop);
   const auto determinants = system.determinants();
   if (determinants[0] == 0) {
     return result;
   }
-  using all_roots = elimination::roots;
+  using all_roots = typename System::roots;
   const all_roots roots(all_roots::interpolated(determinants));
   constexpr double rounding = 1e-13, farthest = .05;
   std::vector<int> candidates;
@@ -123,18 +143,19 @@ struct solution_count {
   return result;
 }
 
-/// All solutions of a loop in which the third and sixth joints of some order turn. They are
-/// complete where as many are found as there are real zeros; else the next order is tried. Axes
-/// that meet or are parallel may hide solutions from an order: then two have to agree.
-[[nodiscard]] inline loop_answer solve_general_loop(const joint_loop& loop) {
+/// All solutions of a loop by a system of equations. They are complete where as many are found as
+/// there are real zeros; else the next order is tried. Axes that meet or are parallel may hide
+/// solutions from an order: then two have to agree.
+template <class System>
+[[nodiscard]] loop_answer solve_general_loop(const joint_loop& loop) {
   loop_solutions found(loop);
   loop_answer result;
-  const auto orders = orders_of(loop);
-  const int needed = orders.size() < 8 ? 2 : 1; // of 12, or of 8 where one joint slides
+  const auto orders = orders_of<System>(loop);
+  const int needed = orders.size() < 8 ? 2 : 1; // of 12, or of 8 where joints slide
   int expected = 0, all = 0, agreeing = 0;
   for (const loop_order& order : orders) {
     const int before = found.count();
-    const solution_count count = solve_in_order(order, found);
+    const solution_count count = solve_in_order<System>(order, found);
     if (count.all == 0) {
       continue;
     }

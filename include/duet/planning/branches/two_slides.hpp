@@ -1,0 +1,204 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/branches/circle_roots.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/turns.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+
+/// \file
+/// A loop of four joints that turn and two that slide, as the zeros of a polynomial in the angle α
+/// of the first, which turns.
+///
+/// Slides do not turn anything: at an α the other three angles β, γ and δ make a given rotation, in
+/// two ways, z = e^{iγ} being the zeros of a quadratic. What is left to go has then to be in the
+/// plane of the slides n₁ and n₂: f = (n₁ × n₂)·t = 0. With w the cosine of the angle between the
+/// axes of β and δ, f₊ f₋ (1 − w²) is a trigonometric polynomial of degree 4 in α, of eight zeros.
+/// (Page: all_inverse_kinematics.)
+
+namespace duet::detail {
+
+class two_slides {
+public:
+  explicit two_slides(const joint_loop& loop) : loop_(loop) {
+    for (std::size_t i = 0, turns = 0, slides = 0; i < 6; ++i) {
+      (loop.joints[i].turns ? turning_[turns++] : sliding_[slides++]) = i;
+    }
+  }
+
+  using roots = circle_roots<4>;
+
+  /// The polynomial at the angles of `roots`; nothing but zeros where it vanishes for all of them.
+  [[nodiscard]] roots::values determinants() const {
+    roots::values result;
+    double largest = 0;
+    for (int k = 0; k < roots::samples; ++k) {
+      const loop_at at(*this, roots::angle(k));
+      result[std::size_t(k)] = at.determinant();
+      largest = std::max(largest, std::abs(result[std::size_t(k)]));
+    }
+    if (!(largest > 1e-20)) {
+      result.fill(0);
+    }
+    return result;
+  }
+
+  /// Calls visit(θ) with coordinates near the real solutions that have the angle of a zero, which
+  /// is one of `count`.
+  /// \return the number of real ones
+  template <class Visit>
+  int solutions_at(double theta, int count, const Visit& visit) const {
+    const loop_at at(*this, theta);
+    const auto size = [&](std::size_t k) { return std::abs(at.ways[k].determinant); };
+    const std::size_t best = size(0) < size(1) ? 0 : 1;
+    constexpr double small = 1e-3;
+    const bool both = std::max(size(0), size(1)) < small;
+    int real = 0;
+    for (const std::size_t k : {best, 1 - best}) {
+      const auto& way = at.ways[k];
+      if ((k == best || both) && std::abs(std::log(std::abs(way.z))) < .1) {
+        visit(coordinates(theta, std::arg(way.z)));
+        real += both && count > 1 ? 1 : k == best ? count : 0;
+      }
+    }
+    return real;
+  }
+
+private:
+  using complex = std::complex<double>;
+  using matrix = Eigen::Matrix3cd;
+  using vector = Eigen::Vector3cd;
+
+  /// The polynomial is sampled from here on: not where axes of known arms are parallel.
+  static constexpr double start = .37;
+
+  [[nodiscard]] const loop_joint& turning(std::size_t k) const { return loop_.joints[turning_[k]]; }
+
+  /// a·b, of complex vectors too.
+  [[nodiscard]] static complex product(const vector& a, const vector& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  [[nodiscard]] static matrix turn(const three_vector<double>& axis, complex cosine, complex sine) {
+    const Eigen::Vector3d n = axis;
+    Eigen::Matrix3d beside;
+    beside << 0, -n[2], n[1], n[2], 0, -n[0], -n[1], n[0], 0;
+    const Eigen::Matrix3d along = n * n.transpose();
+    return along + cosine * (Eigen::Matrix3d::Identity() - along) + sine * beside;
+  }
+
+  /// All at an angle of the first joint, other angles in either way, real or not.
+  struct loop_at {
+    struct way {
+      complex z;           ///< e^{iγ}
+      complex determinant; ///< f
+    };
+    std::array<way, 2> ways;
+    double across; ///< 1 − w²
+
+    loop_at(const two_slides& loop, double theta) {
+      const loop_joint &b = loop.turning(1), &c = loop.turning(2), &d = loop.turning(3);
+      const double alpha = theta + start;
+      std::array<matrix, 4> turns;
+      turns[0] = turn(loop.turning(0).axis, std::cos(alpha), std::sin(alpha));
+      const matrix whole = rotation_matrix_of(loop.loop_.closing.rotation);
+      const matrix rest = turns[0].transpose() * whole; // by β, γ and δ
+      const vector first = Eigen::Vector3d(b.axis).cast<complex>();
+      const vector last = Eigen::Vector3d(d.axis).cast<complex>();
+      const vector goal = rest * last;
+      const complex w = product(first, goal);
+      across = 1 - (w * w).real();
+      // b·R_γ d = w, a quadratic of z.
+      const turned_vector by_c(c.axis, d.axis);
+      const complex cosine = dot(b.axis, by_c.across) / 2;
+      const complex sine = complex(0, -.5) * dot(b.axis, by_c.beside);
+      const complex constant = dot(b.axis, by_c.along) - w;
+      const complex root = std::sqrt(constant * constant - 4. * (cosine + sine) * (cosine - sine));
+      for (std::size_t k = 0; k < 2; ++k) {
+        way& x = ways[k];
+        x.z = (-constant + (k == 0 ? root : -root)) / (2. * (cosine + sine));
+        turns[2] = turn(c.axis, (x.z + 1. / x.z) / 2., (x.z - 1. / x.z) / complex(0, 2));
+        const vector from = turns[2] * last;
+        const vector beside(from[1] * goal[2] - from[2] * goal[1],
+                            from[2] * goal[0] - from[0] * goal[2],
+                            from[0] * goal[1] - from[1] * goal[0]);
+        turns[1] =
+            turn(b.axis, (product(from, goal) - w * w) / across, product(first, beside) / across);
+        turns[3] = (turns[1] * turns[2]).transpose() * rest;
+        x.determinant = loop.gap(turns);
+      }
+    }
+
+    [[nodiscard]] double determinant() const {
+      return (ways[0].determinant * ways[1].determinant).real() * across;
+    }
+  };
+
+  [[nodiscard]] static matrix rotation_matrix_of(const quaternion<double>& q) {
+    matrix result;
+    for (int k = 0; k < 3; ++k) {
+      const three_vector<double> e{k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.};
+      result.col(k) = Eigen::Vector3d(rotated(q, e)).cast<complex>();
+    }
+    return result;
+  }
+
+  /// (n₁ × n₂)·t, t what is left to go where nothing slides.
+  [[nodiscard]] complex gap(const std::array<matrix, 4>& turns) const {
+    matrix link = matrix::Identity(), ways; // n₁, n₂, t
+    vector at = vector::Zero();
+    for (std::size_t i = 0, turn_count = 0, slide_count = 0; i < 6; ++i) {
+      const loop_joint& j = loop_.joints[i];
+      if (j.turns) {
+        const matrix& by = turns[turn_count++];
+        const vector p = Eigen::Vector3d(j.point).cast<complex>();
+        at += link * (p - by * p);
+        link = link * by;
+      } else {
+        ways.col(Eigen::Index(slide_count++)) = link * Eigen::Vector3d(j.axis).cast<complex>();
+      }
+    }
+    ways.col(2) = Eigen::Vector3d(loop_.closing.translation).cast<complex>() - at;
+    return ways.determinant();
+  }
+
+  /// All coordinates, of α and γ.
+  [[nodiscard]] six_coordinates coordinates(double theta, double gamma) const {
+    const loop_joint &a = turning(0), &b = turning(1), &c = turning(2), &d = turning(3);
+    six_coordinates result = six_coordinates::Zero();
+    const auto set = [&](std::size_t k, double x) { result[Eigen::Index(turning_[k])] = x; };
+    const double alpha = theta + start;
+    const quaternion<double> rest = conj(moved_by(a, alpha).rotation) * loop_.closing.rotation;
+    const double beta =
+        angle_about(b.axis, turned_vector(c.axis, d.axis).at(gamma), rotated(rest, d.axis));
+    set(0, alpha);
+    set(1, beta);
+    set(2, gamma);
+    set(3, angle_of(conj(moved_by(b, beta).rotation * moved_by(c, gamma).rotation) * rest, d.axis));
+    const loop_gap left(loop_, result);
+    Eigen::Matrix<double, 3, 2> ways;
+    for (int k = 0; k < 2; ++k) {
+      ways.col(k) = left.jacobian.col(Eigen::Index(sliding_[std::size_t(k)])).head<3>();
+    }
+    const Eigen::Vector2d along = ways.colPivHouseholderQr().solve(left.twist.head<3>());
+    for (int k = 0; k < 2; ++k) {
+      result[Eigen::Index(sliding_[std::size_t(k)])] = along[k];
+    }
+    return result;
+  }
+
+  const joint_loop& loop_;
+  std::array<std::size_t, 4> turning_{};
+  std::array<std::size_t, 2> sliding_{};
+};
+
+} // namespace duet::detail
