@@ -6,6 +6,7 @@
 #include <duet/dual/promotion.hpp>
 #include <duet/mechanism/kinematic_tree.hpp>
 #include <duet/mechanism/tree_jacobian.hpp>
+#include <duet/mechanism/tree_motion.hpp>
 #include <duet/mechanism/tree_rates.hpp>
 #include <duet/mechanism/tree_table.hpp>
 #include <duet/mechanism/tree_walk.hpp>
@@ -44,7 +45,7 @@ template <class S>
   for (std::size_t i = table.masses.size(); i-- > 0;) { // children first
     const mass_on_node& own = table.masses[i];
     carried_mass<S>& sum = result[i];
-    const link_displacement<S> frame = i == 0 ? standing_still<S>() : motion.frames[i - 1];
+    const link_displacement<S> frame = motion.frame(int(i) - 1);
     const three_vector<S> moment =
         S(own.mass) * frame.translation + rotated(frame.rotation, own.moment);
     sum.mass += own.mass;

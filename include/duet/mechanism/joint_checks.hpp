@@ -65,6 +65,23 @@ constexpr void require_joint(const joint<T>& given, std::size_t i,
   require_limits(given.limits, i, function, name);
 }
 
+/// A joint that stands at an origin, made ready.
+template <class T>
+[[nodiscard]] constexpr joint_step<T> step_of(const joint<T>& given, const placement<T>& origin) {
+  const quaternion<T> a = origin.rotation * inverse_root_near_one(norm2(origin.rotation));
+  const auto axis = components(given.axis);
+  const auto n = inverse_root_near_one(dot(axis, axis)) * axis;
+  joint_step<T> result;
+  result.a = a;
+  result.an = a * quaternion<T>(T(0), n.x, n.y, n.z);
+  result.offset = components(origin.translation);
+  result.axis = cleaned_direction(rotated(a, n));
+  result.turns = given.turns();
+  result.slides = given.slides();
+  result.pitch = given.travel();
+  return result;
+}
+
 /// A joint whose frame before is displaced.
 template <class T>
 [[nodiscard]] constexpr joint_step<T> displaced(const placement<T>& by, joint_step<T> step) {

@@ -54,6 +54,13 @@ struct tree_view {
   place_on_node frame;
   place_on_node observer;
   int top = -1;
+
+  /// Is it seen from the very frame of the node above?
+  [[nodiscard]] bool is_from_above() const {
+    const auto& [x, y, z] = observer.offset.translation;
+    return observer.node == top && observer.offset.rotation == quaternion<double>(1) && x == 0 &&
+        y == 0 && z == 0;
+  }
 };
 
 } // namespace detail
@@ -137,9 +144,14 @@ public:
     using S = detail::tree_scalar<X>;
     const detail::tree_view view = this->view(at);
     const detail::joint_coordinates<S, X> x(table_, q);
-    auto stands = detail::displacement_below<S>(table_, x, view.frame, view.top);
+    const auto stands_at = [&](const detail::place_on_node& place) {
+      const detail::node_path path(table_, place.node, view.top);
+      return detail::attached(detail::walk_down<S>(table_, x, path, detail::visit_nothing),
+                              place.offset);
+    };
+    detail::link_displacement<S> stands = stands_at(view.frame);
     if constexpr (std::same_as<At, relative_frame>) {
-      const auto observer = detail::displacement_below<S>(table_, x, view.observer, view.top);
+      const detail::link_displacement<S> observer = stands_at(view.observer);
       const quaternion<S> back = conj(observer.rotation);
       stands = {back * stands.rotation,
                 detail::rotated(back, stands.translation - observer.translation)};
@@ -154,19 +166,12 @@ public:
   [[nodiscard]] auto poses(const X& q) const {
     using S = detail::tree_scalar<X>;
     const detail::joint_coordinates<S, X> x(table_, q);
-    std::vector<detail::link_displacement<S>> frames;
-    frames.reserve(table_.nodes.size());
-    const auto stands = [&](int node, const placement<double>& offset) {
-      return node < 0 ? detail::standing_still<S>(offset)
-                      : detail::attached(frames[std::size_t(node)], offset);
-    };
-    for (const detail::tree_node& node : table_.nodes) {
-      frames.push_back(detail::moved<S>(stands(node.parent, node.origin), node, x));
-    }
+    const auto frames = detail::frames_of_all<S>(table_, x);
     std::vector<dual_quaternion<S>> result;
     result.reserve(table_.links.size());
     for (const detail::place_on_node& link : table_.links) {
-      const auto at = stands(link.node, link.offset);
+      const auto at = detail::attached(
+          link.node < 0 ? detail::standing_still<S>() : frames[std::size_t(link.node)], link.offset);
       result.push_back(detail::pose_of_unit(at.rotation, at.translation.eigen()));
     }
     return result;
@@ -204,7 +209,7 @@ public:
   template <PlaceOnTree At>
   [[nodiscard]] detail::tree_view view(const At& at) const {
     if constexpr (std::integral<At>) {
-      return {place(link(int(at))), {}};
+      return {table_.links[std::size_t(link(int(at)).link)], {}};
     } else if constexpr (std::same_as<At, attached_frame<double>>) {
       return {place(at), {}};
     } else {

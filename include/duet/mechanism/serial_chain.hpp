@@ -184,18 +184,7 @@ private:
   }
   constexpr void add(const joint<T>& given, const placement<T>& origin) {
     const auto i = std::size_t(size_);
-    const T to_unit = detail::inverse_root_near_one(norm2(origin.rotation));
-    const quaternion<T> a = origin.rotation * to_unit;
-    const auto axis = detail::components(given.axis);
-    const auto n = detail::inverse_root_near_one(dot(axis, axis)) * axis;
-    detail::joint_step<T>& s = steps_[i];
-    s.a = a;
-    s.an = a * quaternion<T>(T(0), n.x, n.y, n.z);
-    s.offset = detail::components(origin.translation);
-    s.axis = detail::cleaned_direction(detail::rotated(a, n));
-    s.turns = given.turns();
-    s.slides = given.slides();
-    s.pitch = given.travel();
+    steps_[i] = detail::step_of(given, origin);
     kinds_[i] = given.kind;
     limits_[i] = given.range();
     ++size_;

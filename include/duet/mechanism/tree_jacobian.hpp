@@ -10,15 +10,16 @@
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
 #include <duet/mechanism/kinematic_tree.hpp>
+#include <duet/mechanism/tree_motion.hpp>
 #include <duet/mechanism/tree_rates.hpp>
 #include <duet/mechanism/tree_table.hpp>
 #include <duet/mechanism/tree_walk.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
 
-#include <array>
 #include <concepts>
 #include <cstddef>
 #include <vector>
@@ -34,18 +35,10 @@ namespace detail {
 template <class S, int Rows>
 using tree_columns = Eigen::Matrix<S, Rows, Eigen::Dynamic>;
 
-/// A frame of a tree, what it is seen from, and all that moves between them.
+/// A frame of a tree and what it is seen from, in the frame of what is above both.
 template <class S>
-struct viewed_motion {
-  tree_motion<S> to_frame, to_observer;
-  link_displacement<S> frame, observer; ///< in the frame of what is above both
-
-  template <class X>
-  viewed_motion(const tree_table& table, const X& x, const tree_view& view)
-      : to_frame(motion_to<S>(table, x, view.frame.node, view.top)),
-        to_observer(motion_to<S>(table, x, view.observer.node, view.top)),
-        frame(stands(to_frame, view.frame.offset)),
-        observer(stands(to_observer, view.observer.offset)) {}
+struct viewed_frames {
+  link_displacement<S> frame, observer;
 
   /// The frame as the observer sees it.
   [[nodiscard]] dual_quaternion<S> pose() const {
@@ -63,46 +56,80 @@ struct viewed_motion {
   [[nodiscard]] const link_displacement<S>& origin() const {
     return std::same_as<Frame, spatial_frame> ? observer : frame;
   }
+};
+
+/// And all that moves between them.
+template <class S>
+struct viewed_motion : viewed_frames<S> {
+  tree_motion<S> to_frame, to_observer;
+
+  template <class X>
+  viewed_motion(const tree_table& table, const X& x, const tree_view& view)
+      : to_frame(motion_to<S>(table, x, view.frame.node, view.top)),
+        to_observer(motion_to<S>(table, x, view.observer.node, view.top)) {
+    this->frame = stands(to_frame, view.frame.offset);
+    this->observer = stands(to_observer, view.observer.offset);
+  }
 
 private:
   [[nodiscard]] static link_displacement<S> stands(const tree_motion<S>& motion,
                                                    const placement<double>& offset) {
-    return motion.frames.empty() ? standing_still<S>(offset)
-                                 : attached(motion.frames.back(), offset);
+    return attached(motion.frame(int(motion.frames.size()) - 1), offset);
   }
 };
 
 template <class J, class S>
-void add_to_column(J& m, const coordinate_source& source, double sign, const twist_column<S>& a) {
+DUET_ALWAYS_INLINE void add_to_column(J& m, const coordinate_source& source, double sign,
+                                      const twist_column<S>& a) {
   const double factor = sign * source.multiplier;
-  const std::array<const S*, 6> rows{&a.v.x, &a.v.y, &a.v.z, &a.omega.x, &a.omega.y, &a.omega.z};
-  for (int i = 0; i < 6; ++i) {
-    m(i, source.own) += *rows[std::size_t(i)] * factor;
-  }
+  m(0, source.own) += a.v.x * factor;
+  m(1, source.own) += a.v.y * factor;
+  m(2, source.own) += a.v.z * factor;
+  m(3, source.own) += a.omega.x * factor;
+  m(4, source.own) += a.omega.y * factor;
+  m(5, source.own) += a.omega.z * factor;
 }
 
-/// Rᵀ(v + ω × p), Rᵀω
-template <class S>
-[[nodiscard]] twist_column<S> seen(const twist_column<S>& a, const three_vector<S>& p,
-                                   const quaternion<S>& back) {
-  return {rotated(back, a.v + cross(a.omega, p)), rotated(back, a.omega)};
-}
-
-template <class Frame, class S>
-[[nodiscard]] tree_columns<S, 6> jacobian_of(const tree_table& table,
-                                             const viewed_motion<S>& motion) {
-  tree_columns<S, 6> result(6, Eigen::Index(table.names.size()));
-  result.setConstant(S(0));
-  const three_vector<S>& p = motion.template origin<Frame>().translation;
-  const quaternion<S> back = conj(motion.template axes<Frame>().rotation);
-  const auto add = [&](const tree_motion<S>& branch, double sign) {
-    for (const tree_screw<S>& screw : branch.screws) {
-      add_to_column(result, table.sources[std::size_t(screw.coordinate)], sign,
-                    seen(screw.twist, p, back));
-    }
+/// Makes m the Jacobian of a frame of a tree; returns where that stands.
+template <class Frame, class S, class X>
+[[nodiscard]] viewed_frames<S> fill_jacobian(tree_columns<S, 6>& m, const tree_table& table,
+                                             const X& x, const tree_view& view) {
+  m.setConstant(6, Eigen::Index(table.names.size()), S(0));
+  const auto stands = [&](const node_path& path, const placement<double>& offset, double sign) {
+    const auto add = [&](int coordinate, const twist_column<S>& screw) {
+      add_to_column(m, table.sources[std::size_t(coordinate)], sign, screw);
+    };
+    return attached(walk_down<S>(table, x, path, add), offset);
   };
-  add(motion.to_frame, 1);
-  add(motion.to_observer, -1);
+  const node_path to_frame(table, view.frame.node, view.top);
+  const node_path to_observer(table, view.observer.node, view.top);
+  const viewed_frames<S> result{stands(to_frame, view.frame.offset, 1),
+                                stands(to_observer, view.observer.offset, -1)};
+  if (std::same_as<Frame, spatial_frame> && view.is_from_above()) {
+    return result;
+  }
+  const three_vector<S>& p = result.template origin<Frame>().translation;
+  const bool is_turned = std::same_as<Frame, body_frame> || !view.is_from_above();
+  const rotation_of_many turn(conj(result.template axes<Frame>().rotation));
+  const auto see = [&](int own) { // Rᵀ(v + ω × p), Rᵀω
+    const twist_column<S> a = column_of(m, own);
+    const twist_column<S> at_p{a.v + cross(a.omega, p), a.omega};
+    set_column(m, is_turned ? twist_column<S>{turn(at_p.v), turn(at_p.omega)} : at_p, own);
+  };
+  for (const node_path* path : {&to_frame, &to_observer}) {
+    for (int i = 0; i < path->size(); ++i) {
+      const tree_node& node = table.nodes[std::size_t((*path)(i))];
+      for (int k = 0; k < node.coordinates(); ++k) {
+        const coordinate_source& source = table.sources[std::size_t(node.coordinate + k)];
+        if (!source.is_shared) {
+          see(source.own);
+        }
+      }
+    }
+  }
+  for (const int own : table.shared) {
+    see(own);
+  }
   return result;
 }
 
@@ -160,8 +187,9 @@ template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
 [[nodiscard]] auto jacobian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
   using S = detail::tree_scalar<X>;
   const detail::joint_coordinates<S, X> x(tree.table(), q);
-  return detail::jacobian_of<Frame>(tree.table(),
-                                    detail::viewed_motion<S>(tree.table(), x, tree.view(at)));
+  detail::tree_columns<S, 6> result;
+  static_cast<void>(detail::fill_jacobian<Frame>(result, tree.table(), x, tree.view(at)));
+  return result;
 }
 
 /// The pose A of a frame on a tree, and its Jacobian there. Arguments as `jacobian`.
@@ -170,9 +198,10 @@ template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
 [[nodiscard]] auto pose_and_jacobian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
   using S = detail::tree_scalar<X>;
   const detail::joint_coordinates<S, X> x(tree.table(), q);
-  const detail::viewed_motion<S> motion(tree.table(), x, tree.view(at));
-  return value_and_jacobian<dual_quaternion<S>, detail::tree_columns<S, 6>>{
-      motion.pose(), detail::jacobian_of<Frame>(tree.table(), motion)};
+  value_and_jacobian<dual_quaternion<S>, detail::tree_columns<S, 6>> result;
+  result.value =
+      detail::fill_jacobian<Frame>(result.jacobian, tree.table(), x, tree.view(at)).pose();
+  return result;
 }
 
 /// J and J̇ along q̇ of a frame on a tree, so that J q̈ + J̇ q̇ is the derivative of the twist J q̇. In
@@ -184,10 +213,12 @@ template <VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree At>
   using S = promote_t<detail::tree_scalar<X>, typename detail::vector_argument<V>::scalar>;
   const detail::joint_coordinates<S, X> x(tree.table(), q);
   const detail::joint_velocities<S, V> x_dot(tree.table(), q_dot);
-  const detail::viewed_motion<S> motion(tree.table(), x, tree.view(at));
-  return jacobian_and_rate<detail::tree_columns<S, 6>>{
-      detail::jacobian_of<Frame>(tree.table(), motion),
-      detail::jacobian_rate_of<Frame>(tree.table(), motion, x, x_dot)};
+  const detail::tree_view view = tree.view(at);
+  jacobian_and_rate<detail::tree_columns<S, 6>> result;
+  static_cast<void>(detail::fill_jacobian<Frame>(result.jacobian, tree.table(), x, view));
+  const detail::viewed_motion<S> motion(tree.table(), x, view);
+  result.rate = detail::jacobian_rate_of<Frame>(tree.table(), motion, x, x_dot);
+  return result;
 }
 
 /// J̇ of `jacobian_with_rate`.

@@ -3,6 +3,7 @@
 
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/jacobian_rate.hpp>
+#include <duet/mechanism/tree_motion.hpp>
 #include <duet/mechanism/tree_table.hpp>
 #include <duet/mechanism/tree_walk.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
@@ -62,22 +63,26 @@ template <class S, class X, class V>
 [[nodiscard]] tree_rates<S> rates_of(const tree_table& table, const tree_motion<S>& motion,
                                      const X& x, const V& x_dot) {
   tree_rates<S> result;
+  result.screws.reserve(motion.screws.size());
+  result.nodes.reserve(motion.nodes.size());
   auto screw = motion.screws.begin();
   for (std::size_t i = 0; i < motion.nodes.size(); ++i) {
     const tree_node& node = table.nodes[std::size_t(motion.nodes[i])];
     const twist_column<S> before = result.node(motion.before[i]);
     twist_column<S> after = before;
     matrix3<S> turns;
+    link_displacement<S> origin;
     if (node.is_ball) {
+      origin = origin_of_ball(motion.frame(motion.before[i]), node);
       turns = left_jacobian_rate<S>(ball_coordinates<S>(node, x), ball_coordinates<S>(node, x_dot));
     }
-    for (int k = 0; k < (node.is_ball ? 3 : 1); ++k, ++screw) {
+    for (int k = 0; k < node.coordinates(); ++k, ++screw) {
       const twist_column<S>& twist = screw->twist;
       twist_column<S> rate = bracket(before, twist);
       if (node.is_ball) {
         const three_vector<S> omega = rotated(
-            motion.origins[i].rotation, three_vector<S>{turns(0, k), turns(1, k), turns(2, k)});
-        rate = sum(rate, {cross(motion.origins[i].translation, omega), omega});
+            origin.rotation, three_vector<S>{turns(0, k), turns(1, k), turns(2, k)});
+        rate = sum(rate, {cross(origin.translation, omega), omega});
       }
       result.screws.push_back(rate);
       after = sum(after, multiple(S(x_dot[screw->coordinate]), twist));

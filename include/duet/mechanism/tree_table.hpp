@@ -3,6 +3,8 @@
 
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/joint_checks.hpp>
+#include <duet/mechanism/joint_step.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
@@ -23,11 +25,9 @@ struct tree_node {
   int parent = -1;    ///< the node that it hangs on; −1: the root of the tree
   int coordinate = 0; ///< number of its first coordinate among those of all joints
   bool is_ball = false;
-  bool turns = false;
-  bool slides = false;
-  double pitch = 0;            ///< travel along the axis per unit of its coordinate
-  three_vector<double> axis{}; ///< in its own frame
-  placement<double> origin{};  ///< of its frame in that of the parent
+  joint_step<double> step{}; ///< of a ball only where it stands
+
+  [[nodiscard]] int coordinates() const { return is_ball ? 3 : 1; }
 };
 
 /// A frame fixed to a node.
@@ -41,6 +41,7 @@ struct coordinate_source {
   int own = -1;
   double multiplier = 1;
   double offset = 0;
+  bool is_shared = false; ///< with other coordinates of joints
 };
 
 /// Of all that is fixed to a node, in its frame.
@@ -54,6 +55,7 @@ struct tree_table {
   std::vector<mass_on_node> masses;         ///< of the root, then of each node
   std::vector<place_on_node> links;         ///< where each link is
   std::vector<coordinate_source> sources;   ///< of the coordinates of all joints
+  std::vector<int> shared;                  ///< coordinates of the tree that several of joints have
   std::vector<std::string> names;           ///< of the coordinates of the tree
   std::vector<joint_limits<double>> limits; ///< of the coordinates of the tree
   std::unordered_map<std::string, int> link_numbers;
@@ -75,39 +77,32 @@ struct tree_table {
 inline void add_nodes_of_joint(std::vector<tree_node>& nodes, const joint<double>& motion,
                                int coordinate, const place_on_node& place) {
   tree_node node{place.node, coordinate};
-  node.origin = place.offset;
-  const auto add = [&](const three_vector<double>& axis) {
-    node.axis = axis;
+  placement<double> origin = place.offset;
+  const auto add = [&](joint<double> part) {
+    node.is_ball = part.kind == joint_kind::spherical;
+    node.step = step_of(part, origin);
     nodes.push_back(node);
-    node.origin = {};
+    origin = {};
     node.parent = int(nodes.size()) - 1;
     ++node.coordinate;
   };
-  const auto given = components(motion.axis);
-  const three_vector<double> axis =
-      cleaned_direction(inverse_root_near_one(dot(given, given)) * given);
-  switch (motion.kind) {
-  case joint_kind::planar:
-  case joint_kind::floating:
-    node.slides = true;
-    node.pitch = 1;
-    for (int k = 0; k < (motion.kind == joint_kind::planar ? 2 : 3); ++k) {
-      const three_vector<double> along{k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.};
-      add(motion.kind == joint_kind::planar ? in_plane(axis, along) : along);
-    }
-    node.slides = false;
-    node.pitch = 0;
-    node.turns = true;
-    node.is_ball = motion.kind == joint_kind::floating;
-    return add(axis);
-  case joint_kind::spherical:
-    node.is_ball = true;
-    return add(axis);
-  default:
-    node.turns = motion.turns();
-    node.slides = motion.slides();
-    node.pitch = motion.travel();
-    return add(axis);
+  const auto slide = [&](const three_vector<double>& along) {
+    add({.kind = joint_kind::prismatic, .axis = {along.x, along.y, along.z}});
+  };
+  if (motion.kind == joint_kind::planar) {
+    const auto given = components(motion.axis);
+    const auto n = cleaned_direction(inverse_root_near_one(dot(given, given)) * given);
+    slide(in_plane(n, {1, 0, 0}));
+    slide(in_plane(n, {0, 1, 0}));
+    add({.kind = joint_kind::continuous, .axis = motion.axis});
+  } else if (motion.kind == joint_kind::floating) {
+    slide({1, 0, 0});
+    slide({0, 1, 0});
+    slide({0, 0, 1});
+    add({.kind = joint_kind::spherical});
+  } else {
+    add(motion);
   }
 }
+
 } // namespace duet::detail

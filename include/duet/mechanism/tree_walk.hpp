@@ -3,12 +3,11 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/derivative/argument.hpp>
-#include <duet/dual/math.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/dual/rules/lift.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/mechanism/chain_walk.hpp>
 #include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/joint_step.hpp>
 #include <duet/mechanism/tree_table.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
@@ -18,6 +17,8 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
+#include <concepts>
 #include <cstddef>
 #include <vector>
 
@@ -90,118 +91,136 @@ template <class S, class X>
   return {S(x[node.coordinate]), S(x[node.coordinate + 1]), S(x[node.coordinate + 2])};
 }
 
+template <class S>
+[[nodiscard]] link_displacement<S> standing_still() {
+  return {quaternion<S>(S(1)), {S(0), S(0), S(0)}};
+}
+
+/// Where the frame of a ball stands before its motion.
+template <class S>
+[[nodiscard]] link_displacement<S> origin_of_ball(const link_displacement<S>& parent,
+                                                  const tree_node& node) {
+  return {parent.rotation * node.step.a, parent.point(node.step.offset)};
+}
+
 /// Where the frame of a node stands after its motion.
-template <class S, class X>
-[[nodiscard]] link_displacement<S> moved(link_displacement<S> origin, const tree_node& node,
-                                         const X& x) {
+///
+/// \param visit  called with the number of each coordinate of the node and its screw: twists of all
+///               that the node carries, per unit of it, with v at the origin; or `visit_nothing`
+template <class S, class X, class Turns, class Visit>
+[[nodiscard]] link_displacement<S> after_node(const link_displacement<S>& parent,
+                                              const tree_node& node, const X& x, int turn,
+                                              const S& theta, const Turns& turns_of,
+                                              const Visit& visit) {
+  constexpr bool is_visited = !std::same_as<Visit, decltype(visit_nothing)>;
   if (node.is_ball) {
+    link_displacement<S> result = origin_of_ball(parent, node);
     const vector3<S> r = ball_coordinates<S>(node, x);
-    origin.rotation = origin.rotation * duet::exp(vector3<S>(r[0] / 2, r[1] / 2, r[2] / 2));
-    return origin;
-  }
-  const S theta = x[node.coordinate];
-  const three_vector<double>& n = node.axis;
-  if (node.slides) {
-    const S way = theta * node.pitch;
-    origin.translation = origin.point(three_vector<S>{way * n.x, way * n.y, way * n.z});
-  }
-  if (node.turns) {
-    const sine_cosine<S> half = sine_and_cosine_of(S(theta / 2));
-    origin.rotation = origin.rotation *
-                      quaternion<S>(half.cosine, half.sine * n.x, half.sine * n.y, half.sine * n.z);
-  }
-  return origin;
-}
-
-template <class S>
-[[nodiscard]] link_displacement<S> standing_still(const placement<double>& at = {}) {
-  const auto& t = at.translation;
-  return {quaternion<S>(at.rotation), {S(t[0]), S(t[1]), S(t[2])}};
-}
-
-/// Where a place stands in the frame of a node `top` above it.
-template <class S, class X>
-[[nodiscard]] link_displacement<S> displacement_below(const tree_table& table, const X& x,
-                                                      const place_on_node& place, int top) {
-  link_displacement<S> result = standing_still<S>(place.offset);
-  for (int k = place.node; k != top;) {
-    const tree_node& node = table.nodes[std::size_t(k)];
-    result = moved<S>(standing_still<S>(node.origin), node, x) * result;
-    k = node.parent;
-  }
-  return result;
-}
-
-/// The screw of a coordinate of a joint: twists of all that the joint carries, per unit of it.
-template <class S>
-struct tree_screw {
-  int at;         ///< of which of the nodes walked over
-  int coordinate; ///< of the joints
-  twist_column<S> twist;
-};
-
-/// Some nodes of a tree, parents first, where they stand in the frame of what is above the first of
-/// them, and the screws of their coordinates: with v at the origin of that frame.
-template <class S>
-struct tree_motion {
-  std::vector<int> nodes;
-  std::vector<int> before; ///< what each hangs on, by its place here; −1: on what is above
-  std::vector<link_displacement<S>> origins; ///< before the motion of each node
-  std::vector<link_displacement<S>> frames;  ///< after it
-  std::vector<tree_screw<S>> screws;
-
-  template <class X>
-  void follow(const tree_table& table, const X& x) {
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const tree_node& node = table.nodes[std::size_t(nodes[i])];
-      origins.push_back(before[i] < 0 ? standing_still<S>(node.origin)
-                                      : attached(frames[std::size_t(before[i])], node.origin));
-      const link_displacement<S>& origin = origins.back();
-      frames.push_back(moved<S>(origin, node, x));
-      if (node.is_ball) {
-        const matrix3<S> j = left_jacobian(ball_coordinates<S>(node, x));
-        for (int k = 0; k < 3; ++k) {
-          const auto omega = rotated(origin.rotation, three_vector<S>{j(0, k), j(1, k), j(2, k)});
-          screws.push_back(
-              {int(i), node.coordinate + k, {cross(origin.translation, omega), omega}});
-        }
-      } else {
-        const three_vector<S> axis = rotated(origin.rotation, node.axis);
-        twist_column<S> twist = no_twist<S>();
-        if (node.turns) {
-          twist = {cross(origin.translation, axis), axis};
-        }
-        if (node.slides) {
-          twist.v = twist.v + S(node.pitch) * axis;
-        }
-        screws.push_back({int(i), node.coordinate, twist});
+    if constexpr (is_visited) {
+      const matrix3<S> j = left_jacobian(r);
+      for (int k = 0; k < 3; ++k) {
+        const auto omega = rotated(result.rotation, three_vector<S>{j(0, k), j(1, k), j(2, k)});
+        visit(node.coordinate + k, twist_column<S>{cross(result.translation, omega), omega});
       }
     }
+    result.rotation = result.rotation * duet::exp(vector3<S>(r[0] / 2, r[1] / 2, r[2] / 2));
+    return result;
   }
+  const auto visit_axis = [&](Eigen::Index, const auto& step, const auto& axis, const auto& point) {
+    if constexpr (is_visited) {
+      twist_column<S> screw = no_twist<S>();
+      if (step.turns()) {
+        screw = {cross(point, axis), axis};
+      }
+      if (step.slides()) {
+        screw.v = screw.v + S(step.pitch()) * axis;
+      }
+      visit(node.coordinate, screw);
+    }
+  };
+  return after_joint<true>(parent, step_in_memory<double>{node.step}, turn, theta, turns_of,
+                           visit_axis);
+}
+
+/// Calls `after(i, node, turn, θ, turns)` for nodes by their places in a list, whose sines are
+/// taken some at a time.
+///
+/// \param node_at  the number of the node at a place
+template <class S, class X, class NodeAt, class After>
+void for_each_node(const tree_table& table, const X& x, int count, const NodeAt& node_at,
+                   const After& after) {
+  constexpr int most = 4;
+  for (int first = 0; first < count; first += most) {
+    const int some = std::min(most, count - first);
+    const auto node = [&](int k) -> const tree_node& {
+      return table.nodes[std::size_t(node_at(first + k))];
+    };
+    std::array<S, most> theta{};
+    for (int k = 0; k < some; ++k) {
+      if (!node(k).is_ball) {
+        theta[std::size_t(k)] = x[node(k).coordinate];
+      }
+    }
+    const half_turns<S, most, std::array<S, most>> turns_of(theta, most, some);
+    for (int k = 0; k < some; ++k) {
+      after(first + k, node(k), k, theta[std::size_t(k)], turns_of);
+    }
+  }
+}
+
+/// The numbers of the nodes from one `top` down to one below it; a few without heap.
+class node_path {
+public:
+  node_path(const tree_table& table, int node, int top) {
+    const auto above = [&](int k) { return table.nodes[std::size_t(k)].parent; };
+    for (int k = node; k != top; k = above(k)) {
+      ++size_;
+    }
+    if (std::size_t(size_) > few_.size()) {
+      many_.resize(std::size_t(size_));
+    }
+    int* end = (many_.empty() ? few_.data() : many_.data()) + size_;
+    for (int k = node; k != top; k = above(k)) {
+      *--end = k;
+    }
+  }
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] int operator()(int i) const {
+    return many_.empty() ? few_[std::size_t(i)] : many_[std::size_t(i)];
+  }
+
+private:
+  int size_ = 0;
+  std::array<int, 32> few_; // those beyond size_ are not set
+  std::vector<int> many_;
 };
 
-/// From a node `top` down to a node below it.
-template <class S, class X>
-[[nodiscard]] tree_motion<S> motion_to(const tree_table& table, const X& x, int node, int top) {
-  tree_motion<S> result;
-  for (int k = node; k != top; k = table.nodes[std::size_t(k)].parent) {
-    result.nodes.push_back(k);
-    result.before.push_back(int(result.before.size()) - 1);
-  }
-  std::reverse(result.nodes.begin(), result.nodes.end());
-  result.follow(table, x);
+/// Where the last node of a path stands in the frame of what is above it. \param visit as of
+/// `after_node`
+template <class S, class X, class Visit>
+[[nodiscard]] link_displacement<S> walk_down(const tree_table& table, const X& x,
+                                             const node_path& path, const Visit& visit) {
+  link_displacement<S> result = standing_still<S>();
+  for_each_node<S>(table, x, path.size(), path,
+                   [&](int, const tree_node& node, int turn, const S& theta, const auto& turns_of) {
+                     result = after_node(result, node, x, turn, theta, turns_of, visit);
+                   });
   return result;
 }
 
-/// Of the whole tree.
+/// Where all nodes stand.
 template <class S, class X>
-[[nodiscard]] tree_motion<S> motion_of_all(const tree_table& table, const X& x) {
-  tree_motion<S> result;
-  for (std::size_t k = 0; k < table.nodes.size(); ++k) {
-    result.nodes.push_back(int(k));
-    result.before.push_back(table.nodes[k].parent);
-  }
-  result.follow(table, x);
+[[nodiscard]] std::vector<link_displacement<S>> frames_of_all(const tree_table& table, const X& x) {
+  const link_displacement<S> root = standing_still<S>();
+  std::vector<link_displacement<S>> result;
+  result.reserve(table.nodes.size());
+  for_each_node<S>(
+      table, x, int(table.nodes.size()), [](int i) { return i; },
+      [&](int, const tree_node& node, int turn, const S& theta, const auto& turns_of) {
+        const auto& parent = node.parent < 0 ? root : result[std::size_t(node.parent)];
+        result.push_back(after_node(parent, node, x, turn, theta, turns_of, visit_nothing));
+      });
   return result;
 }
 

@@ -1,0 +1,80 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/mechanism/chain_walk.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/tree_table.hpp>
+#include <duet/mechanism/tree_walk.hpp>
+
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// Nodes of a tree with their screws, where what they are for needs all at once. For those who
+/// extend duet.
+
+namespace duet::detail {
+
+/// The screw of a coordinate of a joint: twists of all that the joint carries, per unit of it.
+template <class S>
+struct tree_screw {
+  int at;         ///< of which of the nodes walked over
+  int coordinate; ///< of the joints
+  twist_column<S> twist;
+};
+
+/// Some nodes of a tree, parents first, where they stand in the frame of what is above the first of
+/// them, and the screws of their coordinates: with v at the origin of that frame.
+template <class S>
+struct tree_motion {
+  std::vector<int> nodes;
+  std::vector<int> before; ///< what each hangs on, by its place here; −1: on what is above
+  std::vector<link_displacement<S>> frames; ///< after the motion of each node
+  std::vector<tree_screw<S>> screws;
+
+  /// Where the frame of a node stands; of −1: of what is above.
+  [[nodiscard]] link_displacement<S> frame(int i) const {
+    return i < 0 ? standing_still<S>() : frames[std::size_t(i)];
+  }
+
+  template <class X>
+  void follow(const tree_table& table, const X& x) {
+    frames.reserve(nodes.size());
+    screws.reserve(nodes.size());
+    for_each_node<S>(
+        table, x, int(nodes.size()), [&](int i) { return nodes[std::size_t(i)]; },
+        [&](int i, const tree_node& node, int turn, const S& theta, const auto& turns_of) {
+          frames.push_back(after_node(frame(before[std::size_t(i)]), node, x, turn, theta, turns_of,
+                                      [&](int coordinate, const twist_column<S>& twist) {
+                                        screws.push_back({i, coordinate, twist});
+                                      }));
+        });
+  }
+};
+
+/// From a node `top` down to a node below it.
+template <class S, class X>
+[[nodiscard]] tree_motion<S> motion_to(const tree_table& table, const X& x, int node, int top) {
+  const node_path path(table, node, top);
+  tree_motion<S> result;
+  for (int i = 0; i < path.size(); ++i) {
+    result.nodes.push_back(path(i));
+    result.before.push_back(i - 1);
+  }
+  result.follow(table, x);
+  return result;
+}
+
+/// Of the whole tree.
+template <class S, class X>
+[[nodiscard]] tree_motion<S> motion_of_all(const tree_table& table, const X& x) {
+  tree_motion<S> result;
+  for (std::size_t k = 0; k < table.nodes.size(); ++k) {
+    result.nodes.push_back(int(k));
+    result.before.push_back(table.nodes[k].parent);
+  }
+  result.follow(table, x);
+  return result;
+}
+
+} // namespace duet::detail
