@@ -52,7 +52,8 @@ using duet::joint_kind, duet::placement, duet::quaternion;
       const arm_row& row = arm[i];
       const std::string name = side + std::to_string(i);
       // turn about x, then along it, then the joint's axis, then along that
-      origin = origin * placement<double>{quaternion<double>(row.half_cos, row.half_sin, 0, 0), {}} *
+      origin = origin *
+               placement<double>{quaternion<double>(row.half_cos, row.half_sin, 0, 0), {}} *
                placement<double>{still, {row.a, 0, row.d}};
       add(name, parent, joint_kind::revolute, origin, {0, 0, 1});
       origin = {};
@@ -93,11 +94,12 @@ struct kdl_tree {
     for (const duet::tree_joint& joint : robot.joints()) {
       const KDL::Frame origin = frame_of(joint.motion.origin);
       const auto& [x, y, z] = joint.motion.axis;
-      const auto kind = joint.motion.kind == joint_kind::prismatic ? KDL::Joint::TransAxis
-                                                                   : KDL::Joint::RotAxis;
-      const KDL::Joint moves = joint.motion.kind == joint_kind::fixed
-          ? KDL::Joint(joint.name, KDL::Joint::Fixed)
-          : KDL::Joint(joint.name, origin.p, origin.M * KDL::Vector(x, y, z), kind);
+      const auto kind =
+          joint.motion.kind == joint_kind::prismatic ? KDL::Joint::TransAxis : KDL::Joint::RotAxis;
+      const KDL::Joint moves =
+          joint.motion.kind == joint_kind::fixed
+              ? KDL::Joint(joint.name, KDL::Joint::Fixed)
+              : KDL::Joint(joint.name, origin.p, origin.M * KDL::Vector(x, y, z), kind);
       tree.addSegment(KDL::Segment(joint.child, moves, origin), joint.parent);
     }
     solver = std::make_unique<KDL::TreeJntToJacSolver>(tree);
@@ -129,8 +131,8 @@ struct kdl_tree {
   void follow() {
     for (std::size_t i = 1; i < links.size(); ++i) {
       const auto& element = links[i]->second;
-      frames[i] = frames[parents[i]] *
-                  GetTreeElementSegment(element).pose(q(GetTreeElementQNr(element)));
+      frames[i] =
+          frames[parents[i]] * GetTreeElementSegment(element).pose(q(GetTreeElementQNr(element)));
     }
   }
 
@@ -200,9 +202,8 @@ const bool registered = [] {
   expect_agreement("tree_jacobian_over_chain", "chain", numbers(columns), numbers(by_chain(theta)));
   contest("tree_jacobian_over_chain", "duet", q, by_tree);
   contest("tree_jacobian_over_chain", "chain", theta, by_chain);
-  contest("tree_centre_of_mass_jacobian", "duet", q, [robot](const coordinates& x) {
-    return duet::centre_of_mass_jacobian(*robot, x);
-  });
+  contest("tree_centre_of_mass_jacobian", "duet", q,
+          [robot](const coordinates& x) { return duet::centre_of_mass_jacobian(*robot, x); });
 #if DUET_BENCH_KDL
   register_kdl(robot, q);
 #endif

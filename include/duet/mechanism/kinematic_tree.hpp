@@ -54,13 +54,7 @@ struct tree_view {
   place_on_node frame;
   place_on_node observer;
   int top = -1;
-
-  /// Is it seen from the very frame of the node above?
-  [[nodiscard]] bool is_from_above() const {
-    const auto& [x, y, z] = observer.offset.translation;
-    return observer.node == top && observer.offset.rotation == quaternion<double>(1) && x == 0 &&
-        y == 0 && z == 0;
-  }
+  bool is_from_above = true; ///< seen from the very frame of the node above
 };
 
 } // namespace detail
@@ -166,12 +160,13 @@ public:
   [[nodiscard]] auto poses(const X& q) const {
     using S = detail::tree_scalar<X>;
     const detail::joint_coordinates<S, X> x(table_, q);
+    const auto root = detail::standing_still<S>();
     const auto frames = detail::frames_of_all<S>(table_, x);
     std::vector<dual_quaternion<S>> result;
     result.reserve(table_.links.size());
     for (const detail::place_on_node& link : table_.links) {
-      const auto at = detail::attached(
-          link.node < 0 ? detail::standing_still<S>() : frames[std::size_t(link.node)], link.offset);
+      const auto at =
+          detail::attached(link.node < 0 ? root : frames[std::size_t(link.node)], link.offset);
       result.push_back(detail::pose_of_unit(at.rotation, at.translation.eigen()));
     }
     return result;
@@ -202,8 +197,12 @@ public:
   [[nodiscard]] const detail::tree_table& table() const { return table_; }
   /// Where a place is.
   [[nodiscard]] detail::place_on_node place(const attached_frame<double>& at) const {
-    const detail::place_on_node& link = table_.links[std::size_t(this->link(at.link).link)];
-    return {link.node, link.offset * at.offset};
+    detail::place_on_node result = table_.links[std::size_t(link(at.link).link)];
+    const auto& [x, y, z] = at.offset.translation;
+    if (!(at.offset.rotation == quaternion<double>(1) && x == 0 && y == 0 && z == 0)) {
+      result.offset = result.offset * at.offset;
+    }
+    return result;
   }
   /// What is between a frame and what it is seen from.
   template <PlaceOnTree At>
@@ -213,14 +212,14 @@ public:
     } else if constexpr (std::same_as<At, attached_frame<double>>) {
       return {place(at), {}};
     } else {
-      const detail::tree_view result{place(at.frame), place(at.observer)};
+      const detail::tree_view result{place(at.frame), place(at.observer), -1, false};
       int a = result.frame.node;
       int b = result.observer.node;
       while (a != b) { // parents have lower numbers
         int& lower = a > b ? a : b;
         lower = table_.nodes[std::size_t(lower)].parent;
       }
-      return {result.frame, result.observer, a};
+      return {result.frame, result.observer, a, false};
     }
   }
 

@@ -35,7 +35,6 @@ public:
     find_order();
     add_coordinates();
     follow_leaders();
-    find_shared();
     add_nodes();
     add_masses();
   }
@@ -214,21 +213,6 @@ private:
       bad_part(robot_, joint,
                "no motion of \"" + by.joint + "\" is within its limits, " + to_text(range.lower) +
                    " to " + to_text(range.upper));
-    }
-  }
-
-  void find_shared() {
-    std::vector<int> uses(table_.names.size());
-    for (const coordinate_source& source : table_.sources) {
-      ++uses[std::size_t(source.own)];
-    }
-    for (coordinate_source& source : table_.sources) {
-      source.is_shared = uses[std::size_t(source.own)] > 1;
-    }
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-      if (uses[i] > 1) {
-        table_.shared.push_back(int(i));
-      }
     }
   }
 

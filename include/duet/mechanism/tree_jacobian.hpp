@@ -90,45 +90,44 @@ DUET_ALWAYS_INLINE void add_to_column(J& m, const coordinate_source& source, dou
   m(5, source.own) += a.omega.z * factor;
 }
 
+/// Adds the screws of all that is on a path, times a sign, to the columns of their coordinates;
+/// returns where the last node stands.
+template <class S, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
+add_screws(tree_columns<S, 6>& m, const tree_table& table, const X& x, const node_path& path,
+           double sign) {
+  return walk_down<S>(table, x, path,
+                      [&](int coordinate, const twist_column<S>& screw) DUET_INLINE_LAMBDA {
+                        add_to_column(m, table.sources[std::size_t(coordinate)], sign, screw);
+                      });
+}
+
 /// Makes m the Jacobian of a frame of a tree; returns where that stands.
 template <class Frame, class S, class X>
 [[nodiscard]] viewed_frames<S> fill_jacobian(tree_columns<S, 6>& m, const tree_table& table,
                                              const X& x, const tree_view& view) {
   m.setConstant(6, Eigen::Index(table.names.size()), S(0));
-  const auto stands = [&](const node_path& path, const placement<double>& offset, double sign) {
-    const auto add = [&](int coordinate, const twist_column<S>& screw) {
-      add_to_column(m, table.sources[std::size_t(coordinate)], sign, screw);
-    };
-    return attached(walk_down<S>(table, x, path, add), offset);
-  };
   const node_path to_frame(table, view.frame.node, view.top);
-  const node_path to_observer(table, view.observer.node, view.top);
-  const viewed_frames<S> result{stands(to_frame, view.frame.offset, 1),
-                                stands(to_observer, view.observer.offset, -1)};
-  if (std::same_as<Frame, spatial_frame> && view.is_from_above()) {
-    return result;
+  viewed_frames<S> result{attached(add_screws<S>(m, table, x, to_frame, 1), view.frame.offset),
+                          standing_still<S>()};
+  if (!view.is_from_above) {
+    const node_path to_observer(table, view.observer.node, view.top);
+    result.observer = attached(add_screws<S>(m, table, x, to_observer, -1), view.observer.offset);
   }
-  const three_vector<S>& p = result.template origin<Frame>().translation;
-  const bool is_turned = std::same_as<Frame, body_frame> || !view.is_from_above();
-  const rotation_of_many turn(conj(result.template axes<Frame>().rotation));
-  const auto see = [&](int own) { // Rᵀ(v + ω × p), Rᵀω
-    const twist_column<S> a = column_of(m, own);
-    const twist_column<S> at_p{a.v + cross(a.omega, p), a.omega};
-    set_column(m, is_turned ? twist_column<S>{turn(at_p.v), turn(at_p.omega)} : at_p, own);
-  };
-  for (const node_path* path : {&to_frame, &to_observer}) {
-    for (int i = 0; i < path->size(); ++i) {
-      const tree_node& node = table.nodes[std::size_t((*path)(i))];
-      for (int k = 0; k < node.coordinates(); ++k) {
-        const coordinate_source& source = table.sources[std::size_t(node.coordinate + k)];
-        if (!source.is_shared) {
-          see(source.own);
-        }
-      }
+  // All columns, as what is zero stays so: to find those that are not takes longer.
+  if (!std::same_as<Frame, spatial_frame> || !view.is_from_above) {
+    const three_vector<S>& p = result.template origin<Frame>().translation;
+    for (Eigen::Index i = 0; i < m.cols(); ++i) {
+      const twist_column<S> twist = column_of(m, i);
+      set_column(m, twist_column<S>{twist.v + cross(twist.omega, p), twist.omega}, i);
     }
   }
-  for (const int own : table.shared) {
-    see(own);
+  if (std::same_as<Frame, body_frame> || !view.is_from_above) {
+    const rotation_of_many turn(conj(result.template axes<Frame>().rotation));
+    for (Eigen::Index i = 0; i < m.cols(); ++i) {
+      const twist_column<S> twist = column_of(m, i);
+      set_column(m, twist_column<S>{turn(twist.v), turn(twist.omega)}, i);
+    }
   }
   return result;
 }

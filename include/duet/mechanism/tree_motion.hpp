@@ -41,13 +41,13 @@ struct tree_motion {
   void follow(const tree_table& table, const X& x) {
     frames.reserve(nodes.size());
     screws.reserve(nodes.size());
+    const auto put_screw = [&](int coordinate, const twist_column<S>& twist) {
+      screws.push_back({int(frames.size()), coordinate, twist});
+    };
     for_each_node<S>(
-        table, x, int(nodes.size()), [&](int i) { return nodes[std::size_t(i)]; },
-        [&](int i, const tree_node& node, int turn, const S& theta, const auto& turns_of) {
-          frames.push_back(after_node(frame(before[std::size_t(i)]), node, x, turn, theta, turns_of,
-                                      [&](int coordinate, const twist_column<S>& twist) {
-                                        screws.push_back({i, coordinate, twist});
-                                      }));
+        table, x, int(nodes.size()), [&](int i) { return nodes[std::size_t(i)]; }, put_screw,
+        [&](const tree_node&, const auto& move) {
+          frames.push_back(move(frame(before[frames.size()])));
         });
   }
 };
@@ -57,9 +57,9 @@ template <class S, class X>
 [[nodiscard]] tree_motion<S> motion_to(const tree_table& table, const X& x, int node, int top) {
   const node_path path(table, node, top);
   tree_motion<S> result;
-  for (int i = 0; i < path.size(); ++i) {
-    result.nodes.push_back(path(i));
-    result.before.push_back(i - 1);
+  for (const int k : path) {
+    result.before.push_back(int(result.nodes.size()) - 1);
+    result.nodes.push_back(k);
   }
   result.follow(table, x);
   return result;

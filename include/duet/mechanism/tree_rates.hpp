@@ -80,8 +80,8 @@ template <class S, class X, class V>
       const twist_column<S>& twist = screw->twist;
       twist_column<S> rate = bracket(before, twist);
       if (node.is_ball) {
-        const three_vector<S> omega = rotated(
-            origin.rotation, three_vector<S>{turns(0, k), turns(1, k), turns(2, k)});
+        const three_vector<S> omega =
+            rotated(origin.rotation, three_vector<S>{turns(0, k), turns(1, k), turns(2, k)});
         rate = sum(rate, {cross(origin.translation, omega), omega});
       }
       result.screws.push_back(rate);

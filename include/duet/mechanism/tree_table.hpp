@@ -41,7 +41,6 @@ struct coordinate_source {
   int own = -1;
   double multiplier = 1;
   double offset = 0;
-  bool is_shared = false; ///< with other coordinates of joints
 };
 
 /// Of all that is fixed to a node, in its frame.
@@ -55,7 +54,6 @@ struct tree_table {
   std::vector<mass_on_node> masses;         ///< of the root, then of each node
   std::vector<place_on_node> links;         ///< where each link is
   std::vector<coordinate_source> sources;   ///< of the coordinates of all joints
-  std::vector<int> shared;                  ///< coordinates of the tree that several of joints have
   std::vector<std::string> names;           ///< of the coordinates of the tree
   std::vector<joint_limits<double>> limits; ///< of the coordinates of the tree
   std::unordered_map<std::string, int> link_numbers;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual/promotion.hpp>
@@ -103,67 +104,71 @@ template <class S>
   return {parent.rotation * node.step.a, parent.point(node.step.offset)};
 }
 
-/// Where the frame of a node stands after its motion.
-///
-/// \param visit  called with the number of each coordinate of the node and its screw: twists of all
-///               that the node carries, per unit of it, with v at the origin; or `visit_nothing`
-template <class S, class X, class Turns, class Visit>
-[[nodiscard]] link_displacement<S> after_node(const link_displacement<S>& parent,
-                                              const tree_node& node, const X& x, int turn,
-                                              const S& theta, const Turns& turns_of,
+/// Where the frame of a ball stands after its motion. \param visit  as of `for_each_node`
+template <class S, class X, class Visit>
+[[nodiscard]] link_displacement<S> after_ball(const link_displacement<S>& parent,
+                                              const tree_node& node, const X& x,
                                               const Visit& visit) {
-  constexpr bool is_visited = !std::same_as<Visit, decltype(visit_nothing)>;
-  if (node.is_ball) {
-    link_displacement<S> result = origin_of_ball(parent, node);
-    const vector3<S> r = ball_coordinates<S>(node, x);
-    if constexpr (is_visited) {
-      const matrix3<S> j = left_jacobian(r);
-      for (int k = 0; k < 3; ++k) {
-        const auto omega = rotated(result.rotation, three_vector<S>{j(0, k), j(1, k), j(2, k)});
-        visit(node.coordinate + k, twist_column<S>{cross(result.translation, omega), omega});
-      }
+  link_displacement<S> result = origin_of_ball(parent, node);
+  const vector3<S> r = ball_coordinates<S>(node, x);
+  if constexpr (!std::same_as<Visit, decltype(visit_nothing)>) {
+    const matrix3<S> j = left_jacobian(r);
+    for (int k = 0; k < 3; ++k) {
+      const auto omega = rotated(result.rotation, three_vector<S>{j(0, k), j(1, k), j(2, k)});
+      visit(node.coordinate + k, twist_column<S>{cross(result.translation, omega), omega});
     }
-    result.rotation = result.rotation * duet::exp(vector3<S>(r[0] / 2, r[1] / 2, r[2] / 2));
-    return result;
   }
-  const auto visit_axis = [&](Eigen::Index, const auto& step, const auto& axis, const auto& point) {
-    if constexpr (is_visited) {
-      twist_column<S> screw = no_twist<S>();
-      if (step.turns()) {
-        screw = {cross(point, axis), axis};
-      }
-      if (step.slides()) {
-        screw.v = screw.v + S(step.pitch()) * axis;
-      }
-      visit(node.coordinate, screw);
-    }
-  };
-  return after_joint<true>(parent, step_in_memory<double>{node.step}, turn, theta, turns_of,
-                           visit_axis);
+  result.rotation = result.rotation * duet::exp(vector3<S>(r[0] / 2, r[1] / 2, r[2] / 2));
+  return result;
 }
 
-/// Calls `after(i, node, turn, θ, turns)` for nodes by their places in a list, whose sines are
-/// taken some at a time.
+/// Calls `after(node, move)` for nodes by their places in a list, where `move(A)` is where the
+/// frame of the node stands if that of its parent is at A. Sines are taken some at a time.
 ///
 /// \param node_at  the number of the node at a place
-template <class S, class X, class NodeAt, class After>
-void for_each_node(const tree_table& table, const X& x, int count, const NodeAt& node_at,
-                   const After& after) {
-  constexpr int most = 4;
-  for (int first = 0; first < count; first += most) {
-    const int some = std::min(most, count - first);
-    const auto node = [&](int k) -> const tree_node& {
-      return table.nodes[std::size_t(node_at(first + k))];
-    };
-    std::array<S, most> theta{};
-    for (int k = 0; k < some; ++k) {
-      if (!node(k).is_ball) {
-        theta[std::size_t(k)] = x[node(k).coordinate];
-      }
+/// \param visit    called with the number of each coordinate and its screw: twists of all that the
+///                 node carries, per unit of it, with v at the origin; or `visit_nothing`
+template <class S, class X, class NodeAt, class Visit, class After>
+DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int count,
+                                      const NodeAt& node_at, const Visit& visit,
+                                      const After& after) {
+  const auto node = [&](int i) DUET_INLINE_LAMBDA -> const tree_node& {
+    return table.nodes[std::size_t(node_at(i))];
+  };
+  constexpr int most = 16;
+  for (int i = 0; i < count;) {
+    // As many as there are up to a ball: where that was a branch within, one in five took longer.
+    std::array<S, most> theta;
+    int some = 0;
+    for (; some < most && i + some < count && !node(i + some).is_ball; ++some) {
+      theta[std::size_t(some)] = x[node(i + some).coordinate];
     }
-    const half_turns<S, most, std::array<S, most>> turns_of(theta, most, some);
-    for (int k = 0; k < some; ++k) {
-      after(first + k, node(k), k, theta[std::size_t(k)], turns_of);
+    const half_turns<S, -most, std::array<S, most>> turns_of(theta, some, some);
+    for (int k = 0; k < some; ++k, ++i) {
+      const int coordinate = node(i).coordinate;
+      const auto put_screw = [&](Eigen::Index, const auto& step, const auto& axis,
+                                 const auto& point) DUET_INLINE_LAMBDA {
+        if constexpr (!std::same_as<Visit, decltype(visit_nothing)>) {
+          twist_column<S> screw = no_twist<S>();
+          if (step.turns()) {
+            screw = {cross(point, axis), axis};
+          }
+          if (step.slides()) {
+            screw.v = screw.v + step.pitch() * axis;
+          }
+          visit(coordinate, screw);
+        }
+      };
+      after(node(i), [&](const link_displacement<S>& parent) DUET_INLINE_LAMBDA {
+        return link_displacement<S>(after_joint<true>(parent, step_in_memory<double>{node(i).step},
+                                                      k, theta[std::size_t(k)], turns_of,
+                                                      put_screw));
+      });
+    }
+    if (i < count && node(i).is_ball) {
+      after(node(i), [&](link_displacement<S> parent)
+                         DUET_INLINE_LAMBDA { return after_ball(parent, node(i), x, visit); });
+      ++i;
     }
   }
 }
@@ -173,39 +178,46 @@ class node_path {
 public:
   node_path(const tree_table& table, int node, int top) {
     const auto above = [&](int k) { return table.nodes[std::size_t(k)].parent; };
-    for (int k = node; k != top; k = above(k)) {
-      ++size_;
+    int* first = few_.data() + few_.size();
+    for (; node != top && first != few_.data(); node = above(node)) {
+      *--first = node;
     }
-    if (std::size_t(size_) > few_.size()) {
-      many_.resize(std::size_t(size_));
-    }
-    int* end = (many_.empty() ? few_.data() : many_.data()) + size_;
-    for (int k = node; k != top; k = above(k)) {
-      *--end = k;
+    begin_ = first;
+    size_ = int(few_.data() + few_.size() - first);
+    if (node != top) {
+      many_.assign(few_.rbegin(), few_.rend());
+      for (; node != top; node = above(node)) {
+        many_.push_back(node);
+      }
+      std::reverse(many_.begin(), many_.end());
+      begin_ = many_.data();
+      size_ = int(many_.size());
     }
   }
+  node_path(const node_path&) = delete;
+  node_path& operator=(const node_path&) = delete;
 
   [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] int operator()(int i) const {
-    return many_.empty() ? few_[std::size_t(i)] : many_[std::size_t(i)];
-  }
+  [[nodiscard]] const int* begin() const { return begin_; }
+  [[nodiscard]] const int* end() const { return begin_ + size_; }
 
 private:
-  int size_ = 0;
-  std::array<int, 32> few_; // those beyond size_ are not set
+  int size_;
+  const int* begin_;
+  std::array<int, 32> few_; // the last of them are set
   std::vector<int> many_;
 };
 
-/// Where the last node of a path stands in the frame of what is above it. \param visit as of
-/// `after_node`
+/// Where the last node of a path stands in the frame of what is above it. \param visit  as of
+/// `for_each_node`
 template <class S, class X, class Visit>
-[[nodiscard]] link_displacement<S> walk_down(const tree_table& table, const X& x,
-                                             const node_path& path, const Visit& visit) {
+[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
+walk_down(const tree_table& table, const X& x, const node_path& path, const Visit& visit) {
   link_displacement<S> result = standing_still<S>();
-  for_each_node<S>(table, x, path.size(), path,
-                   [&](int, const tree_node& node, int turn, const S& theta, const auto& turns_of) {
-                     result = after_node(result, node, x, turn, theta, turns_of, visit);
-                   });
+  const int* nodes = path.begin();
+  for_each_node<S>(
+      table, x, path.size(), [&](int i) { return nodes[i]; }, visit,
+      [&](const tree_node&, const auto& move) DUET_INLINE_LAMBDA { result = move(result); });
   return result;
 }
 
@@ -216,10 +228,9 @@ template <class S, class X>
   std::vector<link_displacement<S>> result;
   result.reserve(table.nodes.size());
   for_each_node<S>(
-      table, x, int(table.nodes.size()), [](int i) { return i; },
-      [&](int, const tree_node& node, int turn, const S& theta, const auto& turns_of) {
-        const auto& parent = node.parent < 0 ? root : result[std::size_t(node.parent)];
-        result.push_back(after_node(parent, node, x, turn, theta, turns_of, visit_nothing));
+      table, x, int(table.nodes.size()), [](int i) { return i; }, visit_nothing,
+      [&](const tree_node& node, const auto& move) DUET_INLINE_LAMBDA {
+        result.push_back(move(node.parent < 0 ? root : result[std::size_t(node.parent)]));
       });
   return result;
 }
