@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-// Robot descriptions: what is read is a chain, what is not is told on one line.
+// Robot descriptions: what is read is a chain and a tree, what is not is told on one line.
 
 namespace test_fuzz_urdf {
 
@@ -50,28 +50,58 @@ std::vector<std::string> seeds() {
       "<robot>" + links + joint + "</robot>",
       "<robot>" + links + joint +
           "<joint name=\"m\" type=\"revolute\"><parent link=\"c\"/><child link=\"b\"/>"
-          "<mimic joint=\"q\"/></joint></robot>"};
+          "<mimic joint=\"q\"/></joint></robot>",
+      "<robot>" + links +
+          "<joint name=\"f\" type=\"floating\"><parent link=\"a\"/><child link=\"b\"/></joint>"
+          "<joint name=\"p\" type=\"planar\"><parent link=\"a\"/><child link=\"c\"/>"
+          "<axis xyz=\"0 0 -1\"/></joint></robot>"};
+}
+
+/// Rotations are rotations, places are finite.
+void require_pose(const duet::dual_quaternion<double>& a) {
+  duet_fuzz::require(std::abs(norm(duet::rotation(a)) - 1) < 1e-12, "rotations");
+  duet_fuzz::require(duet::translation(a).allFinite(), "finite places");
+}
+
+/// \param names  of its coordinates
+template <class Robot>
+Eigen::VectorXd coordinates_of(const Robot& robot, const std::vector<std::string>& names) {
+  const int n = robot.size();
+  duet_fuzz::require(int(names.size()) == n, "as many names as coordinates");
+  Eigen::VectorXd q(n);
+  for (int i = 0; i < n; ++i) {
+    const auto& limits = robot.limits(i);
+    duet_fuzz::require(limits.lower <= limits.upper && limits.velocity >= 0, "limits in order");
+    q[i] = i / 7.0;
+  }
+  return q;
+}
+
+/// Calls `read`, which may say that it does not.
+template <class Read>
+void read_or_told(const Read& read) {
+  try {
+    read();
+  } catch (const duet::invalid_input& error) {
+    duet_fuzz::require_message(error.what(), "duet: ");
+  }
 }
 
 void target(const std::string& input) {
   const std::string path = "fuzz_urdf.urdf";
   std::ofstream(path, std::ios::binary) << input;
-  try {
+  read_or_told([&] {
     const auto chain = duet::read_urdf(path, "a", "c");
-    const int n = chain.size();
-    duet_fuzz::require(int(chain.joint_names().size()) == n, "as many names as joints");
-    Eigen::VectorXd theta(n);
-    for (int i = 0; i < n; ++i) {
-      const auto& limits = chain.limits(i);
-      duet_fuzz::require(limits.lower <= limits.upper && limits.velocity >= 0, "limits in order");
-      theta[i] = i / 7.0;
+    require_pose(chain.pose(coordinates_of(chain, chain.joint_names())));
+  });
+  read_or_told([&] {
+    const auto tree = duet::read_urdf_tree(path);
+    const auto poses = tree.poses(coordinates_of(tree, tree.coordinate_names()));
+    duet_fuzz::require(poses.size() == tree.links().size(), "as many poses as links");
+    for (const auto& pose : poses) {
+      require_pose(pose);
     }
-    const auto a = chain.pose(theta);
-    duet_fuzz::require(std::abs(norm(duet::rotation(a)) - 1) < 1e-12, "rotations");
-    duet_fuzz::require(duet::translation(a).allFinite(), "finite places");
-  } catch (const duet::invalid_input& error) {
-    duet_fuzz::require_message(error.what(), "duet: ");
-  }
+  });
   std::remove(path.c_str());
 }
 

@@ -5,6 +5,7 @@
 #include "support/allocations.hpp"
 
 #include <duet/mechanism/sweep.hpp>
+#include <duet/mechanism/tree_jacobian.hpp>
 #include <duet/mechanism/urdf.hpp>
 
 #include <cstddef>
@@ -45,6 +46,27 @@ TEST_CASE("sweeps on one core allocate nothing") {
   const std::size_t during = duet_test::allocations - before;
   CHECK(during == 0);
   CHECK(columns.back().norm() > 1);
+}
+
+TEST_CASE("poses and Jacobians of a tree allocate no more than what they return") {
+  robot_description robot{.links = {{"0"}}};
+  for (int i = 1; i <= 30; ++i) {
+    const std::string name = std::to_string(i);
+    robot.links.push_back({name});
+    robot.joints.push_back({name, i % 2 == 0 ? "0" : std::to_string(i / 2), name, {}});
+  }
+  const kinematic_tree tree(robot);
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(30, -1, 1);
+  const auto hand = tree.link("29");
+  const relative_frame seen{hand, tree.link("28")};
+  const std::size_t before = duet_test::allocations; // matrices of Eigen are not counted
+  double sum = norm(rotation(tree.pose(q, hand))) + norm(rotation(tree.pose(q, seen)));
+  sum += jacobian(tree, q, frame::body, hand)(0, 0);
+  sum += pose_and_jacobian(tree, q, frame::hybrid, seen).jacobian(0, 0);
+  CHECK(duet_test::allocations - before == 0);
+  CHECK(sum == sum);
+  CHECK(tree.poses(q).size() == 31); // and where what moves stands
+  CHECK(duet_test::allocations - before == 2);
 }
 
 TEST_CASE("memory and time of descriptions grow with their length, not its square") {

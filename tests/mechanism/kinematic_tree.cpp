@@ -12,6 +12,7 @@
 #include <duet/mechanism/centre_of_mass.hpp>
 #include <duet/mechanism/kinematic_tree.hpp>
 #include <duet/mechanism/tree_jacobian.hpp>
+#include <duet/mechanism/tree_limits.hpp>
 
 #include <cmath>
 #include <string>
@@ -323,6 +324,80 @@ TEST_CASE("no depth is too much") {
   CHECK(std::abs(centre_of_mass_jacobian(tree, q)(2, 1) - count / 4.) < 1e-8);
   CHECK(tree.poses(q).size() == count + 1);
   CHECK(jacobian_rate(tree, q, q, frame::body, count).cwiseAbs().maxCoeff() < 1e-9);
+}
+
+TEST_CASE("paths of all lengths, with balls anywhere on them, are walked alike") {
+  duet_test::random_source random(21);
+  robot_description robot{.links = {{"0"}}};
+  for (int i = 1; i <= 41; ++i) {
+    const std::string name = std::to_string(i);
+    robot.links.push_back({name});
+    const auto kind = i == 18 || i == 35 || i == 36 ? joint_kind::spherical
+                      : i % 3 == 0                  ? joint_kind::prismatic
+                                                    : joint_kind::revolute;
+    robot.joints.push_back(
+        {name,
+         std::to_string(i - 1),
+         name,
+         {kind, duet_test::place(.1 * i, 1, -.2, .02, .1, .01 * i), {0, .6, .8}}});
+  }
+  const kinematic_tree tree(robot);
+  const VectorXd q = random_vector(tree.size(), random);
+  dual_quaternion<double> at{quaternion<double>(1)};
+  int k = 0;
+  for (int i = 1; i <= 41; ++i) {
+    const joint<double>& moves = robot.joints[std::size_t(i - 1)].motion;
+    const Vector3d axis(moves.axis[0], moves.axis[1], moves.axis[2]);
+    at = at * moves.origin.pose();
+    if (moves.kind == joint_kind::prismatic) {
+      at = at * pose(quaternion<double>(1), Vector3d(q[k] * axis));
+    } else {
+      const Vector3d turn =
+          moves.kind == joint_kind::spherical ? Vector3d(q.segment<3>(k)) : Vector3d(q[k] * axis);
+      at = at * pose(from_rotation_vector(turn), Vector3d(0, 0, 0));
+    }
+    k += moves.coordinates();
+    CHECK(gap(transform_matrix(tree.pose(q, i)), transform_matrix(at)) < 1e-13);
+    if (i % 8 <= 1) { // 16, 17, 32, 33 among them
+      const auto by_duals =
+          jacobian([&](const auto& x) { return tree.pose(x, i); }, q, frame::body).jacobian;
+      CHECK(gap(jacobian(tree, q, frame::body, i), by_duals) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("other limits of coordinates") {
+  robot_description robot = all_joints();
+  const kinematic_tree tree(robot);
+  const int bend = tree.coordinate("bend");
+  const auto one = with_limits(tree, "bend", {.lower = -7, .upper = 8});
+  CHECK(one.limits(bend).lower == -7);
+  CHECK(one.limits(bend).upper == 8);
+  CHECK(one.limits(bend).velocity == INFINITY);
+  for (int i = 0; i < tree.size(); ++i) {
+    CHECK((i == bend || one.limits(i).upper == tree.limits(i).upper));
+  }
+  CHECK(one.chain("shoulder", "elbow").limits(0).upper == 8);
+  CHECK(tree.chain("shoulder", "elbow").limits(0).upper != 8);
+  const int x = tree.coordinate("free.x");
+  const auto all = with_limits(one, VectorXd::Constant(tree.size(), -.5),
+                               VectorXd::LinSpaced(tree.size(), 1, 2));
+  CHECK(all.limits(x).lower == -.5);
+  CHECK(all.limits(tree.size() - 1).upper == 2);
+  CHECK(all.chain("shoulder", "elbow").limits(0).lower == -.5);
+  CHECK(with_limits(all, x, {.velocity = 3}).limits(x).velocity == 3);
+  CHECK(duet_test::message_of([&] {
+          (void)with_limits(tree, "bent", {});
+        }).rfind("duet: kinematic_tree: no coordinate \"bent\": ", 0) == 0);
+  CHECK(duet_test::message_of([&] {
+          (void)with_limits(tree, 99, {});
+        }).rfind("duet: with_limits: no coordinate 99 of ", 0) == 0);
+  CHECK(duet_test::message_of([&] {
+          (void)with_limits(tree, "free.x", {.lower = 1, .upper = 0});
+        }).rfind("duet: with_limits: joint ", 0) == 0);
+  CHECK(duet_test::message_of([&] {
+          (void)with_limits(tree, VectorXd::Zero(2), VectorXd::Ones(tree.size()));
+        }).rfind("duet: with_limits: 2 lower and ", 0) == 0);
 }
 
 TEST_CASE("joints that follow narrow the limits of what they follow") {

@@ -65,6 +65,14 @@ constexpr void require_joint(const joint<T>& given, std::size_t i,
   require_limits(given.limits, i, function, name);
 }
 
+/// The kind of a joint within limits: with one that is no more `continuous`.
+template <class T>
+[[nodiscard]] constexpr joint_kind kind_within(joint_kind kind, const joint_limits<T>& limits) {
+  const T infinity = std::numeric_limits<T>::infinity();
+  const bool is_limited = limits.lower > -infinity || infinity > limits.upper;
+  return kind == joint_kind::continuous && is_limited ? joint_kind::revolute : kind;
+}
+
 /// A joint that stands at an origin, made ready.
 template <class T>
 [[nodiscard]] constexpr joint_step<T> step_of(const joint<T>& given, const placement<T>& origin) {

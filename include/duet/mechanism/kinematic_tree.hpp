@@ -9,6 +9,7 @@
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/joint_checks.hpp>
 #include <duet/mechanism/robot_description.hpp>
 #include <duet/mechanism/tree_builder.hpp>
 #include <duet/mechanism/tree_chain.hpp>
@@ -195,6 +196,19 @@ public:
 
   /// The table that evaluation reads.
   [[nodiscard]] const detail::tree_table& table() const { return table_; }
+  /// Puts other limits in place of those of coordinate i, which must be good. With one a joint is
+  /// no more `continuous`.
+  void set_limits(int i, const joint_limits<double>& limits) {
+    table_.limits[std::size_t(i)] = limits;
+    for (tree_joint& joint : description_.joints) {
+      const int count = joint.mimic ? 0 : joint.motion.coordinates();
+      if (i == 0 && count == 1) {
+        joint.motion.kind = detail::kind_within(joint.motion.kind, limits);
+        joint.motion.limits = limits;
+      }
+      i -= count;
+    }
+  }
   /// Where a place is.
   [[nodiscard]] detail::place_on_node place(const attached_frame<double>& at) const {
     detail::place_on_node result = table_.links[std::size_t(link(at.link).link)];

@@ -14,7 +14,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -166,11 +165,8 @@ public:
   /// Puts other limits in place of those of joint i, which must be good. With one a joint is no
   /// more `continuous`.
   constexpr void set_limits(int i, const joint_limits<T>& limits) {
-    const T infinity = std::numeric_limits<T>::infinity();
     joint_kind& kind = kinds_[std::size_t(i)];
-    if (kind == joint_kind::continuous && (limits.lower > -infinity || infinity > limits.upper)) {
-      kind = joint_kind::revolute;
-    }
+    kind = detail::kind_within(kind, limits);
     limits_[std::size_t(i)] = limits;
   }
 
