@@ -1,13 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// A robot of two arms on a torso, a head and two grippers as a tree of duet and of Orocos KDL; and
-/// one of its arms as a serial chain of the same joints.
+/// A robot of two arms on a torso, a head and two grippers, and an arm alone, as trees of duet and
+/// of Orocos KDL; and that arm as a serial chain.
 
 #include "support/contest.hpp"
 #include "workloads.hpp"
 
-#include <duet/mechanism/centre_of_mass.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/kinematic_tree.hpp>
 #include <duet/mechanism/tree_jacobian.hpp>
@@ -32,40 +31,49 @@ namespace {
 
 using duet::joint_kind, duet::placement, duet::quaternion;
 
-/// Names of links are those of the joints above them.
-[[nodiscard]] duet::robot_description two_arms() {
-  const quaternion<double> still(1);
-  duet::robot_description robot{.links = {{"base"}}};
-  const auto add = [&](const std::string& name, const std::string& parent, joint_kind kind,
-                       const placement<double>& origin, const std::array<double, 3>& axis) {
-    robot.links.push_back({name, duet::link_inertia{.mass = 1, .frame = {still, {0, .01, .05}}}});
-    robot.joints.push_back({name, parent, name, {kind, origin, axis}});
-  };
-  add("waist", "base", joint_kind::revolute, {still, {0, 0, .6}}, {0, 0, 1});
-  add("pan", "waist", joint_kind::revolute, {still, {0, 0, .6}}, {0, 0, 1});
-  add("tilt", "pan", joint_kind::revolute, {still, {.05, 0, .1}}, {0, 1, 0});
-  for (const auto& [side, sign] : {std::pair("left", 1.), std::pair("right", -1.)}) {
-    std::string parent = "waist";
-    placement<double> origin{quaternion<double>(std::cos(.4), -sign * std::sin(.4), 0, 0),
-                             {0, sign * .2, .4}};
-    for (std::size_t i = 0; i < arm.size(); ++i) {
-      const arm_row& row = arm[i];
-      const std::string name = side + std::to_string(i);
-      // turn about x, then along it, then the joint's axis, then along that
-      origin = origin *
-               placement<double>{quaternion<double>(row.half_cos, row.half_sin, 0, 0), {}} *
-               placement<double>{still, {row.a, 0, row.d}};
-      add(name, parent, joint_kind::revolute, origin, {0, 0, 1});
-      origin = {};
-      parent = name;
-    }
-    add(side + std::string("_hand"), parent, joint_kind::fixed, {still, {0, 0, .1}}, {0, 0, 1});
-    for (const double way : {1., -1.}) {
-      const std::string name = side + std::string(way > 0 ? "_finger" : "_thumb");
-      add(name, side + std::string("_hand"), joint_kind::prismatic, {still, {0, 0, .05}},
-          {0, way, 0});
-    }
+const quaternion<double> still(1);
+
+/// The link has the name of the joint.
+void add(duet::robot_description& robot, const std::string& name, const std::string& parent,
+         joint_kind kind, const placement<double>& origin, const std::array<double, 3>& axis) {
+  robot.links.push_back({name, duet::link_inertia{.mass = 1, .frame = {still, {0, .01, .05}}}});
+  robot.joints.push_back({name, parent, name, {kind, origin, axis}});
+}
+
+/// Seven joints and a hand. \param side  begins their names
+void add_arm(duet::robot_description& robot, const std::string& side, std::string parent,
+             placement<double> origin) {
+  for (std::size_t i = 0; i < arm.size(); ++i) {
+    const arm_row& row = arm[i]; // turn about x, move along it, then turn about z
+    const std::string name = side + std::to_string(i);
+    origin = origin * placement<double>{quaternion<double>(row.half_cos, row.half_sin, 0, 0), {}} *
+             placement<double>{still, {row.a, 0, row.d}};
+    add(robot, name, parent, joint_kind::revolute, origin, {0, 0, 1});
+    origin = {};
+    parent = name;
   }
+  add(robot, side + "_hand", parent, joint_kind::fixed, {still, {0, 0, .1}}, {0, 0, 1});
+}
+
+[[nodiscard]] duet::robot_description two_arms() {
+  duet::robot_description robot{.links = {{"base"}}};
+  add(robot, "waist", "base", joint_kind::revolute, {still, {0, 0, .6}}, {0, 0, 1});
+  add(robot, "pan", "waist", joint_kind::revolute, {still, {0, 0, .6}}, {0, 0, 1});
+  add(robot, "tilt", "pan", joint_kind::revolute, {still, {.05, 0, .1}}, {0, 1, 0});
+  for (const auto& [side, sign] : {std::pair<std::string, double>("left", 1), {"right", -1}}) {
+    add_arm(robot, side, "waist",
+            {quaternion<double>(std::cos(.4), -sign * std::sin(.4), 0, 0), {0, sign * .2, .4}});
+    add(robot, side + "_finger", side + "_hand", joint_kind::prismatic, {still, {0, 0, .05}},
+        {0, 1, 0});
+    add(robot, side + "_thumb", side + "_hand", joint_kind::prismatic, {still, {0, 0, .05}},
+        {0, -1, 0});
+  }
+  return robot;
+}
+
+[[nodiscard]] duet::robot_description one_arm() {
+  duet::robot_description robot{.links = {{"base"}}};
+  add_arm(robot, "left", "base", {});
   return robot;
 }
 
@@ -145,23 +153,29 @@ struct kdl_tree {
   KDL::Jacobian columns;
 };
 
-void register_kdl(const std::shared_ptr<const duet::kinematic_tree>& robot, const coordinates& q) {
-  const auto kdl = std::make_shared<kdl_tree>(*robot);
+void register_kdl_jacobian(const std::string& workload, const duet::kinematic_tree& robot,
+                           const coordinates& q) {
+  const auto kdl = std::make_shared<kdl_tree>(robot);
   const auto jacobian_of = [kdl](const coordinates& x) {
     kdl->set(x);
     (void)kdl->solver->JntToJac(kdl->q, kdl->columns, "left_hand");
     return &kdl->columns;
   };
+  expect_agreement(workload, "kdl",
+                   numbers(jacobian(robot, q, duet::frame::hybrid, robot.link("left_hand"))),
+                   numbers(jacobian_of(q)->data));
+  contest(workload, "kdl", q, jacobian_of);
+}
+
+void register_kdl_poses(const duet::kinematic_tree& robot, const coordinates& q) {
+  const auto kdl = std::make_shared<kdl_tree>(robot);
   const auto poses_of = [kdl](const coordinates& x) {
     kdl->set(x);
     kdl->follow();
     return kdl->frames.data();
   };
-  expect_agreement("tree_jacobian", "kdl",
-                   numbers(jacobian(*robot, q, duet::frame::hybrid, robot->link("left_hand"))),
-                   numbers(jacobian_of(q)->data));
   std::vector<double> ours, theirs;
-  const auto poses = robot->poses(q);
+  const auto poses = robot.poses(q);
   const KDL::Frame* frames = poses_of(q);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Matrix4d m = duet::transform_matrix(poses[i]);
@@ -172,41 +186,46 @@ void register_kdl(const std::shared_ptr<const duet::kinematic_tree>& robot, cons
   }
   expect_agreement("tree_poses", "kdl", ours, theirs);
   contest("tree_poses", "kdl", q, poses_of);
-  contest("tree_jacobian", "kdl", q, jacobian_of);
 }
 #endif
 
-const bool registered = [] {
-  const auto robot = std::make_shared<const duet::kinematic_tree>(two_arms());
-  coordinates q(robot->size());
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    q[i] = std::sin(1. + double(i));
-  }
-  const auto hand = robot->link("left_hand");
-  contest("tree_poses", "duet", q, [robot](const coordinates& x) { return robot->poses(x); });
+void register_jacobian(const std::string& workload, const duet::kinematic_tree& robot,
+                       const coordinates& q) {
+  const auto hand = robot.link("left_hand");
   const auto by_tree = [robot, hand](const coordinates& x) {
-    return duet::jacobian(*robot, x, duet::frame::hybrid, hand);
+    return duet::jacobian(robot, x, duet::frame::hybrid, hand);
   };
-  contest("tree_jacobian", "duet", q, by_tree);
-
-  // The same joints as a chain: all that it has beside the waist's are the arm's.
-  const duet::serial_chain<-16> chain = robot->chain("base", "left_hand");
-  coordinates theta(chain.size());
-  theta << q[0], q.segment(3, 7);
+  contest(workload, "duet", q, by_tree);
+  const duet::serial_chain<-16> chain = robot.chain("base", "left_hand");
   const auto by_chain = [chain](const coordinates& x) {
     return duet::jacobian(chain, x, duet::frame::hybrid);
   };
-  Eigen::MatrixXd columns(6, chain.size());
-  const auto all = by_tree(q);
-  columns << all.col(0), all.middleCols(3, 7);
-  expect_agreement("tree_jacobian_over_chain", "chain", numbers(columns), numbers(by_chain(theta)));
-  contest("tree_jacobian_over_chain", "duet", q, by_tree);
-  contest("tree_jacobian_over_chain", "chain", theta, by_chain);
-  contest("tree_centre_of_mass_jacobian", "duet", q,
-          [robot](const coordinates& x) { return duet::centre_of_mass_jacobian(*robot, x); });
+  if (chain.size() == robot.size()) {
+    expect_agreement(workload, "chain", numbers(by_tree(q)), numbers(by_chain(q)));
+    contest(workload, "chain", q, by_chain);
+  }
 #if DUET_BENCH_KDL
-  register_kdl(robot, q);
+  register_kdl_jacobian(workload, robot, q);
 #endif
+}
+
+[[nodiscard]] coordinates somewhere(const duet::kinematic_tree& robot) {
+  coordinates q(robot.size());
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    q[i] = std::sin(1. + double(i));
+  }
+  return q;
+}
+
+const bool registered = [] {
+  const duet::kinematic_tree robot(two_arms()), alone(one_arm());
+  const coordinates q = somewhere(robot);
+  contest("tree_poses", "duet", q, [robot](const coordinates& x) { return robot.poses(x); });
+#if DUET_BENCH_KDL
+  register_kdl_poses(robot, q);
+#endif
+  register_jacobian("tree_jacobian", robot, q);
+  register_jacobian("tree_of_arm_jacobian", alone, somewhere(alone));
   return true;
 }();
 

@@ -16,7 +16,7 @@ file(MAKE_DIRECTORY ${folder})
 
 set(tools wheel_carrier/wheel_carrier screw_motion/screw_motion fit_trajectory/fit_trajectory
   path_following/path_following bump_ride/bump_ride tolerance_study/tolerance_study motion_plan/motion_plan
-  four_bar/four_bar workspace_sweep)
+  four_bar/four_bar robot_tree/robot_tree workspace_sweep)
 
 # Runs a script of the shell, in which $tool is a program.
 function(shell tool expected_result expected_error script)
