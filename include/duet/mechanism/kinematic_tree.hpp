@@ -166,8 +166,8 @@ public:
     std::vector<dual_quaternion<S>> result;
     result.reserve(table_.links.size());
     for (const detail::place_on_node& link : table_.links) {
-      const auto at =
-          detail::attached(link.node < 0 ? root : frames[std::size_t(link.node)], link.offset);
+      const auto& node = link.node < 0 ? root : frames[std::size_t(link.node)];
+      const auto at = detail::is_identity(link.offset) ? node : detail::attached(node, link.offset);
       result.push_back(detail::pose_of_unit(at.rotation, at.translation.eigen()));
     }
     return result;
@@ -212,8 +212,7 @@ public:
   /// Where a place is.
   [[nodiscard]] detail::place_on_node place(const attached_frame<double>& at) const {
     detail::place_on_node result = table_.links[std::size_t(link(at.link).link)];
-    const auto& [x, y, z] = at.offset.translation;
-    if (!(at.offset.rotation == quaternion<double>(1) && x == 0 && y == 0 && z == 0)) {
+    if (!detail::is_identity(at.offset)) {
       result.offset = result.offset * at.offset;
     }
     return result;

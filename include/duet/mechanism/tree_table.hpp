@@ -30,6 +30,12 @@ struct tree_node {
   [[nodiscard]] int coordinates() const { return is_ball ? 3 : 1; }
 };
 
+/// Is it no displacement?
+[[nodiscard]] inline bool is_identity(const placement<double>& a) {
+  const auto& [x, y, z] = a.translation;
+  return a.rotation == quaternion<double>(1) && x == 0 && y == 0 && z == 0;
+}
+
 /// A frame fixed to a node.
 struct place_on_node {
   int node = -1; ///< −1: the root of the tree
