@@ -83,7 +83,7 @@ public:
   /// such; where joints close a cycle, numbers are bad, joints follow what there is not, themselves
   /// or others of several coordinates, or limits leave no motion
   explicit kinematic_tree(robot_description given)
-      : description_(std::move(given)), table_(detail::tree_builder(description_).table()) {}
+      : description_(std::move(given)), table_(detail::table_of<double>(description_)) {}
 
   /// Number of coordinates.
   [[nodiscard]] int size() const { return int(table_.names.size()); }

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/core/text/nearest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/mechanism/joint.hpp>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -256,5 +258,19 @@ private:
   std::vector<int> order_;              ///< of the joints, parents first
   std::vector<int> first_;              ///< coordinate of each joint
 };
+
+/// The table of a description.
+///
+/// \tparam T  of its numbers
+/// \throws as `tree_builder`
+template <class T>
+[[nodiscard]] tree_table table_of(const robot_description& robot) {
+  static_assert(std::same_as<T, double>);
+  return tree_builder(robot).table();
+}
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE tree_table table_of<double>(const robot_description&);
+#endif
 
 } // namespace duet::detail
