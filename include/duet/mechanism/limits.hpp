@@ -123,6 +123,37 @@ template <SerialChain C, VectorLike Lower, VectorLike Upper>
   return result;
 }
 
+/// The chain with its limits narrowed to joint coordinates that differ from θ by no more than
+/// `most`, one number for each joint: solutions and plans within them stay that near to θ.
+///
+/// Example: `inverse_kinematics(with_limits_about(arm, start, most), goal, start)`
+/// \return as with the limits of one joint
+/// \throws invalid_input for another number of coordinates than joints, and where no coordinate
+/// within the limits is that near
+template <SerialChain C, VectorLike X, VectorLike Most>
+[[nodiscard]] auto with_limits_about(const C& chain, const X& theta, const Most& most) {
+  using T = typename C::scalar_type;
+  using middle = detail::vector_argument<X>;
+  using way = detail::vector_argument<Most>;
+  detail::require(middle::size(theta) == chain.size() && way::size(most) == chain.size(),
+                  "duet: with_limits_about: ", middle::size(theta), " coordinates and ",
+                  way::size(most), " bounds for ", chain.size(), " moving joints");
+  auto result = detail::copy_of_chain(chain);
+  for (int i = 0; i < chain.size(); ++i) {
+    const auto& given = chain.limits(i);
+    const T at(middle::get(theta, i)), by(way::get(most, i));
+    const T lower = at - by, upper = at + by;
+    const joint_limits<T> limits{lower > given.lower ? lower : given.lower,
+                                 upper < given.upper ? upper : given.upper, given.velocity};
+    detail::require(lower == lower && upper == upper,
+                    "duet: with_limits_about: joint ", i, " is to stay within ", by, " of ", at);
+    detail::require_limits(limits, std::size_t(i), "with_limits_about",
+                           detail::joint_name(chain, i));
+    result.set_limits(i, limits);
+  }
+  return result;
+}
+
 template <SerialChain C, detail::NameInVain<C> Which>
 DUET_REFUSED("only chains of read_urdf have names: with_limits(chain, number, limits)")
 C with_limits(const C&, const Which&, const joint_limits<typename C::scalar_type>&);

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <duet/core/text/number_text.hpp>
-#include <duet/derivative/function.hpp>
-#include <duet/derivative/gradient.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/planning/motion_plan.hpp>
+#include <duet/planning/objective.hpp>
 #include <duet/planning/obstacle_steps.hpp>
 #include <duet/planning/path_follower.hpp>
 #include <duet/planning/planning_model.hpp>
@@ -32,33 +31,6 @@ namespace duet {
 /// A function of a parameter, which is to return poses.
 template <class P>
 concept PosePath = std::invocable<const P&, double>;
-
-/// No wish.
-struct no_objective {};
-
-/// w/2 Σ (θᵢ − θ̂ᵢ)²: a preferred posture θ̂, of weight w.
-template <class V>
-struct preferred_posture {
-  V posture;         ///< θ̂, joint coordinates
-  double weight = 1; ///< w
-
-  /// Its value at joint coordinates θ.
-  template <class X>
-  [[nodiscard]] auto operator()(const X& theta) const {
-    auto sum = (theta[0] - posture[0]) * (theta[0] - posture[0]);
-    for (Eigen::Index i = 1; i < posture.size(); ++i) {
-      sum += (theta[i] - posture[i]) * (theta[i] - posture[i]);
-    }
-    return sum * (weight / 2);
-  }
-  /// Its gradient at joint coordinates θ.
-  template <class X>
-  [[nodiscard]] V gradient(const X& theta) const {
-    return weight * (theta - posture);
-  }
-};
-template <class V, class... W>
-preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
 
 namespace detail {
 
@@ -95,12 +67,7 @@ template <class C, class Start, class Objective, class Scene>
   std::function<vector(const vector&)> slope;
   if constexpr (!std::same_as<Objective, no_objective>) {
     slope = [&](const vector& x) {
-      const auto joints = own_joints(chain, x);
-      if constexpr (requires { objective.gradient(joints); }) {
-        return planned_joints<room>(result_of_call(objective.gradient(joints)), chain.size());
-      } else {
-        return planned_joints<room>(duet::gradient(objective, joints).gradient, chain.size());
-      }
+      return planned_joints<room>(slope_of(objective, own_joints(chain, x)), chain.size());
     };
   }
   const bool is_out_of_reach =

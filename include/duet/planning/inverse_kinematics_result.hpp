@@ -21,6 +21,8 @@ struct inverse_kinematics_options {
   int iterations = 50;
   /// Of the random configurations.
   std::uint64_t seed = 1;
+  /// From how many solutions on an objective is lowered, of which the best is returned.
+  int candidates = 10;
 };
 
 /// What was found; where `reason` is not `reached`, the nearest to the goal that was met with.
@@ -53,6 +55,7 @@ inline void require_options(const inverse_kinematics_options& options) {
   require_positive(caller, "tolerance", options.tolerance);
   require_positive(caller, "iterations", options.iterations);
   require_option(caller, "restarts", options.restarts, options.restarts >= 0, "a number from 0 up");
+  require_positive(caller, "candidates", options.candidates);
 }
 
 } // namespace detail

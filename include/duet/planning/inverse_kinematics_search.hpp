@@ -5,46 +5,33 @@
 #include <duet/core/errors.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/bounded_step.hpp>
+#include <duet/planning/goal_equations.hpp>
 #include <duet/planning/inverse_kinematics_result.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/nearest_pose.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/small_vector.hpp>
+#include <duet/planning/split_mix.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 
 /// \file
-/// The search for joint coordinates that take the tip of a chain to a pose.
+/// The search for joint coordinates that take the tip of a chain to a goal.
 
 namespace duet {
 
 namespace detail {
 
-/// Numbers from 0 to 1, the same on every machine: SplitMix64 (Steele, Lea, Flood, Fast splittable
-/// pseudorandom number generators, 2014). `<random>` would cost the compiler more than the search.
-class split_mix {
-public:
-  explicit split_mix(std::uint64_t seed) : state_(seed) {}
-
-  [[nodiscard]] double operator()() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
-    z = (z ^ z >> 30U) * 0xbf58476d1ce4e5b9;
-    z = (z ^ z >> 27U) * 0x94d049bb133111eb;
-    return double((z ^ z >> 31U) >> 11U) * 0x1p-53;
-  }
-
-private:
-  std::uint64_t state_;
-};
-
 /// What all searches for configurations of a chain have in common.
-template <int Room>
+///
+/// \tparam Goal  a pose, or what has a `set_equations` and an `is_beyond` of its own
+template <int Room, class Goal = tip_place>
 class inverse_kinematics_search {
   using vector = small_vector<Room>;
 
@@ -77,22 +64,80 @@ public:
     start_ = within_limits(start_);
   }
 
-  [[nodiscard]] attempt operator()(const tip_place& goal) const;
+  [[nodiscard]] attempt operator()(const Goal& goal) const;
+
+  /// From one configuration, without beginning anew.
+  [[nodiscard]] attempt approach(vector theta, const Goal& goal) const {
+    attempt best{theta, {}, std::numeric_limits<double>::infinity()};
+    double before = best.error;
+    int since = 0; // the error last fell by a tenth
+    for (int iteration = 0;; ++iteration) {
+      const equations now = equations_at(theta, goal);
+      const double error = dot(now.e, now.e);
+      const bool is_reached = options_.tolerance.times(now.left) <= 1;
+      if (iteration == 0 || error < best.error || is_reached) {
+        best = {theta, now.left, error};
+      }
+      if (error < .9 * before) {
+        before = error;
+        since = 0;
+      }
+      best.iterations = iteration;
+      if (is_reached || since == 4 || iteration == options_.iterations) {
+        best.reason = is_reached   ? stop_reason::reached
+                      : since == 4 ? stop_reason::no_progress
+                                   : stop_reason::iteration_limit;
+        return best;
+      }
+      ++since;
+      theta = within_limits(theta + step(now, damping(now)).step);
+    }
+  }
+
+  /// Why there is no way on from a configuration.
+  [[nodiscard]] stop_reason obstacle(const vector& theta, const Goal& goal) const {
+    const equations here = equations_at(theta, goal);
+    if (step(here, damping(here)).is_bounded) {
+      return stop_reason::joint_limit;
+    }
+    gram_matrix gram = gram_of(here.at.jacobian);
+    int count = 6;
+    for (std::ptrdiff_t i = 0; i < 6; ++i) {
+      if (here.is_free[std::size_t(i)]) {
+        gram(i, i) = 1;
+        --count;
+      }
+    }
+    const bool is_singular =
+        model_.size >= count && damped_gram(gram).smallest() < 10 * damping_threshold;
+    return is_singular ? stop_reason::singular : stop_reason::no_progress;
+  }
+
+  /// Uniform within the limits; without them, about the start.
+  [[nodiscard]] vector configuration(split_mix& random) const {
+    vector theta;
+    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+      double lower = model_.lower[i], upper = model_.upper[i];
+      if (!(upper - lower < std::numeric_limits<double>::infinity())) {
+        lower = std::max(lower, start_[i] - spread_[i]);
+        upper = std::min(upper, start_[i] + spread_[i]);
+      }
+      theta[i] = lower + (upper - lower) * random();
+    }
+    return theta;
+  }
+
+  [[nodiscard]] const vector& start() const { return start_; }
+  /// In which coordinates are counted: the chain's length, or a radian.
+  [[nodiscard]] const vector& unit() const { return unit_; }
+  /// By how much coordinates can change without changing the pose: by nothing, or a whole turn.
+  [[nodiscard]] const vector& turn() const { return turn_; }
 
 private:
-  /// What is left to do at some θ: J Δ = e. Lengths count as parts of the chain's, those that
-  /// joints slide, too.
-  struct equations {
-    chain_state<Room> at;
-    small_twist e;
-    pose_deviation left;
-  };
-
-  [[nodiscard]] equations equations_at(const vector& theta, const tip_place& goal) const {
+  using equations = goal_equations<Room>;
+  [[nodiscard]] equations equations_at(const vector& theta, const Goal& goal) const {
     equations result{model_.at(theta), {}, {}};
-    const tip_place& tip = result.at.tip;
-    result.e = error_twist(tip, goal);
-    result.left = {length_of(goal.translation - tip.translation), deviation_of(result.e).angle};
+    set_equations(result, goal);
     const double per_length = 1 / model_.reach.scale();
     for (std::ptrdiff_t k = 0; k < 3; ++k) {
       result.e[k] *= per_length;
@@ -121,37 +166,10 @@ private:
     return std::min(.02 * dot(x.e, x.e), .08) + 1e-9;
   }
 
-  [[nodiscard]] attempt approach(vector theta, const tip_place& goal) const {
-    attempt best{theta, {}, std::numeric_limits<double>::infinity()};
-    double before = best.error;
-    int since = 0; // the error last fell by a tenth
-    for (int iteration = 0;; ++iteration) {
-      const equations now = equations_at(theta, goal);
-      const double error = dot(now.e, now.e);
-      const bool is_reached = options_.tolerance.times(now.left) <= 1;
-      if (iteration == 0 || error < best.error || is_reached) {
-        best = {theta, now.left, error};
-      }
-      if (error < .9 * before) {
-        before = error;
-        since = 0;
-      }
-      best.iterations = iteration;
-      if (is_reached || since == 4 || iteration == options_.iterations) {
-        best.reason = is_reached   ? stop_reason::reached
-                      : since == 4 ? stop_reason::no_progress
-                                   : stop_reason::iteration_limit;
-        return best;
-      }
-      ++since;
-      theta = within_limits(theta + step(now, damping(now)).step);
-    }
-  }
-
   /// The nearest place from a start on, by the least |way|² + |ω|², lengths as parts of the
   /// chain's: Newton's method with a damping that lets no step raise it. Joints at limits that are
   /// in the way are held there.
-  [[nodiscard]] attempt nearest(const vector& start, const tip_place& goal) const {
+  [[nodiscard]] attempt nearest(const vector& start, const Goal& goal) const {
     point here = point_at(start, goal);
     double lambda = 0;
     int iterations = 0;
@@ -190,7 +208,7 @@ private:
     std::array<bool, std::size_t(Room)> is_held{}; ///< by a limit that is in the way
     double steepest = 0;                           ///< of the slopes of those that are not
   };
-  [[nodiscard]] point point_at(const vector& theta, const tip_place& goal) const {
+  [[nodiscard]] point point_at(const vector& theta, const Goal& goal) const {
     const equations x = equations_at(theta, goal);
     const three_vector<double> way =
         1 / model_.reach.scale() * (goal.translation - x.at.tip.translation);
@@ -207,17 +225,6 @@ private:
     return result;
   }
 
-  /// Why there is no way on from a configuration.
-  [[nodiscard]] stop_reason obstacle(const vector& theta, const tip_place& goal) const {
-    const equations here = equations_at(theta, goal);
-    if (step(here, damping(here)).is_bounded) {
-      return stop_reason::joint_limit;
-    }
-    const damped_gram gram(gram_of(here.at.jacobian));
-    return model_.size >= 6 && gram.smallest() < 10 * damping_threshold ? stop_reason::singular
-                                                                        : stop_reason::no_progress;
-  }
-
   /// Turning joints whose range holds a whole turn are turned back into it, others stop at limits.
   [[nodiscard]] vector within_limits(vector theta) const {
     for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
@@ -232,35 +239,26 @@ private:
     return theta;
   }
 
-  /// Uniform within the limits; without them, about the start.
-  [[nodiscard]] vector configuration(split_mix& random) const {
-    vector theta;
-    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
-      double lower = model_.lower[i], upper = model_.upper[i];
-      if (!(upper - lower < std::numeric_limits<double>::infinity())) {
-        lower = std::max(lower, start_[i] - spread_[i]);
-        upper = std::min(upper, start_[i] + spread_[i]);
-      }
-      theta[i] = lower + (upper - lower) * random();
-    }
-    return theta;
-  }
-
   const planning_model<Room>& model_;
   inverse_kinematics_options options_;
-  vector turn_;   ///< a whole turn where it leads to the same pose within limits, else 0
+  vector turn_;
   vector beyond_; ///< how far steps may go beyond limits: any way if they are turned back
-  vector unit_;   ///< in which a coordinate is counted: the chain's length, or a radian
+  vector unit_;
   vector spread_; ///< how far from the start random coordinates are that have no limits
   vector start_;
 };
 
-template <int Room>
-typename inverse_kinematics_search<Room>::attempt
-inverse_kinematics_search<Room>::operator()(const tip_place& goal) const {
-  const bool is_beyond = model_.reach.is_beyond(goal, options_.tolerance);
+template <int Room, class Goal>
+typename inverse_kinematics_search<Room, Goal>::attempt
+inverse_kinematics_search<Room, Goal>::operator()(const Goal& goal) const {
+  const bool is_out_of_reach = is_beyond(model_.reach, goal, options_.tolerance);
   const auto search = [&](const vector& from) {
-    return is_beyond ? nearest(from, goal) : approach(from, goal);
+    if constexpr (std::same_as<Goal, tip_place>) {
+      if (is_out_of_reach) {
+        return nearest(from, goal);
+      }
+    }
+    return approach(from, goal);
   };
   attempt best = search(start_);
   int iterations = best.iterations, restarts = 0;
@@ -273,7 +271,9 @@ inverse_kinematics_search<Room>::operator()(const tip_place& goal) const {
       best = next;
     }
   }
-  if (best.reason == stop_reason::no_progress) {
+  if (is_out_of_reach && best.reason != stop_reason::reached) {
+    best.reason = stop_reason::out_of_reach;
+  } else if (best.reason == stop_reason::no_progress) {
     best.reason = obstacle(best.joints, goal);
   }
   best.iterations = iterations;

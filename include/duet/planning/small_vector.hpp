@@ -95,7 +95,12 @@ public:
 
   /// Solves L Lᵀ x = b.
   template <class V>
-  [[nodiscard]] V solve(V x) const {
+  [[nodiscard]] V solve(const V& b) const {
+    return backward(forward(b));
+  }
+  /// Solves L x = b.
+  template <class V>
+  [[nodiscard]] V forward(V x) const {
     const std::ptrdiff_t n = l_.rows();
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       for (std::ptrdiff_t k = 0; k < i; ++k) {
@@ -103,6 +108,12 @@ public:
       }
       x[i] *= l_(i, i);
     }
+    return x;
+  }
+  /// Solves Lᵀ x = b.
+  template <class V>
+  [[nodiscard]] V backward(V x) const {
+    const std::ptrdiff_t n = l_.rows();
     for (std::ptrdiff_t i = n; i-- > 0;) {
       for (std::ptrdiff_t k = i + 1; k < n; ++k) {
         x[i] -= l_(k, i) * x[k];

@@ -1,0 +1,55 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/derivative/argument.hpp>
+#include <duet/derivative/function.hpp>
+#include <duet/derivative/gradient.hpp>
+
+#include <Eigen/Core>
+
+/// \file
+/// What joints are to lower where the tip leaves them free.
+
+namespace duet {
+
+/// No wish.
+struct no_objective {};
+
+/// w/2 Σ (θᵢ − θ̂ᵢ)²: a preferred posture θ̂, of weight w.
+template <class V>
+struct preferred_posture {
+  V posture;         ///< θ̂, joint coordinates
+  double weight = 1; ///< w
+
+  /// Its value at joint coordinates θ.
+  template <class X>
+  [[nodiscard]] auto operator()(const X& theta) const {
+    auto sum = (theta[0] - posture[0]) * (theta[0] - posture[0]);
+    for (Eigen::Index i = 1; i < posture.size(); ++i) {
+      sum += (theta[i] - posture[i]) * (theta[i] - posture[i]);
+    }
+    return sum * (weight / 2);
+  }
+  /// Its gradient at joint coordinates θ.
+  template <class X>
+  [[nodiscard]] V gradient(const X& theta) const {
+    return weight * (theta - posture);
+  }
+};
+template <class V, class... W>
+preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
+
+namespace detail {
+
+/// The gradient of an objective: its own, or by dual numbers.
+template <class Objective, class X>
+[[nodiscard]] auto slope_of(const Objective& objective, const X& joints) {
+  if constexpr (requires { objective.gradient(joints); }) {
+    return result_of_call(objective.gradient(joints));
+  } else {
+    return duet::gradient(objective, joints).gradient;
+  }
+}
+
+} // namespace detail
+} // namespace duet

@@ -1,0 +1,263 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/planning/quadratic_step.hpp>
+#include <duet/planning/small_vector.hpp>
+#include <duet/planning/tip_goal.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+/// \file
+/// From one solution of a goal to one nearby that keeps clear of obstacles and lowers an objective.
+
+namespace duet::detail {
+
+/// Rows of up to `Room` coordinates.
+template <int Room>
+using room_vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Room, 1>;
+
+/// What is wanted of a solution beside the goal.
+template <int Room>
+class solution_wishes {
+public:
+  using vector = room_vector<Room>;
+  virtual ~solution_wishes() = default;
+  [[nodiscard]] virtual bool has_objective() const = 0;
+  [[nodiscard]] virtual double objective(const small_vector<Room>& theta) const = 0;
+  [[nodiscard]] virtual vector slope(const small_vector<Room>& theta) const = 0;
+  /// What keeps a step at the margin to obstacles.
+  [[nodiscard]] virtual std::vector<inequality<vector>>
+  clear_of_obstacles(const small_vector<Room>& theta) const = 0;
+};
+
+/// Sequential quadratic programming within the solutions of a goal: each step keeps goal, limits
+/// and margins to first order, and Newton's method leads back to them. The curvature is that of the
+/// function on the set of solutions, after Broyden, Fletcher, Goldfarb and Shanno with Powell's
+/// damping, from the change of the slope's part along it.
+template <int Room>
+class solution_refinement {
+public:
+  using joints = small_vector<Room>;
+  using vector = room_vector<Room>;
+  using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Room, Room>;
+
+  struct point {
+    joints theta;
+    pose_deviation left;
+    double excess = 0; ///< of deviation or margin, in tolerances
+    step_conditions<vector> conditions;
+    double value = 0; ///< of the objective
+    vector slope;
+  };
+
+  /// \param unit  in which coordinates are counted
+  solution_refinement(const planning_model<Room>& model, const tip_goal& goal,
+                      const solution_wishes<Room>& wishes, const pose_tolerance& tolerance,
+                      const joints& unit)
+      : model_(model), goal_(goal), wishes_(wishes), tolerance_(tolerance), unit_(unit) {}
+
+  /// From near a solution to one that keeps the margins too and, if there is an objective, where
+  /// that is least nearby. Nothing where that fails.
+  [[nodiscard]] std::optional<point> operator()(const joints& theta, int iterations) const;
+
+private:
+  /// As far as steps go in one direction: beyond, first order says little.
+  static constexpr double trusted = .5;
+
+  [[nodiscard]] point at(const joints& theta) const {
+    point x;
+    x.theta = theta;
+    const auto state = model_.at(theta);
+    const wanted_twist wanted = goal_.wanted(state.tip);
+    x.left = missing_twist(wanted).left;
+    x.excess =
+        std::max(tolerance_.times(x.left), model_.shortfall(theta) / tolerance_.length);
+    const double per_length = 1 / model_.reach.scale();
+    auto& more = x.conditions.inequalities;
+    for (std::ptrdiff_t i = 0; i < 6; ++i) {
+      if (wanted.rows.row(i).isZero(0)) {
+        continue;
+      }
+      const double scale = i < 3 ? per_length : 1;
+      const vector normal = scaled(goal_row(wanted, i, state.jacobian), scale);
+      const double least = scale * wanted.least[i], most = scale * wanted.most[i];
+      if (least == most) {
+        x.conditions.equations.push_back({normal, least});
+      } else {
+        add(more, normal, least);
+        add(more, -normal, -most);
+      }
+    }
+    for (int i = 0; i < model_.size; ++i) {
+      const vector normal = vector::Unit(model_.size, i);
+      add(more, normal, std::max((model_.lower[i] - theta[i]) / unit_[i], -trusted));
+      add(more, -normal, std::max((theta[i] - model_.upper[i]) / unit_[i], -trusted));
+    }
+    for (auto& each : wishes_.clear_of_obstacles(theta)) {
+      for (int i = 0; i < model_.size; ++i) {
+        each.normal[i] *= per_length * unit_[i];
+      }
+      add(more, each.normal, std::min(per_length * each.bound, .1));
+    }
+    return x;
+  }
+  [[nodiscard]] vector scaled(const joints& row, double scale) const {
+    vector result(model_.size);
+    for (int i = 0; i < model_.size; ++i) {
+      result[i] = scale * unit_[i] * row[i];
+    }
+    return result;
+  }
+  static void add(std::vector<inequality<vector>>& to, const vector& normal, double bound) {
+    if (bound > -std::numeric_limits<double>::infinity()) {
+      to.push_back({normal, bound});
+    }
+  }
+  [[nodiscard]] joints moved(joints theta, const vector& step, double part) const {
+    for (int i = 0; i < model_.size; ++i) {
+      theta[i] = std::clamp(theta[i] + part * unit_[i] * step[i], model_.lower[i], model_.upper[i]);
+    }
+    return theta;
+  }
+
+  /// The way back to where all conditions hold, by least steps.
+  [[nodiscard]] std::optional<point> restored(joints theta) const {
+    constexpr double close = 1e-3; // well within, for objectives to be compared
+    const vector none = vector::Zero(model_.size);
+    const matrix one = matrix::Identity(model_.size, model_.size);
+    for (int k = 0;; ++k) {
+      point x = at(theta);
+      const auto step = x.excess <= close || k == 20
+                            ? std::nullopt
+                            : quadratic_step(none, one, x.conditions);
+      if (!step) {
+        return x.excess <= 1 ? std::optional<point>(std::move(x)) : std::nullopt;
+      }
+      theta = moved(theta, *step, 1);
+    }
+  }
+  [[nodiscard]] std::optional<point> solution(const joints& theta) const {
+    auto x = restored(theta);
+    if (x && wishes_.has_objective()) {
+      x->value = wishes_.objective(x->theta);
+      x->slope = wishes_.slope(x->theta);
+      for (int i = 0; i < model_.size; ++i) {
+        x->slope[i] *= unit_[i];
+      }
+    }
+    return x;
+  }
+
+  /// Of the slope, what conditions that hold at their bounds leave.
+  struct free_slope {
+    orthonormal_rows<vector> kept;
+    std::size_t count = 0;
+    vector slope;
+
+    explicit free_slope(const point& x) {
+      for (const auto& each : x.conditions.equations) {
+        kept.add(each.normal);
+      }
+      for (const auto& each : x.conditions.inequalities) {
+        if (each.bound > -1e-7) {
+          kept.add(each.normal);
+          ++count;
+        }
+      }
+      slope = kept(x.slope);
+    }
+  };
+
+  /// What a step has shown of the curvature.
+  [[nodiscard]] matrix learned(matrix curvature, bool is_first, const point& before,
+                               const point& after) const {
+    const free_slope here(before), there(after);
+    vector s(model_.size);
+    for (int i = 0; i < model_.size; ++i) {
+      s[i] = (after.theta[i] - before.theta[i]) / unit_[i];
+    }
+    s = there.kept(s);
+    vector y = there.slope - here.slope;
+    if (is_first && s.dot(y) > 0) {
+      curvature *= y.squaredNorm() / s.dot(y) / curvature(0, 0);
+    }
+    const vector bs = curvature * s;
+    const double sbs = s.dot(bs);
+    if (here.count != there.count || !(sbs > 0)) {
+      return curvature; // of another set
+    }
+    if (s.dot(y) < .2 * sbs) {
+      const double part = .8 * sbs / (sbs - s.dot(y));
+      y = part * y + (1 - part) * bs;
+    }
+    const double sy = s.dot(y);
+    curvature += y * y.transpose() / sy - bs * bs.transpose() / sbs;
+    return curvature;
+  }
+
+  const planning_model<Room>& model_;
+  const tip_goal& goal_;
+  const solution_wishes<Room>& wishes_;
+  pose_tolerance tolerance_;
+  joints unit_;
+};
+
+template <int Room>
+std::optional<typename solution_refinement<Room>::point>
+solution_refinement<Room>::operator()(const joints& theta, int iterations) const {
+  auto best = solution(theta);
+  if (!best || !wishes_.has_objective()) {
+    return best;
+  }
+  matrix curvature;
+  bool is_first = true;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    if (is_first) { // a first step of a fifth of a radian
+      const double steepness = free_slope(*best).slope.norm();
+      if (!(steepness > 0)) {
+        break;
+      }
+      curvature = 5 * steepness * matrix::Identity(model_.size, model_.size);
+    }
+    const auto step = quadratic_step(best->slope, curvature, best->conditions);
+    const double gain = step ? -best->slope.dot(*step) : 0;
+    std::optional<point> next;
+    for (double part = 1; gain > 0 && part > 1e-4; part /= 3) {
+      next = solution(moved(best->theta, *step, part));
+      if (next && next->value < best->value - 1e-4 * part * gain) {
+        break;
+      }
+      next.reset();
+    }
+    if (next) {
+      curvature = learned(curvature, is_first, *best, *next);
+      const bool is_end = best->value - next->value <= 1e-14 * std::abs(best->value);
+      best = std::move(next);
+      if (is_end) {
+        break;
+      }
+    } else if (is_first) {
+      break;
+    }
+    is_first = !next; // anew where what was learned does not help
+  }
+  return best;
+}
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE class solution_refinement<8>;
+DUET_COMPILED_TEMPLATE class solution_refinement<16>;
+#endif
+
+} // namespace duet::detail

@@ -1,0 +1,109 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/planning/inverse_kinematics_result.hpp>
+#include <duet/planning/inverse_kinematics_search.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/planning/small_vector.hpp>
+#include <duet/planning/solution_refinement.hpp>
+#include <duet/planning/split_mix.hpp>
+#include <duet/planning/tip_goal.hpp>
+
+#include <limits>
+
+/// \file
+/// The search among the solutions of a goal for one that is wanted.
+
+namespace duet::detail {
+
+template <int Room>
+class solution_search {
+  using search = inverse_kinematics_search<Room, tip_goal>;
+
+public:
+  using attempt = typename search::attempt;
+
+  solution_search(const planning_model<Room>& model, const small_vector<Room>& start,
+                  const inverse_kinematics_options& options)
+      : model_(model), options_(options), search_(model, start, options) {}
+
+  /// \param wishes  none: the first solution is as good as any
+  [[nodiscard]] attempt operator()(const tip_goal& goal, const solution_wishes<Room>* wishes) const;
+
+private:
+  /// Joints turned by whole turns where that lowers the objective.
+  [[nodiscard]] small_vector<Room> turned(small_vector<Room> theta,
+                                          const solution_wishes<Room>& wishes) const {
+    double least = wishes.objective(theta);
+    for (int i = 0; i < model_.size; ++i) {
+      const double turn = search_.turn()[i];
+      for (const double way : {-turn, turn}) {
+        small_vector<Room> other = theta;
+        other[i] += way;
+        const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
+        const double value = turn > 0 && is_within ? wishes.objective(other) : least;
+        if (value < least) {
+          theta = other;
+          least = value;
+        }
+      }
+    }
+    return theta;
+  }
+
+  const planning_model<Room>& model_;
+  inverse_kinematics_options options_;
+  search search_;
+};
+
+template <int Room>
+typename solution_search<Room>::attempt
+solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Room>* wishes) const {
+  if (wishes == nullptr || is_beyond(model_.reach, goal, options_.tolerance)) {
+    return search_(goal);
+  }
+  const solution_refinement<Room> refine(model_, goal, *wishes, options_.tolerance, search_.unit());
+  attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
+  double least = std::numeric_limits<double>::infinity(); // of the objective
+  int iterations = 0, candidates = 0, restarts = 0;
+  split_mix random(options_.seed);
+  for (;; ++restarts) {
+    attempt next = search_.approach(restarts == 0 ? search_.start() : search_.configuration(random),
+                                    goal);
+    iterations += next.iterations;
+    if (next.reason == stop_reason::reached) {
+      if (wishes->has_objective()) {
+        next.joints = turned(next.joints, *wishes);
+      }
+      const auto refined = refine(next.joints, options_.iterations);
+      if (refined && (best.reason != stop_reason::reached || refined->value < least)) {
+        best = {refined->theta, refined->left, 0, 0, 0, stop_reason::reached};
+        least = refined->value;
+      }
+      candidates += refined.has_value();
+      next.reason = stop_reason::obstacle;
+    }
+    if (best.reason != stop_reason::reached && !(best.error <= next.error)) {
+      best = next;
+    }
+    if (restarts == options_.restarts || candidates == options_.candidates ||
+        (candidates == 1 && !wishes->has_objective())) {
+      break;
+    }
+  }
+  if (best.reason == stop_reason::no_progress) {
+    best.reason = search_.obstacle(best.joints, goal);
+  }
+  best.iterations = iterations;
+  best.restarts = restarts;
+  return best;
+}
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE class solution_search<8>;
+DUET_COMPILED_TEMPLATE class solution_search<16>;
+#endif
+
+} // namespace duet::detail
