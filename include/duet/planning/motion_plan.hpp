@@ -80,13 +80,14 @@ enum class stop_reason {
   obstacle,        ///< the way on leads too close to an obstacle
   no_progress,     ///< steps became too small, for none of these reasons
   iteration_limit, ///< the number of iterations that was allowed is used up
-  out_of_reach     ///< the goal is farther away than the links reach
+  out_of_reach,    ///< the goal is farther away than the links reach
+  no_solution      ///< no joint coordinates take the tip there, within limits or not
 };
 
 /// The name of a `stop_reason`.
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
   constexpr std::array names{"reached",     "joint_limit",     "singular",    "obstacle",
-                             "no_progress", "iteration_limit", "out_of_reach"};
+                             "no_progress", "iteration_limit", "out_of_reach", "no_solution"};
   return names[std::size_t(reason)];
 }
 

@@ -1,0 +1,100 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/clearance.hpp>
+#include <duet/planning/follow_path.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/objective.hpp>
+#include <duet/planning/path_step.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/planning/start_chooser.hpp>
+
+#include <concepts>
+#include <limits>
+
+/// \file
+/// From which configuration on a chain can follow a whole path; or where it has no solution.
+
+namespace duet {
+
+namespace detail {
+
+/// \throws invalid_input
+inline void require_options(const start_options& o) {
+  require_positive("choose_start", "starts", o.starts);
+  const auto require_part = [](const char* name, double value) {
+    require_option("choose_start", name, value, value > 0 && value <= 1, "within (0, 1]");
+  };
+  require_part("resolution", o.resolution);
+  require_part("sampling", o.sampling);
+}
+
+template <class C, class Objective, class Scene, class Follow>
+[[nodiscard]] start_choice<C::joints>
+chosen_start(const C& chain, const path_function& path, double first, double last,
+             const start_options& options, const Objective& objective, const Scene& around,
+             const Follow& follow) {
+  require_options(options);
+  if constexpr (std::same_as<Scene, scene>) {
+    require_scene(chain, around);
+  }
+  const start_chooser<C, Scene, Follow> choose(chain, around, options, follow, [&](const auto& x) {
+    if constexpr (std::same_as<Objective, no_objective>) {
+      return distance_from_middle(chain, x);
+    } else {
+      return double(objective(x));
+    }
+  });
+  return choose(path, first, last);
+}
+
+} // namespace detail
+
+/// A start from which the tip of a chain follows a whole path, and the plan from there; where there
+/// is none, the first pose of the path that has no solution, and why.
+///
+/// Starts are all solutions for the first pose within the limits: of six joints those of
+/// `all_inverse_kinematics`, of seven points of their `self_motion_curves`, of others what random
+/// starts find. They are tried as by `follow_path` in the order of the objective there, or else of
+/// how far joints are from the middles of their limits; of each curve the best one first. Where a
+/// joint stops at a limit, it begins anew a turn before. Then redundant joints may also move with
+/// the tip in place. Where no start leads to the end, poses along the path are looked at one by
+/// one.
+///
+/// Example: `choose_start(arm, path, 0, 1).plan.joints.front()`
+/// \param path       poses by a parameter, from `first` to `last`, which increases
+/// \param objective  as of `follow_path`
+/// \param around     a `scene`
+/// \return `start_choice`
+/// \throws invalid_input as `follow_path`
+template <SerialChain C, PosePath Path, class Objective = no_objective, class Scene = no_scene>
+[[nodiscard]] start_choice<C::joints>
+choose_start(const C& chain, const Path& path, double first, double last,
+             const start_options& options = {}, const Objective& objective = {},
+             const Scene& around = {}) {
+  detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
+                  "duet: choose_start: the path's parameter goes from ", first, " to ", last);
+  return detail::chosen_start(
+      chain, detail::checked(path), first, last, options, objective, around,
+      [&](const auto& start, const plan_options& how) {
+        return follow_path(chain, start, path, first, last, how, objective, around);
+      });
+}
+
+/// A start from which the tip of a chain follows a spline of poses over all of its domain.
+template <SerialChain C, PosePath Spline, class Objective = no_objective, class Scene = no_scene>
+  requires requires(const Spline& s) { s.breaks().front(); }
+[[nodiscard]] start_choice<C::joints>
+choose_start(const C& chain, const Spline& spline, const start_options& options = {},
+             const Objective& objective = {}, const Scene& around = {}) {
+  return detail::chosen_start(chain, detail::checked(spline), spline.breaks().front(),
+                              spline.breaks().back(), options, objective, around,
+                              [&](const auto& start, const plan_options& how) {
+                                return follow_path(chain, start, spline, how, objective, around);
+                              });
+}
+
+} // namespace duet

@@ -1,0 +1,154 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/all_inverse_kinematics.hpp>
+#include <duet/planning/clearance.hpp>
+#include <duet/planning/goals.hpp>
+#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/planning/objective.hpp>
+#include <duet/planning/self_motion_curves.hpp>
+#include <duet/planning/split_mix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+/// \file
+/// In which ways a chain can begin a path.
+
+namespace duet::detail {
+
+/// Has the chain n joints whose equations are algebraic, as `all_inverse_kinematics` and
+/// `self_motion_curves` want them?
+template <class C>
+[[nodiscard]] bool is_algebraic(const C& chain, int n) {
+  int sliding = 0;
+  for (int i = 0; i < chain.size(); ++i) {
+    if (chain.kind(i) == joint_kind::helical) {
+      return false;
+    }
+    sliding += chain.kind(i) == joint_kind::prismatic;
+  }
+  return chain.size() == n && sliding <= 1;
+}
+
+/// The solutions for poses of the tip that a chain has among obstacles.
+template <class C, class Scene>
+class pose_solutions {
+public:
+  using joints = joint_vector<double, C::joints>;
+  /// Solutions that joints can move between with the tip in place.
+  using family = std::vector<joints>;
+
+  pose_solutions(const C& chain, const Scene& around, double tolerance)
+      : chain_(chain), around_(around), tolerance_(tolerance) {}
+
+  /// All ways for six joints; seven joints along their curves, points `resolution` apart; others,
+  /// and where these find none or not all, as random starts show them.
+  [[nodiscard]] std::vector<family> at(const dual_quaternion<double>& goal,
+                                       double resolution) const {
+    std::vector<family> result;
+    bool is_complete = false;
+    if constexpr (C::joints == 6 || C::joints < 0) {
+      if (is_algebraic(chain_, 6)) {
+        const auto all = all_inverse_kinematics(chain_, goal);
+        is_complete = all.is_complete;
+        for (const auto& branch : all.solutions) {
+          add(result, {branch.joints});
+        }
+      }
+    }
+    if constexpr (C::joints == 7 || C::joints < 0) {
+      if (is_algebraic(chain_, 7)) {
+        for (auto& curve : self_motion_curves(chain_, goal, {.resolution = resolution})) {
+          add(result, std::move(curve.joints));
+        }
+        is_complete = !result.empty();
+      }
+    }
+    split_mix random(1);
+    for (int i = 0; i < 100 && !is_complete; ++i) {
+      const auto found = from(configuration(random), goal, 0);
+      if (found.reason == stop_reason::reached && is_new(found.joints, result)) {
+        add(result, {found.joints});
+      }
+    }
+    return result;
+  }
+
+  /// One solution, or why there is none.
+  [[nodiscard]] inverse_kinematics_result<C::joints>
+  from(const joints& start, const dual_quaternion<double>& goal, int restarts) const {
+    const inverse_kinematics_options options{.tolerance = 1e-9, .restarts = restarts};
+    if constexpr (std::same_as<Scene, no_scene>) {
+      return inverse_kinematics(chain_, goal, start, options);
+    } else {
+      return inverse_kinematics(chain_, goal, start, options, no_objective{}, around_);
+    }
+  }
+
+  /// Joints turned by whole turns into their limits, as far as that is possible.
+  [[nodiscard]] joints turned(joints theta) const {
+    for (int i = 0; i < chain_.size(); ++i) {
+      if (chain_.steps()[std::size_t(i)].turns && !chain_.steps()[std::size_t(i)].slides) {
+        theta[i] = turned_within(theta[i], chain_.limits(i));
+      }
+    }
+    return theta;
+  }
+  [[nodiscard]] bool is_within_limits(const joints& theta) const {
+    for (int i = 0; i < chain_.size(); ++i) {
+      if (!(chain_.limits(i).lower <= theta[i] && theta[i] <= chain_.limits(i).upper)) {
+        return false;
+      }
+    }
+    return true;
+  }
+  [[nodiscard]] bool is_clear(const joints& theta) const {
+    if constexpr (std::same_as<Scene, no_scene>) {
+      return true;
+    } else {
+      return clearance(chain_, theta, around_).distance >= around_.margin - tolerance_;
+    }
+  }
+
+private:
+  void add(std::vector<family>& to, family all) const {
+    for (joints& theta : all) {
+      theta = turned(theta);
+    }
+    std::erase_if(all, [&](const joints& x) { return !is_within_limits(x) || !is_clear(x); });
+    if (!all.empty()) {
+      to.push_back(std::move(all));
+    }
+  }
+  [[nodiscard]] static bool is_new(const joints& theta, const std::vector<family>& others) {
+    return std::none_of(others.begin(), others.end(), [&](const family& other) {
+      return (other.front() - theta).cwiseAbs().maxCoeff() < 1e-3;
+    });
+  }
+  [[nodiscard]] joints configuration(split_mix& random) const {
+    joints theta(chain_.size());
+    for (int i = 0; i < chain_.size(); ++i) {
+      const auto& limits = chain_.limits(i);
+      const double lower = std::max(limits.lower, std::min(-std::numbers::pi, limits.upper));
+      const double upper = std::min(limits.upper, std::max(std::numbers::pi, limits.lower));
+      theta[i] = lower + (upper - lower) * random();
+    }
+    return theta;
+  }
+
+  const C& chain_;
+  const Scene& around_;
+  double tolerance_;
+};
+
+} // namespace duet::detail
