@@ -145,8 +145,8 @@ template <SerialChain C, VectorLike X, VectorLike Most>
     const T lower = at - by, upper = at + by;
     const joint_limits<T> limits{lower > given.lower ? lower : given.lower,
                                  upper < given.upper ? upper : given.upper, given.velocity};
-    detail::require(lower == lower && upper == upper,
-                    "duet: with_limits_about: joint ", i, " is to stay within ", by, " of ", at);
+    detail::require(lower == lower && upper == upper, "duet: with_limits_about: joint ", i,
+                    " is to stay within ", by, " of ", at);
     detail::require_limits(limits, std::size_t(i), "with_limits_about",
                            detail::joint_name(chain, i));
     result.set_limits(i, limits);

@@ -1,7 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/clearance.hpp>
@@ -71,30 +73,35 @@ chosen_start(const C& chain, const path_function& path, double first, double las
 /// \return `start_choice`
 /// \throws invalid_input as `follow_path`
 template <SerialChain C, PosePath Path, class Objective = no_objective, class Scene = no_scene>
-[[nodiscard]] start_choice<C::joints>
-choose_start(const C& chain, const Path& path, double first, double last,
-             const start_options& options = {}, const Objective& objective = {},
-             const Scene& around = {}) {
+[[nodiscard]] start_choice<C::joints> choose_start(const C& chain, const Path& path, double first,
+                                                   double last, const start_options& options = {},
+                                                   const Objective& objective = {},
+                                                   const Scene& around = {}) {
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: choose_start: the path's parameter goes from ", first, " to ", last);
-  return detail::chosen_start(
-      chain, detail::checked(path), first, last, options, objective, around,
-      [&](const auto& start, const plan_options& how) {
-        return follow_path(chain, start, path, first, last, how, objective, around);
-      });
+  return detail::chosen_start(chain, detail::checked(path), first, last, options, objective, around,
+                              [&](const auto& start, const plan_options& how) {
+                                return follow_path(chain, start, path, first, last, how, objective,
+                                                   around);
+                              });
 }
 
 /// A start from which the tip of a chain follows a spline of poses over all of its domain.
 template <SerialChain C, PosePath Spline, class Objective = no_objective, class Scene = no_scene>
   requires requires(const Spline& s) { s.breaks().front(); }
-[[nodiscard]] start_choice<C::joints>
-choose_start(const C& chain, const Spline& spline, const start_options& options = {},
-             const Objective& objective = {}, const Scene& around = {}) {
+[[nodiscard]] start_choice<C::joints> choose_start(const C& chain, const Spline& spline,
+                                                   const start_options& options = {},
+                                                   const Objective& objective = {},
+                                                   const Scene& around = {}) {
   return detail::chosen_start(chain, detail::checked(spline), spline.breaks().front(),
                               spline.breaks().back(), options, objective, around,
                               [&](const auto& start, const plan_options& how) {
                                 return follow_path(chain, start, spline, how, objective, around);
                               });
 }
+
+template <SerialChain C, VectorLike Start, PosePath Path, class... More>
+DUET_REFUSED("choose_start finds the start: choose_start(chain, path, first, last)")
+start_choice<C::joints> choose_start(const C&, const Start&, const Path&, const More&...);
 
 } // namespace duet

@@ -84,8 +84,7 @@ wanted_solution(const C& chain, const tip_goal& goal, const Start& start,
       model(chain, around);
   const wishes_of<C, Objective, Scene> wishes(chain, objective, around);
   const solution_search<room> search(model, planned_joints<room>(start, chain.size()), options);
-  constexpr bool has_wishes =
-      !std::same_as<Objective, no_objective> || std::same_as<Scene, scene>;
+  constexpr bool has_wishes = !std::same_as<Objective, no_objective> || std::same_as<Scene, scene>;
   const auto x = search(goal, has_wishes ? &wishes : nullptr);
   return {own_joints(chain, x.joints), x.left, x.iterations, x.restarts, x.reason};
 }
@@ -136,5 +135,9 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
   return detail::wanted_solution(chain, detail::tip_goal_of<detail::whole_pose>(whole), start,
                                  options, objective, around);
 }
+
+template <SerialChain C, TipGoal G>
+DUET_REFUSED("from which joints on? inverse_kinematics(chain, goal, start)")
+inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const G&);
 
 } // namespace duet

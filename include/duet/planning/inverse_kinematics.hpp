@@ -101,6 +101,10 @@ DUET_REFUSED("first the goal: inverse_kinematics(chain, goal, start)")
 inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const Start&,
                                                         const dual_quaternion<double>&,
                                                         const More&...);
+template <SerialChain C, VectorLike Position, VectorLike Start, class... More>
+DUET_REFUSED("a position as a goal is position_goal(p), in duet/planning/goals.hpp")
+inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const Position&, const Start&,
+                                                        const More&...);
 template <SerialChain C, Real T, VectorLike Start, class... More>
 DUET_REFUSED("the goal is a rotation, which says nothing of where: pose(q, t)")
 inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const quaternion<T>&,

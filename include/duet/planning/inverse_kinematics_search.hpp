@@ -169,7 +169,8 @@ private:
   /// The nearest place from a start on, by the least |way|² + |ω|², lengths as parts of the
   /// chain's: Newton's method with a damping that lets no step raise it. Joints at limits that are
   /// in the way are held there.
-  [[nodiscard]] attempt nearest(const vector& start, const Goal& goal) const {
+  template <std::same_as<tip_place> Pose>
+  [[nodiscard]] attempt nearest(const vector& start, const Pose& goal) const {
     point here = point_at(start, goal);
     double lambda = 0;
     int iterations = 0;
@@ -208,7 +209,8 @@ private:
     std::array<bool, std::size_t(Room)> is_held{}; ///< by a limit that is in the way
     double steepest = 0;                           ///< of the slopes of those that are not
   };
-  [[nodiscard]] point point_at(const vector& theta, const Goal& goal) const {
+  template <std::same_as<tip_place> Pose>
+  [[nodiscard]] point point_at(const vector& theta, const Pose& goal) const {
     const equations x = equations_at(theta, goal);
     const three_vector<double> way =
         1 / model_.reach.scale() * (goal.translation - x.at.tip.translation);

@@ -86,7 +86,7 @@ enum class stop_reason {
 
 /// The name of a `stop_reason`.
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
-  constexpr std::array names{"reached",     "joint_limit",     "singular",    "obstacle",
+  constexpr std::array names{"reached",     "joint_limit",     "singular",     "obstacle",
                              "no_progress", "iteration_limit", "out_of_reach", "no_solution"};
   return names[std::size_t(reason)];
 }

@@ -53,13 +53,13 @@ concept TipGoal = requires(const G& goal, const dual_quaternion<double>& tip) {
 /// space as in Berenson, Srinivasa, Kuffner, Task space regions, 2011, whose ranges of roll, pitch
 /// and yaw depend on the order of turns.) Other points and axes of the tip: `with_tool`.
 struct pose_region {
-  dual_quaternion<double> frame;            ///< where the region is: a pose of it in the base
-  std::array<double, 3> lower = {0, 0, 0};  ///< corner of the box in `frame`, may be −∞
-  std::array<double, 3> upper = {0, 0, 0};  ///< the other corner, may be ∞
-  std::array<double, 3> axis = {0, 0, 1};   ///< a unit vector in the tip, and in `frame`
-  double tilt = 0;                          ///< of the axis at most, radians; π is any
-  double turn_lower = 0;                    ///< about the axis at least, radians
-  double turn_upper = 0;                    ///< about the axis at most; by 2π more is any
+  dual_quaternion<double> frame;           ///< where the region is: a pose of it in the base
+  std::array<double, 3> lower = {0, 0, 0}; ///< corner of the box in `frame`, may be −∞
+  std::array<double, 3> upper = {0, 0, 0}; ///< the other corner, may be ∞
+  std::array<double, 3> axis = {0, 0, 1};  ///< a unit vector in the tip, and in `frame`
+  double tilt = 0;                         ///< of the axis at most, radians; π is any
+  double turn_lower = 0;                   ///< about the axis at least, radians
+  double turn_upper = 0;                   ///< about the axis at most; by 2π more is any
 
   /// For those who extend duet: what `TipGoal` asks for.
   [[nodiscard]] wanted_twist wanted(const dual_quaternion<double>& tip) const;
@@ -117,9 +117,10 @@ namespace detail {
 
 /// The origin of the tip at a position, and an axis of it pointing along a direction.
 /// \param tilt  how far the axis may be from there, radians
-[[nodiscard]] inline pose_region
-position_and_pointing_goal(const vector3<double>& position, const vector3<double>& axis,
-                           const vector3<double>& direction, double tilt = 0) {
+[[nodiscard]] inline pose_region position_and_pointing_goal(const vector3<double>& position,
+                                                            const vector3<double>& axis,
+                                                            const vector3<double>& direction,
+                                                            double tilt = 0) {
   auto result = free_axis_goal(pose(detail::turn_between(axis, direction), position), axis);
   result.tilt = tilt;
   return result;

@@ -81,8 +81,7 @@ private:
     const auto state = model_.at(theta);
     const wanted_twist wanted = goal_.wanted(state.tip);
     x.left = missing_twist(wanted).left;
-    x.excess =
-        std::max(tolerance_.times(x.left), model_.shortfall(theta) / tolerance_.length);
+    x.excess = std::max(tolerance_.times(x.left), model_.shortfall(theta) / tolerance_.length);
     const double per_length = 1 / model_.reach.scale();
     auto& more = x.conditions.inequalities;
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
@@ -133,17 +132,18 @@ private:
 
   /// The way back to where all conditions hold, by least steps.
   [[nodiscard]] std::optional<point> restored(joints theta) const {
-    constexpr double close = 1e-3; // well within, for objectives to be compared
+    constexpr double close = 1e-7; // well within, for objectives to be compared
     const vector none = vector::Zero(model_.size);
     const matrix one = matrix::Identity(model_.size, model_.size);
+    double before = std::numeric_limits<double>::infinity();
     for (int k = 0;; ++k) {
       point x = at(theta);
-      const auto step = x.excess <= close || k == 20
-                            ? std::nullopt
-                            : quadratic_step(none, one, x.conditions);
+      const bool is_end = x.excess <= close || k == 20 || (x.excess <= 1 && x.excess > before / 2);
+      const auto step = is_end ? std::nullopt : quadratic_step(none, one, x.conditions);
       if (!step) {
         return x.excess <= 1 ? std::optional<point>(std::move(x)) : std::nullopt;
       }
+      before = x.excess;
       theta = moved(theta, *step, 1);
     }
   }

@@ -70,8 +70,8 @@ solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Ro
   int iterations = 0, candidates = 0, restarts = 0;
   split_mix random(options_.seed);
   for (;; ++restarts) {
-    attempt next = search_.approach(restarts == 0 ? search_.start() : search_.configuration(random),
-                                    goal);
+    attempt next =
+        search_.approach(restarts == 0 ? search_.start() : search_.configuration(random), goal);
     iterations += next.iterations;
     if (next.reason == stop_reason::reached) {
       if (wishes->has_objective()) {

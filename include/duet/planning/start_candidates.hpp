@@ -8,6 +8,7 @@
 #include <duet/planning/clearance.hpp>
 #include <duet/planning/goals.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
+#include <duet/planning/motion_plan.hpp>
 #include <duet/planning/objective.hpp>
 #include <duet/planning/self_motion_curves.hpp>
 #include <duet/planning/split_mix.hpp>
@@ -48,7 +49,7 @@ public:
   /// Solutions that joints can move between with the tip in place.
   using family = std::vector<joints>;
 
-  pose_solutions(const C& chain, const Scene& around, double tolerance)
+  pose_solutions(const C& chain, const Scene& around, const pose_tolerance& tolerance)
       : chain_(chain), around_(around), tolerance_(tolerance) {}
 
   /// All ways for six joints; seven joints along their curves, points `resolution` apart; others,
@@ -76,7 +77,7 @@ public:
     }
     split_mix random(1);
     for (int i = 0; i < 100 && !is_complete; ++i) {
-      const auto found = from(configuration(random), goal, 0);
+      const auto found = from(configuration(random), goal, 0, 1e-3);
       if (found.reason == stop_reason::reached && is_new(found.joints, result)) {
         add(result, {found.joints});
       }
@@ -85,9 +86,12 @@ public:
   }
 
   /// One solution, or why there is none.
-  [[nodiscard]] inverse_kinematics_result<C::joints>
-  from(const joints& start, const dual_quaternion<double>& goal, int restarts) const {
-    const inverse_kinematics_options options{.tolerance = 1e-9, .restarts = restarts};
+  /// \param part  of the tolerance
+  [[nodiscard]] inverse_kinematics_result<C::joints> from(const joints& start,
+                                                          const dual_quaternion<double>& goal,
+                                                          int restarts, double part = 1) const {
+    const inverse_kinematics_options options{
+        .tolerance = {part * tolerance_.length, part * tolerance_.angle}, .restarts = restarts};
     if constexpr (std::same_as<Scene, no_scene>) {
       return inverse_kinematics(chain_, goal, start, options);
     } else {
@@ -116,7 +120,7 @@ public:
     if constexpr (std::same_as<Scene, no_scene>) {
       return true;
     } else {
-      return clearance(chain_, theta, around_).distance >= around_.margin - tolerance_;
+      return clearance(chain_, theta, around_).distance >= around_.margin - tolerance_.length;
     }
   }
 
@@ -148,7 +152,7 @@ private:
 
   const C& chain_;
   const Scene& around_;
-  double tolerance_;
+  pose_tolerance tolerance_;
 };
 
 } // namespace duet::detail

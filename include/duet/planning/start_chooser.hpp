@@ -75,9 +75,8 @@ template <class C, class X>
   for (int i = 0; i < chain.size(); ++i) {
     const auto& limits = chain.limits(i);
     const double range = limits.upper - limits.lower;
-    const double x = range - range == 0 && range > 0
-                         ? (theta[i] - limits.lower) / range - .5
-                         : theta[i] / (4 * std::numbers::pi);
+    const double x = range - range == 0 && range > 0 ? (theta[i] - limits.lower) / range - .5
+                                                     : theta[i] / (4 * std::numbers::pi);
     sum += x * x;
   }
   return sum;
@@ -99,7 +98,7 @@ public:
   start_chooser(const C& chain, const Scene& around, const start_options& options,
                 const Follow& follow, std::function<double(const joints&)> cost)
       : chain_(chain), options_(options), follow_(follow), cost_(std::move(cost)),
-        solutions_(chain, around, options.plan.tolerance.length) {}
+        solutions_(chain, around, options.plan.tolerance) {}
 
   [[nodiscard]] choice operator()(const path_function& path, double first, double last) const {
     choice result;
@@ -111,9 +110,8 @@ public:
       auto plan = follow_(start, quick);
       // Where a limit was in the way that joint begins anew a turn before it.
       const joints other = turned_back(start, plan);
-      const bool is_known =
-          std::any_of(candidates.begin(), candidates.end(),
-                      [&](const candidate& each) { return each.start == other; });
+      const bool is_known = std::any_of(candidates.begin(), candidates.end(),
+                                        [&](const candidate& each) { return each.start == other; });
       if (!is_known) {
         candidates.push_back({other, 1, 0});
       }
@@ -158,10 +156,9 @@ private:
       std::sort(all.begin(), all.end(), is_before);
       std::vector<candidate> chosen;
       for (candidate& each : all) {
-        const bool is_near =
-            std::any_of(chosen.begin(), chosen.end(), [&](const candidate& other) {
-              return (other.start - each.start).norm() < 2 * options_.resolution;
-            });
+        const bool is_near = std::any_of(chosen.begin(), chosen.end(), [&](const candidate& other) {
+          return (other.start - each.start).norm() < 2 * options_.resolution;
+        });
         if (!is_near) {
           each.rank = chosen.size();
           chosen.push_back(each);
@@ -238,16 +235,16 @@ private:
       if (is_algebraic(chain_, 6)) {
         const auto all = all_inverse_kinematics(chain_, pose);
         result.is_certain = all.is_complete;
-        result.reason =
-            all.solutions.empty() ? stop_reason::no_solution : stop_reason::joint_limit;
+        result.reason = all.solutions.empty() ? stop_reason::no_solution : stop_reason::joint_limit;
         return;
       }
     }
     const auto infinity = joints::Constant(chain_.size(), std::numeric_limits<double>::infinity());
     const auto without_limits = with_limits(chain_, joints(-infinity), joints(infinity));
-    const auto beyond = inverse_kinematics(without_limits, pose, middle());
-    result.reason = beyond.reason == stop_reason::reached ? stop_reason::joint_limit
-                                                          : stop_reason::no_solution;
+    const auto beyond =
+        inverse_kinematics(without_limits, pose, middle(), {.tolerance = options_.plan.tolerance});
+    result.reason =
+        beyond.reason == stop_reason::reached ? stop_reason::joint_limit : stop_reason::no_solution;
   }
 
   [[nodiscard]] joints middle() const {

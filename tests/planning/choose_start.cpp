@@ -1,0 +1,196 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+
+#include <duet/planning/choose_start.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+namespace test_planning_choose_start {
+namespace {
+
+using namespace duet;
+/// Of any number of joints, so that all is compiled once.
+using chain = serial_chain<-16>;
+using vector = detail::joint_vector<double, -16>;
+using std::numbers::pi;
+
+vector configuration(const chain& arm, duet_test::random_source& random) {
+  vector theta(arm.size());
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] =
+        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
+  }
+  return theta;
+}
+
+/// Is it a plan along all of the path, from a start within limits?
+template <class Path>
+bool is_whole(const chain& arm, const start_choice<-16>& found, const Path& path, double first,
+              double last) {
+  const auto& plan = found.plan;
+  if (found.reason != stop_reason::reached || found.unsolved || plan.tau.front() != first ||
+      plan.tau.back() != last) {
+    return false;
+  }
+  for (std::size_t k = 0; k < plan.joints.size(); ++k) {
+    const auto left = deviation_between(arm.pose(plan.joints[k]), path(plan.tau[k]));
+    if (left.length > 1e-5 || left.angle > 1e-5) {
+      return false;
+    }
+    for (int i = 0; i < arm.size(); ++i) {
+      const double x = plan.joints[k][i];
+      if (x < arm.limits(i).lower || x > arm.limits(i).upper) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+} // namespace
+
+TEST_CASE("paths made of joint paths: a start is found from which each can be followed") {
+  duet_test::random_source random(91);
+  const std::array<chain, 5> arms{robots::ur5e().table(), robots::panda().table(),
+                                  robots::iiwa14().table(), robots::baxter_left().table(),
+                                  duet_test::every_joint()};
+  for (const chain& arm : arms) {
+    CAPTURE(&arm - arms.data());
+    const int count = arm.size() == 6 ? 20 : 3;
+    int solved = 0;
+    for (int k = 0; k < count; ++k) {
+      const vector from = configuration(arm, random), to = configuration(arm, random);
+      const auto path = [&](double u) { return arm.pose((from + .3 * u * (to - from)).eval()); };
+      const auto found = choose_start(arm, path, 0, 1, {.resolution = .5});
+      solved += is_whole(arm, found, path, 0, 1);
+    }
+    CHECK(solved == count);
+  }
+}
+
+TEST_CASE("the one start of eight, and the one turn of the joints") {
+  const chain arm = robots::ur5e().table();
+  // The last joint turns by two and a half turns: it has to begin near a limit.
+  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, -6).finished();
+  const auto path = [&](double u) {
+    vector x = theta;
+    x[5] += 11 * u;
+    return arm.pose(x);
+  };
+  const auto found = choose_start(arm, path, 0, 1);
+  CHECK(is_whole(arm, found, path, 0, 1));
+  CHECK(found.plan.joints.front()[5] < -4);
+  // Nowhere near are two turns and a half more.
+  const auto more = [&](double u) {
+    vector x = theta;
+    x[5] += 14 * u;
+    return arm.pose(x);
+  };
+  const auto stuck = choose_start(arm, more, 0, 1);
+  CHECK(stuck.reason == stop_reason::joint_limit);
+  CHECK(!stuck.unsolved); // each pose has solutions, the path has none
+  CHECK(stuck.plan.tau.back() > .8);
+}
+
+TEST_CASE("the objective says which start is tried first") {
+  const chain arm = robots::ur5e().table();
+  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  const auto path = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(0, 0, .05 * u)) * arm.pose(theta);
+  };
+  const auto all = all_inverse_kinematics(arm, path(0));
+  REQUIRE(all.solutions.size() == 8);
+  for (const auto& branch : all.solutions) {
+    const auto found = choose_start(arm, path, 0, 1, {}, preferred_posture{branch.joints});
+    CHECK(found.reason == stop_reason::reached);
+    CHECK(found.starts == 1);
+    CHECK((found.plan.joints.front() - branch.joints).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("the first pose without a solution, and why") {
+  const chain arm = robots::ur5e().table();
+  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  const auto start = arm.pose(theta);
+  const auto out = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(2 * u, 0, 0)) * start;
+  };
+  const auto far = choose_start(arm, out, 0, 1);
+  REQUIRE(far.unsolved);
+  CHECK(far.is_certain);
+  CHECK((far.reason == stop_reason::out_of_reach || far.reason == stop_reason::no_solution));
+  // There it is just not reached any more.
+  CHECK(all_inverse_kinematics(arm, out(*far.unsolved)).solutions.empty());
+  CHECK(!all_inverse_kinematics(arm, out(*far.unsolved - 2e-6)).solutions.empty());
+  CHECK(far.plan.tau.back() > .9 * *far.unsolved);
+  // From where there is none at all.
+  const auto none = choose_start(arm, out, .9, 1);
+  REQUIRE(none.unsolved);
+  CHECK(*none.unsolved == .9);
+  CHECK(none.reason == stop_reason::out_of_reach);
+  CHECK(none.plan.joints.empty());
+
+  // Limits: the base turns by no more than 1, and the wrist not to its other solution.
+  auto limited = arm;
+  for (int i = 0; i < 6; ++i) {
+    limited = with_limits(limited, i, {theta[i] - .5, theta[i] + .5});
+  }
+  const auto turning = [&](double u) {
+    return pose(exp(vector3<double>(0, 0, u / 2)), vector3<double>(0, 0, 0)) * start;
+  };
+  const auto bounded = choose_start(limited, turning, 0, 1);
+  REQUIRE(bounded.unsolved);
+  CHECK(bounded.reason == stop_reason::joint_limit);
+  CHECK(bounded.is_certain);
+  CHECK(*bounded.unsolved == doctest::Approx(.5).epsilon(1e-5));
+
+  // Obstacles: a wall on the way of the flange.
+  scene around;
+  around.bodies = {{6, {vector3<double>(0, 0, 0), vector3<double>(0, 0, -.05), .04}}};
+  around.obstacles = {box<double>{
+      pose(quaternion<double>(1), vector3<double>(translation(start) + vector3<double>(0, 0, -.4))),
+      vector3<double>(1, 1, .1)}};
+  const auto down = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(0, 0, -.35 * u)) * start;
+  };
+  const auto blocked = choose_start(arm, down, 0, 1, {}, no_objective{}, around);
+  REQUIRE(blocked.unsolved);
+  CHECK(blocked.reason == stop_reason::obstacle);
+  CHECK(*blocked.unsolved > .3);
+  CHECK(*blocked.unsolved < 1);
+}
+
+TEST_CASE("seven joints without a solution, and with one of few starts") {
+  const chain arm = robots::iiwa14().table();
+  const vector theta = (vector(7) << .3, .6, -.2, -1.3, .4, .9, .1).finished();
+  const auto path = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(0, 0, u)) * arm.pose(theta);
+  };
+  const auto found = choose_start(arm, path, 0, 1, {.starts = 4, .resolution = .5, .sampling = .1});
+  REQUIRE(found.unsolved);
+  CHECK((found.reason == stop_reason::out_of_reach || found.reason == stop_reason::no_solution));
+  CHECK(found.plan.tau.back() <= *found.unsolved + 1e-5);
+  CHECK(found.plan.tau.back() > .8 * *found.unsolved);
+}
+
+TEST_CASE("what is refused") {
+  const chain arm = robots::ur5e().table();
+  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  const auto path = [&](double) { return arm.pose(theta); };
+  CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 1, 1)),
+                       "duet: choose_start: the path's parameter goes from 1 to 1", invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 0, 1, {.starts = 0})),
+                       "duet: choose_start: starts is 0, not a number above 0", invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 0, 1, {.sampling = 2})),
+                       "duet: choose_start: sampling is 2, not within (0, 1]", invalid_input);
+}
+
+} // namespace test_planning_choose_start

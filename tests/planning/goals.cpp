@@ -1,0 +1,367 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+#include "support/multiprecision.hpp"
+
+#include <duet/planning/equation_goal.hpp>
+#include <duet/planning/goals.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace test_planning_goals {
+namespace {
+
+using namespace duet;
+/// Of any number of joints, so that the search is compiled once.
+using chain = serial_chain<-16>;
+using vector = detail::joint_vector<double, -16>;
+using duet_test::real_50;
+using wide_vector = vector3<real_50>;
+using wide_matrix = Eigen::Matrix<real_50, 3, 3>;
+using std::numbers::pi;
+
+/// Ten joints with axes in all directions.
+chain snake() {
+  std::array<joint<>, 10> joints;
+  for (std::size_t i = 0; i < 10; ++i) {
+    joints[i].origin.translation = {.1, .05, .08};
+    joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
+    joints[i].limits = {-1.5, 1.2};
+  }
+  return serial_chain<10>(joints, {quaternion<double>(1), {.1, 0, 0}});
+}
+
+std::vector<chain> arms() {
+  return {robots::panda().table(),       robots::iiwa14().table(), robots::ur5e().table(),
+          robots::baxter_left().table(), duet_test::every_joint(), snake()};
+}
+
+vector configuration(const chain& arm, duet_test::random_source& random) {
+  vector theta(arm.size());
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] =
+        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
+  }
+  return theta;
+}
+
+vector3<double> direction(duet_test::random_source& random) {
+  const auto n = random.direction<3>();
+  return {n[0], n[1], n[2]};
+}
+
+dual_quaternion<double> anywhere(duet_test::random_source& random) {
+  const auto q = random.direction<4>();
+  const auto x = [&] { return random.uniform(-1, 1); };
+  return pose(quaternion<double>(q[0], q[1], q[2], q[3]), vector3<double>(x(), x(), x()));
+}
+
+bool is_within_limits(const chain& arm, const vector& theta) {
+  bool is_inside = theta.size() == arm.size();
+  for (int i = 0; i < arm.size(); ++i) {
+    is_inside = is_inside && arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper;
+  }
+  return is_inside;
+}
+
+/// By matrices, to 50 digits: where the origin of the tip is in a region's frame, how far the axis
+/// is tilted, and by how much the tip is turned about it once it is tilted back.
+struct place_in_region {
+  wide_vector at;
+  real_50 tilt, turn;
+
+  place_in_region(const dual_quaternion<real_50>& tip, const pose_region& region) {
+    const auto frame = transform_matrix(dual_quaternion<real_50>(region.frame));
+    const auto here = transform_matrix(tip);
+    const wide_matrix axes = frame.topLeftCorner<3, 3>();
+    at = axes.transpose() * (here.topRightCorner<3, 1>() - frame.topRightCorner<3, 1>());
+    const wide_matrix r = axes.transpose() * here.topLeftCorner<3, 3>();
+    const wide_vector n(region.axis[0], region.axis[1], region.axis[2]);
+    const wide_vector tilted = r * n;
+    const wide_vector across = n.cross(tilted);
+    tilt = atan2(across.norm(), n.dot(tilted));
+    // By Rodrigues: the least turn that takes n to where it is.
+    wide_matrix k;
+    k << 0, -across[2], across[1], across[2], 0, -across[0], -across[1], across[0], 0;
+    const wide_matrix swing = wide_matrix::Identity() + k + k * k / real_50(1 + n.dot(tilted));
+    const wide_matrix twist = swing.transpose() * r;
+    int least = 0;
+    n.cwiseAbs().minCoeff(&least);
+    const wide_vector p = n.cross(wide_vector::Unit(least));
+    const wide_vector q = twist * p;
+    turn = atan2(n.dot(p.cross(q)), p.dot(q));
+  }
+};
+
+/// How far a tip is outside: of lengths and angles.
+pose_deviation outside(const chain& arm, const vector& theta, const pose_region& region) {
+  const Eigen::Matrix<real_50, Eigen::Dynamic, 1> exact = theta.cast<real_50>();
+  const place_in_region place(arm.pose(exact), region);
+  pose_deviation result;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = std::size_t(i);
+    result.length = std::max({result.length, double(real_50(region.lower[k]) - place.at[i]),
+                              double(place.at[i] - real_50(region.upper[k]))});
+  }
+  result.angle = std::max(0., double(place.tilt - real_50(region.tilt)));
+  const double turn(place.turn), middle = (region.turn_lower + region.turn_upper) / 2;
+  const double half = (region.turn_upper - region.turn_lower) / 2;
+  const double from_middle = std::abs(std::remainder(turn - middle, 2 * pi));
+  result.angle = std::max(result.angle, from_middle - half);
+  return result;
+}
+
+struct made_goal {
+  const char* name;
+  pose_region region;
+};
+
+/// Goals that a pose of the tip fulfils.
+std::vector<made_goal> goals_at(const dual_quaternion<double>& tip,
+                                duet_test::random_source& random) {
+  const vector3<double> n = direction(random), p = translation(tip);
+  const vector3<double> d = rotate(rotation(tip), n);
+  const auto near = [&](double most) { return random.uniform(0, most); };
+  // A region whose frame is tilted and turned away from the tip, which still is within it.
+  const vector3<double> axis = direction(random);
+  const vector3<double> across = axis.cross(direction(random)).normalized();
+  const double tilt = near(.3), turn = random.uniform(-3, 3);
+  const auto swing = exp(vector3<double>(tilt / 2 * across));
+  const auto twist = exp(vector3<double>(turn / 2 * axis));
+  const quaternion<double> frame = rotation(tip) * conj(swing * twist);
+  const vector3<double> shift(near(.1), -near(.1), near(.02));
+  const pose_region region{.frame = pose(frame, vector3<double>(p - rotate(frame, shift))),
+                           .lower = {shift[0] - near(.01), shift[1] - near(.02), shift[2]},
+                           .upper = {shift[0] + near(.05), shift[1], shift[2] + near(.05)},
+                           .axis = {axis[0], axis[1], axis[2]},
+                           .tilt = tilt + near(.1),
+                           .turn_lower = turn - near(.2),
+                           .turn_upper = turn + near(.2)};
+  auto line = position_goal(p);
+  line.upper[2] = std::numeric_limits<double>::infinity();
+  return {{"position", position_goal(p)},
+          {"pointing", pointing_goal(n, d)},
+          {"position and pointing", position_and_pointing_goal(p, n, d)},
+          {"free axis", free_axis_goal(tip, n)},
+          {"cone", position_and_pointing_goal(p, n, (d + .1 * direction(random)).normalized(), .2)},
+          {"half a line", line},
+          {"whole pose", {.frame = tip, .axis = {n[0], n[1], n[2]}}},
+          {"region", region}};
+}
+
+} // namespace
+
+TEST_CASE("goals in part made of known joints, six arms, to 50 digits") {
+  const std::uint64_t seed = 71;
+  CAPTURE(seed);
+  duet_test::random_source random(seed);
+  const auto all = arms();
+  for (const chain& arm : all) {
+    CAPTURE(&arm - all.data());
+    std::array<int, 8> solved{};
+    for (int k = 0; k < 40; ++k) {
+      const auto tip = arm.pose(configuration(arm, random));
+      const vector start = configuration(arm, random);
+      const auto goals = goals_at(tip, random);
+      for (std::size_t g = 0; g < goals.size(); ++g) {
+        const auto& region = goals[g].region;
+        const auto found = inverse_kinematics(arm, region, start, {.tolerance = 1e-9});
+        const auto left = outside(arm, found.joints, region);
+        const bool is_true = left.length <= 1e-9 + 1e-14 && left.angle <= 1e-9 + 1e-13;
+        solved[g] +=
+            found.reason == stop_reason::reached && is_true && is_within_limits(arm, found.joints);
+      }
+    }
+    for (const int count : solved) {
+      CHECK(count == 40);
+    }
+  }
+}
+
+TEST_CASE("rows are the derivatives of what they want less of") {
+  duet_test::random_source random(72);
+  for (int k = 0; k < 100; ++k) {
+    const auto frame = anywhere(random);
+    const vector3<double> n = direction(random);
+    const pose_region range{.frame = frame,
+                            .lower = {-1, -2, -3},
+                            .upper = {3, 2, 1},
+                            .axis = {n[0], n[1], n[2]},
+                            .tilt = .3,
+                            .turn_lower = -.4,
+                            .turn_upper = .2};
+    pose_region exact = range;
+    exact.lower = exact.upper = {0, 0, 0};
+    exact.tilt = exact.turn_lower = exact.turn_upper = 0;
+    for (const bool is_exact : {false, true}) {
+      const pose_region& region = is_exact ? exact : range;
+      const auto tip = is_exact ? frame : anywhere(random); // equations hold at the solution
+      const auto rows = region.wanted(tip).rows;
+      for (int j = 0; j < 6; ++j) {
+        const double h = 1e-6;
+        const auto moved = [&](double way) {
+          vector3<double> t = translation(tip), half(0, 0, 0);
+          (j < 3 ? t[j] : half[j - 3]) += (j < 3 ? way : way / 2);
+          return region.wanted(pose(exp(half) * rotation(tip), t));
+        };
+        const auto after = moved(h), before = moved(-h);
+        for (int i = 0; i < 6; ++i) {
+          const double least = (before.least[i] - after.least[i]) / (2 * h);
+          const double most = (before.most[i] - after.most[i]) / (2 * h);
+          if (after.least[i] > -std::numeric_limits<double>::infinity()) {
+            CHECK(std::abs(rows(i, j) - least) < 1e-7 * (1 + std::abs(least)));
+          }
+          CHECK(std::abs(rows(i, j) - most) < 1e-7 * (1 + std::abs(most)));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("what regions want at their edges, and for opposite axes") {
+  const quaternion<double> one(1);
+  const vector3<double> x(1, 0, 0), z(0, 0, 1), zero(0, 0, 0);
+  // The axis is where it should not be at all: any way is as good, but there is one.
+  const auto opposite = pointing_goal(z, -z).wanted(pose(one, zero));
+  CHECK(opposite.least.norm() == doctest::Approx(pi));
+  CHECK(opposite.rows.allFinite());
+  const auto there = pointing_goal(z, z).wanted(pose(one, zero));
+  CHECK(there.least.norm() < 1e-15);
+  // Nothing is wanted but three lengths, in the region's axes.
+  const auto position = position_goal(x).wanted(pose(one, zero));
+  CHECK(position.least.head<3>() == x);
+  CHECK(position.rows.topLeftCorner<3, 3>() == Eigen::Matrix3d::Identity());
+  CHECK(position.rows.bottomRows<3>().isZero(0));
+  // Turns are counted to the nearer edge.
+  pose_region turns{.frame = pose(one, zero), .tilt = pi, .turn_lower = 3, .turn_upper = 3.2};
+  const auto at = [&](double angle) {
+    return turns.wanted(pose(exp(vector3<double>(0, 0, angle / 2)), zero));
+  };
+  CHECK(at(2.9).least[5] == doctest::Approx(.1));
+  CHECK(at(-2.9).most[5] == doctest::Approx(-(2 * pi - 2.9 - 3.2)));
+  CHECK(at(3.1).least[5] < 0);
+  CHECK(at(3.1).most[5] > 0);
+  // How far from a point.
+  pose_region box = position_goal(vector3<double>(1, 2, 3));
+  box.upper = {1, 1, 1};
+  CHECK(box.distance_from(zero) == doctest::Approx(std::sqrt(14)));
+  CHECK(box.distance_from(vector3<double>(1.5, 2.5, 3.5)) == 0);
+  CHECK(box.distance_from(vector3<double>(4, 2.5, 3.5)) == doctest::Approx(2));
+}
+
+TEST_CASE("equations of one's own: a tip on a sphere that looks at its middle") {
+  const vector3<double> centre(.4, .1, .3);
+  const equation_goal goal{[&](const auto& tip) {
+    using S = std::decay_t<decltype(translation(tip)[0])>;
+    const vector3<S> from = translation(tip) - centre.cast<S>();
+    const auto length = from.norm();
+    const vector3<S> axis = rotate(rotation(tip), vector3<S>(S(0), S(0), S(1)));
+    const vector3<S> across = axis.cross(vector3<S>(-from / length));
+    return std::array<S, 6>{length - .2, S(0), S(0), across[0], across[1], across[2]};
+  }};
+  static_assert(TipGoal<decltype(goal)>);
+  duet_test::random_source random(73);
+  for (const chain& arm : {chain(robots::panda().table()), chain(robots::ur5e().table())}) {
+    int solved = 0;
+    for (int k = 0; k < 20; ++k) {
+      const auto found =
+          inverse_kinematics(arm, goal, configuration(arm, random), {.tolerance = 1e-10});
+      const auto tip = arm.pose(found.joints);
+      const vector3<double> from = translation(tip) - centre;
+      const vector3<double> across =
+          rotate(rotation(tip), vector3<double>(0, 0, 1)).cross(from.normalized());
+      solved += found.reason == stop_reason::reached && std::abs(from.norm() - .2) < 2e-10 &&
+                across.norm() < 2e-10 && is_within_limits(arm, found.joints);
+    }
+    CHECK(solved == 20);
+  }
+}
+
+TEST_CASE("goals that cannot be reached, and why") {
+  const chain panda = robots::panda().table();
+  const vector middle = (lower_limits(panda) + upper_limits(panda)) / 2;
+  const auto far = inverse_kinematics(panda, position_goal({1.4, 0, .3}), middle, {.restarts = 3});
+  CHECK(far.reason == stop_reason::out_of_reach);
+  CHECK(far.restarts == 3);
+  // A box of which only a corner is near enough.
+  auto box = position_goal({.5, .5, .3});
+  box.upper = {3, 3, 3};
+  CHECK(inverse_kinematics(panda, box, middle).reason == stop_reason::reached);
+  box.lower = {2.5, 2.5, 0};
+  CHECK(inverse_kinematics(panda, box, middle).reason == stop_reason::out_of_reach);
+
+  // A slide that is too short for the height.
+  const std::array<dh_row<>, 4> rows{{{.a = .4, .d = .2},
+                                      {.a = .3, .alpha = pi},
+                                      {.limits = {0, .2}, .kind = joint_kind::prismatic},
+                                      {}}};
+  const chain scara = from_dh(rows);
+  const vector start = vector::Constant(4, .05);
+  CHECK(inverse_kinematics(scara, position_goal({.4, .2, .1}), start).reason ==
+        stop_reason::reached);
+  const auto high = inverse_kinematics(scara, position_goal({.4, .2, .3}), start);
+  CHECK(high.reason == stop_reason::joint_limit);
+  CHECK(high.deviation.length == doctest::Approx(.1).epsilon(1e-6));
+  // Its axis always points down: nothing that joints could do about it.
+  const auto tilted =
+      inverse_kinematics(scara, pointing_goal({0, 0, 1}, {0, std::sin(.3), -std::cos(.3)}), start);
+  CHECK(tilted.reason != stop_reason::reached);
+  CHECK(tilted.deviation.angle == doctest::Approx(.3));
+  CHECK(inverse_kinematics(scara, pointing_goal({0, 0, 1}, {0, std::sin(.3), -std::cos(.3)}, .31),
+                           start)
+            .reason == stop_reason::reached);
+  // Within the circle that a stretched arm leaves out: it is folded.
+  const std::array<dh_row<>, 2> two{{{.a = .5}, {.a = .3}}};
+  const chain planar = from_dh(two);
+  const auto inner = position_goal({.1, 0, 0});
+  const auto folded = inverse_kinematics(planar, inner, vector::Constant(2, .3));
+  CHECK(folded.reason == stop_reason::no_progress);
+  CHECK(folded.deviation.length >= .1 - 1e-12);
+  CHECK(folded.deviation.length < .12);
+}
+
+TEST_CASE("regions that hold no pose") {
+  const chain arm = robots::panda().table();
+  const vector start = vector::Zero(7).cwiseMin(upper_limits(arm));
+  const auto text = [&](const pose_region& region) -> std::string {
+    try {
+      static_cast<void>(inverse_kinematics(arm, region, start));
+    } catch (const invalid_input& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const pose_region good = position_goal({.5, 0, .5});
+  CHECK(text(good) == "");
+  pose_region bad = good;
+  bad.upper[1] = -1;
+  CHECK(text(bad) ==
+        "duet: inverse_kinematics: the region goes from 0 to -1 along axis 1 of its frame");
+  bad = good;
+  bad.axis = {0, 1, 1};
+  CHECK(text(bad) == "duet: inverse_kinematics: the region's axis (0, 1, 1) is no unit vector");
+  bad = good;
+  bad.tilt = -.1;
+  CHECK(text(bad) == "duet: inverse_kinematics: the region's tilt is -0.1");
+  bad = good;
+  bad.turn_lower = 4;
+  CHECK(text(bad).find("the region's turns go from 4 to 3.14") != std::string::npos);
+  bad = good;
+  bad.frame = 2 * bad.frame;
+  CHECK(text(bad).find("the frame of the region is no unit dual quaternion") != std::string::npos);
+  bad = good;
+  bad.lower[2] = std::nan("");
+  CHECK(text(bad).find("the region goes from nan") != std::string::npos);
+}
+
+} // namespace test_planning_goals

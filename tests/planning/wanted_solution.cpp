@@ -1,0 +1,307 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/arms.hpp"
+#include "support/multiprecision.hpp"
+
+#include <duet/derivative/gradient.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/limits.hpp>
+#include <duet/planning/goals.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace test_planning_wanted_solution {
+namespace {
+
+using namespace duet;
+/// Of any number of joints, so that the search is compiled once.
+using chain = serial_chain<-16>;
+using vector = detail::joint_vector<double, -16>;
+using std::numbers::pi;
+
+std::vector<chain> arms() {
+  return {robots::panda().table(), robots::iiwa14().table(), robots::ur5e().table(),
+          robots::baxter_left().table(), duet_test::every_joint()};
+}
+
+vector configuration(const chain& arm, duet_test::random_source& random) {
+  vector theta(arm.size());
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] =
+        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
+  }
+  return theta;
+}
+
+vector near(const chain& arm, vector theta, double most, duet_test::random_source& random) {
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] = std::clamp(theta[i] + random.uniform(-most, most), arm.limits(i).lower,
+                          arm.limits(i).upper);
+  }
+  return theta;
+}
+
+bool is_within_limits(const chain& arm, const vector& theta) {
+  bool is_inside = theta.size() == arm.size();
+  for (int i = 0; i < arm.size(); ++i) {
+    is_inside = is_inside && arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper;
+  }
+  return is_inside;
+}
+
+/// How far the tip is from a position, to 50 digits.
+double distance(const chain& arm, const vector& theta, const vector3<double>& p) {
+  using duet_test::real_50;
+  const Eigen::Matrix<real_50, Eigen::Dynamic, 1> exact = theta.cast<real_50>();
+  return double((translation(arm.pose(exact)) - p.cast<real_50>()).norm());
+}
+
+/// Of a slope what the tip, held at a position, and joints at limits leave: zero where nothing
+/// nearby is lower. (The sign of what limits hold is looked at, too.)
+double free_slope(const chain& arm, const vector& theta, vector slope) {
+  std::vector<vector> held;
+  const auto j = jacobian(arm, theta, frame::hybrid);
+  const auto hold = [&](vector row) {
+    for (int twice = 0; twice < 2; ++twice) {
+      for (const vector& other : held) {
+        row -= other.dot(row) * other;
+      }
+    }
+    if (row.norm() > 1e-6) {
+      held.push_back(row / row.norm());
+    }
+  };
+  for (int i = 0; i < 3; ++i) {
+    hold(j.row(i).transpose());
+  }
+  for (int i = 0; i < arm.size(); ++i) {
+    if (std::min(theta[i] - arm.limits(i).lower, arm.limits(i).upper - theta[i]) < 1e-7) {
+      hold(vector::Unit(arm.size(), i));
+    }
+  }
+  for (const vector& row : held) {
+    slope -= row.dot(slope) * row;
+  }
+  return slope.norm();
+}
+
+/// The chain's bodies: a capsule along each link but the first two.
+scene bodies(const chain& arm) {
+  scene result;
+  for (int i = 3; i <= arm.size(); ++i) {
+    result.bodies.push_back({i, {vector3<double>(0, 0, 0), vector3<double>(0, 0, .1), .05}});
+  }
+  result.margin = .02;
+  return result;
+}
+
+/// Spheres that leave one configuration alone: at joints of another, and anywhere.
+void put_spheres(scene& around, const chain& arm, const vector& known, const vector& other,
+                 duet_test::random_source& random) {
+  around.obstacles.clear();
+  for (int i = 3; i < arm.size() + 6; ++i) {
+    const auto x = [&](double least, double most) { return random.uniform(least, most); };
+    const vector3<double> at = i < arm.size()
+                                   ? vector3<double>(translation(arm.pose(other, i)))
+                                   : vector3<double>(x(-.8, .8), x(-.8, .8), x(0, 1.2));
+    around.obstacles.push_back(sphere<double>{at, x(.05, .2)});
+    if (clearance(arm, known, around).distance < around.margin) {
+      around.obstacles.pop_back();
+    }
+  }
+}
+
+} // namespace
+
+TEST_CASE("a preferred posture: no known solution is nearer to it, nor any nearby") {
+  duet_test::random_source random(81);
+  const auto all = arms();
+  for (const chain& arm : all) {
+    CAPTURE(&arm - all.data());
+    int solved = 0, flat = 0;
+    for (int k = 0; k < 10; ++k) {
+      const vector known = configuration(arm, random);
+      const vector3<double> p = translation(arm.pose(known));
+      const preferred_posture wish{near(arm, known, .4, random)};
+      const auto found = inverse_kinematics(arm, position_goal(p), wish.posture, {}, wish);
+      CHECK(is_within_limits(arm, found.joints));
+      solved += found.reason == stop_reason::reached && distance(arm, found.joints, p) < 1e-6 &&
+                wish(found.joints) <= wish(known);
+      flat += free_slope(arm, found.joints, wish.gradient(found.joints)) < 1e-6;
+    }
+    CHECK(solved == 10);
+    CHECK(flat == 10);
+  }
+}
+
+TEST_CASE("an objective, differentiated by duals, among the branches of a pose") {
+  // The last three joints as small as can be; the gradient has no help.
+  const auto wish = [](const auto& theta) {
+    using std::cos;
+    std::decay_t<decltype(theta[0])> sum(0);
+    for (Eigen::Index i = 3; i < 6; ++i) {
+      sum += 1 - cos(theta[i]);
+    }
+    return sum;
+  };
+  duet_test::random_source random(82);
+  for (const chain& arm : {chain(robots::ur5e().table()), chain(robots::iiwa14().table())}) {
+    int better = 0, solved = 0;
+    for (int k = 0; k < 10; ++k) {
+      const vector known = configuration(arm, random), start = configuration(arm, random);
+      const auto goal = arm.pose(known);
+      const auto found = inverse_kinematics(arm, goal, start, {.candidates = 20}, wish);
+      const auto left = deviation_between(arm.pose(found.joints), goal);
+      solved += found.reason == stop_reason::reached && left.length <= 1e-6 * (1 + 1e-9) &&
+                left.angle <= 1e-6 * (1 + 1e-9) && is_within_limits(arm, found.joints);
+      better += wish(found.joints) <= wish(known) + 1e-6;
+      CHECK(wish(found.joints) <= wish(inverse_kinematics(arm, goal, start).joints) + 1e-6);
+    }
+    CHECK(solved == 10);
+    CHECK(better >= 9); // another branch may have been missed
+  }
+}
+
+TEST_CASE("in a region the objective goes as far as the edge, and not on where it is least") {
+  const chain arm = robots::iiwa14().table();
+  const vector start = (vector(7) << .3, .6, -.2, -1.3, .4, .9, .1).finished();
+  const vector3<double> p = translation(arm.pose(start));
+  auto box = position_goal(p);
+  box.lower = {-.1, -.1, -.1};
+  box.upper = {.1, .1, .1};
+  const auto height = [&](const auto& theta) { return translation(arm.pose(theta))[2]; };
+  const auto low = inverse_kinematics(arm, box, start, {}, height);
+  CHECK(low.reason == stop_reason::reached);
+  CHECK(height(low.joints) - p[2] == doctest::Approx(-.1).epsilon(1e-4));
+  // Within the box it is not held.
+  const auto middle = [&](const auto& theta) {
+    return (translation(arm.pose(theta)) - (p + vector3<double>(.02, -.03, .01))).squaredNorm();
+  };
+  const auto inside = inverse_kinematics(arm, box, start, {}, middle);
+  CHECK(inside.reason == stop_reason::reached);
+  CHECK(middle(inside.joints) < 1e-8);
+}
+
+TEST_CASE("a bound for each joint, about the start") {
+  duet_test::random_source random(83);
+  for (const chain& arm : arms()) {
+    int solved = 0;
+    for (int k = 0; k < 40; ++k) {
+      const vector known = configuration(arm, random);
+      vector most(arm.size());
+      for (double& x : most) {
+        x = random.uniform(.01, .5);
+      }
+      vector start = known;
+      for (int i = 0; i < arm.size(); ++i) {
+        start[i] = std::clamp(known[i] + random.uniform(-most[i], most[i]), arm.limits(i).lower,
+                              arm.limits(i).upper);
+      }
+      const auto goal = arm.pose(known);
+      const auto found = inverse_kinematics(with_limits_about(arm, start, most), goal, start);
+      const auto left = deviation_between(arm.pose(found.joints), goal);
+      const double rounding = 1e-14;
+      solved += found.reason == stop_reason::reached && left.length <= 1.001e-6 &&
+                ((found.joints - start).cwiseAbs() - most).maxCoeff() <= rounding &&
+                is_within_limits(arm, found.joints);
+    }
+    CHECK(solved == 40);
+  }
+  // What would have to go farther says so.
+  const chain panda = robots::panda().table();
+  const vector start = (vector(7) << 0, -.8, 0, -2.4, 0, 1.6, .8).finished();
+  vector there = start;
+  there[0] += .6;
+  const auto bounded = with_limits_about(panda, start, vector(vector::Constant(7, .1)));
+  CHECK(inverse_kinematics(bounded, position_goal(translation(panda.pose(there))), start).reason ==
+        stop_reason::joint_limit);
+}
+
+TEST_CASE("among obstacles solutions keep the margin") {
+  duet_test::random_source random(84);
+  const auto all = arms();
+  int without = 0;
+  for (const chain& arm : all) {
+    CAPTURE(&arm - all.data());
+    scene around = bodies(arm);
+    int solved = 0;
+    for (int k = 0; k < 8; ++k) {
+      const vector known = configuration(arm, random), start = configuration(arm, random);
+      const auto goal = arm.pose(known);
+      const vector3<double> z(0, 0, 1), p = translation(goal);
+      const auto pointing = position_and_pointing_goal(p, z, rotate(rotation(goal), z));
+      const vector free = inverse_kinematics(arm, pointing, start).joints;
+      put_spheres(around, arm, known, free, random);
+      const auto one = inverse_kinematics(arm, goal, start, {}, no_objective{}, around);
+      const auto two = inverse_kinematics(arm, pointing, start, {}, no_objective{}, around);
+      const auto three = inverse_kinematics(arm, position_goal(p), start, {.candidates = 2},
+                                            preferred_posture{known}, around);
+      for (const auto& found : {one, two, three}) {
+        solved += found.reason == stop_reason::reached && distance(arm, found.joints, p) < 1.1e-6 &&
+                  clearance(arm, found.joints, around).distance >= around.margin - 1e-6 &&
+                  is_within_limits(arm, found.joints);
+      }
+      without += clearance(arm, free, around).distance < around.margin;
+    }
+    CHECK(solved == 24);
+  }
+  CHECK(without > 10); // else it was no test
+}
+
+TEST_CASE("a goal within an obstacle is refused for that reason") {
+  const chain arm = robots::ur5e().table();
+  const vector known = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  scene around = bodies(arm);
+  const auto goal = arm.pose(known);
+  around.obstacles = {sphere<double>{translation(goal), .2}};
+  const auto found = inverse_kinematics(arm, goal, known, {.restarts = 20}, no_objective{}, around);
+  CHECK(found.reason == stop_reason::obstacle);
+  CHECK(found.restarts == 20);
+  CHECK(found.deviation.length <= 1e-6);
+  // Out of reach is that, with obstacles or not, and the nearest pose is told.
+  const auto far = pose(quaternion<double>(1), vector3<double>(3, 0, 0));
+  const auto beyond = inverse_kinematics(arm, far, known, {.restarts = 2}, no_objective{}, around);
+  CHECK(beyond.reason == stop_reason::out_of_reach);
+  CHECK(beyond.joints == inverse_kinematics(arm, far, known, {.restarts = 2}).joints);
+}
+
+TEST_CASE("joints that turn all round are turned to where the objective is lower") {
+  const chain arm = robots::ur5e().table();
+  const vector known = (vector(6) << 3, -1.1, 1.4, -.5, .9, -3).finished();
+  vector wish = known;
+  wish[0] -= 2 * pi;
+  wish[5] += 2 * pi;
+  const auto found =
+      inverse_kinematics(arm, arm.pose(known), known, {.candidates = 1}, preferred_posture{wish});
+  CHECK(found.reason == stop_reason::reached);
+  CHECK((found.joints - wish).cwiseAbs().maxCoeff() < 1e-5);
+}
+
+TEST_CASE("what is refused") {
+  const chain arm = robots::panda().table();
+  const vector start = (vector(7) << 0, -.8, 0, -2.4, 0, 1.6, .8).finished();
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start,
+                                           {.candidates = 0}, preferred_posture{start})),
+      "duet: inverse_kinematics: candidates is 0, not a number above 0", invalid_input);
+  scene none;
+  none.margin = -1;
+  CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {},
+                                                       no_objective{}, none)),
+                  invalid_input);
+  const vector few = vector::Zero(3);
+  CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), few)),
+                  invalid_input);
+}
+
+} // namespace test_planning_wanted_solution
