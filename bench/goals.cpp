@@ -112,9 +112,8 @@ void goal_row(const char* what, int count, std::uint64_t seed, const Make& make)
 }
 
 void goals_in_part(int count, std::uint64_t seed) {
-  goal_row("position", count, seed, [](const auto& tip, random_source&) {
-    return position_goal(translation(tip));
-  });
+  goal_row("position", count, seed,
+           [](const auto& tip, random_source&) { return position_goal(translation(tip)); });
   goal_row("pointing", count, seed, [](const auto& tip, random_source& random) {
     const vector3<double> n = direction(random);
     return pointing_goal(n, rotate(rotation(tip), n));
@@ -140,15 +139,15 @@ void goals_in_part(int count, std::uint64_t seed) {
                                 .turn_lower = -.2,
                                 .turn_upper = .2};
            });
-  goal_row("the whole pose", count, seed,
-           [](const auto& tip, random_source&) { return tip; });
+  goal_row("the whole pose", count, seed, [](const auto& tip, random_source&) { return tip; });
 }
 
 void wishes(int count, std::uint64_t seed) {
   row("pose, each joint within 0.3 of the start", count, seed,
       [](const arm_chain& arm, const joints& known, random_source& random) {
         const joints start = near(arm, known, .3, random);
-        const auto bounded = with_limits_about(arm, start, joints(joints::Constant(arm.size(), .3)));
+        const auto bounded =
+            with_limits_about(arm, start, joints(joints::Constant(arm.size(), .3)));
         const result found = inverse_kinematics(bounded, arm.pose(known), start);
         return found.reason == stop_reason::reached &&
                (found.joints - start).cwiseAbs().maxCoeff() <= .3 + 1e-12;
@@ -164,7 +163,8 @@ void wishes(int count, std::uint64_t seed) {
   };
   row("position, nearest to a posture", count / 10, seed,
       preferred([](const auto& tip) { return position_goal(translation(tip)); }));
-  row("pose, nearest to a posture", count / 10, seed, preferred([](const auto& tip) { return tip; }));
+  row("pose, nearest to a posture", count / 10, seed,
+      preferred([](const auto& tip) { return tip; }));
   row("pose, clear of obstacles", count, seed,
       [](const arm_chain& arm, const joints& known, random_source& random) {
         const auto goal = arm.pose(known);
@@ -176,8 +176,9 @@ void wishes(int count, std::uint64_t seed) {
           around.bodies.push_back({i, {vector3<double>(0, 0, 0), vector3<double>(0, 0, .05), .04}});
         }
         for (int i = 3; i < arm.size() + 6; ++i) {
-          const vector3<double> at = i < arm.size() ? vector3<double>(translation(arm.pose(other, i)))
-                                                    : vector3<double>(.8 * direction(random));
+          const vector3<double> at = i < arm.size()
+                                         ? vector3<double>(translation(arm.pose(other, i)))
+                                         : vector3<double>(.8 * direction(random));
           around.obstacles.push_back(sphere<double>{at, random.uniform(.05, .15)});
           if (clearance(arm, known, around).distance < around.margin) {
             around.obstacles.pop_back();

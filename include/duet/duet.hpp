@@ -4,14 +4,15 @@
 /// \file
 /// All of duet but what programs ask for by name, as it takes compilers long or is rare: sparse
 /// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (mechanism/urdf.hpp),
-/// trees of links and joints (mechanism/coupled_tree.hpp, mechanism/tree_limits.hpp), arms in
-/// many configurations (mechanism/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
+/// trees of links and joints (mechanism/coupled_tree.hpp, mechanism/tree_limits.hpp), arms in many
+/// configurations (mechanism/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
 /// inverse kinematics and what moves along them (planning/all_inverse_kinematics.hpp,
-/// planning/differentiable_branch.hpp, planning/self_motion_curves.hpp), plans over time
-/// (planning/time_parametrised.hpp), tables, recordings and plans as files (spline/table_file.hpp,
-/// spline/recording.hpp, planning/save_plan.hpp, core/text/csv.hpp), progress_line
-/// (core/text/progress_line.hpp), the notes' own planner (planning/printed_plan.hpp), the nearest
-/// point of a screw motion (dual_quaternion/nearest.hpp), and `interop/`.
+/// planning/differentiable_branch.hpp, planning/self_motion_curves.hpp), goals in part, wishes and
+/// the start of a path (planning/goals.hpp, planning/equation_goal.hpp, planning/choose_start.hpp),
+/// plans over time (planning/time_parametrised.hpp), tables, recordings and plans as files
+/// (spline/table_file.hpp, spline/recording.hpp, planning/save_plan.hpp, core/text/csv.hpp),
+/// progress_line (core/text/progress_line.hpp), the notes' own planner (planning/printed_plan.hpp),
+/// the nearest point of a screw motion (dual_quaternion/nearest.hpp), and `interop/`.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>

@@ -111,9 +111,8 @@ void put_spheres(scene& around, const chain& arm, const vector& known, const vec
   around.obstacles.clear();
   for (int i = 3; i < arm.size() + 6; ++i) {
     const auto x = [&](double least, double most) { return random.uniform(least, most); };
-    const vector3<double> at = i < arm.size()
-                                   ? vector3<double>(translation(arm.pose(other, i)))
-                                   : vector3<double>(x(-.8, .8), x(-.8, .8), x(0, 1.2));
+    const vector3<double> at = i < arm.size() ? vector3<double>(translation(arm.pose(other, i)))
+                                              : vector3<double>(x(-.8, .8), x(-.8, .8), x(0, 1.2));
     around.obstacles.push_back(sphere<double>{at, x(.05, .2)});
     if (clearance(arm, known, around).distance < around.margin) {
       around.obstacles.pop_back();

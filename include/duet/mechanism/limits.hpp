@@ -133,15 +133,15 @@ template <SerialChain C, VectorLike Lower, VectorLike Upper>
 template <SerialChain C, VectorLike X, VectorLike Most>
 [[nodiscard]] auto with_limits_about(const C& chain, const X& theta, const Most& most) {
   using T = typename C::scalar_type;
-  using middle = detail::vector_argument<X>;
-  using way = detail::vector_argument<Most>;
-  detail::require(middle::size(theta) == chain.size() && way::size(most) == chain.size(),
-                  "duet: with_limits_about: ", middle::size(theta), " coordinates and ",
-                  way::size(most), " bounds for ", chain.size(), " moving joints");
+  using about = detail::vector_argument<X>;
+  using bound = detail::vector_argument<Most>;
+  detail::require(about::size(theta) == chain.size() && bound::size(most) == chain.size(),
+                  "duet: with_limits_about: ", about::size(theta), " coordinates and ",
+                  bound::size(most), " bounds for ", chain.size(), " moving joints");
   auto result = detail::copy_of_chain(chain);
   for (int i = 0; i < chain.size(); ++i) {
     const auto& given = chain.limits(i);
-    const T at(middle::get(theta, i)), by(way::get(most, i));
+    const T at(about::get(theta, i)), by(bound::get(most, i));
     const T lower = at - by, upper = at + by;
     const joint_limits<T> limits{lower > given.lower ? lower : given.lower,
                                  upper < given.upper ? upper : given.upper, given.velocity};

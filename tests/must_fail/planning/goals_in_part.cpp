@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: (a position as a goal|the goal is a rotation|from which joints on|choose_start finds the start)
+// expect: duet: (a position as|the goal is a rotation|from which joints|choose_start finds)
 // within: 3
 // forms: 4
 
@@ -25,7 +25,9 @@ int main() {
 #elif DUET_MUST_FAIL == 4
   std::cout << choose_start(arm, start, path, 0.5, 1).starts << "\n";
 #else
-  std::cout << inverse_kinematics(arm, duet::position_goal(position), start).joints << "\n";
-  std::cout << choose_start(arm, path, 0.5, 1).starts << "\n";
+  // Not evaluated: compilers take long for all that a start is chosen by.
+  using found = decltype(inverse_kinematics(arm, duet::position_goal(position), start));
+  using chosen = decltype(choose_start(arm, path, 0.5, 1));
+  std::cout << sizeof(found) << sizeof(chosen) << "\n";
 #endif
 }
