@@ -62,7 +62,7 @@ joints anywhere(const arm_chain& arm, random_source& random) {
   }
   return theta;
 }
-joints near(const arm_chain& arm, joints theta, double most, random_source& random) {
+joints nearby(const arm_chain& arm, joints theta, double most, random_source& random) {
   for (int i = 0; i < arm.size(); ++i) {
     theta[i] = std::clamp(theta[i] + random.uniform(-most, most), arm.limits(i).lower,
                           arm.limits(i).upper);
@@ -145,7 +145,7 @@ void goals_in_part(int count, std::uint64_t seed) {
 void wishes(int count, std::uint64_t seed) {
   row("pose, each joint within 0.3 of the start", count, seed,
       [](const arm_chain& arm, const joints& known, random_source& random) {
-        const joints start = near(arm, known, .3, random);
+        const joints start = nearby(arm, known, .3, random);
         const auto bounded =
             with_limits_about(arm, start, joints(joints::Constant(arm.size(), .3)));
         const result found = inverse_kinematics(bounded, arm.pose(known), start);
@@ -154,7 +154,7 @@ void wishes(int count, std::uint64_t seed) {
       });
   const auto preferred = [](const auto& goal_of) {
     return [=](const arm_chain& arm, const joints& known, random_source& random) {
-      const preferred_posture wish{near(arm, known, .3, random)};
+      const preferred_posture wish{nearby(arm, known, .3, random)};
       const result found =
           inverse_kinematics(arm, goal_of(arm.pose(known)), wish.posture, {}, wish);
       return found.reason == stop_reason::reached && is_within_limits(arm, found.joints) &&

@@ -131,22 +131,22 @@ std::vector<made_goal> goals_at(const dual_quaternion<double>& tip,
                                 duet_test::random_source& random) {
   const vector3<double> n = direction(random), p = translation(tip);
   const vector3<double> d = rotate(rotation(tip), n);
-  const auto near = [&](double most) { return random.uniform(0, most); };
+  const auto up_to = [&](double most) { return random.uniform(0, most); };
   // A region whose frame is tilted and turned away from the tip, which still is within it.
   const vector3<double> axis = direction(random);
   const vector3<double> across = axis.cross(direction(random)).normalized();
-  const double tilt = near(.3), turn = random.uniform(-3, 3);
+  const double tilt = up_to(.3), turn = random.uniform(-3, 3);
   const auto swing = exp(vector3<double>(tilt / 2 * across));
   const auto twist = exp(vector3<double>(turn / 2 * axis));
   const quaternion<double> frame = rotation(tip) * conj(swing * twist);
-  const vector3<double> shift(near(.1), -near(.1), near(.02));
+  const vector3<double> shift(up_to(.1), -up_to(.1), up_to(.02));
   const pose_region region{.frame = pose(frame, vector3<double>(p - rotate(frame, shift))),
-                           .lower = {shift[0] - near(.01), shift[1] - near(.02), shift[2]},
-                           .upper = {shift[0] + near(.05), shift[1], shift[2] + near(.05)},
+                           .lower = {shift[0] - up_to(.01), shift[1] - up_to(.02), shift[2]},
+                           .upper = {shift[0] + up_to(.05), shift[1], shift[2] + up_to(.05)},
                            .axis = {axis[0], axis[1], axis[2]},
-                           .tilt = tilt + near(.1),
-                           .turn_lower = turn - near(.2),
-                           .turn_upper = turn + near(.2)};
+                           .tilt = tilt + up_to(.1),
+                           .turn_lower = turn - up_to(.2),
+                           .turn_upper = turn + up_to(.2)};
   auto line = position_goal(p);
   line.upper[2] = std::numeric_limits<double>::infinity();
   return {{"position", position_goal(p)},

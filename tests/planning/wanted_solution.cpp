@@ -43,7 +43,7 @@ vector configuration(const chain& arm, duet_test::random_source& random) {
   return theta;
 }
 
-vector near(const chain& arm, vector theta, double most, duet_test::random_source& random) {
+vector nearby(const chain& arm, vector theta, double most, duet_test::random_source& random) {
   for (int i = 0; i < arm.size(); ++i) {
     theta[i] = std::clamp(theta[i] + random.uniform(-most, most), arm.limits(i).lower,
                           arm.limits(i).upper);
@@ -131,7 +131,7 @@ TEST_CASE("a preferred posture: no known solution is nearer to it, nor any nearb
     for (int k = 0; k < 10; ++k) {
       const vector known = configuration(arm, random);
       const vector3<double> p = translation(arm.pose(known));
-      const preferred_posture wish{near(arm, known, .4, random)};
+      const preferred_posture wish{nearby(arm, known, .4, random)};
       const auto found = inverse_kinematics(arm, position_goal(p), wish.posture, {}, wish);
       CHECK(is_within_limits(arm, found.joints));
       solved += found.reason == stop_reason::reached && distance(arm, found.joints, p) < 1e-6 &&
@@ -298,7 +298,20 @@ TEST_CASE("what is refused") {
   CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {},
                                                        no_objective{}, none)),
                   invalid_input);
+  vector most = vector::Constant(7, .1);
+  most[2] = std::nan("");
+  CHECK_THROWS_WITH_AS(static_cast<void>(with_limits_about(arm, start, most)),
+                       "duet: with_limits_about: joint 2 is to stay within nan of 0",
+                       invalid_input);
+  vector beyond = start;
+  beyond[3] = .2; // the limit is -0.07
+  CHECK_THROWS_AS(
+      static_cast<void>(with_limits_about(arm, beyond, vector(vector::Constant(7, .1)))),
+      invalid_input);
   const vector few = vector::Zero(3);
+  CHECK_THROWS_WITH_AS(static_cast<void>(with_limits_about(arm, start, few)),
+                       "duet: with_limits_about: 7 coordinates and 3 bounds for 7 moving joints",
+                       invalid_input);
   CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), few)),
                   invalid_input);
 }

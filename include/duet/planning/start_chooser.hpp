@@ -190,11 +190,11 @@ private:
   }
 
   void find_unsolved(choice& result, const path_function& path, double first, double last) const {
-    joints near = result.plan.joints.empty() ? middle() : result.plan.joints.front();
+    joints nearby = result.plan.joints.empty() ? middle() : result.plan.joints.front();
     const auto is_solved = [&](double u) {
-      const auto found = solutions_.from(near, path(u), 100);
+      const auto found = solutions_.from(nearby, path(u), 100);
       if (found.reason == stop_reason::reached) {
-        near = found.joints;
+        nearby = found.joints;
         return true;
       }
       return is_solved_otherwise(path(u));
