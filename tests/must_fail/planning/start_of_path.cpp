@@ -1,0 +1,23 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+// expect: duet: choose_start finds the start
+// within: 3
+
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/choose_start.hpp>
+
+#include <iostream>
+
+int main() {
+  const auto arm = duet::robots::panda();
+  const auto path = [](double u) {
+    return duet::pose(duet::quaternion<double>(1), duet::vector3<double>(u, 0, 0.5));
+  };
+#ifdef DUET_MUST_FAIL
+  const Eigen::Matrix<double, 7, 1> start = Eigen::Matrix<double, 7, 1>::Zero();
+  std::cout << choose_start(arm, start, path, 0.5, 1).starts << "\n";
+#else
+  // Not evaluated: compilers take long for all that a start is chosen by.
+  using chosen = decltype(choose_start(arm, path, 0.5, 1));
+  std::cout << sizeof(chosen) << "\n";
+#endif
+}
