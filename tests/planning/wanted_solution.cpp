@@ -257,6 +257,26 @@ TEST_CASE("among obstacles solutions keep the margin") {
   CHECK(without > 10); // else it was no test
 }
 
+TEST_CASE("a solution too close to an obstacle moves aside, without another start") {
+  const chain arm = robots::panda().table();
+  const vector start = (vector(7) << .1, -.4, .2, -2, .1, 1.7, .6).finished();
+  scene around;
+  around.margin = .05;
+  around.bodies = {{4, {vector3<double>(0, 0, 0), vector3<double>(0, 0, 0), .05}}};
+  const vector3<double> elbow = translation(arm.pose(start, 4));
+  for (const double side : {-1., 1.}) {
+    around.obstacles = {sphere<double>{elbow + vector3<double>(0, .12 * side, 0), .05}};
+    CHECK(clearance(arm, start, around).distance == doctest::Approx(.02));
+    const auto goal = arm.pose(start);
+    const auto found =
+        inverse_kinematics(arm, goal, start, {.restarts = 0}, no_objective{}, around);
+    CHECK(found.reason == stop_reason::reached);
+    CHECK(clearance(arm, found.joints, around).distance >= .05 - 1e-6);
+    CHECK((found.joints - start).norm() < .5);
+    CHECK(distance(arm, found.joints, translation(goal)) < 1e-6);
+  }
+}
+
 TEST_CASE("a goal within an obstacle is refused for that reason") {
   const chain arm = robots::ur5e().table();
   const vector known = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
