@@ -65,16 +65,19 @@ struct tree_table {
   std::unordered_map<std::string, int> link_numbers;
 };
 
-/// Carries e by the shortest turn that takes z to n: (1 + n·z, z × n), halved; of −z by a half
+/// The shortest turn that takes z to the unit vector n: (1 + n·z, z × n), normalised; to −z the half
 /// turn about x.
-[[nodiscard]] inline three_vector<double> in_plane(const three_vector<double>& n,
-                                                   const three_vector<double>& e) {
+[[nodiscard]] inline quaternion<double> turn_to(const three_vector<double>& n) {
   const double w = n.z > 0 ? 1 + n.z : (n.x * n.x + n.y * n.y) / (1 - n.z); // both are 1 + n·z
   const double length = std::sqrt(2 * w);
-  const quaternion<double> turn =
-      w > 0 ? quaternion<double>(w / length, -n.y / length, n.x / length, 0)
-            : quaternion<double>(0, 1, 0, 0);
-  return cleaned_direction(rotated(turn, e));
+  return w > 0 ? quaternion<double>(w / length, -n.y / length, n.x / length, 0)
+               : quaternion<double>(0, 1, 0, 0);
+}
+
+/// Carries e by the shortest turn that takes z to n.
+[[nodiscard]] inline three_vector<double> in_plane(const three_vector<double>& n,
+                                                   const three_vector<double>& e) {
+  return cleaned_direction(rotated(turn_to(n), e));
 }
 
 /// The nodes of a joint that stands at a place.

@@ -1,0 +1,47 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/mechanism/closed_tree.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/robot_description.hpp>
+#include <duet/mechanism/tree_table.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// Which coordinates may be changed by whole turns. For those who extend duet.
+
+namespace duet::detail {
+
+struct coordinate_turns {
+  std::vector<bool> angles; ///< of each coordinate: does a whole turn of it change nothing?
+  std::vector<int> vectors; ///< first coordinates of rotation vectors
+
+  explicit coordinate_turns(const closed_tree& of) : angles(std::size_t(of.size()), false) {
+    int i = 0;
+    for (const tree_joint& each : of.tree().joints()) {
+      if (each.mimic) {
+        continue;
+      }
+      const joint_kind kind = each.motion.kind;
+      if (kind == joint_kind::revolute || kind == joint_kind::continuous) {
+        angles[std::size_t(i)] = true;
+      } else if (kind == joint_kind::planar) {
+        angles[std::size_t(i) + 2] = true;
+      } else if (kind == joint_kind::spherical || kind == joint_kind::floating) {
+        vectors.push_back(kind == joint_kind::floating ? i + 3 : i);
+      }
+      i += each.motion.coordinates();
+    }
+    for (const tree_node& node : of.tree().table().nodes) {
+      const coordinate_source& source = of.tree().table().sources[std::size_t(node.coordinate)];
+      if (!node.is_ball && (node.step.slides || source.multiplier != std::round(source.multiplier))) {
+        angles[std::size_t(source.own)] = false; // what follows it would move
+      }
+    }
+  }
+};
+
+} // namespace duet::detail

@@ -1,0 +1,185 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/mechanism/closed_tree.hpp>
+#include <duet/mechanism/loop_closing.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The curve of positions along a straight line of some coordinates. For those who extend duet.
+
+namespace duet::detail {
+
+/// A position on the curve: x = (dependent coordinates per unit, s), and what follows from it.
+struct curve_point {
+  Eigen::VectorXd x;
+  Eigen::VectorXd tangent; ///< dx per unit of length
+  Eigen::MatrixXd matrix;  ///< A
+  Eigen::MatrixXd image;   ///< orthonormal columns that span the image of A
+
+  [[nodiscard]] double s() const { return x[x.size() - 1]; }
+  [[nodiscard]] double s_rate() const { return tangent[tangent.size() - 1]; }
+};
+
+/// The positions q(s) of a mechanism whose drives are on the straight line u₀ + s w, |w| = 1 in
+/// units of the coordinates, as a curve in (q_dependent, s), which goes on smoothly where s turns
+/// back: A = (∂F/∂q_dependent, ∂F/∂u w) has its tangent as kernel.
+class loop_curve {
+public:
+  /// \param way  of the drives, per unit of each; of any length but 0
+  loop_curve(const closed_tree& of, const Eigen::VectorXd& q0, std::vector<int> drives,
+             const Eigen::VectorXd& way)
+      : of_(of), q0_(q0), drives_(std::move(drives)), dependent_(all_but(of.size(), drives_)),
+        way_(way.normalized()) {}
+
+  /// Where it begins; nothing where it has no direction there.
+  [[nodiscard]] std::optional<curve_point> start(double direction) const {
+    Eigen::VectorXd x(Eigen::Index(dependent_.size()) + 1);
+    x << (q0_.cwiseQuotient(of_.units()))(dependent_), 0;
+    return point(x, Eigen::VectorXd::Unit(x.size(), x.size() - 1) * direction);
+  }
+
+  /// All coordinates of the tree.
+  [[nodiscard]] Eigen::VectorXd coordinates(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd q = q0_.cwiseQuotient(of_.units());
+    q(dependent_) = x.head(x.size() - 1);
+    q(drives_) += x[x.size() - 1] * way_;
+    return q.cwiseProduct(of_.units());
+  }
+  /// Their rates along a tangent.
+  [[nodiscard]] Eigen::VectorXd rates(const Eigen::VectorXd& tangent) const {
+    Eigen::VectorXd v(of_.size());
+    v(dependent_) = tangent.head(tangent.size() - 1);
+    v(drives_) = tangent[tangent.size() - 1] * way_;
+    return v.cwiseProduct(of_.units());
+  }
+
+  /// The next point on it, so far on along the tangent; nothing where that is too far for all to
+  /// change little: the tangent's direction, the way back to the curve, and the volume that the
+  /// equations and the tangent span, which keeps its sign unless another branch meets the curve.
+  [[nodiscard]] std::optional<curve_point> advance(const curve_point& from, double step) const {
+    Eigen::VectorXd x = from.x + step * from.tangent;
+    if (!correct(x, false, step / 4)) {
+      return std::nullopt;
+    }
+    const auto to = point(x, from.tangent);
+    if (!to || to->tangent.dot(from.tangent) < .95) {
+      return std::nullopt;
+    }
+    const double change = volume(*to, from.image) / volume(from, from.image);
+    return change > .25 && change < 4 ? to : std::nullopt;
+  }
+
+  /// The point at s, where one near it is known.
+  [[nodiscard]] std::optional<curve_point> at(double s, const curve_point& near_by,
+                                              double how_near) const {
+    Eigen::VectorXd x = near_by.x;
+    x[x.size() - 1] = s;
+    return correct(x, true, how_near) ? point(x, near_by.tangent) : std::nullopt;
+  }
+
+  /// From one point to another, `step` along the tangent and back to the curve.
+  struct stretch {
+    curve_point end;
+    double step;
+  };
+  /// As far as to where a rate, a function of points whose sign changes over the stretch, is zero:
+  /// by false position, halving the weight of an end that stays (Illinois).
+  template <class Rate>
+  [[nodiscard]] stretch zero(const curve_point& from, const curve_point& to, double step,
+                             const Rate& rate) const {
+    double a = 0, b = step, at_a = rate(from), at_b = rate(to);
+    stretch result{to, step};
+    for (int i = 0, side = 0; i < 60 && at_a != at_b; ++i) {
+      const double c = (a * at_b - b * at_a) / (at_b - at_a);
+      const auto next = advance(from, c);
+      if (!next) {
+        break;
+      }
+      result = {*next, c};
+      const double at_c = rate(*next);
+      if (std::abs(at_c) < 1e-15 || std::abs(b - a) < 1e-15) {
+        break;
+      }
+      const bool is_beyond = (at_c < 0) == (at_b < 0);
+      (is_beyond ? b : a) = c;
+      (is_beyond ? at_b : at_a) = at_c;
+      const int now = is_beyond ? 1 : -1;
+      (is_beyond ? at_a : at_b) *= side == now ? .5 : 1;
+      side = now;
+    }
+    return result;
+  }
+
+private:
+  [[nodiscard]] Eigen::MatrixXd matrix(const Eigen::VectorXd& x) const {
+    const Eigen::MatrixXd j =
+        of_.constraint_jacobian(coordinates(x)) * of_.units().asDiagonal();
+    Eigen::MatrixXd a(j.rows(), x.size());
+    a << j(Eigen::indexing::all, dependent_), j(Eigen::indexing::all, drives_) * way_;
+    return a;
+  }
+
+  [[nodiscard]] std::optional<curve_point> point(const Eigen::VectorXd& x,
+                                                 const Eigen::VectorXd& before) const {
+    curve_point result{x, {}, matrix(x), {}};
+    const ranked_matrix svd(result.matrix);
+    if (svd.rank() != x.size() - 1) {
+      return std::nullopt;
+    }
+    result.tangent = svd.kernel();
+    result.tangent *= result.tangent.dot(before) < 0 ? -1 : 1;
+    result.image = svd.image();
+    return result;
+  }
+
+  [[nodiscard]] static double volume(const curve_point& at, const Eigen::MatrixXd& image) {
+    Eigen::MatrixXd m(at.x.size(), at.x.size());
+    m << image.transpose() * at.matrix, at.tangent.transpose();
+    return m.determinant();
+  }
+
+  /// Newton's method with the shortest steps, of which the first must not be longer than `most`.
+  [[nodiscard]] bool correct(Eigen::VectorXd& x, bool s_is_held, double most) const {
+    const Eigen::Index n = x.size() - (s_is_held ? 1 : 0);
+    double before = most;
+    for (int i = 0; i < 12; ++i) {
+      const Eigen::VectorXd f = of_.residuals(coordinates(x));
+      const ranked_matrix svd(matrix(x).leftCols(n));
+      if (svd.rank() < x.size() - 1) {
+        return false;
+      }
+      const Eigen::VectorXd dx = -svd.solve(f, x.size() - 1);
+      const double length = dx.norm();
+      if (!(length <= most)) {
+        return false;
+      }
+      const double rounding = 1e-14 * std::max(1.0, x.norm());
+      x.head(n) += dx;
+      if (length <= rounding || (length < 1e-10 && length > before / 4)) {
+        return of_.residuals(coordinates(x)).norm() <= 1e-11 * std::max(1.0, x.norm());
+      }
+      if (i > 0 && length > before / 2) {
+        return false;
+      }
+      before = length;
+    }
+    return false;
+  }
+
+  const closed_tree& of_;
+  Eigen::VectorXd q0_;
+  std::vector<int> drives_, dependent_;
+  Eigen::VectorXd way_;
+};
+
+} // namespace duet::detail

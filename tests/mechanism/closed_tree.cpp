@@ -1,0 +1,1 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.

@@ -1,0 +1,76 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "mechanism/trees.hpp"
+
+#include <duet/mechanism/closed_tree.hpp>
+#include <duet/mechanism/kinematic_tree.hpp>
+#include <duet/mechanism/tree_loop.hpp>
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Mechanisms with loops that tests run on.
+
+namespace duet_test {
+
+/// At a point, with the link's axes.
+inline duet::placement<double> at_point(double x, double y, double z = 0) {
+  return place(0, 0, 0, x, y, z);
+}
+
+/// Turning joints about z of the frames in a row, on a base; the links are named "0" (the base),
+/// "1" …
+inline duet::robot_description turning(const std::vector<duet::placement<double>>& origins) {
+  duet::robot_description robot;
+  robot.links = {{"0"}};
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    robot.links.push_back({std::to_string(i + 1)});
+    robot.joints.push_back({"j" + std::to_string(i + 1),
+                            std::to_string(i),
+                            std::to_string(i + 1),
+                            {duet::joint_kind::continuous, origins[i]}});
+  }
+  return robot;
+}
+
+inline duet::tree_joint turning_joint(const std::string& name, const std::string& parent,
+                                      const duet::placement<double>& origin) {
+  return {name, parent, name, {duet::joint_kind::continuous, origin}};
+}
+
+/// The crank turns about (0, 0), the rocker about (ground, 0); what is cut is the joint between
+/// coupler and rocker.
+inline duet::closed_tree four_bar(double crank, double coupler, double rocker, double ground,
+                                  duet::loop_kind kind = duet::loop_kind::hinge) {
+  duet::robot_description robot;
+  robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"rocker"}};
+  robot.joints = {turning_joint("crank", "ground", {}),
+                  turning_joint("coupler", "crank", at_point(crank, 0)),
+                  turning_joint("rocker", "ground", at_point(ground, 0))};
+  return duet::closed_tree(
+      duet::kinematic_tree(robot),
+      {{{kind, {"coupler", at_point(coupler, 0)}, {"rocker", at_point(rocker, 0)}}}});
+}
+
+/// One loop of turning joints with the link lengths and twists of Denavit and Hartenberg and no
+/// offsets, cut at the last joint.
+inline duet::closed_tree ring(const std::vector<std::array<double, 2>>& links) {
+  std::vector<duet::placement<double>> origins = {{}};
+  const auto link = [&](std::size_t i) {
+    return place(links[i][1], 0, 0, links[i][0], 0, 0);
+  };
+  for (std::size_t i = 0; i + 2 < links.size(); ++i) {
+    origins.push_back(link(i));
+  }
+  const duet::placement<double> back(duet::conj(link(links.size() - 1).pose()));
+  return duet::closed_tree(duet::kinematic_tree(turning(origins)),
+                           {{{duet::loop_kind::hinge,
+                              {std::to_string(links.size() - 1), link(links.size() - 2)},
+                              {"0", back}}}});
+}
+
+} // namespace duet_test

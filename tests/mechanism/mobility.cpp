@@ -1,0 +1,161 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/loops.hpp"
+
+#include <duet/mechanism/closed_tree.hpp>
+#include <duet/mechanism/loop_motion.hpp>
+#include <duet/mechanism/loop_positions.hpp>
+#include <duet/mechanism/mobility.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace test_mechanism_mobility {
+namespace {
+
+using namespace duet;
+using duet_test::at_point;
+using duet_test::four_bar;
+using duet_test::ring;
+using duet_test::turning_joint;
+using Eigen::VectorXd;
+
+VectorXd vector(std::initializer_list<double> x) {
+  return Eigen::Map<const VectorXd>(x.begin(), Eigen::Index(x.size()));
+}
+
+/// With the sine of its twist per length.
+std::array<double, 2> with_twist(double length, double ratio) {
+  return {length, std::asin(length * ratio)};
+}
+
+} // namespace
+
+TEST_CASE("a planar four-bar has three equations too many") {
+  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+  const VectorXd q = mechanism.closed(vector({2, -1, 1.7}), {0});
+  const mobility_result m = mobility(mechanism, q);
+  CHECK(m.mobility == 1);
+  CHECK(m.counted == -2);
+  CHECK(m.first_order == 1);
+  CHECK(m.nearby == 1);
+  CHECK(m.is_miscounted());
+  CHECK(!m.is_singular());
+  CHECK(to_text(m) == "mobility 1: counted -2, first order 1 here, 1 nearby");
+  CHECK_THROWS_AS((void)mobility(mechanism, vector({2, -1, 1.7})), invalid_input);
+  const closed_tree by_ball = four_bar(.2, .5, .4, .55, loop_kind::ball);
+  CHECK(mobility(by_ball, q).counted == 0);
+  CHECK(mobility(by_ball, q).mobility == 1);
+}
+
+TEST_CASE("Bennett's and Goldberg's linkages move, a general ring of four or five joints does not") {
+  const auto a = with_twist(.6, .9), b = with_twist(.9, .9), c = with_twist(.45, .9);
+  const closed_tree bennett = ring({a, b, a, b});
+  const auto ways = all_positions(bennett, {0}, vector({.8}), {.starts = 30});
+  REQUIRE(!ways.positions.empty());
+  const VectorXd& q = ways.positions[0].coordinates;
+  const mobility_result m = mobility(bennett, q);
+  CHECK(m.mobility == 1);
+  CHECK(m.counted == -2);
+  CHECK(m.evidence == mobility_evidence::nearby_positions);
+  // tan(θ1/2) tan(θ2/2) = ± sin((β + α)/2) / sin((β − α)/2), the same all the way.
+  const loop_motion by_first(bennett, q, {0});
+  const double constant = std::sin((b[1] + a[1]) / 2) / std::sin((b[1] - a[1]) / 2);
+  for (const double theta : {.3, .8, 1.9, 2.8}) {
+    const VectorXd x = by_first(theta);
+    CHECK(std::abs(std::abs(std::tan(x[0] / 2) * std::tan(x[1] / 2)) - std::abs(constant)) < 1e-12);
+  }
+
+  const closed_tree goldberg =
+      ring({{a[0] + c[0], a[1] + c[1]}, b, c, a, b});
+  const auto of_five = all_positions(goldberg, {0}, vector({.8}), {.starts = 60});
+  REQUIRE(!of_five.positions.empty());
+  int moving = 0;
+  for (const loop_position& each : of_five.positions) {
+    const mobility_result n = mobility(goldberg, each.coordinates);
+    CHECK(n.counted == -1);
+    moving += n.mobility == 1 ? 1 : 0;
+  }
+  CHECK(moving > 0);
+
+  // The lengths of Bennett's, another twist: closes nowhere.
+  const closed_tree general = ring({a, b, a, {b[0], b[1] + .1}});
+  CHECK(all_positions(general, {}, VectorXd(), {.starts = 30}).positions.empty());
+}
+
+TEST_CASE("a stretched frame has rates, but does not move") {
+  // Two links in a row between pins as far apart as both are long.
+  robot_description robot;
+  robot.links = {{"ground"}, {"first"}, {"second"}};
+  robot.joints = {turning_joint("first", "ground", {}),
+                  turning_joint("second", "first", at_point(.7, 0))};
+  const closed_tree shaky(kinematic_tree(robot), {{{loop_kind::hinge,
+                                                    {"second", at_point(.5, 0)},
+                                                    {"ground", at_point(1.2, 0)}}}});
+  const mobility_result m = mobility(shaky, vector({0, 0}));
+  CHECK(m.mobility == 0);
+  CHECK(m.first_order == 1);
+  CHECK(m.evidence == mobility_evidence::no_acceleration);
+  CHECK(m.is_singular());
+  CHECK_THROWS_WITH_AS(loop_motion(shaky, vector({0, 0}), {0}),
+                       "duet: loop_motion: a rate of first fulfils the equations, but has no "
+                       "acceleration: it does not move so",
+                       invalid_input);
+
+  // Pins nearer to each other: rigid to first order.
+  const closed_tree rigid(kinematic_tree(robot), {{{loop_kind::hinge,
+                                                    {"second", at_point(.5, 0)},
+                                                    {"ground", at_point(.9, 0)}}}});
+  const auto ways = all_positions(rigid, {}, VectorXd(), {.starts = 20});
+  CHECK(ways.positions.size() == 2);
+  for (const loop_position& each : ways.positions) {
+    CHECK(mobility(rigid, each.coordinates).mobility == 0);
+    CHECK(mobility(rigid, each.coordinates).evidence == mobility_evidence::no_rates);
+  }
+}
+
+TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carries a shaky frame") {
+  const closed_tree flat = four_bar(.3, .8, .3, .8);
+  const mobility_result m = mobility(flat, vector({0, 0, 0}));
+  CHECK(m.mobility == 1);
+  CHECK(m.first_order == 2);
+  CHECK(m.nearby == 1);
+  CHECK(m.is_singular());
+  CHECK(mobility(flat, vector({1, -1, 1})).first_order == 1);
+
+  robot_description robot = flat.tree().description();
+  robot.links.insert(robot.links.end(), {{"first"}, {"second"}});
+  robot.joints.push_back(turning_joint("first", "coupler", at_point(0, .1)));
+  robot.joints.push_back(turning_joint("second", "first", at_point(.3, 0)));
+  const closed_tree both(
+      kinematic_tree(robot),
+      {{{loop_kind::hinge, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
+        {loop_kind::hinge, {"second", at_point(.3, 0)}, {"coupler", at_point(.6, .1)}}}});
+  const mobility_result n = mobility(both, vector({1, -1, 1, 0, 0}));
+  CHECK(n.mobility == 1);
+  CHECK(n.first_order == 2);
+  CHECK(n.nearby == 2); // shaky everywhere
+}
+
+TEST_CASE("equations that do not depend on each other are counted") {
+  // A plate on three rods between the base and itself moves in three ways.
+  robot_description robot;
+  robot.links = {{"base"}, {"plate"}};
+  robot.joints = {{"free", "base", "plate", {joint_kind::floating}}};
+  loop_description rods;
+  for (int i = 0; i < 3; ++i) {
+    const double x = std::cos(2. * i), y = std::sin(2. * i);
+    rods.loops.push_back({loop_kind::rod, {"base", at_point(x, y)}, {"plate", at_point(y, x, .1)}, 1.5});
+  }
+  const closed_tree mechanism(kinematic_tree(robot), rods);
+  const VectorXd q = mechanism.closed(vector({.1, .2, 1.4, .1, .2, .3}));
+  const mobility_result m = mobility(mechanism, q);
+  CHECK(m.mobility == 3);
+  CHECK(m.counted == 3);
+  CHECK(m.evidence == mobility_evidence::full_rank);
+  CHECK(mechanism.independent_coordinates(q).size() == 3);
+}
+
+} // namespace test_mechanism_mobility
