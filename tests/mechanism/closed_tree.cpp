@@ -1,1 +1,252 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/loops.hpp"
+#include "support/gap.hpp"
+#include "support/message.hpp"
+#include "support/random.hpp"
+
+#include <duet/derivative/jacobian.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/mechanism/closed_tree.hpp>
+#include <duet/mechanism/loop_positions.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace test_mechanism_closed_tree {
+namespace {
+
+using namespace duet;
+using duet_test::all_joints;
+using duet_test::at_point;
+using duet_test::coordinates_of;
+using duet_test::four_bar;
+using duet_test::gap;
+using duet_test::place;
+using duet_test::turning_joint;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+VectorXd vector(std::initializer_list<double> x) {
+  return Eigen::Map<const VectorXd>(x.begin(), Eigen::Index(x.size()));
+}
+
+constexpr int kinds = int(loop_kind::rod) + 1;
+
+/// A body that floats, held by one loop of a kind; both frames turned and displaced.
+closed_tree held_body(loop_kind kind, double scale = 1) {
+  robot_description robot;
+  robot.links = {{"base"}, {"body"}};
+  robot.joints = {{"free", "base", "body", {joint_kind::floating}}};
+  return closed_tree(kinematic_tree(robot),
+                     {{{kind,
+                        {"base", place(.3, -.2, .5, .4 * scale, .1 * scale, -.2 * scale)},
+                        {"body", place(-.1, .7, .2, -.3 * scale, .2 * scale, .5 * scale)},
+                        .8 * scale}}});
+}
+
+/// The pose of the second frame in the first.
+dual_quaternion<double> seen(const closed_tree& mechanism, const VectorXd& q) {
+  const tree_loop& loop = mechanism.loops()[0];
+  const auto at = [&](const loop_frame& frame) {
+    return mechanism.tree().pose(q, mechanism.tree().link(frame.link)) * frame.offset.pose();
+  };
+  return conj(at(loop.first)) * at(loop.second);
+}
+
+} // namespace
+
+TEST_CASE("what loops of every kind leave: equations, and frames that they hold") {
+  const std::array<int, kinds> equations{6, 5, 5, 4, 4, 3, 3, 1};
+  duet_test::random_source random(5);
+  for (int k = 0; k < kinds; ++k) {
+    const auto kind = loop_kind(k);
+    CAPTURE(std::string(to_text(kind)));
+    const closed_tree mechanism = held_body(kind);
+    CHECK(mechanism.equations() == equations[std::size_t(k)]);
+    for (int i = 0; i < 5; ++i) {
+      VectorXd guess(6);
+      for (double& x : guess) {
+        x = random.uniform(-2, 2);
+      }
+      const VectorXd q = mechanism.closed(guess);
+      const auto a = seen(mechanism, q);
+      const Eigen::Matrix3d r = rotation_matrix(rotation(a));
+      const Vector3d t = translation(a);
+      const bool is_point = kind == loop_kind::weld || kind == loop_kind::hinge ||
+                            kind == loop_kind::universal || kind == loop_kind::ball;
+      const bool has_axis = kind == loop_kind::weld || kind == loop_kind::hinge ||
+                            kind == loop_kind::slider || kind == loop_kind::cylindrical ||
+                            kind == loop_kind::planar;
+      if (is_point) {
+        CHECK(t.norm() < 1e-12);
+      }
+      if (has_axis) { // the same way round
+        CHECK((r.col(2) - Vector3d::UnitZ()).norm() < 1e-12);
+      }
+      if (kind == loop_kind::weld || kind == loop_kind::slider) {
+        CHECK((r - Eigen::Matrix3d::Identity()).norm() < 1e-12);
+      }
+      if (kind == loop_kind::slider || kind == loop_kind::cylindrical) {
+        CHECK(t.head<2>().norm() < 1e-12);
+      }
+      if (kind == loop_kind::planar) {
+        CHECK(std::abs(t[2]) < 1e-12);
+      }
+      if (kind == loop_kind::universal) {
+        CHECK(std::abs(r(0, 1)) < 1e-12);
+      }
+      if (kind == loop_kind::rod) {
+        CHECK(std::abs(t.norm() - .8) < 1e-12);
+      }
+      CHECK(mechanism.independent_coordinates(q).size() ==
+            std::size_t(6 - equations[std::size_t(k)]));
+    }
+  }
+}
+
+TEST_CASE("the Jacobian of every kind of loop between all kinds of joints, against dual numbers") {
+  const kinematic_tree tree(all_joints());
+  loop_description loops;
+  const std::array links{"finger", "cart", "flange", "screw", "tool", "thumb", "body", "hand"};
+  for (int k = 0; k < kinds; ++k) {
+    loops.loops.push_back({loop_kind(k),
+                           {links[std::size_t(k)], place(.3, .1 * k, -.2, .2, -.1, .3)},
+                           {links[std::size_t(k + 3) % 8], place(-.4, .2, .1 * k, 0, .4, .1)},
+                           .5 + k});
+  }
+  const closed_tree mechanism(tree, loops);
+  for (const VectorXd& q : coordinates_of(tree, 10)) {
+    const auto expected = jacobian([&](const auto& x) { return mechanism.residuals(x); }, q);
+    CHECK(gap(mechanism.residuals(q), expected.value) < 1e-14);
+    CHECK(gap(mechanism.constraint_jacobian(q), expected.jacobian) <
+          1e-14 * std::max(1.0, expected.jacobian.cwiseAbs().maxCoeff()));
+  }
+}
+
+TEST_CASE("nothing depends on the unit of length") {
+  const double mm = 1000;
+  for (int k = 0; k < kinds; ++k) {
+    const closed_tree in_m = held_body(loop_kind(k)), in_mm = held_body(loop_kind(k), mm);
+    const VectorXd guess = vector({.3, -.4, .2, .5, 1.1, -.7});
+    VectorXd scaled = guess;
+    scaled.head<3>() *= mm;
+    CHECK(in_mm.length() == doctest::Approx(mm * in_m.length()).epsilon(1e-15));
+    CHECK(gap(in_m.residuals(guess), in_mm.residuals(scaled)) < 1e-13);
+    VectorXd closed = in_mm.closed(scaled);
+    CHECK(in_m.independent_coordinates(in_m.closed(guess)) ==
+          in_mm.independent_coordinates(closed));
+    closed.head<3>() /= mm;
+    CHECK(gap(in_m.closed(guess), closed) < 1e-10);
+  }
+}
+
+TEST_CASE("all positions of a four-bar are those of Freudenstein's equation") {
+  const double a = .2, b = .5, c = .4, d = .55;
+  const closed_tree mechanism = four_bar(a, b, c, d);
+  for (const double theta : {-2.5, 0., .4, 2., 3.1}) {
+    const auto found = all_positions(mechanism, {0}, vector({theta}), {.starts = 30});
+    CHECK(found.chance_of_more() == 0);
+    REQUIRE(found.positions.size() == 2);
+    const double k = a * std::cos(theta) - d, s = a * std::sin(theta);
+    const double q = (c * c + k * k + s * s - b * b) / (2 * c);
+    for (const double side : {-1., 1.}) {
+      const double psi = std::atan2(s, k) + side * std::atan2(std::sqrt(k * k + s * s - q * q), q);
+      double nearest = 1;
+      for (const loop_position& each : found.positions) {
+        CHECK(each.smallest_singular_value > .01);
+        nearest = std::min(
+            nearest, std::abs(std::remainder(each.coordinates[2] - psi, 2 * std::numbers::pi)));
+      }
+      CHECK(nearest < 1e-14);
+    }
+  }
+  CHECK(all_positions(four_bar(.2, .5, .4, 3), {0}, vector({0}), {.starts = 10}).positions.empty());
+  CHECK(duet_test::message_of<cannot_close>([] {
+          (void)four_bar(.2, .5, .4, 3).closed(vector({0, 0, 0}));
+        }).starts_with("duet: closed_tree: no position near the guess: residual "));
+}
+
+TEST_CASE("limits of joints bound where positions are looked for, and are reported") {
+  robot_description robot = four_bar(.2, .5, .4, .55).tree().description();
+  robot.joints[2].motion.kind = joint_kind::revolute;
+  robot.joints[2].motion.limits = {0, 3};
+  const closed_tree mechanism(
+      kinematic_tree(robot),
+      {{{loop_kind::hinge, {"coupler", at_point(.5, 0)}, {"rocker", at_point(.4, 0)}}}});
+  const auto found = all_positions(mechanism, {0}, vector({2}), {.starts = 40});
+  int within = 0;
+  for (const loop_position& each : found.positions) {
+    CHECK(each.within_limits == (each.coordinates[2] >= 0 && each.coordinates[2] <= 3));
+    within += each.within_limits ? 1 : 0;
+  }
+  CHECK(within == 1);
+}
+
+TEST_CASE("held coordinates stay, and the way to the position is short") {
+  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+  const VectorXd q = mechanism.closed(vector({2, -1.6, 2}), {0});
+  CHECK(q[0] == 2);
+  CHECK(std::abs(q[2] - 2.002371114722) < 1e-12);
+  const VectorXd again = mechanism.closed(q);
+  CHECK(gap(q, again) < 1e-15);
+  // From a little beside the curve of positions straight back to it: across its tangent.
+  const VectorXd tangent = detail::linearised(mechanism, q).kernel();
+  const VectorXd beside = q + 1e-4 * vector({.3, .5, -.2});
+  CHECK(std::abs((mechanism.closed(beside) - beside).dot(tangent)) < 1e-8);
+}
+
+TEST_CASE("what is wrong with loops") {
+  using duet_test::message_of;
+  const kinematic_tree tree = four_bar(.2, .5, .4, .55).tree();
+  const auto message = [&](const tree_loop& loop, const std::string& file = {}) {
+    return message_of([&] { closed_tree(tree, {{loop}, file}); });
+  };
+  const loop_frame coupler{"coupler", at_point(.5, 0)}, rocker{"rocker", at_point(.4, 0)};
+  CHECK(message({loop_kind::hinge, {"couple", {}}, rocker})
+            .starts_with("duet: closed_tree: loop 0, hinge: no link \"couple\": there are "
+                         "\"coupler\", "));
+  CHECK(message({loop_kind::hinge, {"couple", {}}, rocker, 0, 7}, "loops.txt")
+            .starts_with("duet: loops.txt:7: hinge: no link \"couple\": "));
+  CHECK(message({loop_kind::ball, coupler, coupler}) ==
+        "duet: closed_tree: loop 0, ball: both frames are on the link \"coupler\"");
+  CHECK(message({loop_kind::rod, coupler, rocker}) ==
+        "duet: closed_tree: loop 0, rod: its length is 0");
+  CHECK(message({loop_kind::rod, coupler, rocker, std::nan("")}) ==
+        "duet: closed_tree: loop 0, rod: its length is nan");
+  loop_frame infinite = coupler;
+  infinite.offset.translation[1] = std::numeric_limits<double>::infinity();
+  CHECK(message({loop_kind::ball, infinite, rocker}) ==
+        "duet: closed_tree: loop 0, ball: its frame on \"coupler\" is not finite");
+  CHECK(message_of([] {
+          (void)along_axis({0, 0, 0}, {0, 0, 0});
+        }) == "duet: along_axis: (0, 0, 0) is no direction");
+  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+  CHECK(message_of([&] {
+          (void)mechanism.closed(vector({0, 0, 0}), {3});
+        }) == "duet: closed_tree: no coordinate 3 of 3");
+  CHECK(message_of([&] {
+          (void)mechanism.closed(vector({0, 0, std::nan("")}));
+        }) == "duet: closed_tree: the guess is not finite");
+  CHECK(message_of([&] {
+          (void)mechanism.closed(vector({0, 0}));
+        }) == "duet: a tree of 3 coordinates, but 2 are given");
+  CHECK(message_of([&] { (void)all_positions(mechanism, {0}, VectorXd()); }) ==
+        "duet: all_positions: 1 coordinates are held, but 0 numbers given");
+}
+
+TEST_CASE("an axis in any direction") {
+  for (const Vector3d& n : {Vector3d(0, 0, 1), Vector3d(0, 0, -1), Vector3d(1, 2, -.3),
+                            Vector3d(0, -1e-9, -1), Vector3d(3, 0, 0)}) {
+    const auto at = along_axis({1, 2, 3}, {n[0], n[1], n[2]});
+    CHECK((rotation_matrix(at.rotation).col(2) - n.normalized()).norm() < 1e-15);
+    CHECK(at.translation == std::array<double, 3>{1, 2, 3});
+  }
+}
+
+} // namespace test_mechanism_closed_tree

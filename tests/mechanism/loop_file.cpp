@@ -1,1 +1,105 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/loops.hpp"
+#include "support/message.hpp"
+
+#include <duet/core/text/file.hpp>
+#include <duet/mechanism/loop_file.hpp>
+#include <duet/mechanism/tree_loop.hpp>
+#include <duet/quaternion/distance.hpp>
+
+#include <array>
+#include <filesystem>
+#include <string>
+
+namespace test_mechanism_loop_file {
+namespace {
+
+using namespace duet;
+using duet_test::message_of;
+
+const std::string path = "test_mechanism_loop_file.txt";
+
+loop_description read(const std::string& content) {
+  write_file(path, content);
+  return read_loops(path);
+}
+
+/// What is said of the content, without the file's name.
+std::string fault(const std::string& content) {
+  const std::string text = message_of<file_error>([&] { (void)read(content); });
+  const std::string begin = "duet: " + path + ":";
+  REQUIRE(text.starts_with(begin));
+  return text.substr(begin.size());
+}
+
+} // namespace
+
+TEST_CASE("loops of every kind, with points, axes and angles, comments and blank lines") {
+  const loop_description loops = read("\xef\xbb\xbf# closes the frame\n"
+                                      "hinge coupler .5 0 0  rocker 0.4 -1e-1 0 # in front\r\n"
+                                      "\n"
+                                      "\tslider a 1 2 3 rpy 0.1 0.2 0.3 b 0 0 0 axis 0 0 2\n"
+                                      "weld a 0 0 0 b 0 0 0\n"
+                                      "cylindrical a 0 0 0 axis 1 0 0 b 0 0 0\n"
+                                      "universal a 0 0 0 b 0 0 0\n"
+                                      "ball a 0 0 0 b 0 0 0\n"
+                                      "planar a 0 0 0 b 0 0 0\n"
+                                      "rod axis 0 0 0 axis 0 1 0 rpy 0 0 0 length 0.25");
+  REQUIRE(loops.loops.size() == 8);
+  CHECK(loops.file == path);
+  const tree_loop& hinge = loops.loops[0];
+  CHECK(hinge.kind == loop_kind::hinge);
+  CHECK(hinge.line == 2);
+  CHECK(hinge.first.link == "coupler");
+  CHECK(hinge.first.offset.translation == std::array{.5, 0., 0.});
+  CHECK(hinge.second.link == "rocker");
+  CHECK(hinge.second.offset.translation == std::array{.4, -.1, 0.});
+  const tree_loop& slider = loops.loops[1];
+  CHECK(slider.kind == loop_kind::slider);
+  CHECK(slider.line == 4);
+  const auto turned = duet_test::place(0, 0, .3, 0, 0, 0) * duet_test::place(0, .2, 0, 0, 0, 0) *
+                      duet_test::place(.1, 0, 0, 1, 2, 3);
+  CHECK(distance(slider.first.offset.rotation, turned.rotation) < 1e-15);
+  CHECK(slider.second.offset.rotation == quaternion<double>(1.0));
+  CHECK(loops.loops[3].first.offset.rotation == along_axis({0, 0, 0}, {1, 0, 0}).rotation);
+  const tree_loop& rod = loops.loops[7]; // the names of the links are words of the format
+  CHECK(rod.kind == loop_kind::rod);
+  CHECK(rod.first.link == "axis");
+  CHECK(rod.second.link == "rpy");
+  CHECK(rod.length == .25);
+  const std::array order{loop_kind::hinge,       loop_kind::slider,    loop_kind::weld,
+                         loop_kind::cylindrical, loop_kind::universal, loop_kind::ball,
+                         loop_kind::planar,      loop_kind::rod};
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    CHECK(loops.loops[i].kind == order[i]);
+  }
+}
+
+TEST_CASE("what is wrong with a file of loops, and where") {
+  CHECK(fault(" # nothing\n") == " no loops");
+  CHECK(fault("# a\nhing a 0 0 0 b 0 0 0")
+            .starts_with("2: no kind of loop is \"hing\": there are \"hinge\", "));
+  CHECK(fault("hinge") == "1: a link is missing");
+  CHECK(fault("hinge a 0 0") == "1: z on \"a\" is missing");
+  CHECK(fault("hinge a 0 0 b 0 0 0") == "1: z on \"a\" is not a number: 'b'");
+  CHECK(fault("hinge a 0 0,5 0 b 0 0 0") ==
+        "1: y on \"a\" is not a number: '0,5': decimals come after a point");
+  CHECK(fault("hinge a 0 0 0 b 0 inf 0") == "1: y on \"b\" is inf");
+  CHECK(fault("hinge a 0 0 0 b 0 1e999 0") ==
+        "1: y on \"b\" is 1e999, beyond the range of a double");
+  CHECK(fault("hinge a 0 0 0 b 0 0 0 axis 0 0 0") == "1: axis on \"b\" has no direction");
+  CHECK(fault("hinge a 0 0 0 axis 0 0 b 0 0 0") == "1: axis z on \"a\" is not a number: 'b'");
+  CHECK(fault("hinge a 0 0 0 rpy 0 0") == "1: yaw on \"a\" is missing");
+  CHECK(fault("hinge a 0 0 0 b 0 0 0 length 1") == "1: \"length\" is too much");
+  CHECK(fault("rod a 0 0 0 b 0 0 0") == "1: \"length\" of the rod is missing");
+  CHECK(fault("rod a 0 0 0 b 0 0 0 1") == "1: \"length\" of the rod expected, not \"1\"");
+  CHECK(fault("rod a 0 0 0 b 0 0 0 length 0") == "1: length is 0");
+  CHECK(fault("rod a 0 0 0 b 0 0 0 length -2") == "1: length is -2");
+  CHECK(fault("rod a 0 0 0 b 0 0 0 length nan") == "1: length is nan");
+  CHECK(message_of<file_error>([] { (void)read_loops("/nowhere/loops.txt"); }) ==
+        "duet: /nowhere/loops.txt: cannot be read");
+  std::filesystem::remove(path);
+}
+
+} // namespace test_mechanism_loop_file

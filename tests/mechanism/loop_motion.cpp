@@ -1,1 +1,304 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/loops.hpp"
+#include "support/gap.hpp"
+#include "support/message.hpp"
+#include "support/multiprecision.hpp"
+
+#include <duet/core/random_source.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/jacobian.hpp>
+#include <duet/mechanism/coupled_tree.hpp>
+#include <duet/mechanism/loop_motion.hpp>
+#include <duet/mechanism/loop_trace.hpp>
+#include <duet/mechanism/mobility.hpp>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace test_mechanism_loop_motion {
+namespace {
+
+using namespace duet;
+using duet_test::at_point;
+using duet_test::four_bar;
+using duet_test::gap;
+using duet_test::real_100;
+using duet_test::turning_joint;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double degree = std::numbers::pi / 180;
+
+VectorXd vector(std::initializer_list<double> x) {
+  return Eigen::Map<const VectorXd>(x.begin(), Eigen::Index(x.size()));
+}
+
+/// The rocker's angle by Freudenstein's equation.
+template <class T>
+T freudenstein(double a, double b, double c, double d, const T& theta, double side) {
+  using std::atan2;
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  const T k = a * cos(theta) - d, s = a * sin(theta);
+  const T q = (T(c) * c + k * k + s * s - T(b) * b) / (2 * T(c));
+  return atan2(s, k) + side * atan2(sqrt(T(k * k + s * s - q * q)), q);
+}
+
+/// Two cranks about (∓foot, 0), two couplers that meet in a hinge.
+closed_tree five_bar(double foot, double crank, double coupler) {
+  robot_description robot;
+  robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
+  robot.joints = {turning_joint("left", "ground", at_point(-foot, 0)),
+                  turning_joint("left_coupler", "left", at_point(crank, 0)),
+                  turning_joint("right", "ground", at_point(foot, 0)),
+                  turning_joint("right_coupler", "right", at_point(crank, 0))};
+  return closed_tree(kinematic_tree(robot), {{{loop_kind::hinge,
+                                               {"left_coupler", at_point(coupler, 0)},
+                                               {"right_coupler", at_point(coupler, 0)}}}});
+}
+
+/// The upper point where circles about the cranks' ends meet.
+template <class T>
+std::array<T, 2> meeting_point(double foot, double crank, double coupler, const T& left,
+                               const T& right) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  const T ax = -foot + crank * cos(left), ay = crank * sin(left);
+  const T bx = foot + crank * cos(right), by = crank * sin(right);
+  const T dx = bx - ax, dy = by - ay, square = dx * dx + dy * dy;
+  const T up = sqrt(T(coupler * coupler / square - .25));
+  return {ax + dx / 2 - up * dy, ay + dy / 2 + up * dx};
+}
+
+} // namespace
+
+TEST_CASE("a four-bar by its crank, all the way round, against Freudenstein's equation") {
+  const loop_motion by_crank(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0});
+  for (double theta = -700 * degree; theta < 800 * degree; theta += 33 * degree) {
+    const auto x = derivatives<3>(by_crank, theta);
+    const auto expected =
+        derivatives<3>([](const auto& t) { return freudenstein(.2, .5, .4, .55, t, -1.); }, theta);
+    CHECK(x[0][0] == theta);
+    CHECK(std::abs(std::remainder(x[0][2] - expected[0], 2 * std::numbers::pi)) < 1e-13);
+    for (int k = 1; k <= 3; ++k) {
+      CHECK(std::abs(x[std::size_t(k)][2] - expected[std::size_t(k)]) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("derivatives up to the third against 50 digits") {
+  // A spatial four-bar: crank, ball, ball, rocker on a skew axis; a rod is its coupler.
+  robot_description robot;
+  robot.links = {{"ground"}, {"crank"}, {"rocker"}};
+  robot.joints = {turning_joint("crank", "ground", {}),
+                  turning_joint("rocker", "ground", duet_test::place(.9, .4, 0, .9, .3, .2))};
+  const closed_tree mechanism(
+      kinematic_tree(robot),
+      {{{loop_kind::rod, {"crank", at_point(.3, 0, .1)}, {"rocker", at_point(.6, .1, 0)}, .8}}});
+  const loop_motion motion(mechanism, vector({.4, 1}), {0});
+  // Newton's method with 100 digits, for one unknown.
+  const auto exact = [&](const real_100& theta) {
+    std::vector<real_100> q{theta, real_100(motion(double(theta))[1])};
+    const double slope = mechanism.constraint_jacobian(motion(double(theta)))(0, 1);
+    for (int i = 0; i < 9; ++i) {
+      q[1] -= mechanism.residuals(q)[0] / slope;
+    }
+    return q[1];
+  };
+  for (const double theta : {.4, 1.3, 2.2}) {
+    const auto x = derivatives<3>(motion, theta);
+    CHECK(std::abs(double(x[0][1] - exact(theta))) < 1e-15);
+    for (int k = 1; k <= 3; ++k) {
+      const auto expected = double(duet_test::central_difference(exact, real_100(theta), k, .1));
+      CHECK(std::abs(x[std::size_t(k)][1] - expected) < 1e-13 * std::max(1.0, std::abs(expected)));
+    }
+  }
+}
+
+TEST_CASE("a five-bar by both cranks: its point, Jacobian and Hessian against the circles'") {
+  const double foot = .3, crank = .5, coupler = .7;
+  const closed_tree mechanism = five_bar(foot, crank, coupler);
+  const VectorXd start = vector({2, -1, 1.2, 1});
+  CHECK(mobility(mechanism, mechanism.closed(start)).mobility == 2);
+  const loop_motion motion(mechanism, start, {0, 2});
+  const coupled_tree driven(mechanism.tree(), motion);
+  const auto tip = mechanism.tree().link("left_coupler").at_point({coupler, 0, 0});
+  const auto by_hand = [&](const auto& u) {
+    return meeting_point(foot, crank, coupler, u[0], u[1]);
+  };
+  for (const auto& u : {Vector2d(2, 1.2), Vector2d(1.5, .3), Vector2d(3, 2), Vector2d(2.2, .5)}) {
+    const auto expected = jacobian(by_hand, u);
+    const auto both = pose_and_jacobian(driven, u, frame::hybrid, tip);
+    CHECK((translation(both.value).head<2>() - Vector2d(expected.value[0], expected.value[1]))
+              .norm() < 1e-13);
+    CHECK(gap(both.jacobian.topRows(2), expected.jacobian) < 1e-12);
+    const auto second = kinematic_hessian(driven, u, frame::hybrid, tip);
+    for (int j = 0; j < 2; ++j) {
+      const auto change =
+          directional_derivative([&](const auto& x) { return jacobian(by_hand, x).jacobian; }, u,
+                                 Vector2d(Vector2d::Unit(j)));
+      CHECK(gap(second[std::size_t(j)].topRows(2), change.derivative) < 1e-11);
+    }
+  }
+}
+
+TEST_CASE("a mechanism of three rods and a sliding drive: nothing depends on units") {
+  for (const double mm : {1., 1000.}) {
+    robot_description robot;
+    robot.links = {{"ground"}, {"slide"}, {"arm"}};
+    robot.joints = {{"push", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}},
+                    turning_joint("arm", "ground", at_point(0, .3 * mm))};
+    const closed_tree mechanism(
+        kinematic_tree(robot),
+        {{{loop_kind::rod, {"slide", at_point(0, 0)}, {"arm", at_point(.4 * mm, 0)}, .5 * mm}}});
+    const loop_motion motion(mechanism, vector({.5 * mm, .2}), {0});
+    const auto x = derivatives<2>(motion, .6 * mm);
+    // (u − .4 cos α)² + (.3 + .4 sin α)² = .25
+    const double alpha = x[0][1];
+    CHECK(std::abs(std::pow(.6 - .4 * std::cos(alpha), 2) + std::pow(.3 + .4 * std::sin(alpha), 2) -
+                   .25) < 1e-14);
+    const double by_alpha = .4 * std::sin(alpha) * (.6 - .4 * std::cos(alpha)) +
+                            .4 * std::cos(alpha) * (.3 + .4 * std::sin(alpha));
+    const double slope = -(.6 - .4 * std::cos(alpha)) / by_alpha;
+    CHECK(std::abs(x[1][1] * mm - slope) < 1e-12);
+  }
+}
+
+TEST_CASE("dead points: where a motion stops, what moves there, and the way through them") {
+  // (b + c)² = a² + d² − 2 a d cos θ: coupler and rocker in a row.
+  const double a = .3, b = .25, c = .2, d = .4;
+  const double dead = std::acos((a * a + d * d - (b + c) * (b + c)) / (2 * a * d));
+  const closed_tree mechanism = four_bar(a, b, c, d);
+  const loop_motion by_crank(mechanism, vector({.5, 1, 2}), {0});
+  try {
+    (void)by_crank(2.);
+    FAIL("closes beyond the dead point");
+  } catch (const cannot_close& error) {
+    CHECK(std::abs(error.parameter()[0] - dead) < 1e-12);
+    const std::string text = error.what();
+    CHECK(text.starts_with("duet: loop_motion: cannot close beyond crank = 1.3715"));
+    CHECK(text.ends_with(" on the way from 0.5 to 2: a dead point, coupler, rocker move on"));
+  }
+  CHECK(std::abs(by_crank(dead - 1e-9)[0] - (dead - 1e-9)) == 0);
+  CHECK_THROWS_AS((void)by_crank(dead + 1e-9), cannot_close);
+
+  const loop_trace_result whole = trace(by_crank);
+  CHECK(whole.is_closed);
+  CHECK(!whole.meets_branches);
+  int of_crank = 0, of_rocker = 0;
+  for (const dead_point& each : whole.dead_points) {
+    CHECK(mechanism.residuals(each.coordinates).norm() < 1e-13);
+    const double rate = each.rates[each.coordinate];
+    CHECK(std::abs(rate) < 1e-13);
+    const VectorXd& q = each.coordinates;
+    if (each.coordinate == 0) { // coupler and rocker in a row: stretched, or folded
+      ++of_crank;
+      CHECK(each.moving == "coupler, rocker");
+      const double theta = std::abs(std::remainder(q[0], 2 * std::numbers::pi));
+      const double folded = std::acos((a * a + d * d - (b - c) * (b - c)) / (2 * a * d));
+      CHECK(std::min(std::abs(theta - dead), std::abs(theta - folded)) < 1e-12);
+    } else if (each.coordinate == 2) { // crank and coupler in a row
+      ++of_rocker;
+      CHECK(std::abs(std::sin(q[1])) < 1e-13);
+    }
+  }
+  CHECK(of_crank >= 2);
+  CHECK(of_rocker >= 2);
+  // A crank that goes round has none.
+  const loop_trace_result round =
+      trace(loop_motion(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0}));
+  CHECK(round.is_closed);
+  for (const dead_point& each : round.dead_points) {
+    CHECK(each.coordinate != 0);
+  }
+  CHECK(round.dead_points.size() >= 2);
+}
+
+TEST_CASE("of 200 random four-bars each motion ends where its coupler and rocker are in a row") {
+  duet::random_source random(2);
+  int stopped = 0, arrived = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double a = random.uniform(.1, 1), b = random.uniform(.1, 1), c = random.uniform(.1, 1),
+                 d = random.uniform(.1, 1);
+    const double from = random.uniform(-3, 3), to = from + random.uniform(-4, 4);
+    const double side = random.sign();
+    const double psi = freudenstein(a, b, c, d, from, side);
+    if (!(psi - psi == 0)) {
+      continue;
+    }
+    const Vector2d elbow(a * std::cos(from), a * std::sin(from));
+    const Vector2d end(d + c * std::cos(psi), c * std::sin(psi));
+    const double beta = std::atan2(end[1] - elbow[1], end[0] - elbow[0]);
+    const loop_motion motion(four_bar(a, b, c, d), vector({from, beta - from, psi}), {0});
+    // The first crank angle on the way at which the distance of the free ends is b ± c.
+    double first = 2;
+    for (const double reach : {b + c, std::abs(b - c)}) {
+      const double cosine = (a * a + d * d - reach * reach) / (2 * a * d);
+      for (int turn = -2; turn <= 2 && std::abs(cosine) < 1; ++turn) {
+        for (const double sign : {-1., 1.}) {
+          const double part =
+              (sign * std::acos(cosine) + 2 * std::numbers::pi * turn - from) / (to - from);
+          first = part > 0 ? std::min(first, part) : first;
+        }
+      }
+    }
+    CAPTURE(i);
+    try {
+      const VectorXd q = motion(to);
+      ++arrived;
+      CHECK(first > 1);
+      CHECK(std::abs(std::remainder(q[2] - freudenstein(a, b, c, d, to, side),
+                                    2 * std::numbers::pi)) < 1e-10);
+    } catch (const cannot_close& error) {
+      ++stopped;
+      CHECK(first < 1);
+      CHECK(std::abs(error.parameter()[0] - (from + first * (to - from))) < 1e-8);
+    }
+  }
+  CHECK(stopped > 20);
+  CHECK(arrived > 20);
+}
+
+TEST_CASE("branches that meet, drives that do not drive, and other mistakes") {
+  using duet_test::message_of;
+  // A parallelogram is flat at 0, where another motion begins.
+  const loop_motion flat(four_bar(.3, .8, .3, .8), vector({1, -1, 1}), {0});
+  CHECK(std::abs(flat(.01)[2] - .01) < 1e-12);
+  const std::string text = message_of<cannot_close>([&] { (void)flat(-.5); });
+  CHECK(text.ends_with(": branches meet"));
+  CHECK(trace(flat).meets_branches);
+
+  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+  const VectorXd q = mechanism.closed(vector({2, -1, 1.7}), {0});
+  CHECK(message_of([&] {
+          loop_motion(mechanism, q, {0, 1});
+        }) == "duet: loop_motion: 2 drives, but the loops leave 1 independent rates");
+  const closed_tree two = five_bar(.3, .5, .7);
+  CHECK(message_of([&] {
+          loop_motion(two, vector({2, -1, 1.2, 1}), {0});
+        }) ==
+        "duet: loop_motion: left does not determine the rates of the other coordinates: a dead "
+        "point");
+  CHECK(message_of([&] { loop_motion(mechanism, q, {5}); }) ==
+        "duet: closed_tree: no coordinate 5 of 3");
+  const loop_motion motion(mechanism, q, {0});
+  CHECK(message_of([&] {
+          (void)motion(vector({1, 2}));
+        }) == "duet: loop_motion: 1 drives, but 2 numbers are given");
+  CHECK(message_of([&] { (void)motion(std::nan("")); }) ==
+        "duet: loop_motion: drives are not finite");
+  CHECK(message_of([&] { (void)trace(motion, 1); }) == "duet: trace: no drive 1 of 1");
+  const loop_motion moved = motion.moved_to(vector({2.5}));
+  CHECK(moved.start()[0] == 2.5);
+  CHECK(gap(moved(3.), motion(3.)) < 1e-13);
+}
+
+} // namespace test_mechanism_loop_motion

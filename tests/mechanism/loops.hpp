@@ -60,9 +60,7 @@ inline duet::closed_tree four_bar(double crank, double coupler, double rocker, d
 /// offsets, cut at the last joint.
 inline duet::closed_tree ring(const std::vector<std::array<double, 2>>& links) {
   std::vector<duet::placement<double>> origins = {{}};
-  const auto link = [&](std::size_t i) {
-    return place(links[i][1], 0, 0, links[i][0], 0, 0);
-  };
+  const auto link = [&](std::size_t i) { return place(links[i][1], 0, 0, links[i][0], 0, 0); };
   for (std::size_t i = 0; i + 2 < links.size(); ++i) {
     origins.push_back(link(i));
   }

@@ -50,7 +50,8 @@ TEST_CASE("a planar four-bar has three equations too many") {
   CHECK(mobility(by_ball, q).mobility == 1);
 }
 
-TEST_CASE("Bennett's and Goldberg's linkages move, a general ring of four or five joints does not") {
+TEST_CASE(
+    "Bennett's and Goldberg's linkages move, a general ring of four or five joints does not") {
   const auto a = with_twist(.6, .9), b = with_twist(.9, .9), c = with_twist(.45, .9);
   const closed_tree bennett = ring({a, b, a, b});
   const auto ways = all_positions(bennett, {0}, vector({.8}), {.starts = 30});
@@ -68,8 +69,7 @@ TEST_CASE("Bennett's and Goldberg's linkages move, a general ring of four or fiv
     CHECK(std::abs(std::abs(std::tan(x[0] / 2) * std::tan(x[1] / 2)) - std::abs(constant)) < 1e-12);
   }
 
-  const closed_tree goldberg =
-      ring({{a[0] + c[0], a[1] + c[1]}, b, c, a, b});
+  const closed_tree goldberg = ring({{a[0] + c[0], a[1] + c[1]}, b, c, a, b});
   const auto of_five = all_positions(goldberg, {0}, vector({.8}), {.starts = 60});
   REQUIRE(!of_five.positions.empty());
   int moving = 0;
@@ -91,9 +91,9 @@ TEST_CASE("a stretched frame has rates, but does not move") {
   robot.links = {{"ground"}, {"first"}, {"second"}};
   robot.joints = {turning_joint("first", "ground", {}),
                   turning_joint("second", "first", at_point(.7, 0))};
-  const closed_tree shaky(kinematic_tree(robot), {{{loop_kind::hinge,
-                                                    {"second", at_point(.5, 0)},
-                                                    {"ground", at_point(1.2, 0)}}}});
+  const closed_tree shaky(
+      kinematic_tree(robot),
+      {{{loop_kind::hinge, {"second", at_point(.5, 0)}, {"ground", at_point(1.2, 0)}}}});
   const mobility_result m = mobility(shaky, vector({0, 0}));
   CHECK(m.mobility == 0);
   CHECK(m.first_order == 1);
@@ -105,9 +105,9 @@ TEST_CASE("a stretched frame has rates, but does not move") {
                        invalid_input);
 
   // Pins nearer to each other: rigid to first order.
-  const closed_tree rigid(kinematic_tree(robot), {{{loop_kind::hinge,
-                                                    {"second", at_point(.5, 0)},
-                                                    {"ground", at_point(.9, 0)}}}});
+  const closed_tree rigid(
+      kinematic_tree(robot),
+      {{{loop_kind::hinge, {"second", at_point(.5, 0)}, {"ground", at_point(.9, 0)}}}});
   const auto ways = all_positions(rigid, {}, VectorXd(), {.starts = 20});
   CHECK(ways.positions.size() == 2);
   for (const loop_position& each : ways.positions) {
@@ -147,7 +147,8 @@ TEST_CASE("equations that do not depend on each other are counted") {
   loop_description rods;
   for (int i = 0; i < 3; ++i) {
     const double x = std::cos(2. * i), y = std::sin(2. * i);
-    rods.loops.push_back({loop_kind::rod, {"base", at_point(x, y)}, {"plate", at_point(y, x, .1)}, 1.5});
+    rods.loops.push_back(
+        {loop_kind::rod, {"base", at_point(x, y)}, {"plate", at_point(y, x, .1)}, 1.5});
   }
   const closed_tree mechanism(kinematic_tree(robot), rods);
   const VectorXd q = mechanism.closed(vector({.1, .2, 1.4, .1, .2, .3}));

@@ -38,8 +38,8 @@ namespace duet {
 /// loops, one loop after the other. Equations may depend on each other, as those of all planar
 /// mechanisms do. Lengths in F are in parts of `length()`, so that no result depends on their unit.
 ///
-/// Example: `const closed_tree four_bar(tree, {{{loop_kind::hinge, {"coupler", along_axis({.5, 0, 0},
-/// {0, 0, 1})}, {"rocker", along_axis({.4, 0, 0}, {0, 0, 1})}}}});`
+/// Example: `const closed_tree four_bar(tree, {{{loop_kind::hinge, {"coupler", along_axis({.5, 0,
+/// 0}, {0, 0, 1})}, {"rocker", along_axis({.4, 0, 0}, {0, 0, 1})}}}});`
 class closed_tree {
 public:
   using own_jacobian = void;
@@ -51,8 +51,7 @@ public:
     measure();
     for (std::size_t i = 0; i < given_.loops.size(); ++i) {
       const tree_loop& loop = given_.loops[i];
-      equations_.push_back(
-          {loop.kind, {frame(i, loop.second), frame(i, loop.first)}, loop.length});
+      equations_.push_back({loop.kind, {frame(i, loop.second), frame(i, loop.first)}, loop.length});
       if (equations_.back().frames.frame.link == equations_.back().frames.observer.link) {
         detail::bad_loop(given_, i, "both frames are on the link \"" + loop.first.link + "\"");
       }

@@ -66,8 +66,9 @@ public:
   [[nodiscard]] Eigen::VectorXd damped_solve(const Eigen::VectorXd& b, double lambda) const {
     const Eigen::VectorXd& s = singular_values();
     const Eigen::VectorXd y = svd_.matrixU().leftCols(s.size()).transpose() * b;
-    return svd_.matrixV().leftCols(s.size()) *
-           s.binaryExpr(y, [&](double sigma, double x) { return sigma * x / (sigma * sigma + lambda); });
+    return svd_.matrixV().leftCols(s.size()) * s.binaryExpr(y, [&](double sigma, double x) {
+      return sigma * x / (sigma * sigma + lambda);
+    });
   }
 
 private:
@@ -125,7 +126,7 @@ private:
         const double foreseen = norm_ * norm_ - (f_ + j * dx).squaredNorm();
         const double gain = (norm_ * norm_ - norm * norm) / foreseen;
         damping_ = std::max(1e-8, damping_ * (gain > .75 ? .1 : gain < .25 ? 4 : 1));
-        const bool goes_on = norm < (1 - 1e-5) * norm_ ;
+        const bool goes_on = norm < (1 - 1e-5) * norm_;
         q_ = next;
         f_ = f;
         norm_ = norm;

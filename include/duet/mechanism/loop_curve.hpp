@@ -122,8 +122,7 @@ public:
 
 private:
   [[nodiscard]] Eigen::MatrixXd matrix(const Eigen::VectorXd& x) const {
-    const Eigen::MatrixXd j =
-        of_.constraint_jacobian(coordinates(x)) * of_.units().asDiagonal();
+    const Eigen::MatrixXd j = of_.constraint_jacobian(coordinates(x)) * of_.units().asDiagonal();
     Eigen::MatrixXd a(j.rows(), x.size());
     a << j(Eigen::indexing::all, dependent_), j(Eigen::indexing::all, drives_) * way_;
     return a;

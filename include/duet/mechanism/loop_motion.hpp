@@ -113,8 +113,7 @@ public:
 private:
   /// What takes residuals to the changes of dependent coordinates that make up for them.
   [[nodiscard]] Eigen::MatrixXd solver(const Eigen::VectorXd& q) const {
-    const Eigen::MatrixXd all =
-        mechanism_.constraint_jacobian(q) * mechanism_.units().asDiagonal();
+    const Eigen::MatrixXd all = mechanism_.constraint_jacobian(q) * mechanism_.units().asDiagonal();
     const Eigen::MatrixXd j = all(Eigen::indexing::all, dependent_);
     const detail::ranked_matrix svd(j);
     detail::require(svd.rank() == j.cols(), "duet: loop_motion: ", driven(),
@@ -159,8 +158,8 @@ private:
       for (const T& x : q) {
         largest = std::max({largest, std::abs(x.derivative(1)), std::abs(x.derivative(2))});
       }
-      detail::require(left <= 1e-7 * largest * largest,
-                      "duet: loop_motion: a rate of ", mechanism_.tree().coordinate_names()[std::size_t(drive)],
+      detail::require(left <= 1e-7 * largest * largest, "duet: loop_motion: a rate of ",
+                      mechanism_.tree().coordinate_names()[std::size_t(drive)],
                       " fulfils the equations, but has no acceleration: it does not move so");
     }
   }
@@ -227,7 +226,7 @@ inline Eigen::VectorXd loop_motion::followed(const Eigen::VectorXd& target) cons
   }
   const detail::loop_curve curve(mechanism_, start_, drives_, way);
   constexpr double least = 1e-7; // of steps
-  auto here = *curve.start(1); // its direction is known: drives determine all rates
+  auto here = *curve.start(1);   // its direction is known: drives determine all rates
   for (double step = options_.largest_step;;) {
     const auto next = curve.advance(here, step);
     if (!next) {
@@ -251,8 +250,8 @@ inline Eigen::VectorXd loop_motion::followed(const Eigen::VectorXd& target) cons
       }
     }
     if (next->s_rate() <= 0 && (to.end.s() < length || step < least)) {
-      fail("a dead point, " +
-               detail::moving_coordinates(mechanism_, curve.rates(to.end.tangent)) + " move on",
+      fail("a dead point, " + detail::moving_coordinates(mechanism_, curve.rates(to.end.tangent)) +
+               " move on",
            curve.coordinates(to.end.x), target);
     }
     if (to.end.s() >= length) {

@@ -84,7 +84,8 @@ private:
       const joint_limits<double>& limits = of_.tree().limits(i);
       const double reach = std::numbers::pi * of_.units()[i];
       const bool has_limits = std::isfinite(limits.lower) && std::isfinite(limits.upper);
-      q[i] = has_limits ? random.uniform(limits.lower, limits.upper) : random.uniform(-reach, reach);
+      q[i] =
+          has_limits ? random.uniform(limits.lower, limits.upper) : random.uniform(-reach, reach);
     }
     return q;
   }

@@ -118,8 +118,8 @@ private:
             return curve.rates(at.tangent)[i] / of.units()[i];
           });
           const Eigen::VectorXd rates = curve.rates(dead.end.tangent);
-          result.dead_points.push_back({i, curve.coordinates(dead.end.x), rates,
-                                        detail::moving_coordinates(of, rates)});
+          result.dead_points.push_back(
+              {i, curve.coordinates(dead.end.x), rates, detail::moving_coordinates(of, rates)});
         }
       }
       if (result.is_closed) {

@@ -67,9 +67,9 @@ public:
     const Eigen::MatrixXd rates = of_.units().asDiagonal() * kernel;
     std::vector<Eigen::MatrixXd> forms; // column k of the i-th: wᵀ ∂²F(Kᵢ, K_k)
     for (Eigen::Index i = 0; i < kernel.cols(); ++i) {
-      const auto change = directional_derivative(
-          [&](const auto& x) { return of_.constraint_jacobian(x); }, q,
-          Eigen::VectorXd(rates.col(i)));
+      const auto change =
+          directional_derivative([&](const auto& x) { return of_.constraint_jacobian(x); }, q,
+                                 Eigen::VectorXd(rates.col(i)));
       forms.push_back(across.transpose() * change.derivative * rates);
     }
     const Eigen::Index n = kernel.cols();

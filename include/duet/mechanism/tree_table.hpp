@@ -65,8 +65,8 @@ struct tree_table {
   std::unordered_map<std::string, int> link_numbers;
 };
 
-/// The shortest turn that takes z to the unit vector n: (1 + n·z, z × n), normalised; to −z the half
-/// turn about x.
+/// The shortest turn that takes z to the unit vector n: (1 + n·z, z × n), normalised; to −z the
+/// half turn about x.
 [[nodiscard]] inline quaternion<double> turn_to(const three_vector<double>& n) {
   const double w = n.z > 0 ? 1 + n.z : (n.x * n.x + n.y * n.y) / (1 - n.z); // both are 1 + n·z
   const double length = std::sqrt(2 * w);
