@@ -4,7 +4,9 @@
 /// \file
 /// All of duet but what programs ask for by name, as it takes compilers long or is rare: sparse
 /// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (mechanism/urdf.hpp),
-/// trees of links and joints (mechanism/coupled_tree.hpp, mechanism/tree_limits.hpp), arms in many
+/// trees of links and joints (mechanism/coupled_tree.hpp, mechanism/tree_limits.hpp), mechanisms
+/// with loops of them (mechanism/loop_file.hpp, mechanism/loop_positions.hpp,
+/// mechanism/loop_trace.hpp, mechanism/mobility.hpp), arms in many
 /// configurations (mechanism/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
 /// inverse kinematics and what moves along them (planning/all_inverse_kinematics.hpp,
 /// planning/differentiable_branch.hpp, planning/self_motion_curves.hpp), goals in part, wishes and

@@ -7,6 +7,7 @@
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/tree_loop.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -1,0 +1,208 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// Mechanisms with loops out of files, a robot description and a list of loops each: in how many
+// ways they move, how their loops close, their motion by drives and its derivatives beside formulas
+// by hand, and where drives are dead.
+
+#include "formulas.hpp"
+#include "pictures.hpp"
+
+#include "../support/command_line.hpp"
+#include "../support/folder.hpp"
+#include "../support/program.hpp"
+
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/mechanism/loop_file.hpp>
+#include <duet/mechanism/loop_positions.hpp>
+#include <duet/mechanism/loop_trace.hpp>
+#include <duet/mechanism/mobility.hpp>
+#include <duet/mechanism/urdf.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace closed_mechanisms {
+namespace {
+
+struct options {
+  std::string mechanism = "four_bar";
+  std::string files = DUET_EXAMPLE_FILES;
+  std::string out = "closed_mechanisms_out";
+  int starts = 100;
+  int samples = 101;
+};
+
+std::optional<options> parse_options(int argc, char** argv) {
+  namespace po = example::po;
+  po::options_description description(
+      "Mechanisms with loops out of files: how they close and move. Metres and radians. Options");
+  auto add = description.add_options();
+  add("help", "print this and stop");
+  add("mechanism", po::value<std::string>()->value_name("NAME"),
+      "four_bar, five_bar, delta, stewart or wheel_carrier (default: four_bar)");
+  add("files", po::value<std::string>()->value_name("DIR"),
+      "folder of NAME.urdf and NAME.loops (default: of this example)");
+  add("starts", po::value<int>()->value_name("N"),
+      "guesses from which positions are looked for (default: 100)");
+  add("samples", po::value<int>()->value_name("N"), "positions along the way (default: 101)");
+  add("out", po::value<std::string>()->value_name("DIR"),
+      "folder for the table and the picture (default: closed_mechanisms_out)");
+  const auto given = example::command_line::parse(argc, argv, description, "mechanism");
+  if (!given) {
+    return std::nullopt;
+  }
+  options result;
+  result.mechanism = given->text("mechanism").value_or(result.mechanism);
+  result.files = given->text("files").value_or(result.files);
+  result.out = given->text("out").value_or(result.out);
+  result.starts = given->get<int>("starts").value_or(result.starts);
+  result.samples = given->get<int>("samples").value_or(result.samples);
+  if (result.starts < 1) {
+    throw std::runtime_error("--starts: 1 or more");
+  }
+  if (result.samples < 2) {
+    throw std::runtime_error("--samples: 2 or more");
+  }
+  return result;
+}
+
+const std::array colours{"#0072b2", "#d55e00", "#00805d", "#a8497c",
+                         "#b37700", "#56b4e9", "#6e7781", "#24292f"};
+
+std::string names(const duet::closed_tree& mechanism, const std::vector<int>& coordinates) {
+  std::string result;
+  for (const int i : coordinates) {
+    result += " " + mechanism.tree().coordinate_names()[std::size_t(i)];
+  }
+  return result;
+}
+
+void print(const duet::loop_positions& found) {
+  std::printf("%zu ways to close from %d starts, of which %d closed; chance of more %.2g:\n",
+              found.positions.size(), found.starts, found.closed, found.chance_of_more());
+  for (const duet::loop_position& each : found.positions) {
+    for (const double x : each.coordinates) {
+      std::printf(" %9.5f", std::abs(x) < 5e-6 ? 0 : x);
+    }
+    std::printf("   smallest singular value %.2g\n", each.smallest_singular_value);
+  }
+}
+
+/// Along the way of the drives, beside what is known by hand.
+void follow(const options& given, const mechanism& known, duet::loop_motion motion,
+            example::drawing& picture) {
+  const duet::closed_tree mechanism = motion.mechanism();
+  const auto at = mechanism.tree().link(known.link).at_point(known.point);
+  const VectorXd way = known.to - known.from;
+  std::string table = "part,x,y,z,dx,dy,dz,ddx,ddy,ddz\n";
+  std::array<double, 3> apart{};
+  std::vector<example::point> curve;
+  for (int i = 0; i < given.samples; ++i) {
+    const double part = double(i) / (given.samples - 1);
+    motion = motion.moved_to(known.from + part * way);
+    const path x =
+        along_way([&](const auto& u) { return translation(mechanism.tree().pose(motion(u), at)); },
+                  known.from, way, part);
+    const path expected = known.by_hand(known.from, way, part);
+    std::vector<double> row{part};
+    for (std::size_t k = 0; k < 3; ++k) {
+      apart[k] = std::max(apart[k], (x[k] - expected[k]).norm());
+      row.insert(row.end(), x[k].begin(), x[k].end());
+    }
+    table += duet::csv_line(row);
+    curve.push_back(x[0]);
+    if (i % ((given.samples + 3) / 4) == 0) {
+      add(picture, mechanism, motion.start(),
+          example::mixed(colours[0], "#ffffff", .7 * (1 - part)));
+    }
+  }
+  picture.line(curve, colours[1], "lw 3", 10 * mechanism.length());
+  duet::write_file(given.out + "/" + known.name + "_way.csv", table);
+  std::printf("by hand: position_difference=%.2g first_derivative_difference=%.2g "
+              "second_derivative_difference=%.2g\n",
+              apart[0], apart[1], apart[2]);
+}
+
+/// The whole motion by one drive, and where joints are dead.
+void print(const duet::closed_tree& mechanism, const duet::loop_trace_result& whole) {
+  std::printf("the whole motion: %zu positions, %s\n", whole.positions.size(),
+              whole.is_closed        ? "comes back"
+              : whole.meets_branches ? "ends where branches meet"
+                                     : "goes on");
+  const auto& joints = mechanism.tree().joints();
+  for (const duet::dead_point& each : whole.dead_points) {
+    const std::string& name = mechanism.tree().coordinate_names()[std::size_t(each.coordinate)];
+    if (std::any_of(joints.begin(), joints.end(),
+                    [&](const duet::tree_joint& joint) { return joint.name == name; })) {
+      std::printf("  %s is dead at %.10f: %s move\n", name.c_str(),
+                  each.coordinates[each.coordinate], each.moving.c_str());
+    }
+  }
+}
+
+void run(const options& given) {
+  const auto all = known_mechanisms();
+  const auto known = std::find_if(
+      all.begin(), all.end(), [&](const mechanism& each) { return each.name == given.mechanism; });
+  if (known == all.end()) {
+    throw std::runtime_error("--mechanism: '" + given.mechanism +
+                             "': four_bar, five_bar, delta, stewart or wheel_carrier");
+  }
+  example::require_folder(given.out);
+  const std::string file = given.files + "/" + known->name;
+  const duet::closed_tree mechanism(duet::read_urdf_tree(file + ".urdf"),
+                                    duet::read_loops(file + ".loops"));
+  std::vector<int> drives;
+  for (const std::string& name : known->drives) {
+    drives.push_back(mechanism.tree().coordinate(name));
+  }
+  std::printf("%s: %d coordinates, %d equations\n", known->name.c_str(), mechanism.size(),
+              mechanism.equations());
+  const auto found = duet::all_positions(mechanism, drives, known->from, {.starts = given.starts});
+  if (found.positions.empty()) {
+    throw std::runtime_error("no position found: more --starts");
+  }
+  const VectorXd q =
+      drives.empty() ? found.positions[0].coordinates : mechanism.closed(known->guess, drives);
+  std::printf("%s\n", to_text(duet::mobility(mechanism, q)).c_str());
+  const auto independent = mechanism.independent_coordinates(q);
+  std::printf("drives:%s; by condition:%s\n", names(mechanism, drives).c_str(),
+              names(mechanism, independent).c_str());
+  print(found);
+  std::filesystem::create_directories(given.out);
+  example::drawing picture(known->view);
+  if (drives.empty()) {
+    add(picture, mechanism, q, colours[0]);
+    for (std::size_t i = 1; i < found.positions.size(); ++i) {
+      add_lines(picture, mechanism, found.positions[i].coordinates, colours[i % colours.size()]);
+    }
+  } else {
+    const duet::loop_motion motion(mechanism, q, drives);
+    follow(given, *known, motion, picture);
+    if (drives.size() == 1) {
+      print(mechanism, duet::trace(motion));
+    }
+  }
+  if (!draw(given.out, known->name, picture)) {
+    std::printf("No picture: gnuplot is not installed\n");
+  }
+}
+
+} // namespace
+} // namespace closed_mechanisms
+
+int main(int argc, char** argv) {
+  return example::run_program("closed_mechanisms", [&] {
+    if (const auto given = closed_mechanisms::parse_options(argc, argv)) {
+      closed_mechanisms::run(*given);
+    }
+    return 0;
+  });
+}

@@ -1,0 +1,24 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Runs the mechanisms of the folder on good and bad options and files.
+#
+# cmake -Dprogram=<closed_mechanisms> -Dfolder=<for files> -P closed_mechanisms.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+# All is what the formulas by hand say.
+set(small "([0-9.]+e-1[3-9]|0)")
+set(agreement "by hand: position_difference=${small} first_derivative_difference=${small} second_derivative_difference=${small}\n")
+run(0 "four_bar: 3 coordinates, 5 equations\nmobility 1: counted -2, .*\n2 ways to close.*${agreement}the whole motion: [0-9]+ positions, comes back\n  rocker is dead at 1.508255565" --starts 20 --samples 21)
+run(0 "mobility 2: counted -1, .*\n2 ways to close.*${agreement}" five_bar --starts 20 --samples 11)
+run(0 "mobility 3: counted 3, .*${agreement}" delta --starts 5 --samples 11)
+run(0 "mobility 1: counted 1, .*${agreement}" wheel_carrier --starts 10 --samples 11)
+run(0 "mobility 0: counted 0, .*ways to close from 20 starts" stewart --starts 20)
+run(0 "Mechanisms with loops out of files" --help)
+
+run(1 "--mechanism: 'six_bar': four_bar, five_bar, delta, stewart or wheel_carrier" six_bar)
+run(1 "--starts: 1 or more" --starts 0)
+run(1 "--samples: 2 or more" --samples 1)
+run(1 "duet: nowhere/four_bar.urdf: cannot be read" --files nowhere)
