@@ -118,7 +118,8 @@ void follow(const options& given, const mechanism& known, duet::loop_motion moti
     }
     table += duet::csv_line(row);
     curve.push_back(x[0]);
-    if (i % ((given.samples + 3) / 4) == 0) {
+    const int drawn = way.size() == 1 ? 4 : 2;
+    if (i % ((given.samples + drawn - 1) / drawn) == 0) {
       add(picture, mechanism, motion.start(),
           example::mixed(colours[0], "#ffffff", .7 * (1 - part)));
     }
