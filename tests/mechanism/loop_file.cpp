@@ -91,6 +91,8 @@ TEST_CASE("what is wrong with a file of loops, and where") {
   CHECK(fault("hinge a 0 0 0 b 0 0 0 axis 0 0 0") == "1: axis on \"b\" has no direction");
   CHECK(fault("hinge a 0 0 0 axis 0 0 b 0 0 0") == "1: axis z on \"a\" is not a number: 'b'");
   CHECK(fault("hinge a 0 0 0 rpy 0 0") == "1: yaw on \"a\" is missing");
+  CHECK(fault("hinge a 0 0 0 rpy 0 1e300 0 b 0 0 0") ==
+        "1: the angle 1e+300 on \"a\" is beyond 1e6 radians");
   CHECK(fault("hinge a 0 0 0 b 0 0 0 length 1") == "1: \"length\" is too much");
   CHECK(fault("rod a 0 0 0 b 0 0 0") == "1: \"length\" of the rod is missing");
   CHECK(fault("rod a 0 0 0 b 0 0 0 1") == "1: \"length\" of the rod expected, not \"1\"");

@@ -139,6 +139,26 @@ TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carri
   CHECK(n.nearby == 2); // shaky everywhere
 }
 
+TEST_CASE("a tree without loops moves by all coordinates, and nothing moves without coordinates") {
+  const kinematic_tree tree(duet_test::turning({{}, at_point(1, 0)}));
+  const closed_tree open(tree, {});
+  CHECK(open.equations() == 0);
+  CHECK(mobility(open, vector({1, 2})).mobility == 2);
+  CHECK(open.independent_coordinates(vector({1, 2})) == std::vector<int>{0, 1});
+  CHECK(open.closed(vector({1, 2})) == vector({1, 2}));
+  CHECK(loop_motion(open, vector({1, 2}), {0, 1})(vector({3, 4})) == vector({3, 4}));
+  CHECK_THROWS_AS(loop_motion(open, vector({1, 2}), {0}), invalid_input);
+  robot_description robot;
+  robot.links = {{"a"}, {"b"}};
+  robot.joints = {{"weld", "a", "b", {joint_kind::fixed, at_point(1, 0)}}};
+  const closed_tree still(kinematic_tree(robot),
+                          {{{loop_kind::ball, {"a", at_point(1, 0)}, {"b", {}}}}});
+  CHECK(mobility(still, VectorXd()).mobility == 0);
+  CHECK(still.independent_coordinates(VectorXd()).empty());
+  const auto ways = all_positions(still, {}, VectorXd(), {.starts = 3});
+  CHECK(ways.positions.size() == 1);
+}
+
 TEST_CASE("equations that do not depend on each other are counted") {
   // A plate on three rods between the base and itself moves in three ways.
   robot_description robot;

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 /// \file
@@ -35,9 +34,15 @@ namespace duet::detail {
 class ranked_matrix {
 public:
   explicit ranked_matrix(const Eigen::MatrixXd& a)
-      : svd_(a, Eigen::ComputeFullU | Eigen::ComputeFullV) {
-    const Eigen::VectorXd& s = svd_.singularValues();
-    while (rank_ < s.size() && s[rank_] > least * s[0]) {
+      : u_(Eigen::MatrixXd::Identity(a.rows(), a.rows())),
+        v_(Eigen::MatrixXd::Identity(a.cols(), a.cols())) {
+    if (a.size() > 0) { // Eigen has no singular values of nothing
+      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      u_ = svd.matrixU();
+      v_ = svd.matrixV();
+      s_ = svd.singularValues();
+    }
+    while (rank_ < s_.size() && s_[rank_] > least * s_[0]) {
       ++rank_;
     }
   }
@@ -47,33 +52,30 @@ public:
   static constexpr double least = 1e-6;
 
   [[nodiscard]] Eigen::Index rank() const { return rank_; }
-  [[nodiscard]] const Eigen::VectorXd& singular_values() const { return svd_.singularValues(); }
+  [[nodiscard]] const Eigen::VectorXd& singular_values() const { return s_; }
   /// Orthonormal columns that span the image.
-  [[nodiscard]] Eigen::MatrixXd image() const { return svd_.matrixU().leftCols(rank_); }
+  [[nodiscard]] Eigen::MatrixXd image() const { return u_.leftCols(rank_); }
   /// Orthonormal columns across the image.
-  [[nodiscard]] Eigen::MatrixXd cokernel() const {
-    return svd_.matrixU().rightCols(svd_.rows() - rank_);
-  }
+  [[nodiscard]] Eigen::MatrixXd cokernel() const { return u_.rightCols(u_.cols() - rank_); }
   /// Orthonormal columns that it takes to zero.
-  [[nodiscard]] Eigen::MatrixXd kernel() const {
-    return svd_.matrixV().rightCols(svd_.cols() - rank_);
-  }
+  [[nodiscard]] Eigen::MatrixXd kernel() const { return v_.rightCols(v_.cols() - rank_); }
   /// The shortest of the x with A x nearest to b, where A is taken to have a rank.
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const {
-    const Eigen::VectorXd y = svd_.matrixU().leftCols(rank).transpose() * b;
-    return svd_.matrixV().leftCols(rank) * y.cwiseQuotient(singular_values().head(rank));
+    const Eigen::VectorXd y = u_.leftCols(rank).transpose() * b;
+    return v_.leftCols(rank) * y.cwiseQuotient(s_.head(rank));
   }
   /// V (σ / (σ² + λ)) Uᵀ b
   [[nodiscard]] Eigen::VectorXd damped_solve(const Eigen::VectorXd& b, double lambda) const {
-    const Eigen::VectorXd& s = singular_values();
-    const Eigen::VectorXd y = svd_.matrixU().leftCols(s.size()).transpose() * b;
-    return svd_.matrixV().leftCols(s.size()) * s.binaryExpr(y, [&](double sigma, double x) {
+    const Eigen::VectorXd y = u_.leftCols(s_.size()).transpose() * b;
+    const auto damped = [&](double sigma, double x) {
       return sigma * x / (sigma * sigma + lambda);
-    });
+    };
+    return v_.leftCols(s_.size()) * s_.binaryExpr(y, damped);
   }
 
 private:
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd_;
+  Eigen::MatrixXd u_, v_;
+  Eigen::VectorXd s_;
   Eigen::Index rank_ = 0;
 };
 
@@ -104,9 +106,6 @@ public:
 private:
   /// One that reduces the residual; false where there is none.
   [[nodiscard]] bool step() {
-    if (free_.empty()) {
-      return false;
-    }
     const Eigen::MatrixXd all = of_.constraint_jacobian(q_) * of_.units().asDiagonal();
     const Eigen::MatrixXd j = all(Eigen::indexing::all, free_);
     const ranked_matrix svd(j);

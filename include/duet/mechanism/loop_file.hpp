@@ -3,6 +3,7 @@
 
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/core/text/text_rows.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/tree_loop.hpp>
@@ -110,6 +111,11 @@ private:
       result.offset = along_axis(at, n);
     } else if (has("rpy")) {
       const auto rpy = numbers("", result.link, {"roll", "pitch", "yaw"});
+      for (const double angle : rpy) {
+        if (std::abs(angle) > 1e6) { // its digits are needed for whole turns
+          fail("the angle " + to_text(angle) + " on \"" + result.link + "\" is beyond 1e6 radians");
+        }
+      }
       result.offset = {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]), at};
     } else {
       result.offset = {quaternion<double>(1.0), at};

@@ -73,8 +73,8 @@ public:
   /// precision.
   /// \param u  a number for one drive, or as many as there are
   /// \throws cannot_close where the loops do not close on the straight way to u, with what happens
-  /// there: a dead point of the drives, or branches that meet; invalid_input for another number of
-  /// drives, and for what is not finite
+  /// there: a dead point of the drives, or no step that leads on, as where branches meet;
+  /// invalid_input for another number of drives, and for what is not finite
   template <class U>
   [[nodiscard]] auto operator()(const U& u) const {
     if constexpr (Scalar<U> || Arithmetic<U>) {
@@ -232,7 +232,8 @@ inline Eigen::VectorXd loop_motion::followed(const Eigen::VectorXd& target) cons
     if (!next) {
       step /= 2;
       if (step < least) {
-        fail("branches meet", curve.coordinates(here.x), target);
+        fail("no step leads on, branches meet or coordinates are singular",
+             curve.coordinates(here.x), target);
       }
       continue;
     }
@@ -257,7 +258,8 @@ inline Eigen::VectorXd loop_motion::followed(const Eigen::VectorXd& target) cons
     if (to.end.s() >= length) {
       step /= 2;
       if (step < least) {
-        fail("branches meet", curve.coordinates(here.x), target);
+        fail("no step leads on, branches meet or coordinates are singular",
+             curve.coordinates(here.x), target);
       }
       continue;
     }

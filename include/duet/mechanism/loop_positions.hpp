@@ -146,7 +146,7 @@ private:
     const Eigen::MatrixXd all = of_.constraint_jacobian(q) * of_.units().asDiagonal();
     const Eigen::MatrixXd j = all(Eigen::indexing::all, free_);
     const Eigen::VectorXd s = ranked_matrix(j).singular_values();
-    found.smallest_singular_value = s.size() < j.cols() ? 0 : s[s.size() - 1];
+    found.smallest_singular_value = s.size() == 0 || s.size() < j.cols() ? 0 : s[s.size() - 1];
     for (int i = 0; i < of_.size(); ++i) {
       const joint_limits<double>& limits = of_.tree().limits(i);
       found.within_limits &= limits.lower <= q[i] && q[i] <= limits.upper;

@@ -9,6 +9,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -66,10 +67,12 @@ struct loop_description {
 [[nodiscard]] inline placement<double> along_axis(const std::array<double, 3>& point,
                                                   const std::array<double, 3>& direction) {
   const auto n = detail::components(direction);
-  const double length = std::hypot(n.x, n.y, n.z);
-  detail::require(length > 0 && length - length == 0, "duet: along_axis: (", n.x, ", ", n.y, ", ",
-                  n.z, ") is no direction");
-  return {detail::turn_to({n.x / length, n.y / length, n.z / length}), point};
+  const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+  detail::require(largest > 0 && n.x - n.x == 0 && n.y - n.y == 0 && n.z - n.z == 0,
+                  "duet: along_axis: (", n.x, ", ", n.y, ", ", n.z, ") is no direction");
+  const double x = n.x / largest, y = n.y / largest, z = n.z / largest;
+  const double length = std::hypot(x, y, z);
+  return {detail::turn_to({x / length, y / length, z / length}), point};
 }
 
 namespace detail {
