@@ -132,6 +132,9 @@ public:
   /// \return their numbers in ascending order, as many as there are independent rates
   [[nodiscard]] std::vector<int> independent_coordinates(const Eigen::VectorXd& q) const {
     const Eigen::MatrixXd rates = detail::linearised(*this, q).kernel();
+    if (rates.cols() == 0) {
+      return {};
+    }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rates.transpose());
     const auto& order = qr.colsPermutation().indices();
     std::vector<int> result(order.data(), order.data() + rates.cols());
