@@ -37,7 +37,8 @@ struct coordinate_turns {
     }
     for (const tree_node& node : of.tree().table().nodes) {
       const coordinate_source& source = of.tree().table().sources[std::size_t(node.coordinate)];
-      if (!node.is_ball && (node.step.slides || source.multiplier != std::round(source.multiplier))) {
+      if (!node.is_ball &&
+          (node.step.slides || source.multiplier != std::round(source.multiplier))) {
         angles[std::size_t(source.own)] = false; // what follows it would move
       }
     }
