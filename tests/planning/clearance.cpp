@@ -48,7 +48,7 @@ TEST_CASE("the least distance, and its gradient: nᵀ J at the closest point") {
       for (std::size_t o = 0; o < s.obstacles.size(); ++o) {
         const auto p = closest_points(arm, theta, s.bodies[b], s.obstacles[o]);
         CHECK(p.distance >= c.distance);
-        CHECK((p.distance == c.distance) == (b == c.body && o == c.obstacle));
+        CHECK((p.distance == c.distance) == (b == c.body && o == c.other));
         const auto [d, g] = distance_and_gradient(arm, theta, s.bodies[b], s.obstacles[o]);
         CHECK(std::abs(d - p.distance) < 1e-14);
         const bool is_edge_inside = o == 1 && d < 0; // there one face takes over from another
@@ -66,7 +66,7 @@ TEST_CASE("the least distance, and its gradient: nᵀ J at the closest point") {
     const auto whole =
         gradient([&](const auto& x) { return clearance(arm, x, s).distance; }, theta);
     CHECK(whole.gradient ==
-          distance_and_gradient(arm, theta, s.bodies[c.body], s.obstacles[c.obstacle]).gradient);
+          distance_and_gradient(arm, theta, s.bodies[c.body], s.obstacles[c.other]).gradient);
   }
   // Both sides were seen.
   CHECK(least < -.05);

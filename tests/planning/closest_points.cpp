@@ -49,6 +49,12 @@ double reference(const box<>& b, const vector& x) {
   return -std::min((b.half_sizes - local).minCoeff(), (b.half_sizes + local).minCoeff());
 }
 
+double reference(const capsule<>& c, const vector& x) {
+  const vector along = c.to - c.from;
+  const double t = along.norm() == 0 ? 0 : (x - c.from).dot(along) / along.squaredNorm();
+  return (c.from + std::clamp(t, 0.0, 1.0) * along - x).norm() - c.radius;
+}
+
 /// The least of a convex function on [0, 1], by ternary search.
 template <class F>
 double least(F&& f) {
@@ -84,6 +90,50 @@ void for_each_obstacle(duet_test::random_source& random, F&& f) {
   f(box<>{placed(random), point(random, 1).cwiseAbs()});
   f(box<>{placed(random), vector(random.uniform(0, 1), 0, random.uniform(0, .01))}); // a plate
   f(half_space<>{point(random, 1).normalized(), random.uniform(-1, 1)});
+  f(capsule<>(point(random, 1), point(random, 1), random.uniform(0, .3)));
+}
+
+capsule<real_50> with_50_digits(const capsule<>& c) {
+  return {c.from.cast<real_50>(), c.to.cast<real_50>(), c.radius};
+}
+
+/// Two capsules both ways round: as far from each other as at 50 digits, where at no parameters of
+/// a grid, nor beside those that were found, anything is nearer.
+void check_with_50_digits(const capsule<>& a, const capsule<>& b) {
+  const double scale = 1 + a.from.norm() + a.to.norm() + b.from.norm() + b.to.norm();
+  const auto c = with_50_digits(a), d = with_50_digits(b);
+  const auto exact = closest_points(c, d);
+  const real_50 there = closest_points(d, c).distance;
+  CHECK(abs(real_50(there - exact.distance)) < 1e-45 * scale);
+  CHECK(abs(real_50(closest_points(a, b).distance - exact.distance)) < 2e-15 * scale);
+  CHECK(abs(real_50(closest_points(b, a).distance - exact.distance)) < 2e-15 * scale);
+  const auto apart = [&](const real_50& s, const real_50& t) {
+    return real_50((c.from + s * (c.to - c.from) - d.from - t * (d.to - d.from)).norm() - c.radius -
+                   d.radius);
+  };
+  for (int i = 0; i <= 8; ++i) {
+    for (int k = 0; k <= 8; ++k) {
+      CHECK(apart(real_50(i) / 8, real_50(k) / 8) - exact.distance > -1e-45 * scale);
+    }
+  }
+  const vector3<real_50> u = c.to - c.from, v = d.to - d.from;
+  const auto parameter = [](const vector3<real_50>& x, const vector3<real_50>& from,
+                            const vector3<real_50>& along) {
+    const real_50 square = along.squaredNorm();
+    return square == 0 ? real_50(0) : real_50((x - from).dot(along) / square);
+  };
+  const real_50 s = parameter(exact.on_body + c.radius * exact.normal, c.from, u);
+  const real_50 t = parameter(exact.on_obstacle - d.radius * exact.normal, d.from, v);
+  for (const double step : {1e-3, 1e-8, 1e-15}) {
+    for (const int i : {-1, 0, 1}) {
+      for (const int k : {-1, 0, 1}) {
+        const real_50 x = s + i * step, y = t + k * step;
+        if (x >= 0 && x <= 1 && y >= 0 && y <= 1) {
+          CHECK(apart(x, y) - exact.distance > -1e-45 * scale);
+        }
+      }
+    }
+  }
 }
 
 } // namespace
@@ -131,6 +181,72 @@ TEST_CASE("axes along edges, through corners, in faces, and of no length") {
   check(capsule<>(ball.centre, ball.centre, .1), ball);
   CHECK(closest_points(sphere<>{ball.centre, .1}, ball).distance == -1.1);
   check(capsule<>(vector(-1, 0, 1), vector(1, 0, 1), .1), half_space<>{vector::UnitZ(), 0});
+}
+
+TEST_CASE("capsules beside, across, along and in each other, at 50 digits") {
+  duet_test::random_source random(5);
+  for (int k = 0; k < 40; ++k) {
+    const double length = k % 2 == 0 ? 1 : random.magnitude(1e-9, 1);
+    const vector from = point(random, 1), to = from + point(random, length);
+    check_with_50_digits(capsule<>(from, to, .1),
+                         capsule<>(point(random, 1), point(random, 1), .2));
+    // Nearly parallel, of all angles down to none; nearly in touch.
+    for (const double angle : {1e-2, 1e-5, 1e-7, 1e-8, 1e-10, 1e-15, 0.0}) {
+      for (const double aside : {1., 1e-6, 0.}) {
+        const vector off = aside * point(random, 1), turn = angle * point(random, 1);
+        check_with_50_digits(capsule<>(from, to, 0),
+                             capsule<>(vector(from + off - turn), vector(to + off + turn), 0));
+        check_with_50_digits(capsule<>(from, to, .1),
+                             capsule<>(vector(to + off), vector(2 * to - from + off + turn), .1));
+      }
+    }
+  }
+  const vector o(0, 0, 0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const auto run = [](const vector& a, const vector& b, const vector& c, const vector& d) {
+    check_with_50_digits(capsule<>(a, b, .1), capsule<>(c, d, .3));
+    check_with_50_digits(capsule<>(b, a, 0), capsule<>(c, d, .3));
+  };
+  run(-x, x, -y, y);                                     // crossing
+  run(-x, x, vector(-y + .5 * z), vector(y + .5 * z));   // skew
+  run(o, x, o, y);                                       // a corner
+  run(o, x, x, vector(2 * x));                           // in line, touching
+  run(o, x, vector(2 * x), vector(3 * x));               // in line, apart
+  run(o, vector(3 * x), x, vector(2 * x));               // one in the other
+  run(o, x, o, x);                                       // the same
+  run(o, x, y, vector(x + y));                           // beside each other
+  run(o, x, vector(5 * x + y), vector(9 * x + y));       // parallel, not beside each other
+  run(o, x, vector(.5 * x + y), vector(.5 * x + 3 * y)); // an end above the middle
+  run(o, o, x, x);                                       // points
+  run(o, o, o, o);                                       // one point
+  run(o, o, vector(x - y), vector(x + y));               // a point and a line
+  run(vector(-1e4 * x), vector(1e4 * x), vector(-1e4 * x + 1e-9 * y), vector(1e4 * x - y)); // long
+}
+
+TEST_CASE("where axes cross and touch, what leads out is across both") {
+  const vector o(0, 0, 0), x(1, 0, 0), y(0, 1, 0);
+  const auto crossed = closest_points(capsule<>(-x, x, .1), capsule<>(-y, y, .2));
+  CHECK(crossed.distance == doctest::Approx(-.3).epsilon(1e-15));
+  CHECK(std::abs(crossed.normal[2]) == 1);
+  const auto through = closest_points(capsule<>(-x, x, .1), sphere<>{o, .2});
+  CHECK(through.normal[0] == 0);
+  CHECK(std::abs(through.normal.norm() - 1) < 1e-15);
+  const auto same = closest_points(capsule<>(-y, y, .1), capsule<>(-y, y, .1));
+  CHECK(same.distance == -.2);
+  CHECK(same.normal[1] == 0);
+  CHECK(std::abs(same.normal.norm() - 1) < 1e-15);
+  CHECK(std::abs(same.on_body[1]) == 0); // the middle of where they are beside each other
+  const auto beside =
+      closest_points(capsule<>(o, x, 0), capsule<>(vector(.5 * x + y), vector(9 * x + y), 0));
+  CHECK(beside.on_body == vector(.75, 0, 0));
+  // The distance grows along the normal, whatever moves.
+  const auto slope = gradient(
+      [&](const auto& move) {
+        using T = std::decay_t<decltype(move[0])>;
+        const vector3<T> a = -x.cast<T>() + move, b = x.cast<T>() + move;
+        return closest_points(capsule<T>(a, b, T(.1)), capsule<>(-y, y, .2)).distance;
+      },
+      o);
+  CHECK((slope.gradient - crossed.normal).norm() == 0);
 }
 
 TEST_CASE("50 digits, and the rounding of double") {

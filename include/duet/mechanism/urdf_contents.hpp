@@ -36,6 +36,12 @@ struct urdf_names {
   std::vector<urdf_unknown_element> unknown; ///< elements that are not read, as URDF has them not
 };
 
+/// Two links by their names.
+struct link_pair {
+  std::string first;  ///< the name of one
+  std::string second; ///< the name of the other
+};
+
 /// A link of a chain that was read.
 struct urdf_link {
   std::string name;             ///< as in the file

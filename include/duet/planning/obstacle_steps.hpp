@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/text/printable.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/planning/clearance.hpp>
@@ -10,34 +11,51 @@
 #include <duet/planning/small_vector.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 /// \file
-/// How planners keep away from obstacles.
+/// How planners keep away from obstacles, and links from each other.
 
 namespace duet::detail {
 
 /// What keeps a step from θ at the margin of a scene: ∇d·Δ ≥ margin − d for each distance d within
-/// the horizon, with ∇d = Jᵀ [n; p × n] of the closest point p and the normal n there.
+/// the horizon, with ∇d = Jᵀ [n; p × n] of the closest point p and the normal n there. Joints below
+/// both of two bodies move neither against the other, those between them one alone.
 template <class C, class V>
 [[nodiscard]] std::vector<inequality<V>> margin_inequalities(const C& chain, const V& theta,
                                                              const scene& around) {
   std::vector<inequality<V>> result;
-  for_each_proximity(chain, theta, around, [&](std::size_t body, std::size_t, const auto& nearest) {
+  std::optional<decltype(jacobian(chain, theta, frame::spatial))> j; // where something is near
+  for_each_proximity(chain, theta, around, [&](const chain_clearance<double>& nearest) {
     if (nearest.distance - around.margin < around.horizon) {
-      const auto j = jacobian(chain, theta, frame::spatial, around.bodies[body].link);
-      const vector3<double> moment = cross(components(nearest.on_body), components(nearest.normal));
-      V slope(theta.size());
-      for (Eigen::Index i = 0; i < theta.size(); ++i) {
-        const vector6<double> column = j.col(i);
-        slope[i] = nearest.normal.dot(column.head<3>()) + moment.dot(column.tail<3>());
+      if (!j) {
+        j = jacobian(chain, theta, frame::spatial);
+      }
+      const int link = around.bodies[nearest.body].link;
+      const int other = nearest.is_self ? around.bodies[nearest.other].link : 0;
+      const vector3<double>& n = nearest.points.normal;
+      const vector3<double>& p = link > other ? nearest.points.on_body : nearest.points.on_obstacle;
+      const vector3<double> moment = cross(components(p), components(n));
+      V slope = V::Zero(theta.size());
+      for (int i = std::min(link, other); i < std::max(link, other); ++i) {
+        const vector6<double> column = j->col(i);
+        const double outwards = n.dot(column.head<3>()) + moment.dot(column.tail<3>());
+        slope[i] = link > other ? outwards : -outwards;
       }
       result.push_back({slope, around.margin - nearest.distance});
     }
   });
   return result;
+}
+
+/// `body 3 (wrist)`
+[[nodiscard]] inline std::string name_of_body(const scene& around, std::size_t i) {
+  const std::string& name = around.bodies[i].name;
+  return "body " + std::to_string(i) + (name.empty() ? "" : " (" + name + ")");
 }
 
 /// A chain among the obstacles of a scene.
@@ -79,9 +97,14 @@ public:
   }
   void require_clearance(const vector& theta, double tolerance) const override {
     const auto least = nearest(theta);
-    require(least.distance >= around_.margin - tolerance, "duet: plan: at the start body ",
-            least.body, " is ", least.distance, " from obstacle ", least.obstacle,
-            ", closer than the margin of ", around_.margin);
+    if (!(least.distance >= around_.margin - tolerance)) {
+      raise(invalid_input(
+          printable(message("duet: plan: at the start ", name_of_body(around_, least.body), " is ",
+                            least.distance, " from ",
+                            least.is_self ? name_of_body(around_, least.other)
+                                          : "obstacle " + std::to_string(least.other),
+                            ", closer than the margin of ", around_.margin))));
+    }
   }
 
 private:
