@@ -2,12 +2,15 @@
 #pragma once
 
 #include <duet/mechanism/chain_walk.hpp>
+#include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/urdf_contents.hpp>
 #include <duet/planning/clearance.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <numeric>
+#include <string>
 #include <vector>
 
 /// \file
@@ -17,20 +20,50 @@ namespace duet {
 
 namespace detail {
 
-/// Are two links one, or does a single joint connect them?
+/// Are two links one, fixed to each other, or connected by a single joint?
 template <LinkedMechanism M>
-[[nodiscard]] bool are_neighbours(const M& mechanism, int a, int b) {
-  if constexpr (SerialChain<M>) {
-    return std::abs(a - b) <= 1;
-  } else {
-    const auto& table = mechanism.table(); // in which links that are fixed to each other are one
-    const auto parent = [&](int node) {
-      return node < 0 ? node : table.nodes[std::size_t(node)].parent;
-    };
-    const int x = table.links[std::size_t(a)].node, y = table.links[std::size_t(b)].node;
-    return x == y || parent(x) == y || parent(y) == x;
+class link_neighbours {
+public:
+  explicit link_neighbours(const M& mechanism) {
+    if constexpr (!SerialChain<M>) {
+      const auto number = [&](const std::string& name) {
+        return std::size_t(mechanism.link(name).link);
+      };
+      std::vector<std::size_t> parent(mechanism.links().size());
+      std::vector<bool> is_fixed(parent.size(), false);
+      std::iota(parent.begin(), parent.end(), 0U);
+      for (const auto& each : mechanism.joints()) {
+        parent[number(each.child)] = number(each.parent);
+        is_fixed[number(each.child)] = each.motion.kind == joint_kind::fixed;
+      }
+      for (std::size_t i = 0; i < parent.size(); ++i) {
+        std::size_t on = i;
+        while (is_fixed[on]) {
+          on = parent[on];
+        }
+        body_.push_back(on);
+        on = parent[on];
+        while (is_fixed[on]) {
+          on = parent[on];
+        }
+        below_.push_back(on);
+      }
+    }
   }
-}
+
+  [[nodiscard]] bool operator()(int a, int b) const {
+    if constexpr (SerialChain<M>) {
+      return std::abs(a - b) <= 1;
+    } else {
+      const auto i = std::size_t(a), k = std::size_t(b);
+      return body_[i] == body_[k] || below_[i] == body_[k] || below_[k] == body_[i];
+    }
+  }
+
+private:
+  std::vector<std::size_t> body_;  ///< to which link each is fixed
+  std::vector<std::size_t> below_; ///< and on which that one moves
+};
 
 } // namespace detail
 
@@ -47,8 +80,9 @@ template <LinkedMechanism M>
   for (const link_body& each : bodies) {
     static_cast<void>(mechanism.link(each.link));
   }
+  const detail::link_neighbours<M> are_neighbours(mechanism);
   const auto is_excluded = [&](const link_body& a, const link_body& b) {
-    return detail::are_neighbours(mechanism, a.link, b.link) ||
+    return are_neighbours(a.link, b.link) ||
            std::any_of(excluded.begin(), excluded.end(), [&](const link_pair& names) {
              return (names.first == a.name && names.second == b.name) ||
                     (names.first == b.name && names.second == a.name);

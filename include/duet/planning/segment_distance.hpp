@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <cmath>
+#include <limits>
 
 /// \file
 /// Where a segment is nearest to what is round: points, spheres, capsules, and to half-spaces. For
@@ -28,23 +29,27 @@ template <class T>
   return cross(components(a), components(b));
 }
 
-/// A unit vector across both, or across one where the other has no length or the same direction.
+/// A unit vector across both, or across one where the other has no length or the same direction:
+/// constant.
 template <class T>
 [[nodiscard]] vector3<T> across(const vector3<T>& a, const vector3<T>& b) {
   using std::sqrt;
-  const auto longer = [](const vector3<T>& x, const vector3<T>& y) {
-    return innermost(x.squaredNorm()) < innermost(y.squaredNorm()) ? y : x;
+  using R = real_type_t<T>;
+  const auto real = [](const vector3<T>& x) {
+    return vector3<R>(innermost(x[0]), innermost(x[1]), innermost(x[2]));
   };
-  vector3<T> result = cross_product(a, b);
-  if (innermost(result.squaredNorm()) == 0) {
-    const vector3<T> along = longer(a, b);
-    result = cross_product(along, vector3<T>(vector3<T>::UnitX()));
-    result = longer(result, cross_product(along, vector3<T>(vector3<T>::UnitY())));
-    if (innermost(result.squaredNorm()) == 0) {
-      return vector3<T>::UnitZ();
-    }
+  const auto longer = [](const vector3<R>& x, const vector3<R>& y) {
+    return x.squaredNorm() < y.squaredNorm() ? y : x;
+  };
+  const vector3<R> along = longer(real(a), real(b));
+  vector3<R> result = cross_product(real(a), real(b));
+  if (result.squaredNorm() == 0) {
+    result = longer(cross_product(along, vector3<R>(vector3<R>::UnitX())),
+                    cross_product(along, vector3<R>(vector3<R>::UnitY())));
   }
-  return result / sqrt(T(result.squaredNorm()));
+  const R square = result.squaredNorm();
+  return square == 0 ? vector3<T>(vector3<T>::UnitZ())
+                     : vector3<T>((result / sqrt(square)).template cast<T>());
 }
 
 template <class T>
@@ -61,18 +66,24 @@ template <class T>
 }
 
 // The signed distance of a point x of a segment, that which is nearest, and the direction out of
-// the obstacle. The segment's own direction is needed where x is on the obstacle's axis or centre:
-// what leads out is across both.
+// the obstacle. The segment's own direction is needed where x is on the obstacle's axis or centre,
+// or what is between them is rounding: what leads out is across both.
 
-/// From what is all points within `radius` of an axis, at whose nearest point x is `apart`.
+/// From all points within `radius` of an axis, whose point `nearest` is nearest to x.
 template <class T>
-[[nodiscard]] point_distance<T> distance_from_axis(const vector3<T>& apart, const T& radius,
-                                                   const vector3<T>& along,
+[[nodiscard]] point_distance<T> distance_from_axis(const vector3<T>& nearest, const vector3<T>& x,
+                                                   const T& radius, const vector3<T>& along,
                                                    const vector3<T>& axis) {
   using std::sqrt;
+  using R = real_type_t<T>;
+  const vector3<T> apart = x - nearest;
   const T square = apart.squaredNorm();
-  if (innermost(square) == 0) {
-    const vector3<T> out = across(along, axis);
+  const R rounding = 8 * std::numeric_limits<R>::epsilon();
+  if (innermost(square) <= rounding * rounding * innermost(x.squaredNorm())) {
+    vector3<T> out = across(along, axis);
+    if (innermost(out.dot(apart)) < 0) {
+      out = -out;
+    }
     return {T(out.dot(apart) - radius), out};
   }
   const T length = sqrt(square);
@@ -82,8 +93,7 @@ template <class T>
 template <class T>
 [[nodiscard]] point_distance<T> signed_distance(const sphere<T>& s, const vector3<T>& x,
                                                 const vector3<T>& along) {
-  return distance_from_axis(vector3<T>(x - s.centre), s.radius, along,
-                            vector3<T>(vector3<T>::Zero()));
+  return distance_from_axis(s.centre, x, s.radius, along, vector3<T>(vector3<T>::Zero()));
 }
 
 template <class T>
@@ -91,7 +101,7 @@ template <class T>
                                                 const vector3<T>& along) {
   const vector3<T> axis = c.to - c.from;
   const vector3<T> nearest = c.from + nearest_to_point(x, c.from, axis) * axis;
-  return distance_from_axis(vector3<T>(x - nearest), c.radius, along, axis);
+  return distance_from_axis(nearest, x, c.radius, along, axis);
 }
 
 template <class T>
@@ -112,6 +122,9 @@ template <class T>
 /// Lines are nearest to each other where (w − t u) × v is along n = u × v, w between their
 /// beginnings: t = (w × v)·n / n². Where that is beyond an end of one of the segments, an end is
 /// nearest. Products of coordinates, u²v² − (u·v)², would lose t where lines are nearly parallel.
+///
+/// There t changes by much with little, and the distance by little with t: within 1e-6 of parallel
+/// t counts as constant, or rounding times its rate would be what gradients consist of.
 template <class T>
 [[nodiscard]] T nearest_on_segment(const capsule<T>& c, const vector3<T>& from,
                                    const vector3<T>& along) {
@@ -128,6 +141,9 @@ template <class T>
     return innermost((x - c.from - nearest_to_point(x, c.from, axis) * axis).squaredNorm());
   };
   T best = within_segment(T(cross_product(vector3<T>(c.from - from), axis).dot(normal) / square));
+  if (innermost(square) < 1e-12 * innermost(along.squaredNorm()) * innermost(axis.squaredNorm())) {
+    best = T(innermost(best));
+  }
   auto least = distance(best);
   for (const T& end : {first, last, T(0), T(1)}) {
     const auto here = distance(end);

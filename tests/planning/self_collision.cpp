@@ -1,0 +1,232 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/trees.hpp"
+
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/tree_jacobian.hpp>
+#include <duet/planning/pairs_apart.hpp>
+#include <duet/planning/plan_screw_motion.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace test_planning_self_collision {
+namespace {
+
+using namespace duet;
+using vector = duet_test::coordinates<7>;
+using point = Eigen::Vector3d;
+
+const auto arm = robots::panda().table();
+
+/// The Panda's base, upper arm, forearm and hand.
+scene panda_bodies() {
+  scene result{{{0, capsule<>({0, 0, 0}, {0, 0, .18}, .07), "base"},
+                {2, capsule<>({0, 0, 0}, {0, -.2, 0}, .06), "upper arm"},
+                {4, capsule<>({-.0825, .12, 0}, {-.0825, .28, 0}, .06), "forearm"},
+                {7, capsule<>({0, 0, .06}, {0, 0, .16}, .05), "hand"}},
+               {},
+               .02};
+  result.pairs = pairs_apart(arm, result.bodies, {{"upper arm", "base"}});
+  return result;
+}
+
+bool has(const std::vector<body_pair>& pairs, std::size_t first, std::size_t second) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const body_pair& each) {
+    return each.first == first && each.second == second;
+  });
+}
+
+/// The gradient of the distance of a pair: nᵀ of the difference of the Jacobians of its two points.
+template <class M, class X>
+void check_gradients(const M& mechanism, const X& theta, const scene& s) {
+  for (const auto [first, second] : s.pairs) {
+    const link_body &a = s.bodies[first], &b = s.bodies[second];
+    const auto p = closest_points(mechanism, theta, a, b);
+    const auto [d, g] = distance_and_gradient(mechanism, theta, a, b);
+    CHECK(std::abs(d - p.distance) < 1e-14);
+    CHECK((p.on_obstacle + d * p.normal - p.on_body).norm() < 1e-14);
+    const auto rates = [&](const link_body& body, const point& x) {
+      const auto j = jacobian(mechanism, theta, frame::spatial, body.link);
+      Eigen::Matrix3Xd result(3, j.cols());
+      for (Eigen::Index i = 0; i < j.cols(); ++i) {
+        const point v = j.col(i).template head<3>(), w = j.col(i).template tail<3>();
+        result.col(i) = v + w.cross(x);
+      }
+      return result;
+    };
+    const Eigen::VectorXd expected =
+        (rates(a, p.on_body) - rates(b, p.on_obstacle)).transpose() * p.normal;
+    CHECK((g - expected).norm() < 1e-10);
+    // The other way round it is the same distance; where axes cross, there are two ways out.
+    const auto back = distance_and_gradient(mechanism, theta, b, a);
+    CHECK(std::abs(back.value - d) < 1e-14);
+    const double sign =
+        d + a.shape.radius + b.shape.radius > 1e-12 || (back.gradient - g).norm() < .01 ? 1 : -1;
+    CHECK((back.gradient - sign * expected).norm() < 1e-10);
+  }
+}
+
+/// Checks that a plan keeps to the screw, the limits and the margin, also between waypoints.
+template <class Plan>
+void check_plan(const Plan& plan, const dual_quaternion<double>& goal, const scene& around) {
+  for (std::size_t k = 1; k < plan.joints.size(); ++k) {
+    for (int part = 1; part <= 2; ++part) {
+      const double x = part / 2.0;
+      const vector theta = (1 - x) * plan.joints[k - 1] + x * plan.joints[k];
+      for (int i = 0; i < 7; ++i) {
+        CHECK(theta[i] >= arm.limits(i).lower);
+        CHECK(theta[i] <= arm.limits(i).upper);
+      }
+      const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
+      const pose_deviation d = deviation_between(arm.pose(theta), sclerp(plan.poses[0], goal, tau));
+      CHECK(d.length < 1e-5);
+      CHECK(d.angle < 1e-5);
+      CHECK(clearance(arm, theta, around).distance > around.margin - (part == 2 ? 1e-6 : 1.1e-5));
+    }
+  }
+  CHECK(plan.smallest_clearance >= around.margin - 1e-6);
+}
+
+} // namespace
+
+TEST_CASE("pairs: neither one link, nor neighbours, nor what is excluded by name") {
+  const scene s = panda_bodies();
+  CHECK(s.pairs.size() == 5);
+  CHECK(!has(s.pairs, 0, 1));
+  CHECK(has(s.pairs, 0, 2));
+  CHECK(pairs_apart(arm, s.bodies).size() == 6);
+  CHECK(pairs_apart(arm, s.bodies, {{"hand", "forearm"}, {"hand", "foot"}}).size() == 5);
+  const std::vector<link_body> near = {
+      {3, sphere<>{}}, {3, sphere<>{}}, {4, sphere<>{}}, {5, sphere<>{}}};
+  const auto pairs = pairs_apart(arm, near);
+  CHECK(pairs.size() == 2);
+  CHECK(has(pairs, 0, 3));
+  CHECK(has(pairs, 1, 3));
+  CHECK_THROWS_WITH_AS((void)pairs_apart(arm, {{9, sphere<>{}}}),
+                       "duet: serial_chain: no link 9 in a chain of 7 joints", invalid_input);
+}
+
+TEST_CASE("a chain and itself: the least distance, and its gradient") {
+  const scene s = panda_bodies();
+  double least = INFINITY, most = -INFINITY;
+  for (const auto& theta : duet_test::configurations(arm, 100)) {
+    check_gradients(arm, theta, s);
+    const auto c = clearance(arm, theta, s);
+    double expected = INFINITY;
+    for (const auto [first, second] : s.pairs) {
+      expected = std::min(expected,
+                          closest_points(arm, theta, s.bodies[first], s.bodies[second]).distance);
+    }
+    CHECK(c.distance == expected);
+    CHECK(c.is_self);
+    CHECK(has(s.pairs, c.body, c.other));
+    CHECK(c.points.distance == c.distance);
+    const auto whole =
+        gradient([&](const auto& x) { return clearance(arm, x, s).distance; }, theta);
+    CHECK(whole.gradient ==
+          distance_and_gradient(arm, theta, s.bodies[c.body], s.bodies[c.other]).gradient);
+    least = std::min(least, c.distance);
+    most = std::max(most, c.distance);
+  }
+  CHECK(least < -.05); // both sides were seen
+  CHECK(most > .05);
+}
+
+TEST_CASE("a tree and itself; links that are fixed to each other are one") {
+  const kinematic_tree tree(duet_test::all_joints());
+  scene s;
+  duet_test::random_source random(3);
+  const auto at = [&] {
+    return point(random.uniform(-.1, .1), random.uniform(-.1, .1), random.uniform(-.1, .1));
+  };
+  for (std::size_t i = 0; i < tree.links().size(); ++i) {
+    s.bodies.push_back({int(i), capsule<>(at(), at(), .02), tree.links()[i].name});
+  }
+  s.pairs = pairs_apart(tree, s.bodies, {{"finger", "flange"}});
+  const auto kept_apart = [&](const char* a, const char* b) {
+    const auto i = std::size_t(tree.link(a).link), k = std::size_t(tree.link(b).link);
+    return has(s.pairs, std::min(i, k), std::max(i, k));
+  };
+  CHECK(!kept_apart("hand", "tool"));    // fixed to it
+  CHECK(!kept_apart("elbow", "tool"));   // beside it, the joint is the hand's
+  CHECK(!kept_apart("finger", "tool"));  // on the hand
+  CHECK(!kept_apart("world", "flange")); // fixed to it
+  CHECK(!kept_apart("flange", "cart"));
+  CHECK(!kept_apart("finger", "flange")); // excluded
+  CHECK(kept_apart("finger", "thumb"));
+  CHECK(kept_apart("screw", "flange"));
+  CHECK(kept_apart("shoulder", "hand"));
+  Eigen::VectorXd q(tree.size());
+  for (int k = 0; k < 20; ++k) {
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      q[i] = random.uniform(-1, 1);
+    }
+    check_gradients(tree, q, s);
+    const auto c = clearance(tree, q, s);
+    CHECK(c.distance == closest_points(tree, q, s.bodies[c.body], s.bodies[c.other]).distance);
+  }
+}
+
+TEST_CASE("an arm that would run into its base moves its elbow around it") {
+  vector start, end;
+  start << 0, 1.2, -.4, -2.6, .65, 2.5, 1;
+  end << -.6, 1.7, -.9, -3, -.55, 1.95, 1.7;
+  const scene around = panda_bodies();
+  const auto goal = arm.pose(end);
+  const auto plain = plan_screw_motion(arm, start, goal);
+  REQUIRE(plain.reason == stop_reason::reached);
+  double least = INFINITY;
+  for (const auto& theta : plain.joints) {
+    least = std::min(least, clearance(arm, theta, around).distance);
+  }
+  CHECK(least < -.01);
+  const auto plan = plan_screw_motion(arm, start, goal, {}, {}, around);
+  CHECK(plan.reason == stop_reason::reached);
+  CHECK(plan.smallest_clearance < .0201); // it does come to the margin
+  check_plan(plan, goal, around);
+}
+
+TEST_CASE("a hand that is moved into the base stops before it, and says why") {
+  vector start, end;
+  start << -.24, 1.05, -.43, -2.6, 2.17, 3.05, 1.38;
+  end << .23, 1.71, .55, -2.54, 1.3, 2.77, 1.43;
+  const scene around = panda_bodies();
+  const auto goal = arm.pose(end);
+  const auto plan = plan_screw_motion(arm, start, goal, {.search_step = .2}, {}, around);
+  CHECK(plan.reason == stop_reason::obstacle);
+  CHECK(plan.tau.back() > .1);
+  CHECK(plan.smallest_clearance == doctest::Approx(.02).epsilon(1e-3));
+  check_plan(plan, goal, around);
+}
+
+TEST_CASE("a start that is folded too far; pairs that are none") {
+  scene s = panda_bodies();
+  vector start;
+  start << 0, 1.7, 0, -3, 0, 3.2, .8;
+  const auto c = clearance(arm, start, s);
+  REQUIRE(c.distance < .02);
+  REQUIRE(c.is_self);
+  const auto fails = [&](const std::string& what) {
+    CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, arm.pose(start), {}, {}, s),
+                         doctest::Contains(what.c_str()), invalid_input);
+  };
+  fails("duet: plan: at the start body " + std::to_string(c.body) + " (" + s.bodies[c.body].name +
+        ") is ");
+  fails(" from body " + std::to_string(c.other) + " (" + s.bodies[c.other].name +
+        "), closer than the margin of 0.02");
+  s.pairs.push_back({2, 4});
+  fails("duet: pair 5 of a scene is of bodies 2 and 4, not of two of 4");
+  s.pairs.back() = {1, 1};
+  fails("duet: pair 5 of a scene is of bodies 1 and 1, not of two of 4");
+}
+
+} // namespace test_planning_self_collision
