@@ -4,6 +4,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/printable.hpp>
+#include <duet/mechanism/collision_shape.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/urdf_contents.hpp>
 
@@ -27,9 +28,10 @@ struct link_inertia {
 
 /// A link of a robot.
 struct tree_link {
-  std::string name;                         ///< no other link's
-  std::optional<link_inertia> inertia = {}; ///< nothing: it weighs nothing
-  std::size_t line = 0;                     ///< of the file that it is from; 0: of none
+  std::string name;                            ///< no other link's
+  std::optional<link_inertia> inertia = {};    ///< nothing: it weighs nothing
+  std::size_t line = 0;                        ///< of the file that it is from; 0: of none
+  std::vector<collision_shape> collision = {}; ///< of what it consists for collisions
 };
 
 /// A coordinate that is a multiple of another joint's: multiplier × its coordinate + offset.

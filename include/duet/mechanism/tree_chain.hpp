@@ -162,6 +162,13 @@ template <class JointAt>
                          "\" to \"" + tip + "\": use chain<" +
                          std::to_string(result.joint_names.size()) + ">");
   }
+  std::unordered_map<std::string_view, const tree_link*> links;
+  for (const tree_link& each : robot.links) {
+    links.emplace(each.name, &each);
+  }
+  for (urdf_link& each : result.links) {
+    each.collision = links.at(each.name)->collision;
+  }
   result.unknown = robot.unknown;
   return result;
 }

@@ -46,7 +46,8 @@ template <int Capacity = 16>
 }
 
 /// The tree of all links and joints of a robot description: also of planar and floating joints,
-/// of those that mimic others, several tips, masses. All else as `read_urdf`.
+/// of those that mimic others, several tips, masses; shapes for collisions as data, as in
+/// `read_urdf`, too. All else as `read_urdf`.
 ///
 /// Example: `const auto robot = read_urdf_tree("robot.urdf"); robot.pose(q, robot.link("hand"));`
 /// \throws file_error as `read_urdf`, for what is wrong anywhere in the file, and as

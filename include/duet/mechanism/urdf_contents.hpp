@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
+#include <duet/mechanism/collision_shape.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 
@@ -46,6 +47,7 @@ struct link_pair {
 struct urdf_link {
   std::string name;             ///< as in the file
   attached_frame<double> frame; ///< where it is attached: what `pose` and `jacobian` take
+  std::vector<collision_shape> collision = {}; ///< of what it consists for collisions, in its frame
 };
 
 /// One link or joint a line, `shoulder_pan_joint: revolute, base_link -> shoulder_link`, and what

@@ -36,11 +36,18 @@ struct urdf_element_kind {
   /// Attributes that files of known robots have for other programs.
   std::array<std::string_view, 3> foreign = {};
 };
-inline constexpr std::array<urdf_element_kind, 13> urdf_element_kinds{
+inline constexpr std::array<urdf_element_kind, 20> urdf_element_kinds{
     {{"robot",
       {"name", "version"},
       {"link", "joint", "material", "transmission", "gazebo", "sensor"}},
      {"link", {"name", "type"}, {"inertial", "visual", "collision"}, {"concave"}},
+     {"collision", {"name"}, {"origin", "geometry"}, {"group", "concave"}},
+     {"geometry", {}, {"box", "cylinder", "capsule", "sphere", "mesh"}},
+     {"box", {"size"}},
+     {"cylinder", {"radius", "length"}},
+     {"capsule", {"radius", "length"}},
+     {"sphere", {"radius"}},
+     {"mesh", {"filename", "scale"}},
      {"inertial", {}, {"origin", "mass", "inertia"}},
      {"mass", {"value"}},
      {"inertia", {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}},

@@ -8,6 +8,7 @@
 #include <duet/mechanism/tree_chain.hpp>
 #include <duet/mechanism/urdf_contents.hpp>
 #include <duet/mechanism/urdf_document.hpp>
+#include <duet/mechanism/urdf_shapes.hpp>
 #include <duet/mechanism/xml_element.hpp>
 
 #include <algorithm>
@@ -74,6 +75,9 @@ public:
       document_.fail(std::to_string(count) + " moving joints from \"" + base + "\" to \"" + tip +
                      "\": use read_urdf<" + std::to_string(count) + ">");
     }
+    for (urdf_link& each : result.links) {
+      each.collision = read_shapes(document_, *links_.at(each.name));
+    }
     result.unknown = names_.unknown;
     return result;
   }
@@ -96,25 +100,14 @@ public:
 private:
   using elements = std::unordered_map<std::string_view, const xml_element*>;
 
-  [[nodiscard]] placement<double> read_origin(const xml_element& in,
-                                              const xml_element& owner) const {
-    const xml_element* const origin = in.child("origin");
-    if (origin == nullptr) {
-      return {};
-    }
-    const auto rpy = document_.numbers({*origin, &owner}, "rpy", {0, 0, 0});
-    return {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]),
-            document_.numbers({*origin, &owner}, "xyz", {0, 0, 0})};
-  }
-
   [[nodiscard]] tree_link read_link(const xml_element& element) const {
-    tree_link result{*element.attribute("name"), {}, element.line};
+    tree_link result{*element.attribute("name"), {}, element.line, read_shapes(document_, element)};
     const xml_element* const inertial = element.child("inertial");
     if (inertial == nullptr) {
       return result;
     }
     link_inertia& inertia = result.inertia.emplace();
-    inertia.frame = read_origin(*inertial, element);
+    inertia.frame = read_origin(document_, *inertial, element);
     const xml_element* const mass = inertial->child("mass");
     if (mass == nullptr) {
       document_.fail({*inertial, &element}, "no element <mass>");
@@ -150,7 +143,7 @@ private:
   [[nodiscard]] joint<double> read_motion(const xml_element& element) const {
     joint<double> result;
     result.kind = kind(element);
-    result.origin = read_origin(element, element);
+    result.origin = read_origin(document_, element, element);
     if (result.kind != joint_kind::fixed) {
       result.axis = {1, 0, 0}; // where nothing is said
       if (const xml_element* axis = element.child("axis")) {

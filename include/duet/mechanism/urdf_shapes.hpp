@@ -1,0 +1,89 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/mechanism/collision_shape.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/urdf_document.hpp>
+#include <duet/mechanism/xml_element.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// \file
+/// Where parts of links stand, and the shapes that they have for collisions.
+
+namespace duet::detail {
+
+/// `<origin>` in an element of a link or a joint.
+[[nodiscard]] inline placement<double>
+read_origin(const urdf_document& document, const xml_element& in, const xml_element& owner) {
+  const xml_element* const origin = in.child("origin");
+  if (origin == nullptr) {
+    return {};
+  }
+  const auto rpy = document.numbers({*origin, &owner}, "rpy", {0, 0, 0});
+  return {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]),
+          document.numbers({*origin, &owner}, "xyz", {0, 0, 0})};
+}
+
+/// A size of a shape.
+[[nodiscard]] inline double read_size(const urdf_document& document, const urdf_place& place,
+                                      std::string_view key) {
+  const double result = document.number(place, key);
+  if (result < 0) {
+    document.fail(place, std::string(key) + " is negative");
+  }
+  return result;
+}
+
+/// One shape, of the names that URDF has.
+[[nodiscard]] inline collision_shape
+read_shape(const urdf_document& document, const xml_element& collision, const xml_element& link) {
+  const xml_element* const geometry = collision.child("geometry");
+  if (geometry == nullptr) {
+    document.fail({collision, &link}, "no element <geometry>");
+  }
+  if (geometry->children.size() != 1) {
+    document.fail({*geometry, &link},
+                  "has " + std::to_string(geometry->children.size()) + " shapes in place of one");
+  }
+  collision_shape result{read_origin(document, collision, link), {}, collision.line};
+  const xml_element& shape = geometry->children.front();
+  const urdf_place place{shape, &link};
+  const auto size = [&](std::string_view key) { return read_size(document, place, key); };
+  if (shape.name == "box") {
+    (void)document.attribute(place, "size");
+    const collision_box given{document.numbers(place, "size", {})};
+    if (given.size[0] < 0 || given.size[1] < 0 || given.size[2] < 0) {
+      document.fail(place, "size is negative");
+    }
+    result.geometry = given;
+  } else if (shape.name == "cylinder") {
+    result.geometry = collision_cylinder{size("radius"), size("length")};
+  } else if (shape.name == "capsule") {
+    result.geometry = collision_capsule{size("radius"), size("length")};
+  } else if (shape.name == "sphere") {
+    result.geometry = collision_sphere{size("radius")};
+  } else if (shape.name == "mesh") {
+    result.geometry = collision_mesh{document.attribute(place, "filename"),
+                                     document.numbers(place, "scale", {1, 1, 1})};
+  } else {
+    document.fail(place, "is none of the shapes box, cylinder, capsule, sphere and mesh");
+  }
+  return result;
+}
+
+/// All that a link consists of for collisions.
+[[nodiscard]] inline std::vector<collision_shape> read_shapes(const urdf_document& document,
+                                                              const xml_element& link) {
+  std::vector<collision_shape> result;
+  for (const xml_element& each : link.children) {
+    if (each.name == "collision") {
+      result.push_back(read_shape(document, each, link));
+    }
+  }
+  return result;
+}
+
+} // namespace duet::detail
