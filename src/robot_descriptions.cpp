@@ -7,4 +7,5 @@
 #undef DUET_COMPILED_TEMPLATE
 #define DUET_COMPILED_TEMPLATE template
 
+#include <duet/mechanism/srdf.hpp>
 #include <duet/mechanism/urdf.hpp>

@@ -93,6 +93,10 @@ template <class Xml>
 [[nodiscard]] urdf_contents read_urdf_contents(const std::string& path, const std::string& base,
                                                const std::string& tip, std::size_t most);
 
+/// \throws file_error as `read_disabled_collisions`
+template <class Xml>
+[[nodiscard]] std::vector<link_pair> read_disabled_collisions_in_srdf(const std::string& path);
+
 /// \throws file_error as `read_urdf_names`
 template <class Xml>
 [[nodiscard]] urdf_names read_names_in_urdf(const std::string& path);

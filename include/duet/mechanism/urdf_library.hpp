@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/mechanism/robot_description.hpp>
+#include <duet/mechanism/srdf_reader.hpp>
 #include <duet/mechanism/urdf_contents.hpp>
 #include <duet/mechanism/urdf_reader.hpp>
 #include <duet/mechanism/xml_element.hpp>
@@ -10,6 +11,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 /// \file
 /// Robot descriptions read by expat.
@@ -34,6 +36,11 @@ robot_description read_urdf_description(const std::string& path) {
 template <class Xml>
 urdf_names read_names_in_urdf(const std::string& path) {
   return urdf_reader(path, Xml::read(path)).names();
+}
+
+template <class Xml>
+std::vector<link_pair> read_disabled_collisions_in_srdf(const std::string& path) {
+  return disabled_collisions(path, Xml::read(path));
 }
 
 } // namespace duet::detail

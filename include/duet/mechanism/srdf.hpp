@@ -1,0 +1,34 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/mechanism/urdf_contents.hpp>
+
+#include <string>
+#include <vector>
+
+#ifndef DUET_COMPILED
+#include <duet/mechanism/urdf_library.hpp>
+#endif
+
+/// \file
+/// Pairs of links that need not be kept apart, out of SRDF, which stands beside URDF.
+
+namespace duet {
+
+/// The pairs of links of all `<disable_collisions link1="…" link2="…"/>` of a file: what
+/// `pairs_apart` leaves out. All else in the file is passed over.
+///
+/// \throws file_error with the line for XML that is not well formed, another root than `<robot>`,
+/// names that are missing, attributes but these and `reason`, and for `<enable_collisions>` and
+/// `<disable_default_collisions>`, which turn the meaning round
+[[nodiscard]] inline std::vector<link_pair> read_disabled_collisions(const std::string& path) {
+  return detail::read_disabled_collisions_in_srdf<detail::xml_library>(path);
+}
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE std::vector<link_pair>
+detail::read_disabled_collisions_in_srdf<detail::xml_library>(const std::string&);
+#endif
+
+} // namespace duet

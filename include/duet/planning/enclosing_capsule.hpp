@@ -1,0 +1,224 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/planning/constrained_step.hpp>
+#include <duet/planning/segment_distance.hpp>
+#include <duet/planning/shapes.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+/// \file
+/// Small capsules around points.
+
+namespace duet {
+
+/// The volume of a capsule, πr²l + 4πr³/3.
+[[nodiscard]] inline double volume_of(const capsule<double>& c) {
+  const double r = c.radius;
+  return std::numbers::pi * r * r * ((c.to - c.from).norm() + 4 * r / 3);
+}
+
+namespace detail {
+
+using points_in_space = std::vector<vector3<double>>;
+
+/// How far a point is from a segment, in which direction, and beside which part of it.
+struct point_beside_segment {
+  double distance, t;
+  vector3<double> normal;
+};
+[[nodiscard]] inline point_beside_segment
+beside(const vector3<double>& x, const vector3<double>& from, const vector3<double>& to) {
+  const double t = nearest_to_point(x, from, vector3<double>(to - from));
+  const vector3<double> apart = x - (1 - t) * from - t * to;
+  const double length = apart.norm();
+  return {length, t, length > 0 ? vector3<double>(apart / length) : vector3<double>::Zero()};
+}
+
+/// The thinnest capsule with these ends around points.
+[[nodiscard]] inline capsule<double>
+around(const points_in_space& points, const vector3<double>& from, const vector3<double>& to) {
+  double radius = 0;
+  for (const auto& x : points) {
+    radius = std::max(radius, beside(x, from, to).distance);
+  }
+  return {from, to, radius};
+}
+
+/// Along a direction, in the middle of what is across it, and a part as long as the points.
+[[nodiscard]] inline capsule<double> around(const points_in_space& points,
+                                            const vector3<double>& direction, double part) {
+  const vector3<double> d = direction.normalized();
+  const vector3<double> e = across(d, vector3<double>(vector3<double>::Zero()));
+  const std::array<vector3<double>, 3> axes = {d, e, cross_product(d, e)};
+  vector3<double> middle = vector3<double>::Zero();
+  double half = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [least, most] = std::minmax_element(
+        points.begin(), points.end(), [&](const vector3<double>& a, const vector3<double>& b) {
+          return axes[k].dot(a) < axes[k].dot(b);
+        });
+    const double low = axes[k].dot(*least), high = axes[k].dot(*most);
+    middle += (low + high) / 2 * axes[k];
+    half = k == 0 ? (high - low) / 2 : half;
+  }
+  const vector3<double> end = part * half * d;
+  return around(points, middle - end, middle + end);
+}
+
+/// Ends and radius moved to where the volume, to first order, and the square of the way are least
+/// and, to first order, all points are within. What makes the volume fall is a step; the weight of
+/// its square is sought.
+[[nodiscard]] inline capsule<double> shrunk(const points_in_space& points, capsule<double> c,
+                                            int rounds = 200) {
+  using step = Eigen::Matrix<double, 7, 1>; // of `from`, `to` and the radius
+  double reach = .1; // what the first-order change of the volume is multiplied by
+  double least = volume_of(c);
+  for (int round = 0; round < rounds && reach > 1e-10; ++round) {
+    const vector3<double> along = c.to - c.from;
+    const double length = along.norm(), r = c.radius;
+    const vector3<double> u = length > 0 ? vector3<double>(along / length) : vector3<double>(along);
+    step downhill;
+    downhill << r * r * u, -r * r * u, -2 * r * length - 4 * r * r;
+    downhill *= reach;
+    std::vector<inequality<step>> within;
+    for (const auto& x : points) {
+      const auto [distance, t, n] = beside(x, c.from, c.to);
+      step slope;
+      slope << (1 - t) * n, t * n, 1;
+      within.push_back({slope, distance - r - slope.dot(downhill)});
+    }
+    const auto correction = least_distance(within, 7);
+    if (correction) {
+      const step whole = downhill + *correction;
+      const capsule<double> next = around(points, vector3<double>(c.from + whole.head<3>()),
+                                          vector3<double>(c.to + whole.segment<3>(3)));
+      const double size = volume_of(next);
+      if (size < least) {
+        const bool is_done = least - size < 1e-9 * least;
+        c = next;
+        least = size;
+        reach *= 2;
+        if (is_done) {
+          break;
+        }
+        continue;
+      }
+    }
+    reach /= 4;
+  }
+  return c;
+}
+
+/// Directions all around, none of them opposite to another.
+[[nodiscard]] inline points_in_space directions_around() {
+  points_in_space result;
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      for (int k = -1; k <= 1; ++k) {
+        if (9 * i + 3 * j + k > 0) {
+          result.emplace_back(i, j, k);
+        }
+      }
+    }
+  }
+  return result;
+}
+
+/// The farthest of all points from a capsule's surface, outside, in each octant about its middle.
+inline void add_what_is_outside(const points_in_space& all, const capsule<double>& c,
+                                points_in_space& chosen) {
+  const vector3<double> middle = (c.from + c.to) / 2;
+  std::array<const vector3<double>*, 8> farthest{};
+  std::array<double, 8> most;
+  most.fill(c.radius * (1 + 1e-9));
+  for (const auto& x : all) {
+    const double distance = beside(x, c.from, c.to).distance;
+    const std::size_t octant = std::size_t(x[0] > middle[0]) + 2U * std::size_t(x[1] > middle[1]) +
+                               4U * std::size_t(x[2] > middle[2]);
+    if (distance > most[octant]) {
+      most[octant] = distance;
+      farthest[octant] = &x;
+    }
+  }
+  for (const auto* x : farthest) {
+    if (x != nullptr) {
+      chosen.push_back(*x);
+    }
+  }
+}
+
+} // namespace detail
+
+/// A small capsule around points: all of them are inside, to rounding.
+///
+/// Its volume is a minimum near it, sought from 13 directions; that of all capsules it need not be.
+/// Only a few points matter: those outermost in a few directions to begin with, and then those that
+/// the capsule around these leaves outside, until there are none.
+/// \throws invalid_input for no points and for points that are not finite
+[[nodiscard]] inline capsule<double> enclosing_capsule(const std::vector<vector3<double>>& points) {
+  detail::require(!points.empty(), "duet: enclosing_capsule: no points");
+  vector3<double> low = points[0], high = points[0];
+  for (const auto& x : points) {
+    detail::require(detail::all_finite(x), "duet: enclosing_capsule: point ", &x - points.data(),
+                    " is not finite");
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  // In units in which the longest edge of what is around them is 2.
+  const vector3<double> middle = low / 2 + high / 2;
+  const double unit = (high - low).maxCoeff() / 2;
+  if (!(unit > 0)) {
+    return sphere<double>{points[0], 0};
+  }
+  detail::points_in_space all;
+  all.reserve(points.size());
+  for (const auto& x : points) {
+    all.emplace_back((x - middle) / unit);
+  }
+  const auto directions = detail::directions_around();
+  detail::points_in_space chosen;
+  for (const auto& d : directions) {
+    const auto [least, most] = std::minmax_element(
+        all.begin(), all.end(), [&](const auto& a, const auto& b) { return d.dot(a) < d.dot(b); });
+    chosen.push_back(*least);
+    chosen.push_back(*most);
+  }
+  std::vector<capsule<double>> candidates;
+  for (const auto& d : directions) {
+    for (const double part : {.2, .4, .6, .9}) {
+      candidates.push_back(detail::shrunk(chosen, detail::around(chosen, d, part), 8));
+    }
+  }
+  const auto is_smaller = [](const capsule<double>& a, const capsule<double>& b) {
+    return volume_of(a) < volume_of(b);
+  };
+  std::sort(candidates.begin(), candidates.end(), is_smaller);
+  candidates.erase(candidates.begin() + 8, candidates.end());
+  for (capsule<double>& each : candidates) {
+    each = detail::shrunk(chosen, each);
+  }
+  capsule<double> best = *std::min_element(candidates.begin(), candidates.end(), is_smaller);
+  for (int round = 0; round < 100; ++round) {
+    const std::size_t before = chosen.size();
+    detail::add_what_is_outside(all, best, chosen);
+    if (chosen.size() == before) {
+      break;
+    }
+    best = detail::shrunk(chosen, detail::around(chosen, best.from, best.to));
+  }
+  return detail::around(points, vector3<double>(middle + unit * best.from),
+                        vector3<double>(middle + unit * best.to));
+}
+
+} // namespace duet

@@ -1,0 +1,245 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/trees.hpp"
+#include "support/message.hpp"
+#include "support/random.hpp"
+
+#include <duet/planning/capsules_of.hpp>
+#include <duet/planning/pairs_apart.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace test_planning_capsules_of {
+namespace {
+
+using namespace duet;
+using point = Eigen::Vector3d;
+
+/// How far a point is outside a capsule.
+double outside(const capsule<>& c, const point& x) {
+  return closest_points(sphere<>{x, 0}, c).distance;
+}
+
+point corner(const collision_box& b, int k) {
+  return {(k % 2 - .5) * b.size[0], (k / 2 % 2 - .5) * b.size[1], (k / 4 - .5) * b.size[2]};
+}
+
+/// Is the most of `outside` over these points 0, but for rounding? So the points touch, too.
+template <class Points>
+void check_touches(const capsule<>& c, const Points& points, double scale) {
+  double most = -INFINITY;
+  for (const point& x : points) {
+    most = std::max(most, outside(c, x));
+  }
+  CHECK(std::abs(most) < 1e-13 * scale);
+}
+
+std::vector<point> inside_cylinder(const collision_cylinder& c, int count, bool is_on_rim) {
+  duet_test::random_source random(1);
+  std::vector<point> result;
+  for (int i = 0; i < count; ++i) {
+    const double angle = random.uniform(-4, 4);
+    const double r = is_on_rim ? c.radius : c.radius * random.uniform(0, 1);
+    const double z = is_on_rim ? (i % 2 - .5) * c.length : c.length * random.uniform(-.5, .5);
+    result.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  return result;
+}
+
+/// Of an octahedron with its corners at these distances from the origin, faces outwards.
+mesh_surface octahedron(double a, double b, double c) {
+  mesh_surface result;
+  for (int k = 0; k < 8; ++k) {
+    const double x = k % 2 == 0 ? a : -a, y = k / 2 % 2 == 0 ? b : -b, z = k / 4 == 0 ? c : -c;
+    const bool is_turned = x * y * z < 0;
+    result.corners.push_back({x, 0, 0});
+    result.corners.push_back(is_turned ? std::array{0., 0., z} : std::array{0., y, 0.});
+    result.corners.push_back(is_turned ? std::array{0., y, 0.} : std::array{0., 0., z});
+  }
+  return result;
+}
+
+} // namespace
+
+TEST_CASE("cylinders are inside, and no capsule along their axis is smaller") {
+  for (const double r : {1e-3, .1, .5, 1., 3.}) {
+    for (const double length : {0., 1e-6, .3, 1., 1.1, 1.2, 4., 1000.}) {
+      const collision_cylinder cylinder{r, length};
+      const capsule<> c = enclosing_capsule(cylinder);
+      check_touches(c, inside_cylinder(cylinder, 50, true), r + length);
+      for (const point& x : inside_cylinder(cylinder, 2500, false)) {
+        CHECK(outside(c, x) < 1e-13 * (r + length));
+      }
+      const double h = length / 2;
+      double least = INFINITY;
+      for (int i = 0; i <= 2000; ++i) {
+        const double end = h * i / 2000, radius = std::hypot(r, h - end);
+        least = std::min(least, volume_of(capsule<>({0, 0, -end}, {0, 0, end}, radius)));
+      }
+      CHECK(volume_of(c) <= least * (1 + 1e-14));
+      CHECK(volume_of(c) >= least * (1 - 2e-4)); // of a long one the grid is coarse at its ends
+      const bool is_ball = c.to[2] == 0;
+      CHECK(is_ball == (h <= r / std::numbers::sqrt3));
+    }
+  }
+}
+
+TEST_CASE("boxes are inside, along the edge for which it is least") {
+  duet_test::random_source random(2);
+  for (int k = 0; k < 20; ++k) {
+    const collision_box b{
+        {random.magnitude(.1, 10), random.magnitude(.1, 10), random.magnitude(.1, 10)}};
+    const double scale = b.size[0] + b.size[1] + b.size[2];
+    const capsule<> c = enclosing_capsule(b);
+    std::vector<point> corners;
+    for (int i = 0; i < 8; ++i) {
+      corners.push_back(corner(b, i));
+    }
+    check_touches(c, corners, scale);
+    for (int i = 0; i < 5000; ++i) {
+      CHECK(outside(c, {b.size[0] * random.uniform(-.5, .5), b.size[1] * random.uniform(-.5, .5),
+                        b.size[2] * random.uniform(-.5, .5)}) < 1e-13 * scale);
+    }
+    // What is sought in all directions is not smaller, by more than rounding and its own accuracy.
+    const capsule<> sought = enclosing_capsule(corners);
+    check_touches(sought, corners, scale);
+    CHECK(volume_of(sought) > volume_of(c) * (1 - 1e-3));
+    CHECK(volume_of(sought) < volume_of(c) * 1.01);
+  }
+  CHECK(enclosing_capsule(collision_box{{0, 0, 0}}).radius == 0);
+}
+
+TEST_CASE("spheres and capsules are themselves") {
+  const capsule<> ball = enclosing_capsule(collision_sphere{.3});
+  CHECK(ball.from == ball.to);
+  CHECK(ball.radius == .3);
+  const capsule<> c = enclosing_capsule(collision_capsule{.2, 1});
+  CHECK(c.from == point(0, 0, -.5));
+  CHECK(c.to == point(0, 0, .5));
+  CHECK(c.radius == .2);
+  CHECK(volume_of(c) == doctest::Approx(volume_of(collision_capsule{.2, 1})).epsilon(1e-15));
+  CHECK(volume_of(collision_capsule{.2, 1}) ==
+        doctest::Approx(std::numbers::pi * (.04 + 4 * .008 / 3)).epsilon(1e-15));
+}
+
+TEST_CASE("points are inside; what is a capsule is found again") {
+  duet_test::random_source random(3);
+  for (int k = 0; k < 12; ++k) {
+    const auto at = [&](double size) {
+      return point(random.uniform(-size, size), random.uniform(-size, size),
+                   random.uniform(-size, size));
+    };
+    const double unit = random.magnitude(1e-6, 1e3);
+    const point from = unit * at(3), to = from + unit * at(k % 4);
+    const double radius = unit * random.uniform(.1, 1);
+    std::vector<point> points;
+    for (int i = 0; i < 3000; ++i) {
+      const auto d = random.direction<3>();
+      const double t = random.uniform(0, 1);
+      points.push_back((1 - t) * from + t * to + radius * point(d[0], d[1], d[2]));
+    }
+    const capsule<> c = enclosing_capsule(points);
+    check_touches(c, points, unit);
+    CHECK(volume_of(c) < 1.02 * volume_of(capsule<>(from, to, radius)));
+    CHECK(volume_of(c) > .8 * volume_of(capsule<>(from, to, radius)));
+  }
+}
+
+TEST_CASE("few points, in line, in a plane, one again and again, none") {
+  const point x(1, 2, 3), y(-1, 0, 2);
+  CHECK(enclosing_capsule(std::vector{x}).from == x);
+  CHECK(enclosing_capsule(std::vector{x, x, x}).radius == 0);
+  const auto line = enclosing_capsule(std::vector<point>{x, y, (x + y) / 2});
+  CHECK(line.radius < 1e-3);
+  CHECK(outside(line, x) < 1e-15);
+  CHECK(outside(line, y) < 1e-15);
+  const auto square = enclosing_capsule(
+      std::vector<point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5, .5, 0}});
+  CHECK(volume_of(square) < 1.001 * volume_of(enclosing_capsule(collision_box{{1, 1, 0}})));
+  CHECK_THROWS_WITH_AS((void)enclosing_capsule(std::vector<point>{}),
+                       "duet: enclosing_capsule: no points", invalid_input);
+  CHECK_THROWS_WITH_AS((void)enclosing_capsule(std::vector<point>{x, point(0, NAN, 0)}),
+                       "duet: enclosing_capsule: point 1 is not finite", invalid_input);
+}
+
+TEST_CASE("volumes of surfaces: closed, turned inside out, open") {
+  auto m = octahedron(1, 2, .5);
+  CHECK(volume_of(m) == doctest::Approx(4. / 3).epsilon(1e-14));
+  for (auto& x : m.corners) {
+    x = {-x[0] + 7, x[1] - 5, x[2] + 1e3};
+  }
+  CHECK(volume_of(m) == doctest::Approx(4. / 3).epsilon(1e-10));
+  m.corners.resize(m.corners.size() - 3);
+  CHECK(std::isnan(volume_of(m)));
+}
+
+TEST_CASE("the links of a tree and a chain: each shape where it stands") {
+  const std::string folder = "test_planning_capsules_of", file = folder + ".obj";
+  std::ofstream(file) << "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+                         "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+  robot_description robot;
+  robot.links = {{"base"}, {"arm"}, {"weld"}, {"hand"}};
+  robot.joints = {
+      {"shoulder", "base", "arm", {joint_kind::revolute, duet_test::place(.1, .2, .3, 0, 0, 1)}},
+      {"fixed", "arm", "weld", {joint_kind::fixed, duet_test::place(.5, 0, 1, .3, .1, 0)}},
+      {"wrist", "weld", "hand", {joint_kind::revolute, duet_test::place(0, 1, 0, 0, 0, .5)}}};
+  const placement<double> placed = duet_test::place(.7, -.2, .4, .1, .2, -.3);
+  robot.links[0].collision = {{placed, collision_cylinder{.1, 1}}, {{}, collision_sphere{.2}}};
+  robot.links[2].collision = {{placed, collision_box{{.1, .2, .5}}},
+                              {placed, collision_mesh{"package://" + file, {.1, -.2, .3}}}};
+  robot.links[3].collision = {{placed, collision_capsule{.05, .3}}};
+  const kinematic_tree tree(robot);
+  const auto chain = tree.chain("base", "hand");
+  const fitted_bodies of_tree = capsules_of(tree, "."), of_chain = capsules_of(chain, ".");
+  REQUIRE(of_tree.bodies.size() == 5);
+  REQUIRE(of_chain.bodies.size() == 5);
+  const std::array<double, 2> theta = {.3, -.8};
+  for (std::size_t i = 0; i < 5; ++i) {
+    const link_body &a = of_tree.bodies[i], &b = of_chain.bodies[i];
+    CHECK(a.name == b.name);
+    CHECK(of_tree.volume_ratios[i] == of_chain.volume_ratios[i]);
+    const auto x = transformed(tree.pose(theta, a.link), a.shape);
+    const auto y = transformed(chain.pose(theta, b.link), b.shape);
+    CHECK((x.from - y.from).norm() < 1e-14);
+    CHECK((x.to - y.to).norm() < 1e-14);
+    CHECK(x.radius == y.radius);
+  }
+  CHECK(of_chain.bodies[2].link == 1);
+  CHECK(of_chain.bodies[2].name == "weld");
+  CHECK(of_tree.volume_ratios[1] == doctest::Approx(1).epsilon(1e-15));
+  CHECK(of_tree.volume_ratios[4] == doctest::Approx(1).epsilon(1e-15));
+  CHECK(of_tree.volume_ratios[0] > 1);
+  CHECK(of_tree.volume_ratios[2] > 1);
+  // The corners of the mesh, scaled, where the link is.
+  const auto& meshed = of_tree.bodies[3];
+  const auto where = pose(placed.rotation, point(placed.translation.data()));
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int sign : {-1, 1}) {
+      const point x = transform_point(where, point(sign * (axis + 1) / 10. * point::Unit(axis)));
+      CHECK(outside(meshed.shape, x) < 1e-15);
+    }
+  }
+  CHECK(of_tree.volume_ratios[3] ==
+        doctest::Approx(volume_of(meshed.shape) / (4. / 3 * .006)).epsilon(1e-12));
+  // Bodies of links that are fixed to each other, or beside each other, are no pairs.
+  CHECK(pairs_apart(tree, of_tree.bodies).size() == 2); // hand and base
+  CHECK(pairs_apart(chain, of_chain.bodies).size() == 2);
+
+  robot.links[3].collision = {{{}, collision_mesh{"package://nowhere/hand.stl"}}};
+  CHECK(duet_test::message_of<file_error>([&] { (void)capsules_of(kinematic_tree(robot), "."); }) ==
+        "duet: ./nowhere/hand.stl: cannot be read");
+}
+
+} // namespace test_planning_capsules_of
