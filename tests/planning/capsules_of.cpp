@@ -98,7 +98,7 @@ TEST_CASE("cylinders are inside, and no capsule along their axis is smaller") {
 
 TEST_CASE("boxes are inside, along the edge for which it is least") {
   duet_test::random_source random(2);
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < 8; ++k) {
     const collision_box b{
         {random.magnitude(.1, 10), random.magnitude(.1, 10), random.magnitude(.1, 10)}};
     const double scale = b.size[0] + b.size[1] + b.size[2];
@@ -108,7 +108,7 @@ TEST_CASE("boxes are inside, along the edge for which it is least") {
       corners.push_back(corner(b, i));
     }
     check_touches(c, corners, scale);
-    for (int i = 0; i < 5000; ++i) {
+    for (int i = 0; i < 12500; ++i) {
       CHECK(outside(c, {b.size[0] * random.uniform(-.5, .5), b.size[1] * random.uniform(-.5, .5),
                         b.size[2] * random.uniform(-.5, .5)}) < 1e-13 * scale);
     }
@@ -136,7 +136,7 @@ TEST_CASE("spheres and capsules are themselves") {
 
 TEST_CASE("points are inside; what is a capsule is found again") {
   duet_test::random_source random(3);
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < 6; ++k) {
     const auto at = [&](double size) {
       return point(random.uniform(-size, size), random.uniform(-size, size),
                    random.uniform(-size, size));

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/planning/constrained_step.hpp>
@@ -79,8 +80,10 @@ around(const points_in_space& points, const vector3<double>& from, const vector3
 /// Ends and radius moved to where the volume, to first order, and the square of the way are least
 /// and, to first order, all points are within. What makes the volume fall is a step; the weight of
 /// its square is sought.
-[[nodiscard]] inline capsule<double> shrunk(const points_in_space& points, capsule<double> c,
-                                            int rounds = 200) {
+///
+/// A template so that it can be compiled once.
+template <class Points>
+[[nodiscard]] capsule<double> shrunk(const Points& points, capsule<double> c, int rounds) {
   using step = Eigen::Matrix<double, 7, 1>; // of `from`, `to` and the radius
   double reach = .1; // what the first-order change of the volume is multiplied by
   double least = volume_of(c);
@@ -119,6 +122,10 @@ around(const points_in_space& points, const vector3<double>& from, const vector3
   }
   return c;
 }
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE capsule<double> shrunk(const points_in_space&, capsule<double>, int);
+#endif
 
 /// Directions all around, none of them opposite to another.
 [[nodiscard]] inline points_in_space directions_around() {
@@ -206,7 +213,7 @@ inline void add_what_is_outside(const points_in_space& all, const capsule<double
   std::sort(candidates.begin(), candidates.end(), is_smaller);
   candidates.erase(candidates.begin() + 8, candidates.end());
   for (capsule<double>& each : candidates) {
-    each = detail::shrunk(chosen, each);
+    each = detail::shrunk(chosen, each, 200);
   }
   capsule<double> best = *std::min_element(candidates.begin(), candidates.end(), is_smaller);
   for (int round = 0; round < 100; ++round) {
@@ -215,7 +222,7 @@ inline void add_what_is_outside(const points_in_space& all, const capsule<double
     if (chosen.size() == before) {
       break;
     }
-    best = detail::shrunk(chosen, detail::around(chosen, best.from, best.to));
+    best = detail::shrunk(chosen, detail::around(chosen, best.from, best.to), 200);
   }
   return detail::around(points, vector3<double>(middle + unit * best.from),
                         vector3<double>(middle + unit * best.to));
