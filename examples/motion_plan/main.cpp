@@ -79,23 +79,22 @@ bool run(const problem& p) {
   const example::drawing arm = drawing_of(p, found, tip, nearest);
   duet::write_file(p.out + "/arm_shapes.csv", arm.csv());
 
-  const bool has_obstacles = !p.around.obstacles.empty();
   std::printf("%s: %zu waypoints, %d iterations\n", duet::to_text(found.reason),
               found.joints.size(), found.iterations);
   std::printf("from the screw motion        %.2g m and %.2g rad at most\n", worst.deviation.length,
               worst.deviation.angle);
   std::printf("smallest singular value      %.3g\n", found.smallest_singular_value);
   std::printf("nearest to a joint's limit   %.3g\n", found.smallest_limit_margin);
-  if (has_obstacles) {
-    std::printf("nearest to an obstacle       %.4g m\n", worst.clearance);
+  if (p.has_margins()) {
+    std::printf("nearest to %s %.4g m\n", obstacles_of(p, "an obstacle      ", "another link     "),
+                worst.clearance);
   }
   std::printf("duration                     %.3f s\n", trajectory.duration());
   const std::size_t rows = 11 * (found.joints.size() - 1); // of deviations.csv
   const bool drawn =
       found.joints.size() > 1 &&
       example::draw(p.out, "joints", 640, joints_script(p, found, velocities(p), 500)) &&
-      example::draw(p.out, "deviation", 480,
-                    deviation_script(has_obstacles, p.around.margin, rows)) &&
+      example::draw(p.out, "deviation", 480, deviation_script(p, rows)) &&
       example::draw(p.out, "arm", 440, arm_script(arm, p, found, tip, nearest, rows));
   std::cout << "Tables" << (drawn ? " and pictures (SVG, PNG)" : "") << " are in "
             << duet::printable(p.out) << "\n";

@@ -6,9 +6,14 @@
 #include "../support/numbers.hpp"
 
 #include <duet/duet.hpp>
+#include <duet/mechanism/srdf.hpp>
+#include <duet/mechanism/urdf.hpp>
+#include <duet/planning/capsules_of.hpp>
+#include <duet/planning/pairs_apart.hpp>
 
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -29,6 +34,11 @@ struct problem {
   duet::scene around;
   double velocity = 1, acceleration = 2;
   std::string out = "motion_plan_out";
+
+  /// Is there anything that the arm could touch?
+  [[nodiscard]] bool has_margins() const {
+    return !around.obstacles.empty() || !around.pairs.empty();
+  }
 };
 
 /// Somewhere in the middle of what a known arm can do, its hand pointing down.
@@ -71,6 +81,31 @@ inline std::vector<duet::link_body> bodies(const example::arm_chain& arm, double
     result.push_back({on, duet::capsule<>(point(0, 0, 0), end, radius)});
   }
   return result;
+}
+
+/// Capsules around the shapes that a robot description has for collisions, if it has some, with
+/// files of meshes beside it; else along its links. With --self those that can run into each other.
+inline void add_bodies(duet::scene& around, const example::arm_chain& arm,
+                       const example::command_line& given) {
+  const double radius = given.get<double>("radius").value_or(.05);
+  around.bodies = bodies(arm, radius);
+  if (const auto file = given.text("urdf")) {
+    const auto read =
+        duet::read_urdf(*file, given.text("base").value_or(""), given.text("tip").value_or(""));
+    const std::filesystem::path folder = std::filesystem::path(*file).parent_path();
+    const auto fitted = duet::capsules_of(read, folder.string());
+    if (!fitted.bodies.empty()) {
+      around.bodies = fitted.bodies;
+    }
+  }
+  const auto srdf = given.text("srdf");
+  if (given.has("self")) {
+    around.pairs = duet::pairs_apart(arm, around.bodies,
+                                     srdf ? duet::read_disabled_collisions(*srdf)
+                                          : std::vector<duet::link_pair>{});
+  } else if (srdf) {
+    throw std::runtime_error("--srdf is for --self");
+  }
 }
 
 /// \throws std::runtime_error with the option's name
@@ -119,10 +154,14 @@ inline example::po::options_description description() {
   add("goal", text("POSE"), "of the tip (default: to the side)");
   add("goal-joints", text("X,X,..."), "the tip's pose at these coordinates instead");
   add("sphere", texts("X,Y,Z,R"), "an obstacle; this and the next may be repeated");
+  add("capsule", texts("X,Y,Z,X,Y,Z,R"), "an obstacle by the ends of its axis and its radius");
   add("box", texts("X,Y,Z,A,B,C"), "an obstacle by its centre and half sizes");
   add("floor", po::value<double>()->value_name("Z"), "everything below is an obstacle");
-  add("radius", po::value<double>()->value_name("R"), "of the arm's links (default: 0.05)");
-  add("margin", po::value<double>()->value_name("D"), "to obstacles (default: 0.02)");
+  add("self", "keep links apart from each other, too");
+  add("srdf", text("FILE"), "which pairs of links --self leaves out: <disable_collisions>");
+  add("radius", po::value<double>()->value_name("R"),
+      "of links without shapes for collisions (default: 0.05)");
+  add("margin", po::value<double>()->value_name("D"), "to what is not touched (default: 0.02)");
   add("velocity", po::value<double>()->value_name("V"),
       "limit of all joints, besides their own (default: 1)");
   add("acceleration", po::value<double>()->value_name("A"), "limit of all joints (default: 2)");
@@ -162,6 +201,9 @@ inline std::optional<problem> parse(int argc, char** argv) {
   each("sphere", 4, [&](const auto& x) {
     obstacles.push_back(duet::sphere<>{point(x[0], x[1], x[2]), x[3]});
   });
+  each("capsule", 7, [&](const auto& x) {
+    obstacles.push_back(duet::capsule<>(point(x[0], x[1], x[2]), point(x[3], x[4], x[5]), x[6]));
+  });
   each("box", 6, [&](const auto& x) {
     obstacles.push_back(duet::box<>{
         duet::pose(duet::quaternion<double>(1), point(x[0], x[1], x[2])), point(x[3], x[4], x[5])});
@@ -170,7 +212,7 @@ inline std::optional<problem> parse(int argc, char** argv) {
     obstacles.push_back(duet::half_space<>{point(0, 0, 1), *z});
   }
   result.around.margin = given->get<double>("margin").value_or(.02);
-  result.around.bodies = bodies(result.arm, given->get<double>("radius").value_or(.05));
+  add_bodies(result.around, result.arm, *given);
   result.velocity = given->get<double>("velocity").value_or(result.velocity);
   result.acceleration = given->get<double>("acceleration").value_or(result.acceleration);
   result.out = given->text("out").value_or(result.out);

@@ -27,6 +27,11 @@ inline std::string millimetres(double length) {
   return text;
 }
 
+/// One or the other word, for what the arm keeps its margin from.
+inline const char* obstacles_of(const problem& p, const char* obstacles, const char* links) {
+  return p.around.obstacles.empty() ? links : obstacles;
+}
+
 /// Above and in the middle the joints that move most in colours, the others grey; below how much of
 /// its limit the joint takes that takes most.
 /// \param rows  of trajectory.csv
@@ -65,7 +70,7 @@ inline std::string joints_script(const problem& p, const plan_type& plan,
 }
 
 /// \param rows  of deviations.csv, eleven between two waypoints
-inline std::string deviation_script(bool has_obstacles, double margin, std::size_t rows) {
+inline std::string deviation_script(const problem& p, std::size_t rows) {
   using enum example::beside;
   const std::string both =
       "set ylabel 'off the screw / (µm, µrad)'\nset xrange [0:1]\nset yrange [0:12]\n" +
@@ -75,20 +80,24 @@ inline std::string deviation_script(bool has_obstacles, double margin, std::size
                              {"1:(10)", "ink", "allowed", rows - 1, right, "lines lw 2 dt 2"}});
   const std::string way = "set xlabel 'share of the way'\n";
   return "set lmargin 9\nset rmargin 12\n" +
-         (has_obstacles
+         (p.has_margins()
               ? "set multiplot layout 2,1 title " +
-                    example::title("The tip keeps to its screw motion, the arm off the obstacles") +
+                    example::title(
+                        std::string("The tip keeps to its screw motion, ") +
+                        obstacles_of(p, "the arm off the obstacles", "links off each other")) +
                     "\n" + both + way + "set ylabel 'distance / mm'\nset yrange [0:*]\n" +
-                    example::plot_command("deviations.csv",
-                                          {{"1:(1000*$4)", "blue", "from the nearest obstacle",
-                                            rows / 6, above_right},
-                                           {"1:(" + duet::to_text(1000 * margin) + ")", "ink",
-                                            "margin", rows - 1, right, "lines lw 2 dt 2"}}) +
+                    example::plot_command(
+                        "deviations.csv",
+                        {{"1:(1000*$4)", "blue",
+                          obstacles_of(p, "from the nearest obstacle", "from link to link"),
+                          rows / 6, above_right},
+                         {"1:(" + duet::to_text(1000 * p.around.margin) + ")", "ink", "margin",
+                          rows - 1, right, "lines lw 2 dt 2"}}) +
                     "unset multiplot\n"
               : way + both);
 }
 
-/// The drawing, and beside it how near the arm is to obstacles on the way.
+/// The drawing, and beside it how near the arm is to obstacles, or to itself, on the way.
 /// \param rows  of deviations.csv
 inline std::string arm_script(const example::drawing& d, const problem& p, const plan_type& plan,
                               const std::vector<point>& tip,
@@ -105,13 +114,17 @@ inline std::string arm_script(const example::drawing& d, const problem& p, const
   const auto& gap = nearest->clearance.points;
   using enum example::beside;
   return "set multiplot title " +
-         example::title("The arm keeps " + millimetres(plan.smallest_clearance) +
-                        " or more from obstacles; the margin is " + millimetres(p.around.margin)) +
+         example::title(obstacles_of(p, "The arm keeps ", "Links keep ") +
+                        millimetres(plan.smallest_clearance) + " or more from " +
+                        obstacles_of(p, "obstacles", "each other") + "; the margin is " +
+                        millimetres(p.around.margin)) +
          "\nset lmargin at screen .62\nset rmargin at screen .96\nset tmargin at screen .8\n"
          "set bmargin at screen .2\nset xrange [0:1]\nset yrange [0:*]\n"
-         "set xlabel 'share of the way'\nset ylabel 'distance to obstacles / mm'\n" +
+         "set xlabel 'share of the way'\nset ylabel 'distance " +
+         obstacles_of(p, "to obstacles", "from link to link") + " / mm'\n" +
          example::plot_command("deviations.csv",
-                               {{"1:(1000*$4)", "blue", "arm", rows / 5, above_right, "lines lw 3"},
+                               {{"1:(1000*$4)", "blue", obstacles_of(p, "arm", "links"), rows / 5,
+                                 above_right, "lines lw 3"},
                                 {"1:(" + duet::to_text(1000 * p.around.margin) + ")", "ink",
                                  "margin", rows / 20, above_right, "lines lw 2 dt 2"}}) +
          "unset xlabel\nunset ylabel\nset lmargin at screen .02\nset rmargin at screen .5\n"

@@ -22,16 +22,17 @@
 
 namespace motion_plan_example {
 
-/// Where the way first leads as near to an obstacle as it does anywhere, but for a hundredth.
+/// Where the way first leads as near to an obstacle, or another link, as it does anywhere, but for
+/// a hundredth.
 struct closest_approach {
   std::size_t waypoint;
   duet::chain_clearance<double> clearance;
 };
 
-/// Nothing where there are no obstacles.
+/// Nothing where there is nothing to touch.
 inline std::optional<closest_approach> closest(const problem& p, const plan_type& plan) {
   std::optional<closest_approach> result;
-  for (std::size_t k = 0; k < plan.joints.size() && !p.around.obstacles.empty(); ++k) {
+  for (std::size_t k = 0; k < plan.joints.size() && p.has_margins(); ++k) {
     const auto here = duet::clearance(p.arm, plan.joints[k], p.around);
     const double before = result ? result->clearance.distance : 0;
     if (!result || here.distance < before - .01 * std::abs(before)) {
@@ -51,13 +52,16 @@ inline void add_arm(example::drawing& d, const problem& p, const Eigen::VectorXd
   }
 }
 
-/// A ball with the margin around it, a box as its faces, a half-space as a grid around the base.
+/// A ball with the margin around it, a capsule, a box as its faces, a half-space as a grid around
+/// the base.
 inline void add_obstacle(example::drawing& d, const duet::obstacle& each, double margin) {
   std::visit(
       [&](const auto& o) {
         if constexpr (requires { o.centre; }) {
           d.ball(o.centre, o.radius, "#e69f00");
           d.circle(o.centre, o.radius + margin, "#24292f", "lw 1.5 dt 2");
+        } else if constexpr (requires { o.radius; }) {
+          d.capsule(o.from, o.to, o.radius, "#e69f00");
         } else if constexpr (requires { o.placed; }) {
           for (int axis = 0; axis < 3; ++axis) {
             for (const int side : {-1, 1}) {
@@ -101,7 +105,8 @@ inline point viewpoint(const problem& p, const plan_type& plan,
   return (hides ? -1 : 1) * level + .6 * (point::UnitZ() - n[2] * n).normalized();
 }
 
-/// The arm where it is nearest to an obstacle; behind it, pale, where it starts and ends.
+/// The arm where it is nearest to what it must not touch; behind it, pale, where it starts and
+/// ends.
 inline example::drawing drawing_of(const problem& p, const plan_type& plan,
                                    const std::vector<point>& tip,
                                    const std::optional<closest_approach>& nearest) {
