@@ -11,6 +11,9 @@
 /// inverse kinematics and what moves along them (planning/all_inverse_kinematics.hpp,
 /// planning/differentiable_branch.hpp, planning/self_motion_curves.hpp), goals in part, wishes and
 /// the start of a path (planning/goals.hpp, planning/equation_goal.hpp, planning/choose_start.hpp),
+/// what keeps links apart from each other and the capsules that their shapes are in
+/// (planning/pairs_apart.hpp, planning/capsules_of.hpp, planning/enclosing_capsule.hpp,
+/// mechanism/mesh_file.hpp, mechanism/srdf.hpp),
 /// plans over time (planning/time_parametrised.hpp), tables, recordings and plans as files
 /// (spline/table_file.hpp, spline/recording.hpp, planning/save_plan.hpp, core/text/csv.hpp),
 /// progress_line (core/text/progress_line.hpp), the notes' own planner (planning/printed_plan.hpp),

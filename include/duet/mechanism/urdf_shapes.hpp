@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/mechanism/collision_shape.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/urdf_document.hpp>

@@ -7,8 +7,8 @@
 #include <duet/planning/clearance.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <numeric>
 #include <string>
 #include <vector>
