@@ -58,7 +58,7 @@ std::string fault_of_srdf(const std::string& inside) {
 TEST_CASE("shapes of links, in a tree and in both kinds of chains") {
   write(robot_with(
       "<collision name=\"first\"><origin xyz=\"1 2 3\" rpy=\"0 0 1\"/><geometry>"
-      "<box size=\".1 .2 .3\"/></geometry></collision>\n"
+      "<box size=\".1 .2 .3\" scale=\"1 1 1\"/></geometry></collision>\n"
       "<collision><geometry><cylinder radius=\".5\" length=\"2\"/></geometry></collision>"
       "<collision group=\"x\"><geometry><sphere radius=\".25\"/></geometry></collision>"
       "<collision><geometry><capsule radius=\".5\" length=\"3\"/></geometry></collision>"
@@ -111,6 +111,8 @@ TEST_CASE("what is wrong with a shape: where, and what") {
         "6" + in + "<box>: size=\"1 1\" is not three numbers");
   CHECK(fault_of_shape("<box/>") == "6" + in + "<box>: no attribute \"size\"");
   CHECK(fault_of_shape("<box size=\"1 1 -1\"/>") == "6" + in + "<box>: size is negative");
+  CHECK(fault_of_shape("<box size=\"1 1 1\" scale=\"1 1 2\"/>") ==
+        "6" + in + "<box>: has a scale, which is for meshes");
   CHECK(fault_of_shape("<mesh scale=\"1 1 1\"/>") ==
         "6" + in + "<mesh>: no attribute \"filename\"");
   CHECK(fault("<collision><origin xyz=\"1 2\"/><geometry><sphere radius=\"1\"/></geometry>"

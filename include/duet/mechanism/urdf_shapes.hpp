@@ -7,6 +7,7 @@
 #include <duet/mechanism/urdf_document.hpp>
 #include <duet/mechanism/xml_element.hpp>
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,9 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
   const auto size = [&](std::string_view key) { return read_size(document, place, key); };
   if (shape.name == "box") {
     (void)document.attribute(place, "size");
+    if (document.numbers(place, "scale", {1, 1, 1}) != std::array<double, 3>{1, 1, 1}) {
+      document.fail(place, "has a scale, which is for meshes");
+    }
     const collision_box given{document.numbers(place, "size", {})};
     if (given.size[0] < 0 || given.size[1] < 0 || given.size[2] < 0) {
       document.fail(place, "size is negative");
