@@ -80,10 +80,7 @@ template <class T>
   const T square = apart.squaredNorm();
   const R rounding = 8 * std::numeric_limits<R>::epsilon();
   if (innermost(square) <= rounding * rounding * innermost(x.squaredNorm())) {
-    vector3<T> out = across(along, axis);
-    if (innermost(out.dot(apart)) < 0) {
-      out = -out;
-    }
+    const vector3<T> out = across(along, axis);
     return {T(out.dot(apart) - radius), out};
   }
   const T length = sqrt(square);
