@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace test_planning_time_parametrised {
@@ -72,33 +73,117 @@ double check(const Trajectory& q, const std::vector<vector>& waypoints, const ve
   return use;
 }
 
+/// No share of a limit above 1 on a fine grid; returns the largest.
+template <class Trajectory>
+double check_shares(const Trajectory& q, const vector& v, const vector& a) {
+  const int count = 1000;
+  double largest = 0;
+  for (int i = 0; i <= count; ++i) {
+    const auto now = q(q.duration() * i / count);
+    largest = std::max({largest, now.velocity.cwiseQuotient(v).cwiseAbs().maxCoeff(),
+                        now.acceleration.cwiseQuotient(a).cwiseAbs().maxCoeff()});
+  }
+  CHECK(largest <= 1 + 1e-9);
+  return largest;
+}
+
+/// The shortest time with limits at both ends of each of 200 parts of each edge, by bisection.
+double sampled_optimum(const std::vector<detail::joint_cubic<vector>>& curve, const vector& v,
+                       const vector& a) {
+  struct part {
+    double h, cap;
+    std::array<double, 6> x, y; // |x ṡ₀² + y ṡ₁²| ≤ limit
+  };
+  std::vector<part> parts;
+  for (const auto& edge : curve) {
+    for (int i = 0; i < 200; ++i) {
+      part next{edge.length / 200, INFINITY, {}, {}};
+      for (std::size_t end = 0; end < 2; ++end) {
+        const double s = next.h * (i + int(end));
+        const vector first = edge.first(s), second = edge.second(s);
+        for (Eigen::Index j = 0; j < 3; ++j) {
+          const double change = first[j] / (2 * next.h);
+          const auto at = 3 * end + std::size_t(j);
+          next.x[at] = (end == 0 ? second[j] : 0) - change;
+          next.y[at] = (end == 1 ? second[j] : 0) + change;
+          next.cap = std::min(next.cap, std::pow(v[j] / std::max(std::abs(first[j]), 1e-50), 2));
+        }
+      }
+      parts.push_back(next);
+    }
+  }
+  const auto range = [&](const part& at, double x, double most) {
+    double low = 0, high = most;
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double limit = a[Eigen::Index(k % 3)], y = at.y[k];
+      if (y != 0) {
+        low = std::max(low, -at.x[k] * x / y - limit / std::abs(y));
+        high = std::min(high, -at.x[k] * x / y + limit / std::abs(y));
+      } else if (std::abs(at.x[k]) * x > limit) {
+        high = -1;
+      }
+    }
+    return std::array{low, high};
+  };
+  std::vector<double> most(parts.size() + 1, 0.0);
+  for (std::size_t i = parts.size(); i-- > 1;) {
+    double low = 0, high = std::min(parts[i].cap, parts[i - 1].cap);
+    for (int n = 0; n < 45; ++n) {
+      const double middle = n == 0 ? high : (low + high) / 2;
+      const auto [from, to] = range(parts[i], middle, most[i + 1]);
+      (from <= to ? low : high) = middle;
+    }
+    most[i] = low;
+  }
+  double time = 0, x = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double next = std::max(0.0, range(parts[i], x, most[i + 1])[1]);
+    time += 2 * parts[i].h / (std::sqrt(x) + std::sqrt(next));
+    x = next;
+  }
+  return time;
+}
+
 } // namespace
 
-TEST_CASE("the largest speed of two unknowns: none of a grid is larger, and it is allowed") {
+TEST_CASE("the largest and the least speed of two unknowns: none of a grid is beyond, and they are "
+          "allowed") {
   duet_test::random_source random(2);
   for (int k = 0; k < 200; ++k) {
     std::vector<detail::speed_bound> bounds;
     for (int i = random.integer(0, 12); i > 0; --i) {
-      bounds.push_back({random.normal(), random.normal(), random.uniform(.01, 2)});
-      bounds.push_back({-bounds.back().a, -bounds.back().b, bounds.back().c});
+      bounds.push_back({random.normal() / random.normal(), random.uniform(.01, 2)});
     }
-    const double x = detail::largest_speed(bounds, 1, .7);
-    const auto is_allowed = [&](double a, double b, double slack) {
+    const double least = k % 2 == 0 ? 0 : random.uniform(0, .7);
+    const auto is_allowed = [&](double x, double y, double slack) {
       return std::all_of(bounds.begin(), bounds.end(), [&](const auto& each) {
-        return each.a * a + each.b * b <= each.c + slack;
+        return std::abs(y + each.slope * x) <= each.reach + slack;
       });
     };
-    double largest = 0;
+    double smallest = 2, largest = -1;
     for (int i = 0; i <= 100; ++i) {
       for (int j = 0; j <= 100; ++j) {
-        largest = is_allowed(i / 100.0, j * .007, 0) ? i / 100.0 : largest;
+        if (is_allowed(i / 100.0, least + j * (.7 - least) / 100, 0)) {
+          smallest = std::min(smallest, i / 100.0);
+          largest = std::max(largest, i / 100.0);
+        }
       }
     }
-    CHECK(x <= 1);
-    CHECK(x >= largest - 1e-12);
+    const double most_x = detail::nearest_speed(bounds, 1, least, .7);
+    const double least_x = detail::nearest_speed(bounds, 0, least, .7);
+    if (largest < 0) {
+      // No point of the grid: both, if there is anything between its points, or none.
+      CHECK((most_x >= least_x || (!(most_x == most_x) || most_x < 0 || least_x > 1)));
+      continue;
+    }
+    CHECK(most_x <= 1);
+    CHECK(most_x >= largest - 1e-12);
+    CHECK(least_x >= 0);
+    CHECK(least_x <= smallest + 1e-12);
     // With the next speed that goes with it, all bounds are kept.
-    const double next = detail::largest_next_speed(bounds, x, .7);
-    CHECK(is_allowed(x, next, 1e-9));
+    for (const double x : {least_x, most_x}) {
+      CHECK(is_allowed(x, detail::next_speeds(bounds, x, least, .7).most.value, 1e-9));
+    }
   }
 }
 
@@ -116,6 +201,41 @@ TEST_CASE("one joint: the trapezoid of the closed form") {
     const auto free =
         time_parametrised(ends, std::array{std::numeric_limits<double>::infinity()}, std::array{a});
     CHECK(free.duration() == doctest::Approx(2 * std::sqrt(way / a)).epsilon(2e-4));
+  }
+}
+
+TEST_CASE("one joint in motion at its ends: the closed form; backwards first it turns on the way") {
+  using one = Eigen::Matrix<double, 1, 1>;
+  const double v = 2, a = 5;
+  for (const double way : {.7, 30.0}) {
+    const std::vector<one> ends{one(1.0), one(1 + way)};
+    for (const auto& rates : {std::array{1.5, 0.0}, {0.0, 1.9}, {1.7, .4}, {2.0, 2.0}}) {
+      const double v_0 = rates[0], v_1 = rates[1];
+      CAPTURE(way);
+      CAPTURE(v_0);
+      const double squares = v_0 * v_0 + v_1 * v_1;
+      const double peak = std::min(v, std::sqrt(a * way + squares / 2));
+      const double exact =
+          (2 * peak - v_0 - v_1) / a + (way - (2 * peak * peak - squares) / (2 * a)) / peak;
+      const auto q = time_parametrised(ends, std::array{v}, std::array{a},
+                                       {.initial_rates = {v_0}, .final_rates = {v_1}});
+      CHECK(q.duration() >= exact * (1 - 1e-12));
+      CHECK(q.duration() < exact * (1 + 1e-3));
+      CHECK(q(0).velocity[0] == doctest::Approx(v_0));
+      CHECK(q(q.duration()).velocity[0] == doctest::Approx(v_1));
+    }
+    const auto back =
+        time_parametrised(ends, std::array{v}, std::array{a}, {.initial_rates = {-.3}});
+    CHECK(back(0).velocity[0] == doctest::Approx(-.3));
+    CHECK(back(back.duration()).value[0] == doctest::Approx(1 + way));
+    double least = 1;
+    for (int i = 0; i <= 1000; ++i) {
+      const auto now = back(back.duration() * i / 1000);
+      CHECK(std::abs(now.velocity[0]) <= v * (1 + 1e-9));
+      CHECK(std::abs(now.acceleration[0]) <= a * (1 + 1e-9));
+      least = std::min(least, now.value[0]);
+    }
+    CHECK(least < 1);
   }
 }
 
@@ -212,6 +332,198 @@ TEST_CASE("along a plan; a plan that stays; bad input") {
   CHECK_THROWS_AS((void)time_parametrised(plan, v, a, {.parts = 0}), invalid_input);
   const std::vector<double> two{1, 2};
   CHECK_THROWS_AS((void)time_parametrised(plan, v, Eigen::VectorXd(Eigen::Vector2d(1, 2))),
+                  invalid_input);
+}
+
+TEST_CASE("on the same curve hardly longer than where limits are kept at many places only") {
+  duet_test::random_source random(5);
+  const vector v(1, 2, .7), a(3, 2, 10);
+  for (int k = 0; k < 6; ++k) {
+    CAPTURE(k);
+    // Steps of all joints, of one at a time, and of very different lengths.
+    std::vector<vector> waypoints{vector(0, 0, 0)};
+    for (int i = random.integer(2, 7); i > 0; --i) {
+      const vector step = k % 3 == 1 ? vector(random.normal() * vector::Unit(random.integer(0, 2)))
+                                     : vector(random.normal(), random.normal(), random.normal());
+      waypoints.push_back(waypoints.back() + (k % 3 == 2 ? random.magnitude(1e-4, 1) : 1) * step);
+    }
+    for (const auto kind : {joint_curve::monotone, joint_curve::smooth}) {
+      const detail::joint_polygon<vector> polygon(waypoints);
+      const auto curve = detail::hermite_curve(polygon, kind == joint_curve::smooth
+                                                            ? detail::smooth_slopes(polygon)
+                                                            : detail::monotone_slopes(polygon));
+      const double sampled = sampled_optimum(curve, v, a);
+      const double time = time_parametrised(waypoints, v, a, {.curve = kind}).duration();
+      CHECK(time < 1.03 * sampled);
+      CHECK(time > .99 * sampled);
+    }
+  }
+}
+
+TEST_CASE(
+    "the smooth curve is the natural spline: its second derivative is continuous, 0 at the ends") {
+  duet_test::random_source random(8);
+  std::vector<vector> waypoints;
+  for (int i = 0; i < 7; ++i) {
+    waypoints.emplace_back(random.normal(), random.normal(), random.normal());
+  }
+  for (const bool has_rates : {false, true}) {
+    detail::joint_polygon<vector> polygon(waypoints);
+    if (has_rates) {
+      polygon.first_slope = vector(.6, 0, .8);
+      polygon.last_slope = vector(0, -1, 0);
+    }
+    const auto curve = detail::hermite_curve(polygon, detail::smooth_slopes(polygon));
+    for (std::size_t k = 0; k < curve.size(); ++k) {
+      const auto& q = curve[k];
+      CHECK((q.value(0) - waypoints[k]).norm() < 1e-14);
+      CHECK((q.value(q.length) - waypoints[k + 1]).norm() < 1e-13);
+      if (k + 1 < curve.size()) {
+        CHECK((q.first(q.length) - curve[k + 1].first(0)).norm() < 1e-12);
+        CHECK((q.second(q.length) - curve[k + 1].second(0)).norm() < 1e-12);
+      }
+    }
+    const auto& last = curve.back();
+    if (has_rates) {
+      CHECK((curve[0].first(0) - polygon.first_slope).norm() < 1e-15);
+      CHECK((last.first(last.length) - polygon.last_slope).norm() < 1e-13);
+    } else {
+      CHECK(curve[0].second(0).norm() < 1e-13);
+      CHECK(last.second(last.length).norm() < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("starts and ends in motion") {
+  const std::vector<vector> waypoints{vector(0, 1, 0), vector(1, .5, .3), vector(2, .7, -.2)};
+  const vector v(1, 1, 1), a(2, 3, 4);
+  time_options options{.parts = 60};
+  const double from_rest = time_parametrised(waypoints, v, a, options).duration();
+  options.initial_rates = {.5, -.2, .1};
+  options.final_rates = {.3, .1, -.2};
+  const auto q = time_parametrised(waypoints, v, a, options);
+  CHECK(q.duration() < from_rest);
+  CHECK((q(0).velocity - vector(.5, -.2, .1)).norm() < 1e-12);
+  CHECK((q(q.duration()).velocity - vector(.3, .1, -.2)).norm() < 1e-12);
+  CHECK((q(0).value - waypoints[0]).norm() < 1e-12);
+  CHECK((q(q.duration()).value - waypoints[2]).norm() < 1e-12);
+  check_shares(q, v, a);
+
+  // Rates of 0 are rest.
+  options.initial_rates = {0, 0, 0};
+  options.final_rates = {};
+  CHECK(time_parametrised(waypoints, v, a, options).duration() == from_rest);
+
+  // Too fast to slow down; with what is said to be possible it is, a little faster not.
+  for (const bool at_end : {false, true}) {
+    CAPTURE(at_end);
+    const std::vector<vector> short_way{vector(0, 0, 0), vector(.02, 0, 0)};
+    auto& rates = at_end ? options.final_rates : options.initial_rates;
+    auto& other = at_end ? options.initial_rates : options.final_rates;
+    other.clear();
+    rates = {.9, 0, 0};
+    const auto message =
+        duet_test::message_of([&] { (void)time_parametrised(short_way, v, a, options); });
+    const std::string before = std::string("duet: time_parametrised: the ") +
+                               (at_end ? "final" : "initial") + " rates are too fast: at most ";
+    REQUIRE(message.substr(0, before.size()) == before);
+    const double part = std::stod(message.substr(before.size()));
+    CHECK(message.substr(message.find(" of")) == " of them can be kept");
+    rates[0] = .9 * part;
+    CHECK(time_parametrised(short_way, v, a, options).duration() > 0);
+    rates[0] = .9 * part * 1.003;
+    CHECK_THROWS_AS((void)time_parametrised(short_way, v, a, options), invalid_input);
+    // v² = 2 a s
+    CHECK(.9 * part == doctest::Approx(std::sqrt(2 * 2 * .02)).epsilon(1e-3));
+  }
+  CHECK_THROWS_WITH_AS((void)time_parametrised(waypoints, v, a, {.initial_rates = {1, 2}}),
+                       "duet: time_parametrised: 2 initial rates for 3 joints", invalid_input);
+  CHECK_THROWS_WITH_AS((void)time_parametrised(waypoints, v, a, {.final_rates = {1, 2, NAN}}),
+                       "duet: time_parametrised: the final rates are not finite", invalid_input);
+  const std::vector<vector> still{vector(0, 0, 0), vector(0, 0, 0)};
+  CHECK_THROWS_AS((void)time_parametrised(still, v, a, {.initial_rates = {1, 2, 3}}),
+                  invalid_input);
+  // Faster than a joint may be.
+  CHECK_THROWS_WITH_AS((void)time_parametrised(waypoints, v, a, {.initial_rates = {2, 0, 0}}),
+                       doctest::Contains("the initial rates are too fast: at most 0."),
+                       invalid_input);
+}
+
+TEST_CASE("a smooth curve stays within ranges that all waypoints keep") {
+  duet_test::random_source random(9);
+  const vector none = vector::Constant(INFINITY), one(1, 1, 1);
+  int beyond = 0;
+  for (int k = 0; k < 300; ++k) {
+    std::vector<vector> waypoints;
+    vector here(0, 0, 0);
+    for (int i = random.integer(2, 15); i >= 0; --i) {
+      const vector step(random.normal(), random.normal(), random.normal());
+      here = (here + random.magnitude(.01, 2) * step).cwiseMin(1).cwiseMax(-1);
+      waypoints.push_back(here);
+    }
+    const detail::joint_polygon<vector> polygon(waypoints);
+    const auto smooth = detail::smooth_slopes(polygon);
+    const detail::timing_problem<3> problem{polygon, waypoints.size(), none, one, 0, 0, 1, -one,
+                                            one};
+    const auto largest = [&](const std::vector<vector>& slopes) {
+      double result = 0;
+      for (const auto& q : detail::hermite_curve(polygon, slopes)) {
+        for (int i = 0; i <= 20; ++i) {
+          result = std::max(result, q.value(q.length * i / 20).cwiseAbs().maxCoeff());
+        }
+      }
+      return result;
+    };
+    beyond += largest(smooth) > 1.001;
+    CHECK(largest(detail::slopes_within_ranges(problem, smooth)) < 1 + 1e-11);
+  }
+  CHECK(beyond > 100);
+}
+
+TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
+  std::array<joint<>, 3> joints;
+  for (std::size_t i = 0; i < 3; ++i) {
+    joints[i].limits = {-1, 1, double(i) + 1};
+  }
+  const serial_chain<3> chain(joints);
+  const vector a(9, 9, 9);
+  motion_plan<3> plan;
+  plan.joints = {vector(0, 0, 0), vector(.9, .2, .1), vector(.5, .4, .2), vector(.2, .8, .7)};
+  const auto q = time_parametrised(chain, plan, a);
+  const vector v(1, 2, 3);
+  CHECK(check_shares(q, v, a) > .99);
+  CHECK(q.duration() == time_parametrised(plan, v, a, {.curve = joint_curve::smooth}).duration());
+  CHECK(q.duration() == time_parametrised(chain, plan.joints, a).duration());
+  CHECK(time_parametrised(chain, plan, a, {.curve = joint_curve::monotone}).duration() ==
+        time_parametrised(plan, v, a).duration());
+
+  // The first joint turns back at its limit: beyond it on the spline.
+  plan.joints[1][0] = 1;
+  plan.joints[3][1] = 1;
+  const auto largest = [](const auto& motion) {
+    vector result = motion(0).value;
+    for (int i = 0; i <= 3000; ++i) {
+      result = result.cwiseMax(motion(motion.duration() * i / 3000).value);
+    }
+    return result;
+  };
+  CHECK(largest(time_parametrised(plan, v, a, {.curve = joint_curve::smooth}))[0] > 1.01);
+  CHECK(largest(time_parametrised(chain, plan, a)).maxCoeff() < 1 + 1e-12);
+  // From its limit on outwards: on every curve.
+  plan.joints[0][0] = 1;
+  plan.joints[1][0] = .8;
+  for (const auto kind : {joint_curve::smooth, joint_curve::monotone}) {
+    const auto message = duet_test::message_of([&] {
+      (void)time_parametrised(chain, plan, a, {.initial_rates = {.1, 0, 0}, .curve = kind});
+    });
+    CHECK(message.find("duet: time_parametrised: between waypoints 0 and 1 joint 0 would be 0.0") ==
+          0);
+    CHECK(message.find(" outside its limits, by its rate at an end") != std::string::npos);
+    CHECK(time_parametrised(plan, v, a, {.initial_rates = {.1, 0, 0}, .curve = kind}).duration() >
+          0);
+  }
+  CHECK_THROWS_AS((void)time_parametrised(chain, std::vector<Eigen::Vector2d>{{0, 0}, {1, 1}},
+                                          Eigen::Vector2d(1, 1)),
                   invalid_input);
 }
 

@@ -60,7 +60,7 @@ struct timed_piece {
 
 } // namespace detail
 
-/// Joint coordinates as a function of time, once continuously differentiable, at rest at both ends.
+/// Joint coordinates as a function of time, once continuously differentiable.
 ///
 /// \tparam N  as of `serial_chain`
 template <int N>

@@ -1,0 +1,321 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+/// \file
+/// How near `time_parametrised` comes to the quickest motion. Durations are compared with those
+/// that sampled limits allow on 20 000 parts and more of the same curve, and of natural splines.
+/// Prints the table of docs/time_parametrisation.md; how many seeds of each family may be said:
+/// build/bench/bench/duet_time_parametrisation_bench 10
+
+#include <duet/core/random_source.hpp>
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/planning/time_parametrised.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using vector = duet::detail::joint_vector<double, -16>;
+using curve = std::vector<duet::detail::joint_cubic<vector>>;
+using duet::random_source;
+
+struct problem {
+  std::vector<vector> waypoints;
+  vector velocity, acceleration;
+};
+
+vector normal(random_source& random, int n = 7) {
+  vector result(n);
+  for (double& x : result) {
+    x = random.normal();
+  }
+  return result;
+}
+
+/// To goals whose joints are within 0.5 rad of those of starts in the middle of the ranges.
+template <class C>
+std::vector<vector> plan(const C& arm, random_source& random) {
+  for (;;) {
+    vector start(arm.size()), end(arm.size());
+    for (int i = 0; i < arm.size(); ++i) {
+      const auto& limits = arm.limits(i);
+      const double half = std::min(2.0, .8 * (limits.upper - limits.lower) / 2 - .5);
+      start[i] = (limits.lower + limits.upper) / 2 + half * random.uniform(-1, 1);
+      end[i] = start[i] + random.uniform(-.5, .5);
+    }
+    const auto found = duet::plan_screw_motion(arm, start, arm.pose(end));
+    if (found.reason == duet::stop_reason::reached) {
+      return {found.joints.begin(), found.joints.end()};
+    }
+  }
+}
+
+/// `count` points, each `step(k)` from the one before.
+template <class Step>
+std::vector<vector> walk(int count, const Step& step) {
+  std::vector<vector> result{vector::Zero(7)};
+  for (int k = 1; k < count; ++k) {
+    result.push_back(result.back() + step(k));
+  }
+  return result;
+}
+
+struct family {
+  const char* name;
+  std::vector<vector> (*waypoints)(random_source&);
+};
+
+const std::array families{
+    family{"plans of a Panda", [](random_source& r) { return plan(duet::robots::panda(), r); }},
+    family{"plans of an iiwa", [](random_source& r) { return plan(duet::robots::iiwa14(), r); }},
+    family{"plans of a UR5e", [](random_source& r) { return plan(duet::robots::ur5e(), r); }},
+    family{"random walks",
+           [](random_source& r) { return walk(r.integer(2, 20), [&](int) { return normal(r); }); }},
+    family{"all joints turn back",
+           [](random_source& r) {
+             const vector way = normal(r);
+             return walk(r.integer(3, 12), [&](int k) {
+               return vector((k % 2 == 0 ? -1 : 1) * r.uniform(.3, 1) * way);
+             });
+           }},
+    family{"one joint after another",
+           [](random_source& r) {
+             return walk(r.integer(3, 12), [&](int) {
+               return vector(r.normal() * vector::Unit(7, r.integer(0, 6)));
+             });
+           }},
+    family{"nearly straight",
+           [](random_source& r) {
+             const vector way = normal(r);
+             const double off = r.magnitude(1e-9, 1e-2);
+             return walk(r.integer(3, 20),
+                         [&](int) { return vector(r.uniform(.01, 1) * way + off * normal(r)); });
+           }},
+    family{"unequal, 1e-5 to 1",
+           [](random_source& r) {
+             return walk(r.integer(3, 20),
+                         [&](int) { return vector(r.magnitude(1e-5, 1) * normal(r)); });
+           }},
+    family{"tiny, 1e-6 to 1e-3",
+           [](random_source& r) {
+             const double size = r.magnitude(1e-6, 1e-3);
+             return walk(r.integer(2, 20), [&](int) { return vector(size * normal(r)); });
+           }},
+    family{"closed curves",
+           [](random_source& r) {
+             const int n = r.integer(10, 80);
+             const vector a = normal(r), b = normal(r), c = normal(r);
+             std::vector<vector> result;
+             for (int i = 0; i <= n; ++i) {
+               const double x = 6.283185307179586 * i / n;
+               result.push_back(std::sin(x) * a + std::cos(x) * b + std::sin(2 * x) * c);
+             }
+             return result;
+           }},
+    family{"small steps aside", [](random_source& r) {
+             const vector way = normal(r);
+             return walk(r.integer(4, 15), [&](int k) {
+               return k % 3 == 2 ? vector(r.magnitude(1e-4, 1e-1) * normal(r))
+                                 : vector(r.uniform(.3, 1) * way);
+             });
+           }}};
+
+problem problem_of(const family& kind, unsigned seed) {
+  random_source random(seed);
+  problem result;
+  result.waypoints = kind.waypoints(random);
+  const Eigen::Index n = result.waypoints[0].size();
+  result.velocity.resize(n);
+  result.acceleration.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    result.velocity[i] = random.uniform(.5, 3);
+    result.acceleration[i] = random.uniform(1, 15);
+  }
+  return result;
+}
+
+curve monotone(const problem& p) {
+  const duet::detail::joint_polygon<vector> polygon(p.waypoints);
+  return duet::detail::hermite_curve(polygon, duet::detail::monotone_slopes(polygon));
+}
+
+/// The natural spline over the length of the polygon, by its second derivatives.
+curve natural(const problem& p) {
+  std::vector<vector> points;
+  for (const vector& each : p.waypoints) {
+    if (points.empty() || (each - points.back()).norm() > 1e-12) {
+      points.push_back(each);
+    }
+  }
+  const Eigen::Index m = Eigen::Index(points.size()) - 1, n = points[0].size();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(m + 1, m + 1);
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(m + 1, n);
+  std::vector<double> h;
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    h.push_back((points[k + 1] - points[k]).norm());
+  }
+  for (Eigen::Index k = 1; k < m; ++k) {
+    const auto i = std::size_t(k);
+    matrix.row(k).segment(k - 1, 3) << h[i - 1], 2 * (h[i - 1] + h[i]), h[i];
+    right.row(k) =
+        6 * ((points[i + 1] - points[i]) / h[i] - (points[i] - points[i - 1]) / h[i - 1]);
+  }
+  const Eigen::MatrixXd second = matrix.partialPivLu().solve(right);
+  curve result;
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    const vector a = second.row(Eigen::Index(k)), b = second.row(Eigen::Index(k) + 1);
+    result.push_back({points[k],
+                      vector((points[k + 1] - points[k]) / h[k] - h[k] / 6 * (2 * a + b)),
+                      vector(a / 2), vector((b - a) / (6 * h[k])), h[k]});
+  }
+  return result;
+}
+
+/// The shortest time along a curve with the limits sampled at both ends of each of 20 000 parts or
+/// more, 400 between waypoints, by bisection.
+double reference(const curve& path, const vector& velocity, const vector& acceleration) {
+  double length = 0;
+  for (const auto& edge : path) {
+    length += edge.length;
+  }
+  struct part {
+    double h, cap_0, cap_1;
+    std::vector<std::array<double, 3>> bounds; // |a x + b y| ≤ c
+  };
+  std::vector<part> parts;
+  for (const auto& edge : path) {
+    const int count = std::max(400, int(20000 * edge.length / length));
+    for (int i = 0; i < count; ++i) {
+      part next{edge.length / count, 1e100, 1e100, {}};
+      for (const int end : {0, 1}) {
+        const double s = edge.length * (i + end) / count;
+        const vector first = edge.first(s), second = edge.second(s);
+        double& cap = end == 0 ? next.cap_0 : next.cap_1;
+        for (Eigen::Index j = 0; j < first.size(); ++j) {
+          const double change = first[j] / (2 * next.h);
+          next.bounds.push_back({(end == 0 ? second[j] : 0) - change,
+                                 (end == 1 ? second[j] : 0) + change, acceleration[j]});
+          cap = std::min(cap, std::pow(velocity[j] / std::max(std::abs(first[j]), 1e-50), 2));
+        }
+      }
+      parts.push_back(std::move(next));
+    }
+  }
+  const auto range = [](const part& at, double x, double most) {
+    double low = 0, high = most;
+    for (const auto& [a, b, c] : at.bounds) {
+      const double middle = -a * x / b, reach = std::abs(c / b);
+      if (b != 0) {
+        low = std::max(low, middle - reach);
+        high = std::min(high, middle + reach);
+      } else if (std::abs(a) * x > c) {
+        high = -1;
+      }
+    }
+    return std::pair(low, high);
+  };
+  const std::size_t n = parts.size();
+  std::vector<double> most(n + 1, 0.0);
+  for (std::size_t i = n; i-- > 1;) {
+    double low = 0, high = std::min(parts[i].cap_0, parts[i - 1].cap_1);
+    const auto is_allowed = [&](double x) {
+      const auto [from, to] = range(parts[i], x, most[i + 1]);
+      return from <= to;
+    };
+    if (!is_allowed(high)) {
+      while (high - low > 1e-12 * high) {
+        const double middle = (low + high) / 2;
+        (is_allowed(middle) ? low : high) = middle;
+      }
+    } else {
+      low = high;
+    }
+    most[i] = low;
+  }
+  double time = 0, x = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double next = std::max(0.0, range(parts[i], x, most[i + 1]).second);
+    time += 2 * parts[i].h / (std::sqrt(x) + std::sqrt(next));
+    x = next;
+  }
+  return time;
+}
+
+struct statistics {
+  double sum = 0, worst = 0;
+  unsigned seed = 0;
+  void add(double x, unsigned of) {
+    sum += x;
+    if (x > worst) {
+      worst = x;
+      seed = of;
+    }
+  }
+};
+
+/// The median of what calls take, in microseconds.
+class stopwatch {
+public:
+  template <class F>
+  auto of(const F& f) {
+    const auto before = std::chrono::steady_clock::now();
+    auto result = f();
+    const std::chrono::duration<double, std::micro> time =
+        std::chrono::steady_clock::now() - before;
+    times_.push_back(time.count());
+    return result;
+  }
+  double median() {
+    const auto middle = times_.begin() + std::ptrdiff_t(times_.size() / 2);
+    std::nth_element(times_.begin(), middle, times_.end());
+    return *middle;
+  }
+
+private:
+  std::vector<double> times_;
+};
+
+void compare(unsigned seeds) {
+  std::printf(
+      "| | same curve | worst (seed) | natural spline | worst (seed) | `smooth` | worst (seed) "
+      "| µs |\n|---|---|---|---|---|---|---|---|\n");
+  for (const family& kind : families) {
+    statistics same, spline, smooth;
+    stopwatch watch;
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+      const problem p = problem_of(kind, seed);
+      const auto timed = [&](const duet::time_options& options) {
+        return duet::time_parametrised(p.waypoints, p.velocity, p.acceleration, options).duration();
+      };
+      const double by_natural = reference(natural(p), p.velocity, p.acceleration);
+      const double time = watch.of([&] { return timed({}); });
+      same.add(time / reference(monotone(p), p.velocity, p.acceleration), seed);
+      spline.add(time / by_natural, seed);
+      smooth.add(timed({.curve = duet::joint_curve::smooth}) / by_natural, seed);
+    }
+    std::printf("| %s ", kind.name);
+    for (const statistics& each : {same, spline, smooth}) {
+      std::printf("| %.4f | %.4f (%u) ", each.sum / seeds, each.worst, each.seed);
+    }
+    std::printf("| %.0f |\n", watch.median());
+    std::fflush(stdout);
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  const unsigned seeds = argc > 1 ? unsigned(std::atoi(argv[1])) : 100;
+  compare(seeds);
+}

@@ -1,0 +1,197 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/joint_trajectory.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+/// \file
+/// How fast a path may be followed: the largest x = ṡ² in the phase plane of s and ṡ, under limits
+/// of velocity and acceleration. For those who extend duet.
+
+namespace duet::detail {
+
+/// |y + slope x| ≤ reach, of x = ṡ² at the beginning of a part of a path and y at its end.
+struct speed_bound {
+  double slope, reach;
+};
+
+/// Which y from `least` to `most` keep all bounds together with an x: from the value of one line at
+/// x to that of another.
+struct next_speeds {
+  struct line {
+    double at_zero, slope, value;
+  };
+  line least, most;
+
+  next_speeds(std::span<const speed_bound> bounds, double x, double from, double to)
+      : least{from, 0, from}, most{to, 0, to} {
+    for (const auto& [slope, reach] : bounds) {
+      const double middle = -slope * x;
+      if (middle + reach < most.value) {
+        most = {reach, -slope, middle + reach};
+      }
+      if (middle - reach > least.value) {
+        least = {-reach, -slope, middle - reach};
+      }
+    }
+  }
+};
+
+/// The x nearest to a given one for which a y from `least` to `most` keeps all bounds; NaN if there
+/// is none. How many y there are is a concave function of x, to whose nearer zero Newton's method
+/// goes from outside without passing it, from where two lines cross to where two others do.
+[[nodiscard]] inline double nearest_speed(std::span<const speed_bound> bounds, double x,
+                                          double least, double most) {
+  for (double direction = 0;;) {
+    const next_speeds y(bounds, x, least, most);
+    if (y.least.value <= y.most.value) {
+      return x;
+    }
+    const double next = (y.most.at_zero - y.least.at_zero) / (y.least.slope - y.most.slope);
+    const double step = next - x;
+    if (!(step * direction > 0) && direction != 0) {
+      // There by rounding, or between the zeros of a function that has none.
+      return std::abs(step) <= 1e-9 * std::abs(x) ? x : std::numeric_limits<double>::quiet_NaN();
+    }
+    if (!(std::abs(step) < std::numeric_limits<double>::infinity())) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    direction = step > 0 ? 1 : -1;
+    x = next;
+  }
+}
+
+/// Bounds on ṡ² at the beginnings and ends of the parts of a path, between which it is linear in s.
+struct path_bounds {
+  std::vector<double> before, after; ///< the largest ṡ² there, by velocities
+  std::vector<speed_bound> bounds;   ///< as many for each part
+  std::size_t bounds_each;
+
+  explicit path_bounds(Eigen::Index joints) : bounds_each(std::size_t(3 * joints)) {}
+
+  void reserve(std::size_t parts) {
+    before.reserve(parts);
+    after.reserve(parts);
+    bounds.reserve(parts * bounds_each);
+  }
+  [[nodiscard]] std::size_t size() const { return before.size(); }
+  [[nodiscard]] std::span<const speed_bound> of(std::size_t part) const {
+    return std::span(bounds).subspan(part * bounds_each, bounds_each);
+  }
+  /// Bounds that keep velocities and accelerations all along a part. With ṡ² linear in s the
+  /// acceleration q' s̈ + q'' ṡ² is of second degree, and so between its Bernstein coefficients,
+  /// which are linear in both ṡ².
+  template <class V>
+  void add(const joint_cubic<V>& q, const V& velocity, const V& acceleration) {
+    before.push_back(1e100);
+    after.push_back(1e100);
+    const std::array<V, 3> slopes{q.first(0), V(q.c1 + q.length * q.c2), q.first(q.length)};
+    const V second = q.second(0), last = q.second(q.length);
+    const double half = 1 / (2 * q.length); // s̈ = (y − x) / (2 length)
+    std::size_t at = bounds.size();
+    bounds.resize(at + bounds_each);
+    for (Eigen::Index i = 0; i < second.size(); ++i) {
+      const std::array<double, 3> p{slopes[0][i], slopes[1][i], slopes[2][i]};
+      keep_velocity(p, velocity[i]);
+      bounds[at++] = bound(second[i] - p[0] * half, p[0] * half, acceleration[i]);
+      bounds[at++] = bound(last[i] / 2 - p[1] * half, second[i] / 2 + p[1] * half, acceleration[i]);
+      bounds[at++] = bound(-p[2] * half, last[i] + p[2] * half, acceleration[i]);
+    }
+  }
+
+private:
+  /// |a x + b y| ≤ c
+  [[nodiscard]] speed_bound bound(double a, double b, double c) {
+    if (std::abs(b) > 1e-12 * std::abs(a)) [[likely]] {
+      const double inverse = 1 / b;
+      return {a * inverse, c * std::abs(inverse)};
+    }
+    before.back() = std::min(before.back(), c / std::max(std::abs(a), 1e-100));
+    return {0, std::numeric_limits<double>::infinity()};
+  }
+  /// Where |q'| is below a line from l to r l, ṡ² may be below (limit / line)², which is a convex
+  /// function, and above its chord divided by the largest ratio of the two. That is at
+  /// (2 r + 1) / (3 r + 3) of the part.
+  void keep_velocity(const std::array<double, 3>& p, double limit) {
+    const double l_0 = std::abs(p[0]), l_1 = std::abs(p[1]), l_2 = std::abs(p[2]);
+    double at_start = limit / std::max({l_0, l_1, l_2, 1e-50}), at_end = at_start; // ṡ
+    if (at_start * at_start >= std::max(before.back(), after.back())) {
+      return;
+    }
+    const double over = std::max(0.0, l_1 - (l_0 + l_2) / 2);
+    const double x_0 = l_0 + over, x_1 = l_2 + over, r = x_1 / x_0;
+    // Where it changes much in a part, the largest of it serves better.
+    if (r > .5 && r < 2) {
+      const double u = (2 * r + 1) / (3 * r + 3), line = 1 + (r - 1) * u;
+      const double ratio = line * std::sqrt(1 + (1 / (r * r) - 1) * u);
+      at_start = limit / (x_0 * ratio);
+      at_end = limit / (x_1 * ratio);
+    }
+    before.back() = std::min(before.back(), at_start * at_start);
+    after.back() = std::min(after.back(), at_end * at_end);
+  }
+};
+
+/// The largest ṡ² with which a path may begin or end, where it can't do so as it is told.
+struct speed_refusal {
+  bool at_start = false, at_end = false;
+  double largest = 0;
+};
+
+/// The fastest ṡ² at the ends of all parts: backwards, between which the given end can be reached;
+/// forwards, as fast as that and the bounds allow.
+/// \param refusal  what is not possible; then the result has no meaning
+[[nodiscard]] inline std::vector<double> path_speeds(const path_bounds& path, double first,
+                                                     double last, speed_refusal& refusal) {
+  const std::size_t n = path.size();
+  const auto cap = [&](std::size_t i) {
+    return std::min(i < n ? path.before[i] : path.after[n - 1],
+                    i > 0 ? path.after[i - 1] : path.before[0]);
+  };
+  std::vector<double> most(n + 1), least(n + 1), speeds(n + 1);
+  const auto backwards = [&](double lowest, double highest) {
+    most[n] = highest;
+    least[n] = lowest;
+    for (std::size_t i = n; i-- > 0;) {
+      most[i] = nearest_speed(path.of(i), cap(i), least[i + 1], most[i + 1]);
+      if (most[i] > cap(i)) {
+        most[i] = std::numeric_limits<double>::quiet_NaN();
+      }
+      least[i] = least[i + 1] > 0 ? nearest_speed(path.of(i), 0, least[i + 1], most[i + 1]) : 0;
+    }
+  };
+  const auto forwards = [&] {
+    speeds[0] = first;
+    for (std::size_t i = 0; i < n; ++i) {
+      speeds[i + 1] =
+          std::max(0.0, next_speeds(path.of(i), speeds[i], least[i + 1], most[i + 1]).most.value);
+    }
+    return speeds[n];
+  };
+  constexpr double tolerance = 1 + 1e-9;
+  backwards(last, last);
+  if (first <= most[0] * tolerance && first * tolerance >= least[0] && last <= cap(n) * tolerance) {
+    forwards();
+    return speeds;
+  }
+  backwards(0, std::min(last, cap(n)));
+  if (first > most[0] * tolerance) {
+    refusal = {true, false, most[0]};
+  } else {
+    backwards(0, cap(n));
+    refusal = {false, true, forwards()};
+  }
+  return speeds;
+}
+
+} // namespace duet::detail

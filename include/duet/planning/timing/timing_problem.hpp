@@ -1,0 +1,130 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/planning/joint_trajectory.hpp>
+#include <duet/planning/timing/joint_paths.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+/// \file
+/// What `time_parametrised` is asked, looked through. For those who extend duet.
+
+namespace duet::detail {
+
+/// Waypoints and limits, in numbers that can be used.
+template <int N>
+struct timing_problem {
+  using vector = joint_vector<double, N>;
+
+  joint_polygon<vector> polygon;
+  std::size_t waypoints;
+  vector velocity, acceleration;
+  double initial_speed = 0, final_speed = 0; ///< ṡ
+  int parts;
+  vector lower, upper; ///< where joints may be on the curve, infinite where that is not asked
+};
+
+template <class L>
+[[nodiscard]] auto rate_limits(const L& limits, const char* name, Eigen::Index n,
+                               bool may_be_infinite) {
+  using argument = vector_argument<L>;
+  require(argument::size(limits) == n, "duet: time_parametrised: ", argument::size(limits), " ",
+          name, " limits for ", n, " joints");
+  Eigen::VectorXd result(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double x = argument::get(limits, i);
+    require(x > 0 && (may_be_infinite || x - x == 0), "duet: time_parametrised: the ", name,
+            " limit of joint ", i, " is ", x);
+    result[i] = x;
+  }
+  return result;
+}
+
+/// The speed along a path whose slope at an end becomes the direction of given rates.
+template <class V>
+[[nodiscard]] double speed_of(const std::vector<double>& rates, const char* which, V& slope) {
+  if (rates.empty()) {
+    return 0;
+  }
+  require(Eigen::Index(rates.size()) == slope.size(), "duet: time_parametrised: ", rates.size(),
+          " ", which, " rates for ", slope.size(), " joints");
+  const V given = Eigen::Map<const Eigen::VectorXd>(rates.data(), slope.size());
+  const double speed = given.norm();
+  require(speed - speed == 0, "duet: time_parametrised: the ", which, " rates are not finite");
+  if (speed > 0) {
+    slope = given / speed;
+  }
+  return speed;
+}
+
+template <class V, class Velocity, class Acceleration, class Options>
+[[nodiscard]] auto timing_problem_of(const std::vector<V>& waypoints, const Velocity& velocity,
+                                     const Acceleration& acceleration, const Options& options) {
+  constexpr int joints = V::RowsAtCompileTime > 0 ? V::RowsAtCompileTime : -V::MaxRowsAtCompileTime;
+  using problem = timing_problem<joints>;
+  using vector = typename problem::vector;
+  require(!waypoints.empty(), "duet: time_parametrised: no waypoints");
+  const Eigen::Index n = waypoints.front().size();
+  const vector v = rate_limits(velocity, "velocity", n, true);
+  const vector a = rate_limits(acceleration, "acceleration", n, false);
+  const vector none = vector::Constant(n, std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < waypoints.size(); ++k) {
+    require(waypoints[k].size() == n && waypoints[k].allFinite(),
+            "duet: time_parametrised: waypoint ", k, " is not finite or of another size");
+  }
+  require(options.parts >= 1, "duet: time_parametrised: ", options.parts, " parts");
+  problem result{
+      joint_polygon<vector>(waypoints), waypoints.size(), v, a, 0, 0, options.parts, -none, none};
+  result.initial_speed = speed_of(options.initial_rates, "initial", result.polygon.first_slope);
+  result.final_speed = speed_of(options.final_rates, "final", result.polygon.last_slope);
+  require(result.polygon.edges() > 0 || (result.initial_speed == 0 && result.final_speed == 0),
+          "duet: time_parametrised: all waypoints are in one place: there is no way to be fast on");
+  return result;
+}
+
+/// Given slopes, but at the ends of edges on which a joint would leave its range: there those of
+/// the monotone curve.
+/// \throws invalid_input where a joint leaves its range although, by its rate at an end
+template <int N>
+[[nodiscard]] auto slopes_within_ranges(const timing_problem<N>& problem,
+                                        std::vector<joint_vector<double, N>> slopes) {
+  const auto& polygon = problem.polygon;
+  const auto safe = monotone_slopes(polygon);
+  for (bool is_new = true; is_new;) {
+    is_new = false;
+    const auto before = slopes;
+    const auto curve = hermite_curve(polygon, before);
+    for (std::size_t k = 0; k < curve.size(); ++k) {
+      for (Eigen::Index i = 0; i < problem.lower.size(); ++i) {
+        const double from = polygon.points[k][i], to = polygon.points[k + 1][i];
+        const double outside = excess(curve[k], i, std::min({problem.lower[i], from, to}),
+                                      std::max({problem.upper[i], from, to}));
+        if (outside <= 1e-12 * (1 + std::abs(from))) {
+          continue;
+        }
+        if (before[k][i] == safe[k][i] && before[k + 1][i] == safe[k + 1][i]) {
+          const auto given = std::upper_bound(polygon.given_at.begin(), polygon.given_at.end(),
+                                              polygon.s[k] + polygon.length(k) / 2) -
+                             polygon.given_at.begin();
+          raise(invalid_input(message("duet: time_parametrised: between waypoints ", given - 1,
+                                      " and ", given, " joint ", i, " would be ", outside,
+                                      " outside its limits, by its rate at an end")));
+        }
+        slopes[k][i] = safe[k][i];
+        slopes[k + 1][i] = safe[k + 1][i];
+        is_new = true;
+      }
+    }
+  }
+  return slopes;
+}
+
+} // namespace duet::detail
