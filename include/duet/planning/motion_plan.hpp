@@ -77,7 +77,7 @@ enum class stop_reason {
   reached,         ///< the tip is at the goal
   joint_limit,     ///< the way on leads beyond the limits of a joint
   singular,        ///< the way on leads through a singularity
-  obstacle,        ///< the way on leads too close to an obstacle
+  obstacle,        ///< the way on leads too close to an obstacle, or a link to another
   no_progress,     ///< steps became too small, for none of these reasons
   iteration_limit, ///< the number of iterations that was allowed is used up
   out_of_reach,    ///< the goal is farther away than the links reach
