@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
 /// \file
 /// The least step of the joints for a small twist of the tip that keeps the joints within limits.
@@ -62,24 +61,32 @@ template <class J, class V>
   return e;
 }
 
+/// How J Jᵀ is damped: by λ, and where the smallest singular value σ is below a threshold by
+/// (threshold − σ)².
+struct damping {
+  double threshold = damping_threshold;
+  double lambda = 0;
+};
+
 /// J Jᵀ with as much damping as a small singular value of J asks for.
 class damped_gram {
 public:
-  explicit damped_gram(const gram_matrix& gram) : factors_(gram) {
+  explicit damped_gram(const gram_matrix& gram, const damping& how = {})
+      : factors_(how.lambda > 0 ? damped(gram, how.lambda) : cholesky<gram_matrix>(gram)) {
+    if (how.threshold == 0) {
+      return;
+    }
     // The smallest eigenvalue from above: Rayleigh's quotient after two inverse iterations.
     if (factors_.is_positive()) {
       const auto once = factors_.solve(small_twist{{1, 1, 1, 1, 1, 1}});
       const auto twice = factors_.solve(once);
       smallest_ = std::sqrt(std::max(0.0, dot(once, twice) / dot(twice, twice)));
     }
-    if (smallest_ < damping_threshold) {
-      const double missing = 1 - smallest_ / damping_threshold;
-      const double damping = missing * damping_threshold;
-      factors_ = damped(gram, damping * damping);
+    if (smallest_ < how.threshold) {
+      const double missing = how.threshold - smallest_;
+      factors_ = damped(gram, missing * missing);
     }
   }
-  /// J Jᵀ + λ.
-  damped_gram(const gram_matrix& gram, double lambda) : factors_(damped(gram, lambda)) {}
 
   template <class V>
   [[nodiscard]] V solve(const V& e) const {
@@ -103,17 +110,17 @@ private:
 template <class V>
 struct bounded_step_result {
   V step;
-  double smallest_singular_value; ///< of all joints, 0 where λ was given
+  double smallest_singular_value; ///< of all joints, 0 where there is no threshold
   bool is_bounded;                ///< did a limit hold a joint back?
 };
 
-/// The least Δ with J Δ = e and lower ≤ Δ ≤ upper. Joints that would go beyond a bound are put onto
-/// it, the worst one first, and the others make up for them as far as they can.
-/// \param lambda  the damping, Δ = Jᵀ(J Jᵀ + λ)⁻¹ e; without, as much as near singularities
+/// The least Δ with J Δ = e and lower ≤ Δ ≤ upper, damped Jᵀ(J Jᵀ + λ)⁻¹ e. Joints that would go
+/// beyond a bound are put onto it, the worst one first, and the others make up for them as far as
+/// they can.
 template <int N>
 [[nodiscard]] bounded_step_result<small_vector<N>>
 bounded_step(const small_matrix<6, N>& jacobian, const small_twist& e, const small_vector<N>& lower,
-             const small_vector<N>& upper, const std::optional<double>& lambda = {}) {
+             const small_vector<N>& upper, const damping& how = {}) {
   const std::ptrdiff_t n = jacobian.cols();
   std::array<bool, std::size_t(N)> is_fixed{};
   bounded_step_result<small_vector<N>> result{{}, 0, false};
@@ -127,7 +134,7 @@ bounded_step(const small_matrix<6, N>& jacobian, const small_twist& e, const sma
         add_square(gram, jacobian, i);
       }
     }
-    const auto factors = lambda ? damped_gram(gram, *lambda) : damped_gram(gram);
+    const damped_gram factors(gram, how);
     if (round == 0) {
       result.smallest_singular_value = factors.smallest();
     }

@@ -155,7 +155,7 @@ private:
       down[i] /= unit_[i];
       up[i] /= unit_[i];
     }
-    auto result = bounded_step(x.at.jacobian, x.e, down, up, lambda);
+    auto result = bounded_step(x.at.jacobian, x.e, down, up, {0, lambda});
     for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
       result.step[i] *= unit_[i];
     }

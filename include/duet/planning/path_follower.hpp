@@ -72,10 +72,16 @@ public:
 private:
   [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops_.back(); }
 
+  /// What joints do with the freedom that the tip leaves them.
+  struct wishes {
+    const vector* aim = nullptr; ///< where they should be at the end
+    bool lowers = false;         ///< do they lower the objectives?
+  };
+
   /// As far as possible without stopping.
   void go_on(route& x) {
     for (const double stop : stops_) {
-      if (stop > x.back().u && !travel(x, stop, (stop - x.back().u) / length_, nullptr)) {
+      if (stop > x.back().u && !travel(x, stop, (stop - x.back().u) / length_, {.lowers = true})) {
         return;
       }
     }
@@ -99,7 +105,10 @@ private:
     iterations_left_ = search.iterations_left();
     for (std::size_t i = 1; i < way.size(); ++i) {
       result.step = options_.search_step;
-      if (!travel(result, way[i].u, options_.search_step, &way[i].state.theta)) {
+      const vector& aim = way[i].state.theta;
+      const bool is_ahead =
+          !way[i].is_way_out && travel(result, way[i].u, options_.search_step, {&aim});
+      if (!is_ahead && !travel_back(result, way[i])) {
         return result;
       }
     }
@@ -123,12 +132,56 @@ private:
     return result;
   }
 
+  /// On to a configuration from the singular one before it: the way back from there leads to it,
+  /// and the joints get to where that ends in place.
+  [[nodiscard]] bool travel_back(route& x, const reachable<Room>& to) {
+    route back({to.state, to.u});
+    back.step = options_.search_step;
+    const double u = x.back().u;
+    if (!travel(back, u, options_.search_step, {})) {
+      x.reason = back.reason;
+      return false;
+    }
+    if (!arrive(x, back.back().state.theta)) {
+      return false;
+    }
+    if (excess_between(x.back(), back.back()) > 1) {
+      x.reason = stop_reason::singular;
+      return false;
+    }
+    x.waypoints.insert(x.waypoints.end(), back.waypoints.rbegin(), back.waypoints.rend());
+    x.step = options_.search_step;
+    return true;
+  }
+
+  /// In place, to a configuration or as near to it as the joints get.
+  [[nodiscard]] bool arrive(route& x, const vector& aim) {
+    for (double before = std::numeric_limits<double>::infinity();;) {
+      const double left = norm(aim - x.back().state.theta);
+      if (left < 1e-9 || !(left < .9 * before)) {
+        return true;
+      }
+      before = left;
+      if (!travel(x, x.back().u, options_.search_step, {&aim})) {
+        return false;
+      }
+    }
+  }
+
+  /// How many times the deviation is the tip off the path half way between two waypoints?
+  [[nodiscard]] double excess_between(const waypoint& a, const waypoint& b) const {
+    const vector middle = .5 * (a.state.theta + b.state.theta);
+    const pose_deviation half_way =
+        deviation_between(solver_.model.at(middle).tip, place_of(target_((a.u + b.u) / 2)));
+    return std::max(options_.deviation.times(half_way),
+                    solver_.model.shortfall(middle) / options_.deviation.length);
+  }
+
   /// On to the parameter `end`, in steps that keep the tip near the path between waypoints too.
   ///
   /// \param part  how much of the path that counts for
-  /// \param aim   where the joints should be at the end; nothing: they lower the objectives
   /// \return false where there is no going on
-  [[nodiscard]] bool travel(route& x, double end, double part, const vector* aim) {
+  [[nodiscard]] bool travel(route& x, double end, double part, const wishes& have) {
     const double begin = x.back().u;
     double way = 0; // 1 at the end
     while (way < 1) {
@@ -136,22 +189,25 @@ private:
       const double next = way + x.step / part > 1 - 1e-9 ? 1 : way + x.step / part;
       const double u = next == 1 ? end : begin + (end - begin) * next;
       const vector& theta = here.state.theta;
-      const vector wish = aim != nullptr ? (next - way) / (1 - way) * (*aim - theta)
-                                         : downhill(theta, (next - way) * part);
-      const auto there = solver_.approach(here.state, place_of(target_(u)), wish);
+      const vector wish = have.aim != nullptr ? (next - way) / (1 - way) * (*have.aim - theta)
+                          : have.lowers       ? downhill(theta, (next - way) * part)
+                                              : vector{};
+      auto there = solver_.approach(here.state, place_of(target_(u)), wish);
       iterations_left_ -= there.iterations;
+      if (have.lowers && there.smallest_singular_value < damping_threshold) {
+        // A wish takes the joints to where the path leads no further.
+        there = solver_.approach(here.state, place_of(target_(u)), {});
+        iterations_left_ -= there.iterations;
+      }
       double change = .25;
       if (there.is_within(options_.tolerance)) {
-        const vector middle = .5 * (theta + there.state.theta);
-        const pose_deviation half_way =
-            deviation_between(solver_.model.at(middle).tip, place_of(target_((here.u + u) / 2)));
-        const double excess = std::max(options_.deviation.times(half_way),
-                                       solver_.model.shortfall(middle) / options_.deviation.length);
+        const waypoint on{there.state, u, there.left, there.smallest_singular_value};
+        const double excess = excess_between(here, on);
         // Between waypoints the deviation grows with the square of the step.
         change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
         if (excess <= .95) { // half way is not quite where it is largest
           way = next;
-          x.waypoints.push_back({there.state, u, there.left, there.smallest_singular_value});
+          x.waypoints.push_back(on);
         }
       }
       x.step = std::min(options_.largest_step, x.step * change);

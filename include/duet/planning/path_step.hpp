@@ -63,11 +63,26 @@ struct pose_solver {
   pose_tolerance tolerance;
 
   /// From a state nearby, the step nearest to `wish` that takes the tip to the target to first
-  /// order, and then Newton's method by least steps. None leaves the limits.
+  /// order, and then Newton's method by least steps, without damping where that is in the way. None
+  /// leaves the limits.
   [[nodiscard]] attempt<Room> approach(const chain_state<Room>& from, const tip_place& target,
                                        const vector& wish) const {
+    constexpr double rounding = 1e-6;
+    auto result = approach(from, target, wish, damping_threshold);
+    if (result.smallest_singular_value < damping_threshold && !result.is_within(tolerance)) {
+      const int before = result.iterations;
+      result = approach(from, target, wish, rounding);
+      result.iterations += before;
+    }
+    return result;
+  }
+
+private:
+  /// \param threshold  of singular values, below which steps are damped
+  [[nodiscard]] attempt<Room> approach(const chain_state<Room>& from, const tip_place& target,
+                                       const vector& wish, double threshold) const {
     attempt<Room> result;
-    if (!move(result, from, error_twist(from.tip, target), wish)) {
+    if (!move(result, from, error_twist(from.tip, target), wish, threshold)) {
       result.state = from;
       return result;
     }
@@ -78,14 +93,13 @@ struct pose_solver {
       const double size = result.excess(tolerance);
       // What does not at least halve the error will not get there.
       if (size <= 1 || result.iterations == most || size > before / 2 ||
-          !move(result, result.state, error, {})) {
+          !move(result, result.state, error, {}, threshold)) {
         return result;
       }
       before = size;
     }
   }
 
-private:
   /// Rounding may have led beyond the limits.
   [[nodiscard]] vector within(vector theta) const {
     for (std::ptrdiff_t i = 0; i < theta.size(); ++i) {
@@ -97,7 +111,7 @@ private:
   /// The step nearest to `wish` that moves the tip by `e` to first order, from a state that may be
   /// that of x; false where obstacles leave none.
   [[nodiscard]] bool move(attempt<Room>& x, const chain_state<Room>& from, const small_twist& e,
-                          const vector& wish) const {
+                          const vector& wish, double threshold) const {
     ++x.iterations;
     const auto beside = model.step_beside(from, e, wish);
     x.smallest_singular_value = std::min(x.smallest_singular_value, beside.smallest_singular_value);
@@ -112,7 +126,8 @@ private:
     }
     const vector aim = within(from.theta + wish);
     const small_twist rest = what_is_left(e, from.jacobian, aim - from.theta);
-    const auto step = bounded_step(from.jacobian, rest, model.lower - aim, model.upper - aim);
+    const auto step =
+        bounded_step(from.jacobian, rest, model.lower - aim, model.upper - aim, {threshold});
     x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
     x.is_bounded = x.is_bounded || step.is_bounded;
     model.set(x.state, within(aim + step.step));

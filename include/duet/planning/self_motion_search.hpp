@@ -4,6 +4,7 @@
 #include <duet/planning/bounded_step.hpp>
 #include <duet/planning/path_step.hpp>
 #include <duet/planning/planning_model.hpp>
+#include <duet/planning/singularity.hpp>
 #include <duet/planning/small_vector.hpp>
 
 #include <algorithm>
@@ -17,33 +18,14 @@
 
 namespace duet::detail {
 
-/// The direction next to `wish`, of unit length, in which the joints move without the tip; zero
-/// where there is none.
-template <int Room>
-[[nodiscard]] small_vector<Room> self_motion_direction(const small_matrix<6, Room>& jacobian,
-                                                       small_vector<Room> wish) {
-  const cholesky gram(gram_of(jacobian));
-  for (int round = 0; round < 2; ++round) { // the second time for rounding
-    const small_twist force = gram.solve(what_is_left({}, jacobian, wish));
-    for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
-      wish[i] += column_dot(jacobian, i, force);
-    }
-    const double length = norm(wish);
-    if (!(length > 1e-3)) {
-      return {};
-    }
-    wish = 1 / length * wish;
-  }
-  return wish;
-}
-
 /// A configuration that can be reached, and from which: one at the same parameter, in place, or one
 /// before.
 template <int Room>
 struct reachable {
   chain_state<Room> state;
   double u;
-  std::ptrdiff_t from; ///< its number, −1 for none
+  std::ptrdiff_t from;     ///< its number, −1 for none
+  bool is_way_out = false; ///< is that one singular, and this one beside it?
 };
 
 /// Collects what is reachable, parameter by parameter.
@@ -74,10 +56,18 @@ public:
       const std::size_t end = found_.size();
       const tip_place target = place_of(target_(u[k]));
       for (std::size_t i = first; i < end && left_ > 0; ++i) {
-        const auto next = go(found_[i].state, found_[i].u, u[k], 3);
-        if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end)) {
-          found_.push_back({next.state, u[k], std::ptrdiff_t(i)});
-          follow(found_.size() - 1, target);
+        const chain_state<Room> here = found_[i].state;
+        const bool is_singular = smallest_singular_value_of(here.jacobian) < 10 * damping_threshold;
+        const auto add = [&](const attempt<Room>& next) {
+          if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
+              (!is_singular || leads(next.state, u[k], here, u[k - 1]))) {
+            found_.push_back({next.state, u[k], std::ptrdiff_t(i), is_singular});
+            follow(found_.size() - 1, target);
+          }
+        };
+        add(go(here, found_[i].u, u[k], 6));
+        if (is_singular) {
+          leave(here, target, add);
         }
       }
       if (found_.size() == end) {
@@ -105,7 +95,7 @@ private:
   /// On to another parameter, in up to 2^`halvings` steps.
   [[nodiscard]] attempt<Room> go(const chain_state<Room>& from, double u, double to, int halvings) {
     auto direct = tried(from, place_of(target_(to)), {});
-    const bool is_jump = norm(direct.state.theta - from.theta) > .5;
+    const bool is_jump = norm(direct.state.theta - from.theta) > .15;
     if ((direct.is_within(solver_.tolerance) && !is_jump) || halvings == 0) {
       if (is_jump) {
         direct.left.length = std::numeric_limits<double>::infinity();
@@ -115,6 +105,30 @@ private:
     const double middle = (u + to) / 2;
     auto half = go(from, u, middle, halvings - 1);
     return half.is_within(solver_.tolerance) ? go(half.state, middle, to, halvings - 1) : half;
+  }
+
+  /// Configurations for a target near that of a singular one, which lie to both sides of it.
+  template <class Add>
+  void leave(const chain_state<Room>& singular, const tip_place& target, const Add& add) {
+    const vector out = way_out(singular.jacobian);
+    const double way = norm(error_twist(singular.tip, target));
+    for (const double s : {way, -way, std::sqrt(way), -std::sqrt(way)}) {
+      vector beside = singular.theta + s * out;
+      for (std::ptrdiff_t i = 0; i < beside.size(); ++i) {
+        beside[i] = std::clamp(beside[i], solver_.model.lower[i], solver_.model.upper[i]);
+      }
+      const auto next = tried(solver_.model.at(beside), target, {});
+      if (norm(next.state.theta - singular.theta) < .5) {
+        add(next);
+      }
+    }
+  }
+
+  /// Does the way back lead to where a configuration is?
+  [[nodiscard]] bool leads(const chain_state<Room>& from, double u, const chain_state<Room>& to,
+                           double back) {
+    const auto end = go(from, u, back, 6);
+    return end.is_within(solver_.tolerance) && norm(end.state.theta - to.theta) < spacing_;
   }
 
   [[nodiscard]] bool is_known(const vector& theta, std::size_t first) const {

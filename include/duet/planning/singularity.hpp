@@ -1,0 +1,103 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/bounded_step.hpp>
+#include <duet/planning/small_vector.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <cstddef>
+
+/// \file
+/// Singular configurations: how the tip can stand still there, and which way leads out.
+
+namespace duet::detail {
+
+/// What of a step of the joints leaves the tip in place: λ (JᵀJ + λ)⁻¹ of it, with λ the square of
+/// a singular value that counts as none.
+template <int Room>
+[[nodiscard]] small_vector<Room> in_place(const small_matrix<6, Room>& jacobian,
+                                          small_vector<Room> step) {
+  constexpr double none = 1e-5;
+  const damped_gram gram(gram_of(jacobian), {0, none * none});
+  const small_twist force = gram.solve(what_is_left({}, jacobian, step));
+  for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
+    step[i] += column_dot(jacobian, i, force);
+  }
+  return step;
+}
+
+/// The direction next to `wish`, of unit length, in which the joints move without the tip; zero
+/// where there is none.
+template <int Room>
+[[nodiscard]] small_vector<Room> self_motion_direction(const small_matrix<6, Room>& jacobian,
+                                                       small_vector<Room> wish) {
+  for (int round = 0; round < 2; ++round) { // the second time for rounding
+    wish = in_place(jacobian, wish);
+    const double length = norm(wish);
+    if (!(length > 1e-3)) {
+      return {};
+    }
+    wish = 1 / length * wish;
+  }
+  return wish;
+}
+
+/// The direction, of unit length, in which a singular configuration is left fastest; its opposite
+/// is as good. w being the twist that no joint rates make, wᵀJ = 0, and H that of wᵀ ∂J/∂θ, the
+/// second derivatives of the tip's way along w,
+///
+/// H_jk = w · [ω_j × v_k; ½ ω_j × ω_k], j ≤ k, of the columns [v; ω] of J in `frame::hybrid`,
+///
+/// the joint rates n that leave the tip in place no longer do so at θ + s d, by s wᵀHd·n: d is the
+/// unit vector for which that is largest, of all n of length 1.
+template <int Room>
+[[nodiscard]] small_vector<Room> way_out(const small_matrix<6, Room>& jacobian) {
+  constexpr double none = 1e-6;
+  const damped_gram gram(gram_of(jacobian), {0, none * none});
+  small_twist w{{1, .7, -.4, .9, -.6, .5}};
+  for (int k = 0; k < 3; ++k) {
+    w = gram.solve(w);
+    w = 1 / norm(w) * w;
+  }
+  const three_vector<double> force{w[0], w[1], w[2]}, moment{w[3], w[4], w[5]};
+  small_matrix<Room, Room> h;
+  for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
+    const auto& column = jacobian.columns[std::size_t(k)];
+    const three_vector<double> v{column[0], column[1], column[2]};
+    const three_vector<double> omega{column[3], column[4], column[5]};
+    for (std::ptrdiff_t j = 0; j <= k; ++j) {
+      const auto& before = jacobian.columns[std::size_t(j)];
+      const three_vector<double> axis{before[3], before[4], before[5]};
+      h(j, k) = dot(force, cross(axis, v)) + .5 * dot(moment, cross(axis, omega));
+      h(k, j) = h(j, k);
+    }
+  }
+  const auto times_h = [&](const small_vector<Room>& x) {
+    small_vector<Room> result;
+    for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
+      result = result + x[k] * h.columns[std::size_t(k)];
+    }
+    return result;
+  };
+  small_vector<Room> d;
+  for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
+    d[i] = 1 + .1 * double(i);
+  }
+  for (int k = 0; k < 8; ++k) {
+    d = times_h(in_place(jacobian, times_h(d)));
+    const double length = norm(d);
+    if (!(length > 1e-12)) {
+      return {};
+    }
+    d = 1 / length * d;
+  }
+  return d;
+}
+
+/// The smallest singular value of a Jacobian, from above.
+template <int Room>
+[[nodiscard]] double smallest_singular_value_of(const small_matrix<6, Room>& jacobian) {
+  return damped_gram(gram_of(jacobian)).smallest();
+}
+
+} // namespace duet::detail
