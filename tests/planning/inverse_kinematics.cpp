@@ -377,22 +377,24 @@ TEST_CASE("how far a pose is from a goal, to second order") {
       const auto t = random.direction<3>();
       const auto goal = at(t[1], 2 * t[2], t[0], {0, 0, 0}) * arm.pose(theta) *
                         at(0, 0, 0, Eigen::Vector3d(turn * t[0], turn * t[1], turn * t[2]));
-      const auto state = model.at(detail::planned_joints<16>(theta, arm.size()));
-      const auto twist = detail::error_twist(state.tip, detail::place_of(goal));
-      const auto way = detail::place_of(goal).translation - state.tip.translation;
+      const auto state = model.at(model.joints(theta));
+      const auto twist = detail::error_twist(state.tip, model.place(goal));
+      const auto way = model.place(goal).translation - state.tip.translation;
       const auto found = detail::squared_error_of(
           state.jacobian, detail::small_twist{{way.x, way.y, way.z, twist[3], twist[4], twist[5]}});
       const auto half_square = [&](const auto& x) {
         const auto tip = arm.pose(x);
-        const auto apart = (translation(goal) - translation(tip)).eval();
+        const auto apart = ((translation(goal) - translation(tip)) / model.length).eval();
         const auto about = rotation_vector(rotation(goal) * conj(rotation(tip)));
         return (apart.squaredNorm() + about.squaredNorm()) / 2;
       };
       const auto expected = hessian(half_square, theta);
       for (int i = 0; i < arm.size(); ++i) {
-        CHECK(std::abs(found.slope[i] - expected.gradient[i]) < 2e-14 * (1 + 4 * turn));
+        CHECK(std::abs(found.slope[i] - model.unit[i] * expected.gradient[i]) <
+              2e-14 * (1 + 4 * turn));
         for (int j = 0; j <= i; ++j) {
-          CHECK(std::abs(found.curvature(i, j) - expected.hessian(i, j)) < 1e-12);
+          CHECK(std::abs(found.curvature(i, j) -
+                         model.unit[i] * model.unit[j] * expected.hessian(i, j)) < 1e-12);
         }
       }
     }

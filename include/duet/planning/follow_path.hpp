@@ -8,6 +8,7 @@
 #include <duet/planning/obstacle_steps.hpp>
 #include <duet/planning/path_follower.hpp>
 #include <duet/planning/planning_model.hpp>
+#include <duet/planning/singularity.hpp>
 #include <duet/quaternion/norm.hpp>
 
 #include <Eigen/Core>
@@ -57,34 +58,50 @@ template <class C, class Start, class Objective, class Scene>
   constexpr int room = joint_room(C::joints);
   using vector = small_vector<room>;
   require_options(options);
-  const auto theta = planned_joints<room>(start, chain.size());
   const std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>
       model(chain, around);
-  const auto gap = deviation_between(model.at(theta).tip, place_of(target(stops.front())));
+  const vector theta = model.joints(start);
+  const place_function places = [&](double u) { return model.place(target(u)); };
+  const auto gap =
+      model.given_deviation(deviation_between(model.at(theta).tip, places(stops.front())));
   require(options.tolerance.times(gap) <= 1, "duet: follow_path: the path begins ", gap.length,
           " units of length and ", gap.angle, " rad away from the tip at the start");
   model.require_clearance(theta, options.tolerance.length);
   std::function<vector(const vector&)> slope;
   if constexpr (!std::same_as<Objective, no_objective>) {
     slope = [&](const vector& x) {
-      return planned_joints<room>(slope_of(objective, own_joints(chain, x)), chain.size());
+      const auto joints = own_joints(chain, model.given_joints(x));
+      // The slopes by coordinates as planners count them.
+      return model.given_joints(planned_joints<room>(slope_of(objective, joints), chain.size()));
     };
   }
   const bool is_out_of_reach =
       may_be_out_of_reach &&
-      model.reach.is_beyond(place_of(target(stops.back())), options.tolerance);
-  path_follower<room> follower(model, target, std::move(stops), options, slope);
-  const auto route =
-      is_out_of_reach ? follower.stay(theta, stop_reason::out_of_reach) : follower.plan(theta);
+      model.reach.is_beyond(places(stops.back()), model.tolerance(options.tolerance));
+  path_follower<room> follower(model, places, std::move(stops), options, slope);
+  const auto route = is_out_of_reach ? follower.stay(theta) : follower.plan(theta);
   motion_plan<C::joints> plan;
   for (const auto& w : route.waypoints) {
-    add_waypoint(plan, chain, own_joints(chain, w.state.theta), pose_at(w.state.tip), w.u, w.left);
-    plan.smallest_clearance = std::min(plan.smallest_clearance, model.clearance(w.state.theta));
+    const vector joints = plan.joints.empty() ? planned_joints<room>(start, chain.size())
+                                              : model.given_joints_within_limits(w.state.theta);
+    add_waypoint(plan, chain, own_joints(chain, joints), model.given_pose(w.state.tip), w.u,
+                 model.given_deviation(w.left));
+    plan.smallest_clearance =
+        std::min(plan.smallest_clearance, model.length * model.clearance(w.state.theta));
+  }
+  // Steps have told where it is smallest, but for units: at one end of theirs.
+  const auto most_singular = std::min_element(
+      route.waypoints.begin(), route.waypoints.end(), [](const auto& a, const auto& b) {
+        return a.smallest_singular_value < b.smallest_singular_value;
+      });
+  for (auto w = most_singular - (most_singular != route.waypoints.begin()); w <= most_singular;
+       ++w) {
     plan.smallest_singular_value =
-        std::min(plan.smallest_singular_value, w.smallest_singular_value);
+        std::min(plan.smallest_singular_value,
+                 smallest_singular_value_of(model.given_jacobian(w->state.jacobian)));
   }
   plan.iterations = follower.iterations();
-  plan.reason = follower.reason(route);
+  plan.reason = is_out_of_reach ? stop_reason::out_of_reach : follower.reason(route);
   return plan;
 }
 

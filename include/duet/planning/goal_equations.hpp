@@ -13,8 +13,7 @@
 
 namespace duet::detail {
 
-/// What is left to do at some θ: J Δ = e. Lengths count as parts of the chain's, those that joints
-/// slide, too.
+/// What is left to do at some θ: J Δ = e.
 template <int Room>
 struct goal_equations {
   chain_state<Room> at;
@@ -23,7 +22,7 @@ struct goal_equations {
   std::array<bool, 6> is_free{}; ///< of the six equations, those that there are none of
 };
 
-/// What a pose asks for, in units of length: all that the tip can do.
+/// What a pose asks for: all that the tip can do.
 template <int Room>
 void set_equations(goal_equations<Room>& x, const tip_place& goal) {
   x.e = error_twist(x.at.tip, goal);

@@ -30,14 +30,15 @@ namespace duet {
 namespace detail {
 
 /// Wishes for the joints of a chain.
-template <class C, class Objective, class Scene>
+/// \tparam Model  of the chain, among obstacles or not
+template <class C, class Model, class Objective>
 class wishes_of final : public solution_wishes<joint_room(C::joints)> {
   static constexpr int room = joint_room(C::joints);
 
 public:
   using typename solution_wishes<room>::vector;
-  wishes_of(const C& chain, const Objective& objective, const Scene& around)
-      : chain_(chain), objective_(objective), around_(around) {}
+  wishes_of(const Model& model, const Objective& objective)
+      : model_(model), objective_(objective) {}
 
   [[nodiscard]] bool has_objective() const override {
     return !std::same_as<Objective, no_objective>;
@@ -46,21 +47,25 @@ public:
     if constexpr (std::same_as<Objective, no_objective>) {
       return 0;
     } else {
-      return objective_(own_joints(chain_, theta));
+      return objective_(given(theta));
     }
   }
   [[nodiscard]] vector slope(const small_vector<room>& theta) const override {
     if constexpr (std::same_as<Objective, no_objective>) {
-      return vector::Zero(chain_.size());
+      return vector::Zero(model_.size);
     } else {
-      return slope_of(objective_, own_joints(chain_, theta));
+      vector result = slope_of(objective_, given(theta));
+      for (int i = 0; i < model_.size; ++i) {
+        result[i] *= model_.unit[i];
+      }
+      return result;
     }
   }
   [[nodiscard]] std::vector<inequality<vector>>
   clear_of_obstacles(const small_vector<room>& theta) const override {
     std::vector<inequality<vector>> result;
-    if constexpr (std::same_as<Scene, scene>) {
-      for (const auto& each : margin_inequalities(chain_, own_joints(chain_, theta), around_)) {
+    if constexpr (requires { model_.margins(theta); }) {
+      for (const auto& each : model_.margins(theta)) {
         result.push_back({each.normal, each.bound});
       }
     }
@@ -68,25 +73,30 @@ public:
   }
 
 private:
-  const C& chain_;
+  [[nodiscard]] auto given(const small_vector<room>& theta) const {
+    return own_joints(model_.chain(), model_.given_joints(theta));
+  }
+
+  const Model& model_;
   const Objective& objective_;
-  const Scene& around_;
 };
 
-template <class C, class Start, class Objective, class Scene>
+template <class C, TipGoal G, class Start, class Objective, class Scene>
 [[nodiscard]] inverse_kinematics_result<C::joints>
-wanted_solution(const C& chain, const tip_goal& goal, const Start& start,
+wanted_solution(const C& chain, const G& goal, const Start& start,
                 const inverse_kinematics_options& options, const Objective& objective,
                 const Scene& around) {
   constexpr int room = joint_room(C::joints);
   require_size(chain, start);
-  const std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>
-      model(chain, around);
-  const wishes_of<C, Objective, Scene> wishes(chain, objective, around);
-  const solution_search<room> search(model, planned_joints<room>(start, chain.size()), options);
+  using model_of_chain =
+      std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>;
+  const model_of_chain model(chain, around);
+  const wishes_of<C, model_of_chain, Objective> wishes(model, objective);
+  const solution_search<room> search(model, model.joints(start), options);
   constexpr bool has_wishes = !std::same_as<Objective, no_objective> || std::same_as<Scene, scene>;
-  const auto x = search(goal, has_wishes ? &wishes : nullptr);
-  return {own_joints(chain, x.joints), x.left, x.iterations, x.restarts, x.reason};
+  const auto x = search(tip_goal_of<G>(goal, model.length), has_wishes ? &wishes : nullptr);
+  return {own_joints(chain, model.given_joints_within_limits(x.joints)),
+          model.given_deviation(x.left), x.iterations, x.restarts, x.reason};
 }
 
 } // namespace detail
@@ -114,8 +124,7 @@ inverse_kinematics(const C& chain, const G& goal, const Start& start,
   if constexpr (requires { detail::require_goal(goal); }) {
     detail::require_goal(goal);
   }
-  return detail::wanted_solution(chain, detail::tip_goal_of<G>(goal), start, options, objective,
-                                 around);
+  return detail::wanted_solution(chain, goal, start, options, objective, around);
 }
 
 /// Joint coordinates that take the tip of a chain to a pose, with an objective or among obstacles
@@ -129,11 +138,10 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
   detail::require_size(chain, start);
   const detail::whole_pose whole{detail::place_of(normalized(goal))};
   const detail::chain_model<C> model(chain);
-  if (model.reach.is_beyond(whole.place, options.tolerance)) {
+  if (model.reach.is_beyond(model.place(goal), model.tolerance(options.tolerance))) {
     return inverse_kinematics(chain, goal, start, options);
   }
-  return detail::wanted_solution(chain, detail::tip_goal_of<detail::whole_pose>(whole), start,
-                                 options, objective, around);
+  return detail::wanted_solution(chain, whole, start, options, objective, around);
 }
 
 template <SerialChain C, TipGoal G>

@@ -31,14 +31,15 @@ public:
   template <class Start>
   search_on_chain(const C& chain, const Start& start, const inverse_kinematics_options& options)
       : model_((require_size(chain, start), chain)),
-        search_(model_, planned_joints<joint_room(C::joints)>(start, chain.size()), options) {}
+        search_(model_, model_.joints(start), options) {}
   search_on_chain(const search_on_chain&) = delete;
 
   /// \param goal  a pose
   [[nodiscard]] inverse_kinematics_result<C::joints>
   operator()(const dual_quaternion<double>& goal) const {
-    const auto x = search_(place_of(normalized(goal)));
-    return {own_joints(model_.chain(), x.joints), x.left, x.iterations, x.restarts, x.reason};
+    const auto x = search_(model_.place(normalized(goal)));
+    return {own_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
+            model_.given_deviation(x.left), x.iterations, x.restarts, x.reason};
   }
 
 private:

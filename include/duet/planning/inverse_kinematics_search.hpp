@@ -47,19 +47,19 @@ public:
 
   inverse_kinematics_search(const planning_model<Room>& model, const vector& start,
                             const inverse_kinematics_options& options)
-      : model_(model), options_(options), start_(start) {
+      : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
+        start_(start) {
     require_options(options);
     for (int i = 0; i < model.size; ++i) {
-      require(start[i] - start[i] == 0, "duet: inverse_kinematics: the start has ", start[i],
-              " for joint ", i);
+      require(start[i] - start[i] == 0, "duet: inverse_kinematics: the start has ",
+              model.unit[i] * start[i], " for joint ", i);
       const bool turns = model.turns[std::size_t(i)];
       constexpr double turn = 2 * std::numbers::pi;
       const bool has_turn =
           turns && !model.slides[std::size_t(i)] && model.upper[i] - model.lower[i] >= turn;
       turn_[i] = has_turn ? turn : 0;
       beyond_[i] = has_turn ? std::numeric_limits<double>::infinity() : 0;
-      unit_[i] = turns ? 1 : model.reach.scale();
-      spread_[i] = turns ? std::numbers::pi : unit_[i];
+      spread_[i] = turns ? std::numbers::pi : 1;
     }
     start_ = within_limits(start_);
   }
@@ -74,7 +74,7 @@ public:
     for (int iteration = 0;; ++iteration) {
       const equations now = equations_at(theta, goal);
       const double error = dot(now.e, now.e);
-      const bool is_reached = options_.tolerance.times(now.left) <= 1;
+      const bool is_reached = tolerance_.times(now.left) <= 1;
       if (iteration == 0 || error < best.error || is_reached) {
         best = {theta, now.left, error};
       }
@@ -128,8 +128,6 @@ public:
   }
 
   [[nodiscard]] const vector& start() const { return start_; }
-  /// In which coordinates are counted: the chain's length, or a radian.
-  [[nodiscard]] const vector& unit() const { return unit_; }
   /// By how much coordinates can change without changing the pose: by nothing, or a whole turn.
   [[nodiscard]] const vector& turn() const { return turn_; }
 
@@ -138,37 +136,21 @@ private:
   [[nodiscard]] equations equations_at(const vector& theta, const Goal& goal) const {
     equations result{model_.at(theta), {}, {}};
     set_equations(result, goal);
-    const double per_length = 1 / model_.reach.scale();
-    for (std::ptrdiff_t k = 0; k < 3; ++k) {
-      result.e[k] *= per_length;
-      for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
-        result.at.jacobian(k, i) *= per_length * unit_[i]; // of joints that slide ω is 0
-      }
-    }
     return result;
   }
 
   /// Levenberg and Marquardt's step.
   [[nodiscard]] bounded_step_result<vector> step(const equations& x, double lambda) const {
-    vector down = model_.lower - x.at.theta - beyond_, up = model_.upper - x.at.theta + beyond_;
-    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
-      down[i] /= unit_[i];
-      up[i] /= unit_[i];
-    }
-    auto result = bounded_step(x.at.jacobian, x.e, down, up, {0, lambda});
-    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
-      result.step[i] *= unit_[i];
-    }
-    return result;
+    return bounded_step(x.at.jacobian, x.e, model_.lower - x.at.theta - beyond_,
+                        model_.upper - x.at.theta + beyond_, {0, lambda});
   }
   /// The damping that grows with the error.
   [[nodiscard]] static double damping(const equations& x) {
     return std::min(.02 * dot(x.e, x.e), .08) + 1e-9;
   }
 
-  /// The nearest place from a start on, by the least |way|² + |ω|², lengths as parts of the
-  /// chain's: Newton's method with a damping that lets no step raise it. Joints at limits that are
-  /// in the way are held there.
+  /// The nearest place from a start on, by the least |way|² + |ω|²: Newton's method with a damping
+  /// that lets no step raise it. Joints at limits that are in the way are held there.
   template <std::same_as<tip_place> Pose>
   [[nodiscard]] attempt nearest(const vector& start, const Pose& goal) const {
     point here = point_at(start, goal);
@@ -185,7 +167,7 @@ private:
         }
         vector theta = here.theta;
         for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
-          theta[i] += unit_[i] * (*step)[i];
+          theta[i] += (*step)[i];
         }
         const point there = point_at(within_limits(theta), goal);
         // At the end the error no longer shows what is lower, but its slope does.
@@ -212,8 +194,7 @@ private:
   template <std::same_as<tip_place> Pose>
   [[nodiscard]] point point_at(const vector& theta, const Pose& goal) const {
     const equations x = equations_at(theta, goal);
-    const three_vector<double> way =
-        1 / model_.reach.scale() * (goal.translation - x.at.tip.translation);
+    const three_vector<double> way = goal.translation - x.at.tip.translation;
     const small_twist e{{way.x, way.y, way.z, x.e[3], x.e[4], x.e[5]}};
     point result{theta, x.left, dot(e, e), squared_error_of(x.at.jacobian, e)};
     for (std::ptrdiff_t i = 0; i < Room; ++i) {
@@ -243,9 +224,9 @@ private:
 
   const planning_model<Room>& model_;
   inverse_kinematics_options options_;
+  pose_tolerance tolerance_;
   vector turn_;
   vector beyond_; ///< how far steps may go beyond limits: any way if they are turned back
-  vector unit_;
   vector spread_; ///< how far from the start random coordinates are that have no limits
   vector start_;
 };
@@ -253,7 +234,7 @@ private:
 template <int Room, class Goal>
 typename inverse_kinematics_search<Room, Goal>::attempt
 inverse_kinematics_search<Room, Goal>::operator()(const Goal& goal) const {
-  const bool is_out_of_reach = is_beyond(model_.reach, goal, options_.tolerance);
+  const bool is_out_of_reach = is_beyond(model_.reach, goal, tolerance_);
   const auto search = [&](const vector& from) {
     if constexpr (std::same_as<Goal, tip_place>) {
       if (is_out_of_reach) {

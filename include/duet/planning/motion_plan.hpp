@@ -112,7 +112,7 @@ struct motion_plan {
   /// successive ones where the joints move with the tip in place.
   std::vector<double> tau;
   std::vector<pose_deviation> deviations; ///< from the motion asked for, at each waypoint
-  /// Of the Jacobian in `frame::hybrid` on the way, estimated from above.
+  /// Of the Jacobian in `frame::hybrid`, at any waypoint, estimated from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
   /// Of any joint, at any waypoint, to its nearer limit; in coordinates.
   double smallest_limit_margin = std::numeric_limits<double>::infinity();

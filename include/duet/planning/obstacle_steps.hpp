@@ -69,17 +69,30 @@ public:
   chain_among_obstacles(const C& chain, const scene& around)
       : chain_model<C>(chain), around_(around) {
     require_scene(chain, around);
-    this->margin = around.margin;
+    this->margin = around.margin / this->length;
   }
 
   [[nodiscard]] double clearance(const vector& theta) const override {
-    return nearest(theta).distance;
+    return nearest(theta).distance / this->length;
+  }
+  /// `margin_inequalities` of coordinates and lengths as planners count them.
+  [[nodiscard]] std::vector<inequality<joint_vector<double, C::joints>>>
+  margins(const vector& theta) const {
+    auto result = margin_inequalities(
+        this->chain(), own_joints(this->chain(), this->given_joints(theta)), around_);
+    for (auto& each : result) {
+      each.bound /= this->length;
+      for (int i = 0; i < this->size; ++i) {
+        each.normal[i] *= this->unit[i] / this->length;
+      }
+    }
+    return result;
   }
   [[nodiscard]] step_beside_obstacles<int(vector::size())>
   step_beside(const state& from, const small_twist& e, const vector& wish) const override {
     using joints = joint_vector<double, C::joints>;
     const auto own = [&](const vector& x) { return own_joints(this->chain(), x); };
-    const auto inequalities = margin_inequalities(this->chain(), own(from.theta), around_);
+    const auto inequalities = margins(from.theta);
     if (inequalities.empty()) {
       return {};
     }
@@ -109,7 +122,8 @@ public:
 
 private:
   [[nodiscard]] chain_clearance<double> nearest(const vector& theta) const {
-    return duet::clearance(this->chain(), own_joints(this->chain(), theta), around_);
+    return duet::clearance(this->chain(), own_joints(this->chain(), this->given_joints(theta)),
+                           around_);
   }
 
   const scene& around_;

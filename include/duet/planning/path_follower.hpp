@@ -31,12 +31,12 @@ public:
     chain_state<Room> state;
     double u;
     pose_deviation left = {};
+    /// Of the Jacobians on the way to it, as planners count lengths.
     double smallest_singular_value = std::numeric_limits<double>::infinity();
   };
   struct route {
     std::vector<waypoint> waypoints;
     double step = .01; ///< the next one, of the path
-    stop_reason reason = stop_reason::no_progress;
 
     explicit route(const waypoint& start) : waypoints{start} {}
     [[nodiscard]] const waypoint& back() const { return waypoints.back(); }
@@ -46,26 +46,34 @@ public:
   /// \param stops   parameters that become waypoints, increasing; the first and the last are the
   ///                ends of the path
   /// \param slope   or nothing
-  path_follower(const planning_model<Room>& model, const path_function& target,
+  path_follower(const planning_model<Room>& model, const place_function& target,
                 std::vector<double> stops, const plan_options& options, const slope_function& slope)
-      : solver_{model, options.tolerance}, target_(target), stops_(std::move(stops)),
+      : solver_{model, model.tolerance(options.tolerance)},
+        deviation_(model.tolerance(options.deviation)), target_(target), stops_(std::move(stops)),
         options_(options), slope_(slope), length_(stops_.back() - stops_.front()),
         iterations_left_(options.iterations) {}
 
   [[nodiscard]] route plan(const vector& start);
 
   /// Nothing but the start.
-  [[nodiscard]] route stay(const vector& start, stop_reason why) const {
-    route x({solver_.model.at(start), stops_.front()});
-    x.reason = why;
-    return x;
+  [[nodiscard]] route stay(const vector& start) const {
+    return route({solver_.model.at(start), stops_.front()});
   }
 
-  /// Why it ends.
+  /// Why it ends: what is in the way of the first step that fails, of some that grow.
   [[nodiscard]] stop_reason reason(const route& x) const {
-    return is_at_end(x)            ? stop_reason::reached
-           : iterations_left_ <= 0 ? stop_reason::iteration_limit
-                                   : x.reason;
+    if (is_at_end(x) || iterations_left_ <= 0) {
+      return is_at_end(x) ? stop_reason::reached : stop_reason::iteration_limit;
+    }
+    const waypoint& here = x.back();
+    for (double step = options_.smallest_step; step < 1; step *= 2) {
+      const tip_place target = target_(std::min(here.u + step * length_, stops_.back()));
+      const auto there = solver_.approach(here.state, target, {});
+      if (!there.is_within(solver_.tolerance)) {
+        return solver_.what_stops(there, here.state, target);
+      }
+    }
+    return stop_reason::no_progress;
   }
   [[nodiscard]] int iterations() const { return options_.iterations - iterations_left_; }
 
@@ -99,17 +107,22 @@ private:
     route result(before.waypoints.front());
     result.waypoints.assign(before.waypoints.begin(),
                             before.waypoints.begin() + std::ptrdiff_t(first) + 1);
-    result.reason = before.reason;
     self_motion_search search(solver_, target_, options_.self_motion_step, iterations_left_);
     const auto way = search.run(result.back().state, search_parameters(result.back().u));
     iterations_left_ = search.iterations_left();
     for (std::size_t i = 1; i < way.size(); ++i) {
-      result.step = options_.search_step;
-      const vector& aim = way[i].state.theta;
-      const bool is_ahead =
-          !way[i].is_way_out && travel(result, way[i].u, options_.search_step, {&aim});
-      if (!is_ahead && !travel_back(result, way[i])) {
-        return result;
+      const std::size_t kept = result.waypoints.size();
+      const auto go = [&](bool is_back) {
+        result.step = options_.search_step;
+        return is_back ? travel_back(result, way[i])
+                       : travel(result, way[i].u, options_.search_step, {&way[i].state.theta});
+      };
+      if (!go(way[i].is_way_out)) {
+        result.waypoints.erase(result.waypoints.begin() + std::ptrdiff_t(kept),
+                               result.waypoints.end());
+        if (!go(!way[i].is_way_out)) {
+          return result;
+        }
       }
     }
     go_on(result);
@@ -138,15 +151,8 @@ private:
     route back({to.state, to.u});
     back.step = options_.search_step;
     const double u = x.back().u;
-    if (!travel(back, u, options_.search_step, {})) {
-      x.reason = back.reason;
-      return false;
-    }
-    if (!arrive(x, back.back().state.theta)) {
-      return false;
-    }
-    if (excess_between(x.back(), back.back()) > 1) {
-      x.reason = stop_reason::singular;
+    if (!travel(back, u, options_.search_step, {}) || !arrive(x, back.back().state.theta) ||
+        excess_between(x.back(), back.back()) > 1) {
       return false;
     }
     x.waypoints.insert(x.waypoints.end(), back.waypoints.rbegin(), back.waypoints.rend());
@@ -172,9 +178,9 @@ private:
   [[nodiscard]] double excess_between(const waypoint& a, const waypoint& b) const {
     const vector middle = .5 * (a.state.theta + b.state.theta);
     const pose_deviation half_way =
-        deviation_between(solver_.model.at(middle).tip, place_of(target_((a.u + b.u) / 2)));
-    return std::max(options_.deviation.times(half_way),
-                    solver_.model.shortfall(middle) / options_.deviation.length);
+        deviation_between(solver_.model.at(middle).tip, target_((a.u + b.u) / 2));
+    return std::max(deviation_.times(half_way),
+                    solver_.model.shortfall(middle) / deviation_.length);
   }
 
   /// On to the parameter `end`, in steps that keep the tip near the path between waypoints too.
@@ -192,15 +198,15 @@ private:
       const vector wish = have.aim != nullptr ? (next - way) / (1 - way) * (*have.aim - theta)
                           : have.lowers       ? downhill(theta, (next - way) * part)
                                               : vector{};
-      auto there = solver_.approach(here.state, place_of(target_(u)), wish);
+      auto there = solver_.approach(here.state, target_(u), wish);
       iterations_left_ -= there.iterations;
       if (have.lowers && there.smallest_singular_value < damping_threshold) {
         // A wish takes the joints to where the path leads no further.
-        there = solver_.approach(here.state, place_of(target_(u)), {});
+        there = solver_.approach(here.state, target_(u), {});
         iterations_left_ -= there.iterations;
       }
       double change = .25;
-      if (there.is_within(options_.tolerance)) {
+      if (there.is_within(solver_.tolerance)) {
         const waypoint on{there.state, u, there.left, there.smallest_singular_value};
         const double excess = excess_between(here, on);
         // Between waypoints the deviation grows with the square of the step.
@@ -212,13 +218,6 @@ private:
       }
       x.step = std::min(options_.largest_step, x.step * change);
       if (way < 1 && (iterations_left_ <= 0 || x.step < options_.smallest_step)) {
-        x.reason = iterations_left_ <= 0 ? stop_reason::iteration_limit
-                   : there.is_blocked || there.shortfall > options_.tolerance.length
-                       ? stop_reason::obstacle
-                   : there.is_bounded ? stop_reason::joint_limit
-                   : there.smallest_singular_value < 10 * damping_threshold
-                       ? stop_reason::singular
-                       : stop_reason::no_progress;
         return false;
       }
     }
@@ -226,7 +225,8 @@ private:
   }
 
   pose_solver<Room> solver_;
-  const path_function& target_;
+  pose_tolerance deviation_;
+  const place_function& target_;
   std::vector<double> stops_;
   plan_options options_;
   const slope_function& slope_;
@@ -236,7 +236,7 @@ private:
 
 template <int Room>
 typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
-  route best = stay(start, stop_reason::no_progress);
+  route best = stay(start);
   go_on(best);
   // From where it got stuck, or else from the beginning.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {

@@ -32,6 +32,8 @@ template <class V>
 
 /// Poses by a parameter. Its type is forgotten, so that planners are compiled once for all.
 using path_function = std::function<dual_quaternion<double>(double)>;
+/// The same, as planners count lengths.
+using place_function = std::function<tip_place(double)>;
 
 /// What became of an attempt to bring the tip to a pose.
 template <int Room>
@@ -61,6 +63,30 @@ struct pose_solver {
 
   const planning_model<Room>& model;
   pose_tolerance tolerance;
+  vector lower = model.lower, upper = model.upper; ///< the limits that count
+
+  /// Why an attempt to get to a target beside a state has failed.
+  [[nodiscard]] stop_reason what_stops(const attempt<Room>& there, const chain_state<Room>& here,
+                                       const tip_place& target) const {
+    return there.is_blocked || there.shortfall > tolerance.length   ? stop_reason::obstacle
+           : there.is_bounded && is_stopped_by_limits(here, target) ? stop_reason::joint_limit
+           : there.smallest_singular_value < 10 * damping_threshold ? stop_reason::singular
+                                                                    : stop_reason::no_progress;
+  }
+
+  /// Are limits all that keeps the tip from getting to a target beside it?
+  [[nodiscard]] bool is_stopped_by_limits(const chain_state<Room>& from,
+                                          const tip_place& target) const {
+    constexpr double close_by = .5;
+    pose_solver free{model, tolerance};
+    for (std::ptrdiff_t i = 0; i < from.theta.size(); ++i) {
+      const double way = i < model.size ? std::numeric_limits<double>::infinity() : 0;
+      free.lower[i] = -way;
+      free.upper[i] = way;
+    }
+    const auto there = free.approach(from, target, {});
+    return there.is_within(tolerance) && norm(there.state.theta - from.theta) < close_by;
+  }
 
   /// From a state nearby, the step nearest to `wish` that takes the tip to the target to first
   /// order, and then Newton's method by least steps, without damping where that is in the way. None
@@ -103,7 +129,7 @@ private:
   /// Rounding may have led beyond the limits.
   [[nodiscard]] vector within(vector theta) const {
     for (std::ptrdiff_t i = 0; i < theta.size(); ++i) {
-      theta[i] = std::clamp(theta[i], model.lower[i], model.upper[i]);
+      theta[i] = std::clamp(theta[i], lower[i], upper[i]);
     }
     return theta;
   }
@@ -126,8 +152,7 @@ private:
     }
     const vector aim = within(from.theta + wish);
     const small_twist rest = what_is_left(e, from.jacobian, aim - from.theta);
-    const auto step =
-        bounded_step(from.jacobian, rest, model.lower - aim, model.upper - aim, {threshold});
+    const auto step = bounded_step(from.jacobian, rest, lower - aim, upper - aim, {threshold});
     x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
     x.is_bounded = x.is_bounded || step.is_bounded;
     model.set(x.state, within(aim + step.step));

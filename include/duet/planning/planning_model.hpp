@@ -7,9 +7,9 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/serial_chain.hpp>
-#include <duet/planning/bounded_step.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/small_vector.hpp>
+#include <duet/planning/tip_place.hpp>
 
 #include <algorithm>
 #include <array>
@@ -35,48 +35,6 @@ struct no_scene {};
 } // namespace duet
 
 namespace duet::detail {
-
-/// Where the tip stands.
-using tip_place = link_displacement<double>;
-
-[[nodiscard]] inline tip_place place_of(const dual_quaternion<double>& a) {
-  return {rotation(a), components(translation(a))};
-}
-[[nodiscard]] inline dual_quaternion<double> pose_at(const tip_place& a) {
-  return pose_of_unit(a.rotation, a.translation.eigen());
-}
-[[nodiscard]] inline double length_of(const three_vector<double>& x) {
-  return std::sqrt(dot(x, x));
-}
-
-/// The twist [v; ω], in `frame::hybrid`, of the shorter screw motion from one place to another in
-/// unit time: ω = 2 log r of the rotation r between them, the way between origins
-/// ∫₀¹ exp(sω) v ds, solved for v.
-[[nodiscard]] inline small_twist error_twist(const tip_place& from, const tip_place& to) {
-  quaternion<double> r = to.rotation * conj(from.rotation);
-  if (r.w() < 0) {
-    r = -r;
-  }
-  const three_vector<double> way = to.translation - from.translation;
-  const three_vector<double> sines{r.x(), r.y(), r.z()};
-  const double sine = length_of(sines);
-  if (!(sine > 0)) {
-    return {{way.x, way.y, way.z, 0, 0, 0}};
-  }
-  const double half = std::atan2(sine, r.w()); // of the angle
-  const three_vector<double> axis = 1 / sine * sines, across = cross(axis, way);
-  const auto v = way - half * across + (1 - half * r.w() / sine) * cross(axis, across);
-  const auto omega = 2 * half * axis;
-  return {{v.x, v.y, v.z, omega.x, omega.y, omega.z}};
-}
-
-/// The lengths of v and ω. That of v is that of the way where the two places are near.
-[[nodiscard]] inline pose_deviation deviation_of(const small_twist& e) {
-  return {length_of(three_vector{e[0], e[1], e[2]}), length_of(three_vector{e[3], e[4], e[5]})};
-}
-[[nodiscard]] inline pose_deviation deviation_between(const tip_place& a, const tip_place& b) {
-  return {length_of(b.translation - a.translation), deviation_of(error_twist(a, b)).angle};
-}
 
 /// What stands for the number N of joints of a chain in planners: 8, 16, 32 … are room enough.
 [[nodiscard]] constexpr int joint_room(int n) {
@@ -123,6 +81,11 @@ struct chain_reach {
     const double all = links + tool + limited_travel;
     return all > 0 ? all : 1;
   }
+  /// The same with lengths in units of one that is given.
+  [[nodiscard]] chain_reach in_units_of(double length) const {
+    const double s = 1 / length;
+    return {s * first, s * back, s * links, s * tool, s * travel, s * limited_travel, has_joints};
+  }
 };
 
 /// A step in the presence of obstacles.
@@ -134,7 +97,9 @@ struct step_beside_obstacles {
   bool is_free = true; ///< is there nothing near, or nothing that obstacles could help with?
 };
 
-/// A chain and nothing around it.
+/// A chain and nothing around it. Lengths are counted in units of the chain's own, those that
+/// joints slide and those of Jacobians, too: what planners do does not depend on the unit of
+/// length. Here alone they are turned into others.
 template <int Room>
 class planning_model {
 public:
@@ -167,10 +132,68 @@ public:
     reach.back = -1 * rotated(conj(offset.rotation), tool);
     reach.tool = length_of(tool);
     reach.has_joints = size > 0;
+    length = reach.scale();
+    reach = reach.in_units_of(length);
+    for (int i = 0; i < Room; ++i) {
+      unit[i] = i >= size || turns[std::size_t(i)] ? 1 : length;
+      row_unit_[i] = unit[i] / length;
+      given_lower_[i] = lower[i];
+      given_upper_[i] = upper[i];
+      lower[i] /= unit[i];
+      upper[i] /= unit[i];
+    }
   }
   virtual ~planning_model() = default;
 
-  int size; ///< number of joints
+  /// From and to what a user counts.
+  /// \param theta  a vector of any kind
+  template <class X>
+  [[nodiscard]] vector joints(const X& theta) const {
+    vector result = planned_joints<Room>(theta, size);
+    for (int i = 0; i < size; ++i) {
+      result[i] /= unit[i];
+    }
+    return result;
+  }
+  [[nodiscard]] vector given_joints(vector theta) const {
+    for (int i = 0; i < Room; ++i) {
+      theta[i] *= unit[i];
+    }
+    return theta;
+  }
+  /// Rounding may have led beyond the limits.
+  [[nodiscard]] vector given_joints_within_limits(const vector& theta) const {
+    vector result = given_joints(theta);
+    for (int i = 0; i < size; ++i) {
+      result[i] = std::clamp(result[i], given_lower_[i], given_upper_[i]);
+    }
+    return result;
+  }
+  [[nodiscard]] tip_place place(const dual_quaternion<double>& a) const {
+    const tip_place x = place_of(a);
+    return {x.rotation, 1 / length * x.translation};
+  }
+  [[nodiscard]] dual_quaternion<double> given_pose(const tip_place& a) const {
+    return detail::pose_at({a.rotation, length * a.translation});
+  }
+  [[nodiscard]] small_matrix<6, Room> given_jacobian(small_matrix<6, Room> j) const {
+    for (int i = 0; i < size; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        j(k, i) *= length / unit[i];
+      }
+    }
+    return j;
+  }
+  [[nodiscard]] pose_tolerance tolerance(const pose_tolerance& x) const {
+    return {x.length / length, x.angle};
+  }
+  [[nodiscard]] pose_deviation given_deviation(const pose_deviation& x) const {
+    return {length * x.length, x.angle};
+  }
+
+  int size;          ///< number of joints
+  double length = 1; ///< of the chain, in a user's units
+  vector unit;       ///< of each coordinate, in a user's
   vector lower, upper;
   std::array<bool, std::size_t(Room)> turns{}, slides{};
   chain_reach reach;
@@ -198,6 +221,12 @@ public:
   step_beside(const state& /*from*/, const small_twist& /*e*/, const vector& /*wish*/) const {
     return {};
   }
+
+protected:
+  vector row_unit_; ///< of the coordinates by the length
+
+private:
+  vector given_lower_, given_upper_;
 };
 
 /// A chain of the type C.
@@ -220,8 +249,16 @@ private:
 template <class C>
 void chain_model<C>::set(state& of, const vector& theta) const {
   of.theta = theta;
-  of.tip = fill_jacobian<hybrid_frame, true, double>(of.jacobian, chain_, own_joints(chain_, theta),
-                                                     tip_of_chain{});
+  of.tip = fill_jacobian<hybrid_frame, true, double>(
+      of.jacobian, chain_, own_joints(chain_, this->given_joints(theta)), tip_of_chain{});
+  of.tip.translation = 1 / this->length * of.tip.translation;
+  for (std::size_t i = 0; i < of.jacobian.columns.size(); ++i) {
+    auto& column = of.jacobian.columns[i].values;
+    const double part = this->row_unit_.values[i]; // of joints that slide ω is 0
+    column[0] *= part;
+    column[1] *= part;
+    column[2] *= part;
+  }
 }
 
 #ifdef DUET_COMPILED

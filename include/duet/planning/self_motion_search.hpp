@@ -41,7 +41,7 @@ class self_motion_search {
 public:
   using vector = small_vector<Room>;
 
-  self_motion_search(const pose_solver<Room>& solver, const path_function& target, double spacing,
+  self_motion_search(const pose_solver<Room>& solver, const place_function& target, double spacing,
                      int iterations)
       : solver_(solver), target_(target), spacing_(spacing), left_(iterations) {}
 
@@ -50,14 +50,14 @@ public:
   [[nodiscard]] std::vector<reachable<Room>> run(const chain_state<Room>& start,
                                                  const std::vector<double>& u) {
     found_.push_back({start, u.front(), -1});
-    follow(0, place_of(target_(u.front())));
+    follow(0, target_(u.front()));
     std::size_t first = 0;
     for (std::size_t k = 1; k < u.size(); ++k) {
       const std::size_t end = found_.size();
-      const tip_place target = place_of(target_(u[k]));
+      const tip_place target = target_(u[k]);
       for (std::size_t i = first; i < end && left_ > 0; ++i) {
         const chain_state<Room> here = found_[i].state;
-        const bool is_singular = smallest_singular_value_of(here.jacobian) < 10 * damping_threshold;
+        const bool is_singular = smallest_singular_value_of(here.jacobian) < damping_threshold;
         const auto add = [&](const attempt<Room>& next) {
           if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
               (!is_singular || leads(next.state, u[k], here, u[k - 1]))) {
@@ -94,7 +94,7 @@ private:
 
   /// On to another parameter, in up to 2^`halvings` steps.
   [[nodiscard]] attempt<Room> go(const chain_state<Room>& from, double u, double to, int halvings) {
-    auto direct = tried(from, place_of(target_(to)), {});
+    auto direct = tried(from, target_(to), {});
     const bool is_jump = norm(direct.state.theta - from.theta) > .15;
     if ((direct.is_within(solver_.tolerance) && !is_jump) || halvings == 0) {
       if (is_jump) {
@@ -203,7 +203,7 @@ private:
   }
 
   const pose_solver<Room>& solver_;
-  const path_function& target_;
+  const place_function& target_;
   double spacing_;
   int left_;
   std::vector<reachable<Room>> found_;

@@ -61,11 +61,9 @@ public:
     vector slope;
   };
 
-  /// \param unit  in which coordinates are counted
   solution_refinement(const planning_model<Room>& model, const tip_goal& goal,
-                      const solution_wishes<Room>& wishes, const pose_tolerance& tolerance,
-                      const joints& unit)
-      : model_(model), goal_(goal), wishes_(wishes), tolerance_(tolerance), unit_(unit) {}
+                      const solution_wishes<Room>& wishes, const pose_tolerance& tolerance)
+      : model_(model), goal_(goal), wishes_(wishes), tolerance_(tolerance) {}
 
   /// From near a solution to one that keeps the margins too and, if there is an objective, where
   /// that is least nearby. Nothing where that fails.
@@ -82,15 +80,15 @@ private:
     const wanted_twist wanted = goal_.wanted(state.tip);
     x.left = missing_twist(wanted).left;
     x.excess = std::max(tolerance_.times(x.left), model_.shortfall(theta) / tolerance_.length);
-    const double per_length = 1 / model_.reach.scale();
     auto& more = x.conditions.inequalities;
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
       if (wanted.rows.row(i).isZero(0)) {
         continue;
       }
-      const double scale = i < 3 ? per_length : 1;
-      const vector normal = scaled(goal_row(wanted, i, state.jacobian), scale);
-      const double least = scale * wanted.least[i], most = scale * wanted.most[i];
+      const joints row = goal_row(wanted, i, state.jacobian);
+      vector normal(model_.size);
+      std::copy_n(row.values.begin(), model_.size, normal.begin());
+      const double least = wanted.least[i], most = wanted.most[i];
       if (least == most) {
         x.conditions.equations.push_back({normal, least});
       } else {
@@ -100,23 +98,13 @@ private:
     }
     for (int i = 0; i < model_.size; ++i) {
       const vector normal = vector::Unit(model_.size, i);
-      add(more, normal, std::max((model_.lower[i] - theta[i]) / unit_[i], -trusted));
-      add(more, -normal, std::max((theta[i] - model_.upper[i]) / unit_[i], -trusted));
+      add(more, normal, std::max(model_.lower[i] - theta[i], -trusted));
+      add(more, -normal, std::max(theta[i] - model_.upper[i], -trusted));
     }
-    for (auto& each : wishes_.clear_of_obstacles(theta)) {
-      for (int i = 0; i < model_.size; ++i) {
-        each.normal[i] *= per_length * unit_[i];
-      }
-      add(more, each.normal, std::min(per_length * each.bound, .1));
+    for (const auto& each : wishes_.clear_of_obstacles(theta)) {
+      add(more, each.normal, std::min(each.bound, .1));
     }
     return x;
-  }
-  [[nodiscard]] vector scaled(const joints& row, double scale) const {
-    vector result(model_.size);
-    for (int i = 0; i < model_.size; ++i) {
-      result[i] = scale * unit_[i] * row[i];
-    }
-    return result;
   }
   static void add(std::vector<inequality<vector>>& to, const vector& normal, double bound) {
     if (bound > -std::numeric_limits<double>::infinity()) {
@@ -125,7 +113,7 @@ private:
   }
   [[nodiscard]] joints moved(joints theta, const vector& step, double part) const {
     for (int i = 0; i < model_.size; ++i) {
-      theta[i] = std::clamp(theta[i] + part * unit_[i] * step[i], model_.lower[i], model_.upper[i]);
+      theta[i] = std::clamp(theta[i] + part * step[i], model_.lower[i], model_.upper[i]);
     }
     return theta;
   }
@@ -152,9 +140,6 @@ private:
     if (x && wishes_.has_objective()) {
       x->value = wishes_.objective(x->theta);
       x->slope = wishes_.slope(x->theta);
-      for (int i = 0; i < model_.size; ++i) {
-        x->slope[i] *= unit_[i];
-      }
     }
     return x;
   }
@@ -185,7 +170,7 @@ private:
     const free_slope here(before), there(after);
     vector s(model_.size);
     for (int i = 0; i < model_.size; ++i) {
-      s[i] = (after.theta[i] - before.theta[i]) / unit_[i];
+      s[i] = after.theta[i] - before.theta[i];
     }
     s = there.kept(s);
     vector y = there.slope - here.slope;
@@ -210,7 +195,6 @@ private:
   const tip_goal& goal_;
   const solution_wishes<Room>& wishes_;
   pose_tolerance tolerance_;
-  joints unit_;
 };
 
 template <int Room>

@@ -27,7 +27,8 @@ public:
 
   solution_search(const planning_model<Room>& model, const small_vector<Room>& start,
                   const inverse_kinematics_options& options)
-      : model_(model), options_(options), search_(model, start, options) {}
+      : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
+        search_(model, start, options) {}
 
   /// \param wishes  none: the first solution is as good as any
   [[nodiscard]] attempt operator()(const tip_goal& goal, const solution_wishes<Room>* wishes) const;
@@ -55,16 +56,17 @@ private:
 
   const planning_model<Room>& model_;
   inverse_kinematics_options options_;
+  pose_tolerance tolerance_;
   search search_;
 };
 
 template <int Room>
 typename solution_search<Room>::attempt
 solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Room>* wishes) const {
-  if (wishes == nullptr || is_beyond(model_.reach, goal, options_.tolerance)) {
+  if (wishes == nullptr || is_beyond(model_.reach, goal, tolerance_)) {
     return search_(goal);
   }
-  const solution_refinement<Room> refine(model_, goal, *wishes, options_.tolerance, search_.unit());
+  const solution_refinement<Room> refine(model_, goal, *wishes, tolerance_);
   attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
   double least = std::numeric_limits<double>::infinity(); // of the objective
   int iterations = 0, candidates = 0, restarts = 0;

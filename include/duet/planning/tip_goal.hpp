@@ -20,7 +20,7 @@
 
 namespace duet::detail {
 
-/// What a search knows of a goal.
+/// What a search knows of a goal, with lengths as planners count them.
 class tip_goal {
 public:
   virtual ~tip_goal() = default;
@@ -28,17 +28,24 @@ public:
   [[nodiscard]] virtual double distance_from(const three_vector<double>&) const { return 0; }
 };
 
-/// A goal of the type G.
+/// A goal of the type G, which knows of a user's lengths alone.
 template <TipGoal G>
 class tip_goal_of final : public tip_goal {
 public:
-  explicit tip_goal_of(const G& goal) : goal_(goal) {}
+  /// \param length  that planners count in
+  tip_goal_of(const G& goal, double length) : goal_(goal), length_(length) {}
   [[nodiscard]] wanted_twist wanted(const tip_place& tip) const override {
-    return goal_.wanted(pose_at(tip));
+    wanted_twist x = goal_.wanted(pose_at({tip.rotation, length_ * tip.translation}));
+    x.least.head<3>() /= length_;
+    x.most.head<3>() /= length_;
+    x.rows.topRightCorner<3, 3>() /= length_;
+    x.rows.bottomLeftCorner<3, 3>() *= length_;
+    return x;
   }
   [[nodiscard]] double distance_from(const three_vector<double>& point) const override {
     if constexpr (requires { goal_.distance_from(point.eigen()); }) {
-      return goal_.distance_from(point.eigen());
+      const three_vector<double> given = length_ * point;
+      return goal_.distance_from(given.eigen()) / length_;
     } else {
       return 0;
     }
@@ -46,6 +53,7 @@ public:
 
 private:
   const G& goal_;
+  double length_;
 };
 
 /// A pose as one goal among others.

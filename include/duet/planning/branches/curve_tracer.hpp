@@ -39,7 +39,7 @@ public:
   curve_tracer(const C& chain, const tip_place& goal, double step)
       : chain_(chain), goal_(goal), step_(step) {
     const chain_model<C> model(chain);
-    size_ = model.reach.scale();
+    size_ = model.length;
     for (int i = 0; i < 7; ++i) {
       turns_[std::size_t(i)] = chain.steps()[std::size_t(i)].turns;
     }

@@ -1,0 +1,60 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/mechanism/chain_walk.hpp>
+#include <duet/planning/bounded_step.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <cmath>
+
+/// \file
+/// Where a chain's tip stands, and how far two places are from each other.
+
+namespace duet::detail {
+
+/// Where the tip stands.
+using tip_place = link_displacement<double>;
+
+[[nodiscard]] inline tip_place place_of(const dual_quaternion<double>& a) {
+  return {rotation(a), components(translation(a))};
+}
+[[nodiscard]] inline dual_quaternion<double> pose_at(const tip_place& a) {
+  return pose_of_unit(a.rotation, a.translation.eigen());
+}
+[[nodiscard]] inline double length_of(const three_vector<double>& x) {
+  return std::sqrt(dot(x, x));
+}
+
+/// The twist [v; ω], in `frame::hybrid`, of the shorter screw motion from one place to another in
+/// unit time: ω = 2 log r of the rotation r between them, the way between origins
+/// ∫₀¹ exp(sω) v ds, solved for v.
+[[nodiscard]] inline small_twist error_twist(const tip_place& from, const tip_place& to) {
+  quaternion<double> r = to.rotation * conj(from.rotation);
+  if (r.w() < 0) {
+    r = -r;
+  }
+  const three_vector<double> way = to.translation - from.translation;
+  const three_vector<double> sines{r.x(), r.y(), r.z()};
+  const double sine = length_of(sines);
+  if (!(sine > 0)) {
+    return {{way.x, way.y, way.z, 0, 0, 0}};
+  }
+  const double half = std::atan2(sine, r.w()); // of the angle
+  const three_vector<double> axis = 1 / sine * sines, across = cross(axis, way);
+  const auto v = way - half * across + (1 - half * r.w() / sine) * cross(axis, across);
+  const auto omega = 2 * half * axis;
+  return {{v.x, v.y, v.z, omega.x, omega.y, omega.z}};
+}
+
+/// The lengths of v and ω. That of v is that of the way where the two places are near.
+[[nodiscard]] inline pose_deviation deviation_of(const small_twist& e) {
+  return {length_of(three_vector{e[0], e[1], e[2]}), length_of(three_vector{e[3], e[4], e[5]})};
+}
+[[nodiscard]] inline pose_deviation deviation_between(const tip_place& a, const tip_place& b) {
+  return {length_of(b.translation - a.translation), deviation_of(error_twist(a, b)).angle};
+}
+
+} // namespace duet::detail

@@ -1,0 +1,214 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "planning/paths.hpp"
+
+#include <duet/mechanism/denavit_hartenberg.hpp>
+#include <duet/mechanism/limits.hpp>
+#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/planning/singularity.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace test_planning_singular_paths {
+namespace {
+
+using namespace duet;
+using chain = serial_chain<6>;
+using vector = duet_test::coordinates<6>;
+using plan_of_six = motion_plan<6>;
+
+constexpr double pi = 3.14159265358979324;
+const chain ur5e = robots::ur5e().table();
+
+/// Unimation's PUMA 560, in metres, without limits.
+const chain puma = from_dh(std::array<dh_row<>, 6>{{{.alpha = pi / 2},
+                                                    {.a = .4318},
+                                                    {.a = .0203, .d = .15005, .alpha = -pi / 2},
+                                                    {.d = .4318, .alpha = pi / 2},
+                                                    {.alpha = -pi / 2},
+                                                    {.d = .1}}});
+
+vector configuration(duet_test::random_source& random, double most) {
+  vector theta;
+  for (int i = 0; i < 6; ++i) {
+    theta[i] = random.uniform(-most, most);
+  }
+  return theta;
+}
+vector beside(const vector& theta, duet_test::random_source& random, double most) {
+  return theta + configuration(random, most);
+}
+
+/// Along the screw to the pose of `end`.
+plan_of_six plan_to(const chain& arm, const vector& start, const vector& end) {
+  return plan_screw_motion(arm, start, arm.pose(end));
+}
+double worst(const chain& arm, const plan_of_six& plan, const vector& end) {
+  const auto goal = arm.pose(end);
+  return duet_test::largest_deviation(arm, plan,
+                                      [&](double tau) { return sclerp(plan.poses[0], goal, tau); });
+}
+void check_reached(const chain& arm, const vector& start, const vector& end) {
+  const auto plan = plan_to(arm, start, end);
+  CHECK(plan.reason == stop_reason::reached);
+  CHECK(plan.joints.front() == start);
+  CHECK(std::is_sorted(plan.tau.begin(), plan.tau.end()));
+  CHECK(plan.tau.back() == 1);
+  CHECK(worst(arm, plan, end) < 1.1e-5);
+}
+
+double smallest_singular_value(const chain& arm, const vector& theta) {
+  const detail::chain_model<chain> model(arm);
+  return detail::smallest_singular_value_of(model.at(model.joints(theta)).jacobian);
+}
+
+} // namespace
+
+TEST_CASE("joint 5 from x to -x, through the wrist's singularity") {
+  duet_test::random_source random(1);
+  for (const chain& arm : {ur5e, puma}) {
+    for (int k = 0; k < 5; ++k) {
+      vector start = configuration(random, 2);
+      start[4] = random.uniform(.1, 1.5);
+      vector end = start;
+      end[4] = -end[4];
+      check_reached(arm, start, end);
+    }
+  }
+}
+
+TEST_CASE("joints 4 and 6 swing where a path passes beside the wrist's singularity") {
+  duet_test::random_source random(2);
+  for (int k = 0; k < 5; ++k) {
+    vector start = configuration(random, 1);
+    start[4] = .5;
+    vector end = beside(start, random, 1e-3);
+    end[4] = -.5;
+    check_reached(puma, start, end);
+    // With limits that leave no room for the swing it stops there.
+    vector lower = vector::Constant(-10), upper = vector::Constant(10);
+    lower[3] = start[3] - .3;
+    upper[3] = start[3] + .3;
+    const chain narrow = with_limits(puma, lower, upper);
+    const auto plan = plan_to(narrow, start, end);
+    CHECK(plan.reason == stop_reason::joint_limit);
+    CHECK(plan.tau.back() < .51);
+    CHECK(worst(narrow, plan, end) < 1.1e-5);
+  }
+}
+
+TEST_CASE("from a stretched elbow inwards, and not outwards") {
+  duet_test::random_source random(3);
+  for (int k = 0; k < 6; ++k) {
+    vector start = configuration(random, 1);
+    start[2] = 0;
+    start[4] = 1 + .3 * start[4];
+    const auto t = random.direction<3>();
+    const Eigen::Vector3d stretch =
+        translation(ur5e.pose(start, 2)) - translation(ur5e.pose(start, 1));
+    const Eigen::Vector3d way = .01 * Eigen::Vector3d(t[0], t[1], t[2]) - .25 * stretch;
+    const auto goal = pose(quaternion<double>(1), way) * ur5e.pose(start);
+    const auto inwards = plan_screw_motion(ur5e, start, goal);
+    CHECK(inwards.reason == stop_reason::reached);
+    CHECK(std::abs(inwards.joints.back()[2]) > .1);
+    CHECK(duet_test::largest_deviation(ur5e, inwards, [&](double tau) {
+            return sclerp(inwards.poses[0], goal, tau);
+          }) < 1.1e-5);
+    const auto outwards = plan_screw_motion(
+        ur5e, start, pose(quaternion<double>(1), Eigen::Vector3d(-way)) * ur5e.pose(start));
+    CHECK(
+        (outwards.reason == stop_reason::singular || outwards.reason == stop_reason::out_of_reach));
+    CHECK(outwards.tau.back() < 1e-3);
+  }
+}
+
+/// Whatever way back leads to the singular pose, the way there exists, but for motions in place
+/// that limits cut off; the arms have none here.
+TEST_CASE("from the wrist's singularity, to where a way back comes from") {
+  duet_test::random_source random(4);
+  int count = 0;
+  for (const chain& arm : {ur5e, puma}) {
+    for (int k = 0; k < 6; ++k) {
+      vector start = configuration(random, 1.5);
+      start[2] += start[2] > 0 ? .4 : -.4;
+      start[4] = 0;
+      vector end = beside(start, random, .4);
+      if (plan_to(arm, end, start).reason == stop_reason::reached) {
+        check_reached(arm, start, end);
+        ++count;
+      }
+    }
+  }
+  CHECK(count >= 8);
+}
+
+TEST_CASE("the way out of a singularity is the one on which it is left fastest") {
+  duet_test::random_source random(5);
+  const detail::chain_model<chain> model(puma);
+  for (int k = 0; k < 5; ++k) {
+    vector theta = configuration(random, 1);
+    theta[2] += 1.5;
+    theta[4] = 0;
+    const auto out =
+        detail::own_joints(puma, detail::way_out(model.at(model.joints(theta)).jacobian));
+    CHECK(out.norm() == doctest::Approx(1));
+    CHECK(std::abs(out[4]) == doctest::Approx(1)); // all axes but that of joint 5 go on meeting
+    const double h = 1e-3, left = smallest_singular_value(puma, theta + h * out);
+    CHECK(left > 1e-3 * h);
+    CHECK(smallest_singular_value(puma, theta) < 1e-6);
+    for (int trial = 0; trial < 5; ++trial) {
+      const vector other = configuration(random, 1).normalized();
+      CHECK(smallest_singular_value(puma, theta + h * other) < left * (1 + 1e-2));
+    }
+  }
+}
+
+TEST_CASE("where joints slide plans do not depend on the unit of length") {
+  const auto stanford = [](double unit) {
+    return from_dh(std::array<dh_row<>, 6>{
+        {{.d = .412 * unit, .alpha = -pi / 2, .limits = {-2.9, 2.9}},
+         {.d = .154 * unit, .alpha = pi / 2, .limits = {-2.9, 2.9}},
+         {.limits = {.3048 * unit, 1.27 * unit}, .kind = joint_kind::prismatic},
+         {.alpha = -pi / 2, .limits = {-2.9, 2.9}},
+         {.alpha = pi / 2, .limits = {-1.5, 1.5}},
+         {.d = .263 * unit, .limits = {-2.9, 2.9}}}});
+  };
+  for (const double unit : {1024., 1000.}) {
+    const bool is_exact = unit == 1024;
+    const chain metres = stanford(1), other = stanford(unit);
+    duet_test::random_source random(6);
+    int reached = 0;
+    for (int k = 0; k < 10; ++k) {
+      vector start = configuration(random, 1.4), end = beside(start, random, .3);
+      start[2] = random.uniform(.31, 1.2);
+      end[2] = random.uniform(.31, 1.2);
+      end[4] = std::clamp(end[4], -1.5, 1.5);
+      const auto scaled = [&](vector x) {
+        x[2] *= unit;
+        return x;
+      };
+      const auto x = plan_screw_motion(metres, start, metres.pose(end),
+                                       {.tolerance = {1e-6, 1e-7}, .deviation = {1e-5, 1e-6}});
+      const auto y =
+          plan_screw_motion(other, scaled(start), other.pose(scaled(end)),
+                            {.tolerance = {1e-6 * unit, 1e-7}, .deviation = {1e-5 * unit, 1e-6}});
+      reached += x.reason == stop_reason::reached;
+      CHECK(x.reason == y.reason);
+      REQUIRE(x.joints.size() == y.joints.size());
+      CHECK(x.iterations == y.iterations);
+      CHECK(y.joints.front() == scaled(start));
+      for (std::size_t i = 0; i < x.joints.size(); ++i) {
+        const double apart =
+            (scaled(x.joints[i]) - y.joints[i]).cwiseAbs().maxCoeff() / (is_exact ? 1 : unit);
+        CHECK(apart <= (is_exact ? 0 : 1e-6));
+      }
+    }
+    CHECK(reached >= 5);
+  }
+}
+
+} // namespace test_planning_singular_paths
