@@ -4,8 +4,10 @@
 #include "support/multiprecision.hpp"
 
 #include <duet/derivative/gradient.hpp>
+#include <duet/mechanism/denavit_hartenberg.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/limits.hpp>
+#include <duet/planning/equation_goal.hpp>
 #include <duet/planning/goals.hpp>
 
 #include <doctest/doctest.h>
@@ -14,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -304,6 +307,73 @@ TEST_CASE("joints that turn all round are turned to where the objective is lower
       inverse_kinematics(arm, arm.pose(known), known, {.candidates = 1}, preferred_posture{wish});
   CHECK(found.reason == stop_reason::reached);
   CHECK((found.joints - wish).cwiseAbs().maxCoeff() < 1e-5);
+}
+
+TEST_CASE("where joints slide solutions do not depend on the unit of length") {
+  const auto stanford = [](double unit) {
+    return from_dh(std::array<dh_row<>, 6>{
+        {{.d = .412 * unit, .alpha = -pi / 2, .limits = {-2.9, 2.9}},
+         {.d = .154 * unit, .alpha = pi / 2, .limits = {-2.9, 2.9}},
+         {.limits = {.3048 * unit, 1.27 * unit}, .kind = joint_kind::prismatic},
+         {.alpha = -pi / 2, .limits = {-2.9, 2.9}},
+         {.alpha = pi / 2, .limits = {-1.5, 1.5}},
+         {.d = .263 * unit, .limits = {-2.9, 2.9}}}});
+  };
+  const auto solution = [&](double unit, int k) {
+    const chain arm = stanford(unit);
+    duet_test::random_source random(86 + std::uint64_t(k));
+    vector known = configuration(stanford(1), random), start = configuration(stanford(1), random);
+    known[2] *= unit;
+    start[2] *= unit;
+    const auto squares = [&](const auto& x) {
+      auto sum = (x[2] - known[2]) * (x[2] - known[2]) / (unit * unit);
+      for (const int i : {0, 1, 3, 4, 5}) {
+        sum += x[i] * x[i];
+      }
+      return sum;
+    };
+    const vector3<double> z(0, 0, 1);
+    const auto tip = arm.pose(known);
+    auto goal = position_and_pointing_goal(translation(tip), z, rotate(rotation(tip), z));
+    goal.upper[0] = .05 * unit;
+    scene around;
+    around.margin = .03 * unit;
+    around.horizon = .3 * unit;
+    around.bodies = {{5, {vector3<double>(0, 0, 0), vector3<double>(0, 0, 0), .04 * unit}}};
+    around.obstacles = {
+        sphere<double>{translation(tip) + unit * vector3<double>(.05, .1, 0), .05 * unit}};
+    // The distance of a point beside the tip, and the angle to the way from the base to the tip.
+    const auto own = [&](const auto& a) {
+      using S = std::decay_t<decltype(translation(a)[0])>;
+      const vector3<S> p = translation(a), y(S(0), S(.3 * unit), S(0)), axis(S(0), S(0), S(1));
+      return std::array<S, 2>{(p + rotate(rotation(a), y)).norm(),
+                              rotate(rotation(a), axis).dot(p) / p.norm()};
+    };
+    const auto wanted = own(tip);
+    const equation_goal equations{[&](const auto& a) {
+      const auto value = own(a);
+      using S = std::decay_t<decltype(value[0] - wanted[0])>;
+      return std::array<S, 6>{value[0] - wanted[0], S(0), S(0), value[1] - wanted[1], S(0), S(0)};
+    }};
+    const inverse_kinematics_options options{.tolerance = {1e-6 * unit, 1e-6}};
+    auto found = k % 2 == 0 ? inverse_kinematics(arm, goal, start, options, squares, around)
+                            : inverse_kinematics(arm, equations, start, options, squares);
+    found.joints[2] /= unit;
+    found.deviation.length /= unit;
+    return found;
+  };
+  int reached = 0;
+  for (int k = 0; k < 10; ++k) {
+    const auto x = solution(1, k), same = solution(1024, k), close = solution(1000, k);
+    reached += x.reason == stop_reason::reached;
+    CHECK(x.reason == same.reason);
+    CHECK(x.joints == same.joints);
+    CHECK(x.deviation.length == same.deviation.length);
+    CHECK(x.iterations == same.iterations);
+    CHECK(x.reason == close.reason);
+    CHECK((x.joints - close.joints).cwiseAbs().maxCoeff() < 1e-5);
+  }
+  CHECK(reached >= 8);
 }
 
 TEST_CASE("what is refused") {

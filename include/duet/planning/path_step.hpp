@@ -32,7 +32,7 @@ template <class V>
 
 /// Poses by a parameter. Its type is forgotten, so that planners are compiled once for all.
 using path_function = std::function<dual_quaternion<double>(double)>;
-/// The same, as planners count lengths.
+/// Places of the tip by a parameter, lengths as planners count them.
 using place_function = std::function<tip_place(double)>;
 
 /// What became of an attempt to bring the tip to a pose.

@@ -81,7 +81,7 @@ struct chain_reach {
     const double all = links + tool + limited_travel;
     return all > 0 ? all : 1;
   }
-  /// The same with lengths in units of one that is given.
+  /// The reach with lengths in units of one that is given.
   [[nodiscard]] chain_reach in_units_of(double length) const {
     const double s = 1 / length;
     return {s * first, s * back, s * links, s * tool, s * travel, s * limited_travel, has_joints};
