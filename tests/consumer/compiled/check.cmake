@@ -11,7 +11,7 @@ if(NOT output_of_header_only MATCHES "sine.*reached.*slide.*near" OR NOT output_
 endif()
 
 foreach(name IN ITEMS "curve_through<" "fit_result<[^\n]*> duet::fit<" "::path_follower<8>::plan\\("
-        "::inverse_kinematics_search<8>::operator\\(\\)" "::chain_model<[^\n]*>::set\\(" "::screw_path<"
+        "::inverse_kinematics_search<8,[^\n]*>::operator\\(\\)" "::chain_model<[^\n]*>::set\\(" "::screw_path<"
         "::read_urdf_contents<" "::compared<")
   if(NOT names_of_header_only MATCHES "${name}")
     message(FATAL_ERROR "the program of headers alone does not define ${name}")
