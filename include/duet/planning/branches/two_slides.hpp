@@ -61,8 +61,8 @@ public:
     const loop_at at(*this, theta);
     const auto size = [&](std::size_t k) { return std::abs(at.ways[k].determinant); };
     const std::size_t best = size(0) < size(1) ? 0 : 1;
-    constexpr double small = 1e-3;
-    const bool both = std::max(size(0), size(1)) < small;
+    constexpr double rounding = 1e-3;
+    const bool both = std::max(size(0), size(1)) < rounding;
     int real = 0;
     for (const std::size_t k : {best, 1 - best}) {
       const auto& way = at.ways[k];
