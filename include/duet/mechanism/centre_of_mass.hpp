@@ -35,7 +35,7 @@ struct carried_mass {
 };
 
 /// Of the root, then of each node.
-/// \param twists  of the nodes; of none the rates are zero
+/// \param rates  of the nodes; of none the rates are zero
 /// \throws invalid_input where all is without mass
 template <class S>
 [[nodiscard]] std::vector<carried_mass<S>> carried_masses(const tree_table& table,
