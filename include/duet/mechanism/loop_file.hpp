@@ -131,16 +131,12 @@ private:
 
 } // namespace detail
 
-/// The loops in a text file, which stands beside a robot description: one a line,
-///
-///     hinge coupler 0.5 0 0  rocker 0.4 0 0
-///     ball  arm 0 0 1        plate 0.1 0 0
-///     rod   base 1 0 0       plate 0.1 0 0  length 0.8
-///
-/// a kind of `loop_kind`, two frames, and of a rod its length. A frame is a link, a point x y z in
-/// its frame, and, if its axes are not the link's, `axis x y z`, along which its z points as by
-/// `along_axis`, or `rpy roll pitch yaw` as in URDF. Metres and radians; names without blanks; from
-/// # on a line is a comment.
+/// The loops in a text file, which stands beside a robot description: one a line, as
+/// `hinge coupler 0.5 0 0 rocker 0.4 0 0` or `rod base 1 0 0 plate 0.1 0 0 length 0.8`: a kind of
+/// `loop_kind`, two frames, and of a rod its length. A frame is a link, a point x y z in its frame,
+/// and, if its axes are not the link's, `axis x y z`, along which its z points as by `along_axis`,
+/// or `rpy roll pitch yaw` as in URDF. Metres and radians; names without blanks; what follows a
+/// number sign on a line is a comment.
 ///
 /// \throws file_error with line and value for what cannot be read, unknown kinds, missing and
 /// superfluous words, what is no finite number, axes and rods without length
