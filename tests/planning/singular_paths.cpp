@@ -167,6 +167,40 @@ TEST_CASE("the way out of a singularity is the one on which it is left fastest")
   }
 }
 
+/// Of a general arm w and n are single, and the way out is the gradient of the determinant.
+TEST_CASE("the way out of a singularity is the gradient of the determinant, by dual numbers") {
+  const chain general = from_dh(std::array<dh_row<>, 6>{{{.a = .3, .d = .1, .alpha = .7},
+                                                         {.a = .5, .d = -.2, .alpha = -1.1},
+                                                         {.a = .2, .d = .3, .alpha = 1.3},
+                                                         {.a = -.4, .d = .2, .alpha = -.6},
+                                                         {.a = .1, .d = -.3, .alpha = .9},
+                                                         {.a = .2, .d = .1, .alpha = .4}}});
+  const auto determinant = [&](const auto& theta) {
+    return Eigen::Matrix<std::decay_t<decltype(theta[0])>, 6, 6>(
+               jacobian(general, theta, frame::hybrid))
+        .determinant();
+  };
+  const detail::chain_model<chain> model(general);
+  duet_test::random_source random(7);
+  int count = 0;
+  for (int k = 0; k < 20; ++k) {
+    vector low = configuration(random, 2), high = configuration(random, 2);
+    if (determinant(low) * determinant(high) > 0) {
+      continue;
+    }
+    ++count;
+    for (int i = 0; i < 60; ++i) {
+      const vector middle = (low + high) / 2;
+      (determinant(low) * determinant(middle) > 0 ? low : high) = middle;
+    }
+    const vector out =
+        detail::own_joints(general, detail::way_out(model.at(model.joints(low)).jacobian));
+    const vector slope = gradient(determinant, low).gradient.normalized();
+    CHECK(std::abs(out.dot(slope)) == doctest::Approx(1).epsilon(1e-6));
+  }
+  CHECK(count >= 5);
+}
+
 TEST_CASE("where joints slide plans do not depend on the unit of length") {
   const auto stanford = [](double unit) {
     return from_dh(std::array<dh_row<>, 6>{
