@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "mechanism/arms.hpp"
+#include "planning/chains.hpp"
 
 #include <duet/planning/choose_start.hpp>
 
@@ -17,19 +17,10 @@ namespace test_planning_choose_start {
 namespace {
 
 using namespace duet;
-/// Of any number of joints, so that all is compiled once.
-using chain = serial_chain<-16>;
-using vector = detail::joint_vector<double, -16>;
+using chain = duet_test::any_chain;
+using vector = duet_test::any_joints;
+using duet_test::configuration;
 using std::numbers::pi;
-
-vector configuration(const chain& arm, duet_test::random_source& random) {
-  vector theta(arm.size());
-  for (int i = 0; i < arm.size(); ++i) {
-    theta[i] =
-        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
-  }
-  return theta;
-}
 
 /// Is it a plan along all of the path, from a start within limits?
 template <class Path>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "mechanism/arms.hpp"
+#include "planning/chains.hpp"
 #include "support/multiprecision.hpp"
 
 #include <duet/planning/equation_goal.hpp>
@@ -22,9 +22,9 @@ namespace test_planning_goals {
 namespace {
 
 using namespace duet;
-/// Of any number of joints, so that the search is compiled once.
-using chain = serial_chain<-16>;
-using vector = detail::joint_vector<double, -16>;
+using chain = duet_test::any_chain;
+using vector = duet_test::any_joints;
+using duet_test::configuration;
 using duet_test::real_50;
 using wide_vector = vector3<real_50>;
 using wide_matrix = Eigen::Matrix<real_50, 3, 3>;
@@ -44,15 +44,6 @@ chain snake() {
 std::vector<chain> arms() {
   return {robots::panda().table(),       robots::iiwa14().table(), robots::ur5e().table(),
           robots::baxter_left().table(), duet_test::every_joint(), snake()};
-}
-
-vector configuration(const chain& arm, duet_test::random_source& random) {
-  vector theta(arm.size());
-  for (int i = 0; i < arm.size(); ++i) {
-    theta[i] =
-        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
-  }
-  return theta;
 }
 
 vector3<double> direction(duet_test::random_source& random) {

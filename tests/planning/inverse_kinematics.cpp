@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "mechanism/arms.hpp"
+#include "planning/chains.hpp"
 #include "support/allocations.hpp"
 
 #include <duet/planning/inverse_kinematics.hpp>
@@ -19,6 +19,8 @@ namespace test_planning_inverse_kinematics {
 namespace {
 
 using namespace duet;
+using duet_test::configuration;
+using duet_test::is_within_limits;
 /// Of any number of joints, so that the search is compiled once.
 using chain = serial_chain<-16>;
 using result = inverse_kinematics_result<-16>;
@@ -28,23 +30,6 @@ using std::numbers::pi;
 std::vector<chain> arms() {
   return {robots::panda().table(), robots::iiwa14().table(), robots::ur5e().table(),
           robots::baxter_left().table()};
-}
-
-vector configuration(const chain& arm, duet_test::random_source& random) {
-  vector theta(arm.size());
-  for (int i = 0; i < arm.size(); ++i) {
-    theta[i] =
-        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
-  }
-  return theta;
-}
-
-bool is_within_limits(const chain& arm, const vector& theta) {
-  bool is_inside = theta.size() == arm.size();
-  for (int i = 0; i < arm.size(); ++i) {
-    is_inside = is_inside && arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper;
-  }
-  return is_inside;
 }
 
 /// How far the tip is from the goal, by matrices: of a turn by φ, |R − 1| = 2√2 |sin φ/2|.

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "mechanism/arms.hpp"
+#include "planning/paths.hpp"
 
 #include <duet/planning/plan_screw_motion.hpp>
 
@@ -21,16 +21,10 @@ namespace {
 
 using namespace duet;
 using vector = duet_test::coordinates<7>;
+using duet_test::gripper_down;
 using point = Eigen::Vector3d;
 
 const auto arm = robots::panda().table();
-
-vector gripper_down() {
-  const double quarter = std::numbers::pi / 4;
-  vector theta;
-  theta << 0, -quarter, 0, -3 * quarter, 0, 2 * quarter, quarter;
-  return theta;
-}
 
 /// The Panda's upper arm, elbow, forearm and flange.
 scene arm_among(std::vector<obstacle> obstacles) {
@@ -40,27 +34,6 @@ scene arm_among(std::vector<obstacle> obstacles) {
            {7, capsule<>({0, 0, -.05}, {0, 0, .05}, .05)}},
           std::move(obstacles),
           .01};
-}
-
-/// Checks that a plan keeps to the screw, the limits and the margin, also between waypoints.
-template <class Plan>
-void check(const Plan& plan, const dual_quaternion<double>& goal, const scene& around) {
-  for (std::size_t k = 1; k < plan.joints.size(); ++k) {
-    for (int part = 1; part <= 2; ++part) {
-      const double x = part / 2.0;
-      const vector theta = (1 - x) * plan.joints[k - 1] + x * plan.joints[k];
-      for (int i = 0; i < 7; ++i) {
-        CHECK(theta[i] >= arm.limits(i).lower);
-        CHECK(theta[i] <= arm.limits(i).upper);
-      }
-      const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
-      const pose_deviation d = deviation_between(arm.pose(theta), sclerp(plan.poses[0], goal, tau));
-      CHECK(d.length < 1e-5);
-      CHECK(d.angle < 1e-5);
-      CHECK(clearance(arm, theta, around).distance > around.margin - (part == 2 ? 1e-6 : 1.1e-5));
-    }
-  }
-  CHECK(plan.smallest_clearance >= around.margin - 1e-6);
 }
 
 } // namespace
@@ -86,7 +59,7 @@ TEST_CASE("the elbow makes way for an obstacle, the tip stays on the screw") {
     const auto plan = plan_screw_motion(arm, gripper_down(), goal, {}, {}, around);
     CHECK(plan.reason == stop_reason::reached);
     CHECK(plan.smallest_clearance < .0101); // it does touch the margin
-    check(plan, goal, around);
+    duet_test::check_clear_screw(arm, plan, goal, around);
   }
 }
 
@@ -103,7 +76,7 @@ TEST_CASE("an obstacle in the way of the tip: as far as the margin, and why") {
   CHECK(std::string(to_text(plan.reason)) == "obstacle");
   CHECK(plan.tau.back() == doctest::Approx((.1 + .007 - .01) / .2).epsilon(1e-3));
   CHECK(plan.smallest_clearance == doctest::Approx(.01).epsilon(1e-3));
-  check(plan, goal, around);
+  duet_test::check_clear_screw(arm, plan, goal, around);
 }
 
 TEST_CASE("obstacles far away change nothing") {

@@ -3,6 +3,8 @@
 
 #include "mechanism/arms.hpp"
 
+#include <duet/dual_quaternion/screw.hpp>
+#include <duet/planning/clearance.hpp>
 #include <duet/planning/motion_plan.hpp>
 
 #include <algorithm>
@@ -44,6 +46,29 @@ double largest_deviation(const Chain& chain, const Plan& plan, const Path& path)
     }
   }
   return result;
+}
+
+/// Checks that a plan keeps to the screw, the limits and the margin, also between waypoints.
+template <class Chain, class Plan>
+void check_clear_screw(const Chain& arm, const Plan& plan,
+                       const duet::dual_quaternion<double>& goal, const duet::scene& around) {
+  for (std::size_t k = 1; k < plan.joints.size(); ++k) {
+    for (int part = 1; part <= 2; ++part) {
+      const double x = part / 2.0;
+      const auto theta = ((1 - x) * plan.joints[k - 1] + x * plan.joints[k]).eval();
+      for (int i = 0; i < arm.size(); ++i) {
+        CHECK(theta[i] >= arm.limits(i).lower);
+        CHECK(theta[i] <= arm.limits(i).upper);
+      }
+      const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
+      const auto d = duet::deviation_between(arm.pose(theta), sclerp(plan.poses[0], goal, tau));
+      CHECK(d.length < 1e-5);
+      CHECK(d.angle < 1e-5);
+      CHECK(duet::clearance(arm, theta, around).distance >
+            around.margin - (part == 2 ? 1e-6 : 1.1e-5));
+    }
+  }
+  CHECK(plan.smallest_clearance >= around.margin - 1e-6);
 }
 
 } // namespace duet_test

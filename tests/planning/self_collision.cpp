@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "mechanism/trees.hpp"
+#include "planning/paths.hpp"
 
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/tree_jacobian.hpp>
@@ -75,27 +76,6 @@ void check_gradients(const M& mechanism, const X& theta, const scene& s) {
     CHECK(std::abs(closest_points(mechanism, theta, a, b).distance -
                    closest_points(mechanism, theta, b, a).distance) < 1e-14);
   }
-}
-
-/// Checks that a plan keeps to the screw, the limits and the margin, also between waypoints.
-template <class Plan>
-void check_plan(const Plan& plan, const dual_quaternion<double>& goal, const scene& around) {
-  for (std::size_t k = 1; k < plan.joints.size(); ++k) {
-    for (int part = 1; part <= 2; ++part) {
-      const double x = part / 2.0;
-      const vector theta = (1 - x) * plan.joints[k - 1] + x * plan.joints[k];
-      for (int i = 0; i < 7; ++i) {
-        CHECK(theta[i] >= arm.limits(i).lower);
-        CHECK(theta[i] <= arm.limits(i).upper);
-      }
-      const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
-      const pose_deviation d = deviation_between(arm.pose(theta), sclerp(plan.poses[0], goal, tau));
-      CHECK(d.length < 1e-5);
-      CHECK(d.angle < 1e-5);
-      CHECK(clearance(arm, theta, around).distance > around.margin - (part == 2 ? 1e-6 : 1.1e-5));
-    }
-  }
-  CHECK(plan.smallest_clearance >= around.margin - 1e-6);
 }
 
 } // namespace
@@ -194,7 +174,7 @@ TEST_CASE("an arm that would run into its base moves its elbow around it") {
   const auto plan = plan_screw_motion(arm, start, goal, {}, {}, around);
   CHECK(plan.reason == stop_reason::reached);
   CHECK(plan.smallest_clearance < .0201); // it does come to the margin
-  check_plan(plan, goal, around);
+  duet_test::check_clear_screw(arm, plan, goal, around);
 }
 
 TEST_CASE("a hand that is moved into the base stops before it, and says why") {
@@ -207,7 +187,7 @@ TEST_CASE("a hand that is moved into the base stops before it, and says why") {
   CHECK(plan.reason == stop_reason::obstacle);
   CHECK(plan.tau.back() > .1);
   CHECK(plan.smallest_clearance == doctest::Approx(.02).epsilon(1e-3));
-  check_plan(plan, goal, around);
+  duet_test::check_clear_screw(arm, plan, goal, around);
 }
 
 TEST_CASE("a start that is folded too far; pairs that are none") {

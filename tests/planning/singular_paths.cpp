@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "planning/chains.hpp"
 #include "planning/paths.hpp"
 
 #include <duet/mechanism/denavit_hartenberg.hpp>
@@ -202,15 +203,7 @@ TEST_CASE("the way out of a singularity is the gradient of the determinant, by d
 }
 
 TEST_CASE("where joints slide plans do not depend on the unit of length") {
-  const auto stanford = [](double unit) {
-    return from_dh(std::array<dh_row<>, 6>{
-        {{.d = .412 * unit, .alpha = -pi / 2, .limits = {-2.9, 2.9}},
-         {.d = .154 * unit, .alpha = pi / 2, .limits = {-2.9, 2.9}},
-         {.limits = {.3048 * unit, 1.27 * unit}, .kind = joint_kind::prismatic},
-         {.alpha = -pi / 2, .limits = {-2.9, 2.9}},
-         {.alpha = pi / 2, .limits = {-1.5, 1.5}},
-         {.d = .263 * unit, .limits = {-2.9, 2.9}}}});
-  };
+  const auto& stanford = duet_test::stanford_arm;
   for (const double unit : {1024., 1000.}) {
     const bool is_exact = unit == 1024;
     const chain metres = stanford(1), other = stanford(unit);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "mechanism/arms.hpp"
+#include "planning/chains.hpp"
 #include "support/multiprecision.hpp"
 
 #include <duet/derivative/gradient.hpp>
@@ -27,23 +27,15 @@ namespace test_planning_wanted_solution {
 namespace {
 
 using namespace duet;
-/// Of any number of joints, so that the search is compiled once.
-using chain = serial_chain<-16>;
-using vector = detail::joint_vector<double, -16>;
+using chain = duet_test::any_chain;
+using vector = duet_test::any_joints;
+using duet_test::configuration;
+using duet_test::is_within_limits;
 using std::numbers::pi;
 
 std::vector<chain> arms() {
   return {robots::panda().table(), robots::iiwa14().table(), robots::ur5e().table(),
           robots::baxter_left().table(), duet_test::every_joint()};
-}
-
-vector configuration(const chain& arm, duet_test::random_source& random) {
-  vector theta(arm.size());
-  for (int i = 0; i < arm.size(); ++i) {
-    theta[i] =
-        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
-  }
-  return theta;
 }
 
 vector nearby(const chain& arm, vector theta, double most, duet_test::random_source& random) {
@@ -52,14 +44,6 @@ vector nearby(const chain& arm, vector theta, double most, duet_test::random_sou
                           arm.limits(i).upper);
   }
   return theta;
-}
-
-bool is_within_limits(const chain& arm, const vector& theta) {
-  bool is_inside = theta.size() == arm.size();
-  for (int i = 0; i < arm.size(); ++i) {
-    is_inside = is_inside && arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper;
-  }
-  return is_inside;
 }
 
 /// How far the tip is from a position, to 50 digits.
@@ -310,15 +294,7 @@ TEST_CASE("joints that turn all round are turned to where the objective is lower
 }
 
 TEST_CASE("where joints slide solutions do not depend on the unit of length") {
-  const auto stanford = [](double unit) {
-    return from_dh(std::array<dh_row<>, 6>{
-        {{.d = .412 * unit, .alpha = -pi / 2, .limits = {-2.9, 2.9}},
-         {.d = .154 * unit, .alpha = pi / 2, .limits = {-2.9, 2.9}},
-         {.limits = {.3048 * unit, 1.27 * unit}, .kind = joint_kind::prismatic},
-         {.alpha = -pi / 2, .limits = {-2.9, 2.9}},
-         {.alpha = pi / 2, .limits = {-1.5, 1.5}},
-         {.d = .263 * unit, .limits = {-2.9, 2.9}}}});
-  };
+  const auto& stanford = duet_test::stanford_arm;
   const auto solution = [&](double unit, int k) {
     const chain arm = stanford(unit);
     duet_test::random_source random(86 + std::uint64_t(k));
