@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -159,14 +160,20 @@ vector configuration(int which, Eigen::Index size, duet_test::random_source& ran
   return theta;
 }
 
+/// The folder of robot files; none where KDL's matrices are not aligned as the tests' are, as they
+/// are freed here, and there.
+std::optional<std::filesystem::path> robot_files() {
+  if (EIGEN_MAX_ALIGN_BYTES > 16) {
+    duet_test::skip("Orocos KDL was compiled for matrices aligned to 16 bytes, this is not");
+    return std::nullopt;
+  }
+  return duet_test::outside_data("urdf");
+}
+
 } // namespace
 
 TEST_CASE("poses, Jacobians and their rates of every link are Orocos KDL's") {
-  if (EIGEN_MAX_ALIGN_BYTES > 16) { // its matrices are freed here, and there
-    duet_test::skip("Orocos KDL was compiled for matrices aligned to 16 bytes, this is not");
-    return;
-  }
-  const auto data = duet_test::outside_data("urdf");
+  const auto data = robot_files();
   if (!data) {
     return;
   }
@@ -211,7 +218,7 @@ TEST_CASE("poses, Jacobians and their rates of every link are Orocos KDL's") {
 }
 
 TEST_CASE("trees of every robot file are Orocos KDL's, the joints that follow others too") {
-  const auto data = duet_test::outside_data("urdf");
+  const auto data = robot_files();
   if (!data) {
     return;
   }

@@ -91,7 +91,8 @@ template <class J, class V>
 template <class A, class B>
 [[nodiscard]] auto product_of(const A& a, const B& b) {
   using S = promote_t<typename A::Scalar, typename B::Scalar>;
-  return tree_columns<S, A::RowsAtCompileTime>(a.template cast<S>().lazyProduct(b.template cast<S>()));
+  return tree_columns<S, A::RowsAtCompileTime>(
+      a.template cast<S>().lazyProduct(b.template cast<S>()));
 }
 
 /// The unit vectors of y.
