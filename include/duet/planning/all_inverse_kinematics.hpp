@@ -116,6 +116,7 @@ public:
 
   [[nodiscard]] const joint_loop& loop() const { return loop_; }
 
+  /// But for its singular value.
   [[nodiscard]] branch operator()(const loop_solution& x) const {
     constexpr double rounding = 2e-13; // closed forms have more near singularities
     branch result = described(x);
@@ -129,22 +130,23 @@ public:
 
   /// Is it a solution, and none of these?
   [[nodiscard]] bool is_new(const branch& found, const std::vector<branch>& others) const {
-    constexpr double rounding = 1e-8;
-    return found.residual < rounding &&
-           std::none_of(others.begin(), others.end(),
-                        [&](const branch& other) { return distance(found, other) < rounding; });
+    return found.residual < rounding && std::none_of(others.begin(), others.end(), [&](const branch& other) {
+             return is_same(found, other);
+           });
   }
 
 private:
-  /// The largest difference of coordinates, but for whole turns.
-  [[nodiscard]] double distance(const branch& a, const branch& b) const {
-    double largest = 0;
-    for (int i = 0; i < 6; ++i) {
+  static constexpr double rounding = 1e-8;
+
+  /// But for whole turns.
+  [[nodiscard]] bool is_same(const branch& a, const branch& b) const {
+    bool result = true;
+    for (int i = 0; i < 6 && result; ++i) {
       const double d = a.joints[i] - b.joints[i];
       const bool turns = loop_.joints[std::size_t(i)].turns;
-      largest = std::max(largest, std::abs(turns ? turned_back(d) : d / axes_.size));
+      result = std::abs(turns ? turned_back(d) : d / axes_.size) < rounding;
     }
-    return largest;
+    return result;
   }
 
   [[nodiscard]] branch described(const loop_solution& x) const {
@@ -158,12 +160,10 @@ private:
       theta = turns ? turned_within(turned_back(x.theta[i]), limits) : axes_.size * x.theta[i];
       result.within_limits = result.within_limits && theta >= limits.lower && theta <= limits.upper;
     }
-    joint_columns<double, 6, C::joints> jacobian;
-    const tip_place tip =
-        fill_jacobian<hybrid_frame, true, double>(jacobian, chain_, result.joints, tip_of_chain{});
+    const tip_place tip = attached(
+        walk<true, double>(chain_, result.joints, 6, visit_nothing), chain_.tip().offset);
     const pose_deviation left = deviation_of(error_twist(tip, goal_));
     result.residual = std::max(left.length / axes_.size, left.angle);
-    result.smallest_singular_value = smallest_singular_value(jacobian);
     return result;
   }
 
@@ -172,6 +172,24 @@ private:
   chain_axes axes_;
   joint_loop loop_;
 };
+
+/// Eight at a time.
+template <class C>
+void fill_singular_values(const C& chain, std::vector<inverse_kinematics_branch<C::joints>>& all) {
+  using eight = batch<double, 8>;
+  for (std::size_t first = 0; first < all.size(); first += 8) {
+    Eigen::Matrix<eight, 6, 1> theta;
+    for (int k = 0; k < 6; ++k) {
+      theta[k] = eight::from_lanes([&](int i) {
+        return all[std::min(first + std::size_t(i), all.size() - 1)].joints[k];
+      });
+    }
+    const eight values = smallest_singular_value(jacobian(chain, theta, frame::hybrid));
+    for (std::size_t i = first; i < std::min(first + 8, all.size()); ++i) {
+      all[i].smallest_singular_value = values[int(i - first)];
+    }
+  }
+}
 
 } // namespace detail
 
@@ -207,6 +225,7 @@ all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {
       result.complex_solutions += x.multiplicity; // two that nearly coincide, not quite real
     }
   }
+  detail::fill_singular_values(chain, result.solutions);
   std::sort(result.solutions.begin(), result.solutions.end(), [](const auto& a, const auto& b) {
     return std::lexicographical_compare(a.joints.begin(), a.joints.end(), b.joints.begin(),
                                         b.joints.end());

@@ -32,7 +32,7 @@ inline constexpr double one_angle = 3e-7;
 template <class Visit>
 bool visit_zeros(const turning_value& f, const Visit& visit) {
   constexpr double rounding = 1e-12;
-  const double r = std::hypot(f.b, f.c);
+  const double r = std::sqrt(f.b * f.b + f.c * f.c);
   if (!(r > rounding)) {
     return std::abs(f.a) > rounding;
   }
@@ -118,7 +118,7 @@ private:
     std::array<bool, 4> is_done{};
     for (int i = 0; i < 4; ++i) {
       const complex z = roots[i];
-      const double off = std::abs(z) - 1,
+      const double off = std::sqrt(std::norm(z)) - 1,
                    error = std::min(1e-5, 1e-9 + 1e-13 * roots.sensitivity(i));
       const auto visit_at = [&](double phi, int multiplicity) {
         const double c = std::cos(phi), s = std::sin(phi);

@@ -124,9 +124,9 @@ private:
       x_[i] -= wx;
       y_[i] -= wy;
       const bool is_near = size[i] < 3 && size[i] > .3; // others need not be as accurate
-      largest = std::max(largest, (is_near ? 1 : 1e-6) * std::hypot(wx, wy) / size[i]);
+      largest = std::max(largest, (is_near ? 1 : 1e-12) * (wx * wx + wy * wy) / (size[i] * size[i]));
     }
-    return largest;
+    return std::sqrt(largest);
   }
 
   std::array<std::complex<double>, std::size_t(samples)> coefficients_{};

@@ -51,7 +51,7 @@ public:
                             {height(from, at_third), square(from, at_third)}};
     bool is_determined = true;
     const bool has_pairs = pairs([&](double theta1, double theta3, int multiplicity) {
-      six_coordinates theta;
+      six_coordinates theta = six_coordinates::Zero();
       theta[0] = theta1;
       theta[2] = theta3;
       const vector3d start = from.at(theta3) + at_third, end = to.at(theta1) + at_first;
@@ -109,7 +109,7 @@ public:
          distance(from, goal_distance - dot(goal_normal, sixth.point), sixth.point - fifth.point)}};
     bool is_determined = true;
     const bool has_pairs = pairs([&](double theta4, double theta6, int multiplicity) {
-      six_coordinates theta;
+      six_coordinates theta = six_coordinates::Zero();
       theta[3] = theta4;
       theta[5] = theta6;
       const vector3d start = from.at(theta6);
@@ -126,6 +126,7 @@ private:
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
     const tip_place motion = loop_.closing * inverse_place(product_of_joints(loop_, theta, 3, 3));
     const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
+    const double whole = angle_of(motion.rotation, n); // of turns about n and −n
     const turned_vector arm(second.axis, third.point - second.point);
     const vector3d offset = second.point - first.point;
     const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
@@ -139,9 +140,8 @@ private:
                       theta[1] = theta2;
                       theta[0] = angle_about(n, from, to);
                       is_determined = is_determined && !is_on(n, from);
-                      const quaternion<double> before =
-                          moved_by(first, theta[0]).rotation * moved_by(second, theta2).rotation;
-                      theta[2] = angle_of(conj(before) * motion.rotation, third.axis);
+                      theta[2] = dot(n, third.axis) *
+                                 (whole - theta[0] - dot(n, second.axis) * theta2);
                       visit(theta, multiplicity * m);
                     });
     return has_second && is_determined;

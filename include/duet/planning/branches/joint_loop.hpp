@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/planning/planning_model.hpp>
@@ -64,23 +65,29 @@ struct joint_loop {
   }
 };
 
-/// The displacement by a joint.
-[[nodiscard]] inline tip_place moved_by(const loop_joint& j, double theta) {
-  if (!j.turns) {
-    return {quaternion<double>(1), theta * j.axis};
-  }
-  const double s = std::sin(theta / 2);
-  const quaternion<double> q(std::cos(theta / 2), s * j.axis.x, s * j.axis.y, s * j.axis.z);
-  return {q, j.point - rotated(q, j.point)};
+/// The rotation about an axis, of the sine and the cosine of half its angle.
+[[nodiscard]] inline quaternion<double> turn_about(const three_vector<double>& axis, double sine,
+                                                   double cosine) {
+  return {cosine, sine * axis.x, sine * axis.y, sine * axis.z};
+}
+
+/// Sines and cosines of half of the coordinates.
+[[nodiscard]] inline sines_at_once<6> half_turns_of(const six_coordinates& theta) {
+  return sines_at_once<6>(theta[0] / 2, theta[1] / 2, theta[2] / 2, theta[3] / 2, theta[4] / 2,
+                          theta[5] / 2);
 }
 
 /// The product of the displacements of `count` joints from the one numbered `first` on.
-template <class Coordinates>
-[[nodiscard]] tip_place product_of_joints(const joint_loop& loop, const Coordinates& theta,
-                                          std::size_t first, std::size_t count) {
+[[nodiscard]] inline tip_place product_of_joints(const joint_loop& loop,
+                                                 const six_coordinates& theta, int first,
+                                                 int count) {
+  const auto halves = half_turns_of(theta);
   tip_place result{quaternion<double>(1), {0, 0, 0}};
-  for (std::size_t i = first; i < first + count; ++i) {
-    result = result * moved_by(loop.joints[i], theta[Eigen::Index(i)]);
+  for (int i = first; i < first + count; ++i) {
+    const loop_joint& j = loop.joints[std::size_t(i)];
+    const quaternion<double> q = turn_about(j.axis, halves.sine(i), halves.cosine(i));
+    result = result * (j.turns ? tip_place{q, j.point - rotated(q, j.point)}
+                               : tip_place{quaternion<double>(1), theta[i] * j.axis});
   }
   return result;
 }
@@ -92,10 +99,10 @@ struct loop_gap {
   six_columns jacobian;
 
   loop_gap(const joint_loop& loop, const six_coordinates& theta) {
+    const auto halves = half_turns_of(theta);
     tip_place link{quaternion<double>(1), {0, 0, 0}};
-    for (std::size_t i = 0; i < 6; ++i) {
-      const loop_joint& j = loop.joints[i];
-      const auto column = Eigen::Index(i);
+    for (int column = 0; column < 6; ++column) {
+      const loop_joint& j = loop.joints[std::size_t(column)];
       const three_vector<double> n = rotated(link.rotation, j.axis);
       if (!j.turns) {
         jacobian.col(column) << n.x, n.y, n.z, 0, 0, 0;
@@ -104,9 +111,8 @@ struct loop_gap {
       }
       const three_vector<double> p = link.point(j.point), m = cross(p, n);
       jacobian.col(column) << m.x, m.y, m.z, n.x, n.y, n.z;
-      const double s = std::sin(theta[column] / 2);
-      link.rotation = link.rotation * quaternion<double>(std::cos(theta[column] / 2), s * j.axis.x,
-                                                         s * j.axis.y, s * j.axis.z);
+      link.rotation =
+          link.rotation * turn_about(j.axis, halves.sine(column), halves.cosine(column));
       link.translation = p - rotated(link.rotation, j.point);
     }
     const tip_place left = loop.closing * inverse_place(link);

@@ -32,8 +32,13 @@ struct loop_answer {
 
 /// The angle between −π and π, π included.
 [[nodiscard]] inline double turned_back(double x) {
-  const double r = std::remainder(x, 2 * std::numbers::pi);
-  return r <= -std::numbers::pi ? std::numbers::pi : r;
+  constexpr double pi = std::numbers::pi, turn = 2 * pi;
+  const double size = std::abs(x);
+  // The same but for the last of these, which takes twenty times as long.
+  const double r = size <= pi       ? x
+                   : size <= 3 * pi ? x - std::copysign(turn, x)
+                                    : std::remainder(x, turn);
+  return r <= -pi ? pi : r;
 }
 
 /// The solutions of a loop that were found so far.

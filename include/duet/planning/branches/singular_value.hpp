@@ -1,39 +1,147 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch/math.hpp>
 #include <duet/core/config.hpp>
+#include <duet/core/select.hpp>
 
-#include <Eigen/Core>
-#include <Eigen/LU>
-
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 /// \file
 /// The smallest singular value of a Jacobian of six joints.
 
 namespace duet::detail {
 
-/// The largest of the inverse: powers of J⁻¹J⁻ᵀ by squaring have its square as a ratio. 0 where J
-/// is singular but for rounding.
+template <class S>
+using six_numbers = std::array<S, 6>;
+template <class S>
+using six_rows = std::array<six_numbers<S>, 6>;
+
+template <class S>
+[[nodiscard]] S sum_of_products(const six_numbers<S>& a, const six_numbers<S>& b, std::size_t from) {
+  S sum = a[from] * b[from];
+  for (std::size_t i = from + 1; i < 6; ++i) {
+    sum += a[i] * b[i];
+  }
+  return sum;
+}
+
+/// The largest zero of det(λ − G) for a symmetric matrix G of six rows whose eigenvalues are none
+/// of them negative, and whose trace is 1; G is lost.
+///
+/// Reflections make G tridiagonal, after Householder. From above Laguerre's method comes down to
+/// the zero, to third order where it is a simple one.
+template <class S>
+[[nodiscard]] S largest_eigenvalue(six_rows<S>& g) {
+  using std::max;
+  using std::sqrt;
+  constexpr double tiny = 1e-290;
+  six_numbers<S> squares; // of the numbers beside the diagonal
+  for (std::size_t k = 0; k < 5; ++k) {
+    six_numbers<S> v = g[k]; // v = x ± |x| e, that of the larger first number
+    squares[k] = sum_of_products(v, v, k + 1);
+    if (k == 4) {
+      break;
+    }
+    const S first = v[k + 1], length = sqrt(squares[k]);
+    v[k + 1] = select(first < S(0), [&] { return S(first - length); },
+                      [&] { return S(first + length); });
+    const S scale = S(1) / max(S(squares[k] + length * max(first, S(-first))), S(tiny));
+    six_numbers<S> w; // G v / (v·v/2)
+    for (std::size_t i = k + 1; i < 6; ++i) {
+      w[i] = scale * sum_of_products(g[i], v, k + 1);
+    }
+    const S half = scale * sum_of_products(v, w, k + 1) / S(2);
+    for (std::size_t i = k + 1; i < 6; ++i) {
+      w[i] -= half * v[i];
+    }
+    for (std::size_t i = k + 1; i < 6; ++i) {
+      for (std::size_t j = k + 1; j < 6; ++j) {
+        g[i][j] -= v[i] * w[j] + w[i] * v[j];
+      }
+    }
+  }
+  S norm2 = g[5][5] * g[5][5];
+  for (std::size_t k = 0; k < 5; ++k) {
+    norm2 += g[k][k] * g[k][k] + S(2) * squares[k];
+  }
+  S x = sqrt(norm2);
+  for (int round = 0; round < 60; ++round) {
+    S p = x - g[0][0], dp(1), ddp(0), p0(1), dp0(0), ddp0(0);
+    for (std::size_t k = 1; k < 6; ++k) {
+      const S d = x - g[k][k], e = squares[k - 1];
+      const S p2 = d * p - e * p0, dp2 = p + d * dp - e * dp0, ddp2 = S(2) * dp + d * ddp - e * ddp0;
+      p0 = p, dp0 = dp, ddp0 = ddp;
+      p = p2, dp = dp2, ddp = ddp2;
+    }
+    const S root = sqrt(max(S(S(5) * (S(5) * dp * dp - S(6) * p * ddp)), S(0)));
+    const S step = S(6) * p / max(S(dp + root), S(tiny));
+    x -= step;
+    if (!any(step > S(1e-15) * x)) {
+      break;
+    }
+  }
+  return x;
+}
+
+/// The smallest singular value of a matrix of six rows, 0 where it is singular but for rounding.
+///
+/// Rows made orthogonal one after the other, after Gram and Schmidt, are J = L Q, and the largest
+/// eigenvalue of L⁻¹L⁻ᵀ is 1/σ². What rounding changes does not depend on the lengths of the rows,
+/// so not on the unit of length.
 template <class Jacobian>
-[[nodiscard]] double smallest_singular_value(const Jacobian& jacobian) {
-  using matrix = Eigen::Matrix<double, 6, 6>;
-  const matrix j = jacobian;
-  const matrix inverse = j.partialPivLu().inverse();
-  const double size = inverse.norm();
-  if (!(size < 1e16 / j.norm())) {
-    return 0;
+[[nodiscard]] auto smallest_singular_value(const Jacobian& jacobian) {
+  using std::sqrt;
+  using S = typename Jacobian::Scalar;
+  six_rows<S> j, m{}; // m is first −L below the diagonal, then L⁻¹
+  S norm2(0);
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      j[i][k] = jacobian(int(i), int(k));
+    }
+    norm2 += sum_of_products(j[i], j[i], 0);
   }
-  const matrix scaled = inverse / size, square = scaled * scaled.transpose();
-  matrix power = square;
-  for (int k = 0; k < 9; ++k) { // a second one that is smaller by a hundredth is gone
-    power = power.lazyProduct(power).eval();
-    power /= power.trace();
+  for (std::size_t k = 0; k < 6; ++k) {
+    m[k][k] = S(1) / sqrt(sum_of_products(j[k], j[k], 0));
+    for (S& x : j[k]) {
+      x *= m[k][k];
+    }
+    for (std::size_t i = k + 1; i < 6; ++i) {
+      m[i][k] = -sum_of_products(j[i], j[k], 0);
+      for (std::size_t c = 0; c < 6; ++c) {
+        j[i][c] += m[i][k] * j[k][c];
+      }
+    }
   }
-  Eigen::Index largest = 0;
-  power.diagonal().maxCoeff(&largest);
-  const Eigen::Matrix<double, 6, 1> v = power.col(largest).normalized();
-  return 1 / (size * (scaled.transpose() * v).norm());
+  S inverse_norm2(0);
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < i; ++k) { // m[i][k] is the last that the sum reads
+      S sum(0);
+      for (std::size_t c = k; c < i; ++c) {
+        sum += m[i][c] * m[c][k];
+      }
+      m[i][k] = m[i][i] * sum;
+      inverse_norm2 += m[i][k] * m[i][k];
+    }
+    inverse_norm2 += m[i][i] * m[i][i];
+  }
+  six_rows<S> g;
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k <= i; ++k) {
+      S sum(0);
+      for (std::size_t c = 0; c <= k; ++c) {
+        sum += m[i][c] * m[k][c];
+      }
+      g[i][k] = g[k][i] = sum / inverse_norm2;
+    }
+  }
+  const auto is_regular = inverse_norm2 * norm2 < S(1e32);
+  const S largest = largest_eigenvalue(g);
+  return select(is_regular, [&] { return S(S(1) / sqrt(inverse_norm2 * largest)); },
+                [] { return S(0); });
 }
 
 } // namespace duet::detail

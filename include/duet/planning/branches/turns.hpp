@@ -31,7 +31,7 @@ struct turned_vector {
 /// The angle by which a turn about n takes u to v; 0 where u is on n.
 [[nodiscard]] inline double angle_about(const vector3d& n, const vector3d& u, const vector3d& v) {
   const double sine = dot(n, cross(u, v)), cosine = dot(u, v) - dot(n, u) * dot(n, v);
-  return std::hypot(sine, cosine) > 1e-20 ? std::atan2(sine, cosine) : 0.;
+  return sine * sine + cosine * cosine > 1e-40 ? std::atan2(sine, cosine) : 0.;
 }
 [[nodiscard]] inline bool is_on(const vector3d& n, const vector3d& v) {
   constexpr double rounding = 1e-9;
@@ -41,6 +41,14 @@ struct turned_vector {
 /// The angle of a rotation about n.
 [[nodiscard]] inline double angle_of(const quaternion<double>& q, const vector3d& n) {
   return 2 * std::atan2(n.x * q.x() + n.y * q.y() + n.z * q.z(), q.w());
+}
+
+/// The product of the rotations by α and β about axes a and b.
+[[nodiscard]] inline quaternion<double> two_turns(const vector3d& a, double alpha,
+                                                  const vector3d& b, double beta) {
+  const sines_at_once<2> halves(alpha / 2, beta / 2);
+  return turn_about(a, halves.sine(0), halves.cosine(0)) *
+         turn_about(b, halves.sine(1), halves.cosine(1));
 }
 
 /// Calls visit(α, β, γ, multiplicity) where turns by α, β and γ about the axes of three joints are,
@@ -61,8 +69,7 @@ bool visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_join
                     const bool is_free = is_on(a.axis, from);
                     const double alpha = is_free ? 0. : angle_about(a.axis, from, goal);
                     is_determined = is_determined && !is_free;
-                    const quaternion<double> before =
-                        moved_by(a, alpha).rotation * moved_by(b, beta).rotation;
+                    const quaternion<double> before = two_turns(a.axis, alpha, b.axis, beta);
                     visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
                   });
   return has_beta && is_determined;

@@ -177,13 +177,13 @@ private:
     six_coordinates result = six_coordinates::Zero();
     const auto set = [&](std::size_t k, double x) { result[Eigen::Index(turning_[k])] = x; };
     const double alpha = theta + start;
-    const quaternion<double> rest = conj(moved_by(a, alpha).rotation) * loop_.closing.rotation;
+    const quaternion<double> rest = conj(turn_about(a.axis, std::sin(alpha / 2), std::cos(alpha / 2))) * loop_.closing.rotation;
     const double beta =
         angle_about(b.axis, turned_vector(c.axis, d.axis).at(gamma), rotated(rest, d.axis));
     set(0, alpha);
     set(1, beta);
     set(2, gamma);
-    set(3, angle_of(conj(moved_by(b, beta).rotation * moved_by(c, gamma).rotation) * rest, d.axis));
+    set(3, angle_of(conj(two_turns(b.axis, beta, c.axis, gamma)) * rest, d.axis));
     const loop_gap left(loop_, result);
     Eigen::Matrix<double, 3, 2> ways;
     for (int k = 0; k < 2; ++k) {
