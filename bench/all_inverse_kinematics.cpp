@@ -70,33 +70,55 @@ double distance(const serial_chain<6>& arm, const Eigen::Matrix<double, 6, 1>& a
   return largest;
 }
 
+/// An arm, the coordinates that a goal is made of, and what was found.
+struct task {
+  serial_chain<6> arm;
+  Eigen::Matrix<double, 6, 1> theta;
+  dual_quaternion<double> goal;
+  all_inverse_kinematics_result<6> all{};
+};
+
+task random_task(const serial_chain<6>& arm, random_source& random) {
+  Eigen::Matrix<double, 6, 1> theta;
+  for (int i = 0; i < 6; ++i) {
+    const double largest = arm.kind(i) == joint_kind::prismatic ? 1 : pi;
+    theta[i] = random.uniform(-largest, largest);
+  }
+  return {arm, theta, arm.pose(theta)};
+}
+
 void report(const char* name, int count, random_source& random,
             const std::function<serial_chain<6>(random_source&)>& make) {
+  constexpr int together = 100; // as asking for the time takes some itself
   int found = 0, singular = 0, complete = 0, solutions = 0, most = 0, complex = 0;
   double worst = 0, seconds = 0;
-  for (int k = 0; k < count; ++k) {
-    const serial_chain<6> arm = make(random);
-    Eigen::Matrix<double, 6, 1> theta;
-    for (int i = 0; i < 6; ++i) {
-      const double largest = arm.kind(i) == joint_kind::prismatic ? 1 : pi;
-      theta[i] = random.uniform(-largest, largest);
+  std::vector<task> tasks;
+  for (int done = 0; done < count; done += int(tasks.size())) {
+    tasks.clear();
+    for (int k = 0; k < std::min(together, count - done); ++k) {
+      tasks.push_back(random_task(make(random), random));
     }
-    const auto goal = arm.pose(theta);
     const std::clock_t start = std::clock();
-    const auto all = all_inverse_kinematics(arm, goal);
-    seconds += double(std::clock() - start) / CLOCKS_PER_SEC;
-    if (detail::smallest_singular_value(jacobian(arm, theta, frame::hybrid)) < 1e-6) {
-      ++singular;
-      continue;
+    for (task& t : tasks) {
+      t.all = all_inverse_kinematics(t.arm, t.goal);
     }
-    found += std::any_of(all.solutions.begin(), all.solutions.end(),
-                         [&](const auto& s) { return distance(arm, s.joints, theta) < 1e-6; });
-    complete += all.is_complete;
-    solutions += int(all.solutions.size());
-    most = std::max(most, int(all.solutions.size()));
-    complex += all.complex_solutions;
-    for (const auto& s : all.solutions) {
-      worst = std::max(worst, s.residual);
+    seconds += double(std::clock() - start) / CLOCKS_PER_SEC;
+    for (const task& t : tasks) {
+      if (detail::smallest_singular_value(jacobian(t.arm, t.theta, frame::hybrid)) < 1e-6) {
+        ++singular;
+        continue;
+      }
+      const auto& all = t.all.solutions;
+      found += std::any_of(all.begin(), all.end(), [&](const auto& s) {
+        return distance(t.arm, s.joints, t.theta) < 1e-6;
+      });
+      complete += t.all.is_complete;
+      solutions += int(all.size());
+      most = std::max(most, int(all.size()));
+      complex += t.all.complex_solutions;
+      for (const auto& s : all) {
+        worst = std::max(worst, s.residual);
+      }
     }
   }
   const int regular = count - singular;

@@ -1,17 +1,24 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch/math.hpp>
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/derivative/argument.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/chain_walk.hpp>
+#include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/branches/branch_search.hpp>
 #include <duet/planning/branches/chain_loop.hpp>
 #include <duet/planning/branches/singular_value.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/planning_model.hpp>
+#include <duet/planning/tip_place.hpp>
 #include <duet/quaternion/norm.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -130,13 +137,13 @@ public:
 
   /// Is it a solution, and none of these?
   [[nodiscard]] bool is_new(const branch& found, const std::vector<branch>& others) const {
-    return found.residual < rounding && std::none_of(others.begin(), others.end(), [&](const branch& other) {
-             return is_same(found, other);
-           });
+    return found.residual < as_good_as_none &&
+           std::none_of(others.begin(), others.end(),
+                        [&](const branch& other) { return is_same(found, other); });
   }
 
 private:
-  static constexpr double rounding = 1e-8;
+  static constexpr double as_good_as_none = 1e-8;
 
   /// But for whole turns.
   [[nodiscard]] bool is_same(const branch& a, const branch& b) const {
@@ -144,7 +151,7 @@ private:
     for (int i = 0; i < 6 && result; ++i) {
       const double d = a.joints[i] - b.joints[i];
       const bool turns = loop_.joints[std::size_t(i)].turns;
-      result = std::abs(turns ? turned_back(d) : d / axes_.size) < rounding;
+      result = std::abs(turns ? turned_back(d) : d / axes_.size) < as_good_as_none;
     }
     return result;
   }
@@ -160,8 +167,8 @@ private:
       theta = turns ? turned_within(turned_back(x.theta[i]), limits) : axes_.size * x.theta[i];
       result.within_limits = result.within_limits && theta >= limits.lower && theta <= limits.upper;
     }
-    const tip_place tip = attached(
-        walk<true, double>(chain_, result.joints, 6, visit_nothing), chain_.tip().offset);
+    const tip_place tip =
+        attached(walk<true, double>(chain_, result.joints, 6, visit_nothing), chain_.tip().offset);
     const pose_deviation left = deviation_of(error_twist(tip, goal_));
     result.residual = std::max(left.length / axes_.size, left.angle);
     return result;
@@ -173,16 +180,15 @@ private:
   joint_loop loop_;
 };
 
-/// Eight at a time.
+/// Fills in the singular values, eight at a time: that takes little more than one.
 template <class C>
 void fill_singular_values(const C& chain, std::vector<inverse_kinematics_branch<C::joints>>& all) {
   using eight = batch<double, 8>;
   for (std::size_t first = 0; first < all.size(); first += 8) {
-    Eigen::Matrix<eight, 6, 1> theta;
+    Eigen::Matrix<eight, 6, 1> theta; // of the last one again where there are less
     for (int k = 0; k < 6; ++k) {
-      theta[k] = eight::from_lanes([&](int i) {
-        return all[std::min(first + std::size_t(i), all.size() - 1)].joints[k];
-      });
+      theta[k] = eight::from_lanes(
+          [&](int i) { return all[std::min(first + std::size_t(i), all.size() - 1)].joints[k]; });
     }
     const eight values = smallest_singular_value(jacobian(chain, theta, frame::hybrid));
     for (std::size_t i = first; i < std::min(first + 8, all.size()); ++i) {

@@ -124,7 +124,8 @@ private:
       x_[i] -= wx;
       y_[i] -= wy;
       const bool is_near = size[i] < 3 && size[i] > .3; // others need not be as accurate
-      largest = std::max(largest, (is_near ? 1 : 1e-12) * (wx * wx + wy * wy) / (size[i] * size[i]));
+      largest =
+          std::max(largest, (is_near ? 1 : 1e-12) * (wx * wx + wy * wy) / (size[i] * size[i]));
     }
     return std::sqrt(largest);
   }

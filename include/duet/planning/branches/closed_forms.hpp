@@ -140,8 +140,8 @@ private:
                       theta[1] = theta2;
                       theta[0] = angle_about(n, from, to);
                       is_determined = is_determined && !is_on(n, from);
-                      theta[2] = dot(n, third.axis) *
-                                 (whole - theta[0] - dot(n, second.axis) * theta2);
+                      theta[2] =
+                          dot(n, third.axis) * (whole - theta[0] - dot(n, second.axis) * theta2);
                       visit(theta, multiplicity * m);
                     });
     return has_second && is_determined;

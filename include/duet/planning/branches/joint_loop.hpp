@@ -78,9 +78,8 @@ struct joint_loop {
 }
 
 /// The product of the displacements of `count` joints from the one numbered `first` on.
-[[nodiscard]] inline tip_place product_of_joints(const joint_loop& loop,
-                                                 const six_coordinates& theta, int first,
-                                                 int count) {
+[[nodiscard]] inline tip_place
+product_of_joints(const joint_loop& loop, const six_coordinates& theta, int first, int count) {
   const auto halves = half_turns_of(theta);
   tip_place result{quaternion<double>(1), {0, 0, 0}};
   for (int i = first; i < first + count; ++i) {
@@ -97,6 +96,7 @@ struct joint_loop {
 struct loop_gap {
   six_coordinates twist;
   six_columns jacobian;
+  double size = 1; ///< the longest way along a slide, if that is more: rounding grows with it
 
   loop_gap(const joint_loop& loop, const six_coordinates& theta) {
     const auto halves = half_turns_of(theta);
@@ -107,6 +107,7 @@ struct loop_gap {
       if (!j.turns) {
         jacobian.col(column) << n.x, n.y, n.z, 0, 0, 0;
         link.translation = link.translation + theta[column] * n;
+        size = std::max(size, std::abs(theta[column]));
         continue;
       }
       const three_vector<double> p = link.point(j.point), m = cross(p, n);
@@ -129,7 +130,7 @@ struct loop_gap {
   double before = HUGE_VAL;
   for (int k = 0; k < 40; ++k) {
     const loop_gap gap(loop, theta);
-    const double left = gap.twist.norm();
+    const double left = gap.twist.norm() / gap.size;
     if (left <= rounding || (left <= good && left >= before / 2)) {
       return true;
     }

@@ -96,7 +96,8 @@ private:
   }
   [[nodiscard]] bool is_closed(const six_coordinates& theta) const {
     constexpr double rounding = 3e-13;
-    return loop_gap(loop_, theta).twist.norm() < rounding;
+    const loop_gap gap(loop_, theta);
+    return gap.twist.norm() < rounding * gap.size;
   }
 
   /// Along the direction v that changes the loop least, by u σ t, it changes by u (σ t + κ t²/2) to

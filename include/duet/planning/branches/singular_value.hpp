@@ -21,7 +21,8 @@ template <class S>
 using six_rows = std::array<six_numbers<S>, 6>;
 
 template <class S>
-[[nodiscard]] S sum_of_products(const six_numbers<S>& a, const six_numbers<S>& b, std::size_t from) {
+[[nodiscard]] S sum_of_products(const six_numbers<S>& a, const six_numbers<S>& b,
+                                std::size_t from) {
   S sum = a[from] * b[from];
   for (std::size_t i = from + 1; i < 6; ++i) {
     sum += a[i] * b[i];
@@ -47,8 +48,8 @@ template <class S>
       break;
     }
     const S first = v[k + 1], length = sqrt(squares[k]);
-    v[k + 1] = select(first < S(0), [&] { return S(first - length); },
-                      [&] { return S(first + length); });
+    v[k + 1] = select(
+        first < S(0), [&] { return S(first - length); }, [&] { return S(first + length); });
     const S scale = S(1) / max(S(squares[k] + length * max(first, S(-first))), S(tiny));
     six_numbers<S> w; // G v / (v·v/2)
     for (std::size_t i = k + 1; i < 6; ++i) {
@@ -73,7 +74,8 @@ template <class S>
     S p = x - g[0][0], dp(1), ddp(0), p0(1), dp0(0), ddp0(0);
     for (std::size_t k = 1; k < 6; ++k) {
       const S d = x - g[k][k], e = squares[k - 1];
-      const S p2 = d * p - e * p0, dp2 = p + d * dp - e * dp0, ddp2 = S(2) * dp + d * ddp - e * ddp0;
+      const S p2 = d * p - e * p0, dp2 = p + d * dp - e * dp0,
+              ddp2 = S(2) * dp + d * ddp - e * ddp0;
       p0 = p, dp0 = dp, ddp0 = ddp;
       p = p2, dp = dp2, ddp = ddp2;
     }
@@ -140,8 +142,8 @@ template <class Jacobian>
   }
   const auto is_regular = inverse_norm2 * norm2 < S(1e32);
   const S largest = largest_eigenvalue(g);
-  return select(is_regular, [&] { return S(S(1) / sqrt(inverse_norm2 * largest)); },
-                [] { return S(0); });
+  return select(
+      is_regular, [&] { return S(S(1) / sqrt(inverse_norm2 * largest)); }, [] { return S(0); });
 }
 
 } // namespace duet::detail

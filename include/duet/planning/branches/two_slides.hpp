@@ -177,7 +177,8 @@ private:
     six_coordinates result = six_coordinates::Zero();
     const auto set = [&](std::size_t k, double x) { result[Eigen::Index(turning_[k])] = x; };
     const double alpha = theta + start;
-    const quaternion<double> rest = conj(turn_about(a.axis, std::sin(alpha / 2), std::cos(alpha / 2))) * loop_.closing.rotation;
+    const quaternion<double> rest =
+        conj(turn_about(a.axis, std::sin(alpha / 2), std::cos(alpha / 2))) * loop_.closing.rotation;
     const double beta =
         angle_about(b.axis, turned_vector(c.axis, d.axis).at(gamma), rotated(rest, d.axis));
     set(0, alpha);
