@@ -30,11 +30,11 @@ template <class S>
   return sum;
 }
 
-/// The largest zero of det(λ − G) for a symmetric matrix G of six rows whose eigenvalues are none
-/// of them negative, and whose trace is 1; G is lost.
+/// The largest eigenvalue of a symmetric matrix G of six rows, none of whose eigenvalues is
+/// negative, and whose trace is 1; G is lost.
 ///
-/// Reflections make G tridiagonal, after Householder. From above Laguerre's method comes down to
-/// the zero, to third order where it is a simple one.
+/// Reflections make G tridiagonal, after Householder. From ‖G‖ Laguerre's method comes down to the
+/// largest zero of det(x − G), without passing it, also where it is a multiple one.
 template <class S>
 [[nodiscard]] S largest_eigenvalue(six_rows<S>& g) {
   using std::max;
@@ -42,11 +42,8 @@ template <class S>
   constexpr double tiny = 1e-290;
   six_numbers<S> squares; // of the numbers beside the diagonal
   for (std::size_t k = 0; k < 5; ++k) {
-    six_numbers<S> v = g[k]; // v = x ± |x| e, that of the larger first number
+    six_numbers<S> v = g[k]; // ± |v| is added to the first of those beside the diagonal
     squares[k] = sum_of_products(v, v, k + 1);
-    if (k == 4) {
-      break;
-    }
     const S first = v[k + 1], length = sqrt(squares[k]);
     v[k + 1] = select(
         first < S(0), [&] { return S(first - length); }, [&] { return S(first + length); });
@@ -120,7 +117,7 @@ template <class Jacobian>
   }
   S inverse_norm2(0);
   for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t k = 0; k < i; ++k) { // m[i][k] is the last that the sum reads
+    for (std::size_t k = 0; k < i; ++k) { // in place: m[i][k] is not read after that
       S sum(0);
       for (std::size_t c = k; c < i; ++c) {
         sum += m[i][c] * m[c][k];
