@@ -121,7 +121,7 @@ void check_solutions(const chain& arm, const result& found, const dual_quaternio
     CHECK(gap_by_matrices(arm, s.joints, goal) <= 1e-11);
     CHECK(s.multiplicity == 1);
     CHECK(s.smallest_singular_value ==
-          doctest::Approx(smallest_singular_value(arm, s.joints)).epsilon(1e-6));
+          doctest::Approx(smallest_singular_value(arm, s.joints)).epsilon(1e-9));
     for (int i = 0; i < arm.size(); ++i) {
       const bool is_angle = arm.kind(i) != joint_kind::prismatic;
       CHECK((!is_angle || (s.joints[i] > -pi && s.joints[i] <= pi)));
@@ -255,6 +255,39 @@ TEST_CASE("axes that all meet in a point, two of them of slides") {
   CHECK(found.is_complete);
   CHECK(holds(arm, found, theta));
   check_solutions(arm, found, goal);
+}
+
+/// Rounding takes such a tip as far from its goal as the ways are long.
+TEST_CASE("slides thousands of times as long as the arm") {
+  duet_test::random_source random(9);
+  for (const auto& sliding : {std::vector<std::size_t>{0, 4}, std::vector<std::size_t>{3, 5},
+                              std::vector<std::size_t>{1, 2}, std::vector<std::size_t>{0, 2, 4}}) {
+    for (const double way : {1e3, 3e4}) {
+      CAPTURE(way);
+      const chain arm = random_arm({.name = "", .sliding = sliding}, random);
+      vector theta = configuration(arm, random);
+      for (const std::size_t i : sliding) {
+        theta[Eigen::Index(i)] *= way;
+      }
+      const auto goal = arm.pose(theta);
+      const result found = all_inverse_kinematics(arm, goal);
+      CHECK(found.is_complete);
+      CHECK(holds(arm, found, theta, 1e-11 * way));
+      for (const auto& s : found.solutions) {
+        CHECK(s.residual <= 1e-14 * (1 + s.joints.cwiseAbs().maxCoeff()));
+      }
+    }
+  }
+}
+
+TEST_CASE("angles within a turn") {
+  const double turn = 2 * pi;
+  for (const double start : {0., .3, -2., pi, 3 * pi, 5 * pi, 1e5}) {
+    for (const double x : {start, -start, std::nextafter(start, 0), std::nextafter(start, 1e9)}) {
+      const double nearest = std::remainder(x, turn);
+      CHECK(detail::turned_back(x) == (nearest <= -pi ? pi : nearest));
+    }
+  }
 }
 
 /// What the elimination finds is a part of what the closed form does: it loses solutions of special

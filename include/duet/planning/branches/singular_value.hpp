@@ -96,12 +96,12 @@ template <class Jacobian>
   using std::sqrt;
   using S = typename Jacobian::Scalar;
   six_rows<S> j, m{}; // m is first −L below the diagonal, then L⁻¹
-  S norm2(0);
+  six_numbers<S> norms2;
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t k = 0; k < 6; ++k) {
       j[i][k] = jacobian(int(i), int(k));
     }
-    norm2 += sum_of_products(j[i], j[i], 0);
+    norms2[i] = sum_of_products(j[i], j[i], 0);
   }
   for (std::size_t k = 0; k < 6; ++k) {
     m[k][k] = S(1) / sqrt(sum_of_products(j[k], j[k], 0));
@@ -115,7 +115,7 @@ template <class Jacobian>
       }
     }
   }
-  S inverse_norm2(0);
+  S inverse_norm2(0), condition2(0); // the latter of rows of length 1
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t k = 0; k < i; ++k) { // in place: m[i][k] is not read after that
       S sum(0);
@@ -123,9 +123,12 @@ template <class Jacobian>
         sum += m[i][c] * m[c][k];
       }
       m[i][k] = m[i][i] * sum;
-      inverse_norm2 += m[i][k] * m[i][k];
     }
-    inverse_norm2 += m[i][i] * m[i][i];
+    for (std::size_t k = 0; k <= i; ++k) {
+      const S square = m[i][k] * m[i][k];
+      inverse_norm2 += square;
+      condition2 += square * norms2[k];
+    }
   }
   six_rows<S> g;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -137,10 +140,10 @@ template <class Jacobian>
       g[i][k] = g[k][i] = sum / inverse_norm2;
     }
   }
-  const auto is_regular = inverse_norm2 * norm2 < S(1e32);
   const S largest = largest_eigenvalue(g);
   return select(
-      is_regular, [&] { return S(S(1) / sqrt(inverse_norm2 * largest)); }, [] { return S(0); });
+      condition2 < S(1e31), [&] { return S(S(1) / sqrt(inverse_norm2 * largest)); },
+      [] { return S(0); });
 }
 
 } // namespace duet::detail
