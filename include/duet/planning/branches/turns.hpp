@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/planning/branches/angle_pairs.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/planning_model.hpp>
