@@ -1,0 +1,64 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "fuzz/seeded_loop.hpp"
+
+#include <duet/mechanism/mesh_file.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+// Surfaces: what is read are triangles of finite corners, no more of them than the file has room
+// for; what is not is told on one line.
+
+namespace test_fuzz_meshes {
+
+std::vector<std::string> seeds() {
+  const auto word = [](unsigned x) { // least byte first
+    return std::string{char(x & 0xffU), char(x >> 8 & 0xffU), char(x >> 16 & 0xffU), char(x >> 24)};
+  };
+  std::string binary = std::string(80, ' ') + word(2);
+  for (unsigned i = 0; i < 2; ++i) {
+    for (unsigned k = 0; k < 12; ++k) {
+      binary += word(0x3e800000 + (k << 20)); // 1/4, 9/32 …
+    }
+    binary += std::string(2, '\0');
+  }
+  const std::string facet = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1e-1 0 0\n"
+                            "  vertex 0 +2 -3.5\n endloop\nendfacet\n";
+  const std::string corners = "# a square\nmtllib a.mtl\no it\nv 0 0 0\nv 1 0 0 1\n"
+                              "v 1 1e-3 0 .1 .2 .3\nv 0 -1 0\nvt .5 .5\nvn 0 0 1\n";
+  return {binary, "solid one\n" + facet + facet + "endsolid one\r\n\nsolid\n" + facet + "endsolid",
+          corners + "s off\nf 1//1 2//1 3/1/1 4\nf -1 -2 -3\n",
+          corners + "g a\nusemtl red\nf 1 2 3\nv 1 2 3\nf 3 4 5 1 2\nl 1 2\n"};
+}
+
+void target(const std::string& input) {
+  for (const char* ending : {".stl", ".obj"}) {
+    const std::string path = std::string("fuzz_meshes") + ending;
+    std::ofstream(path, std::ios::binary) << input;
+    try {
+      const auto corners = duet::read_mesh(path).corners;
+      duet_fuzz::require(!corners.empty() && corners.size() % 3 == 0, "triangles");
+      // Two bytes for each further corner of a face are the least that a triangle takes.
+      duet_fuzz::require(corners.size() / 3 <= input.size() / 2, "in proportion to the file");
+      for (const auto& x : corners) {
+        for (const double each : x) {
+          duet_fuzz::require(std::isfinite(each), "finite corners");
+        }
+      }
+    } catch (const duet::file_error& error) {
+      duet_fuzz::require_message(error.what(), "duet: " + path + ":");
+    }
+    std::remove(path.c_str());
+  }
+}
+
+TEST_CASE("surfaces, mutated") { duet_fuzz::run_seeded(seeds(), target, 2000); }
+
+} // namespace test_fuzz_meshes

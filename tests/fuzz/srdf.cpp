@@ -1,0 +1,45 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "fuzz/seeded_loop.hpp"
+
+#include <duet/mechanism/srdf.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+// Pairs of links: what is read stands in the file, what is not is told on one line.
+
+namespace test_fuzz_srdf {
+
+std::vector<std::string> seeds() {
+  const std::string pair = "<disable_collisions link1=\"a\" link2=\"b\" reason=\"Adjacent\"/>\n";
+  return {"<?xml version=\"1.0\" ?>\n<!-- arm -->\n<robot name=\"panda\">\n"
+          "  <group name=\"arm\"><chain base_link=\"a\" tip_link=\"c\"/></group>\n  " +
+              pair + "  <disable_collisions link1='b' link2='c&amp;d'></disable_collisions>\n" +
+              "</robot>\n",
+          "<robot>" + pair + pair + "</robot>",
+          "<robot>" + pair + "<enable_collisions link1=\"a\" link2=\"b\"/></robot>",
+          "<robot><disable_collisions link1=\"a\" link3=\"b\"/></robot>",
+          "<robot><disable_default_collisions link=\"a\"/>" + pair + "</robot>"};
+}
+
+void target(const std::string& input) {
+  const std::string path = "fuzz_srdf.srdf";
+  std::ofstream(path, std::ios::binary) << input;
+  try {
+    // `<disable_collisions link1="" link2=""/>` is the least that a pair takes.
+    duet_fuzz::require(duet::read_disabled_collisions(path).size() * 39 <= input.size(),
+                       "pairs of the file");
+  } catch (const duet::file_error& error) {
+    duet_fuzz::require_message(error.what(), "duet: " + path + ":");
+  }
+  std::remove(path.c_str());
+}
+
+TEST_CASE("pairs of links, mutated") { duet_fuzz::run_seeded(seeds(), target, 2000); }
+
+} // namespace test_fuzz_srdf
