@@ -182,6 +182,12 @@ TEST_CASE("what is refused") {
                        "duet: choose_start: starts is 0, not a number above 0", invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 0, 1, {.sampling = 2})),
                        "duet: choose_start: sampling is 2, not within (0, 1]", invalid_input);
+  const preferred_posture few{vector(vector::Zero(5))};
+  const char* const what = "duet: preferred_posture: 5 coordinates for 6 joints";
+  CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 0, 1, {}, few)), what,
+                       invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(follow_path(arm, theta, path, 0, 1, {}, few)), what,
+                       invalid_input);
 }
 
 } // namespace test_planning_choose_start

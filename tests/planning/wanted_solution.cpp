@@ -380,6 +380,21 @@ TEST_CASE("what is refused") {
                        invalid_input);
   CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), few)),
                   invalid_input);
+  vector unknown = start;
+  unknown[2] = std::nan("");
+  const auto says = [&](const auto& wish, const char* what) {
+    CHECK_THROWS_WITH_AS(
+        static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {}, wish)),
+        what, invalid_input);
+    CHECK_THROWS_WITH_AS(
+        static_cast<void>(inverse_kinematics(arm, arm.pose(start), start, {}, wish)), what,
+        invalid_input);
+  };
+  says(preferred_posture{few}, "duet: preferred_posture: 3 coordinates for 7 joints");
+  says(preferred_posture{vector(vector::Zero(8))},
+       "duet: preferred_posture: 8 coordinates for 7 joints");
+  says(preferred_posture{unknown}, "duet: preferred_posture: joint 2 is nan");
+  says(preferred_posture{start, unknown[2]}, "duet: preferred_posture: its weight is nan");
 }
 
 } // namespace test_planning_wanted_solution

@@ -40,6 +40,7 @@ chosen_start(const C& chain, const path_function& path, double first, double las
              const start_options& options, const Objective& objective, const Scene& around,
              const Follow& follow) {
   require_options(options);
+  require_objective(objective, chain.size());
   if constexpr (std::same_as<Scene, scene>) {
     require_scene(chain, around);
   }

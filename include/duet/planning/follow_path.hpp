@@ -58,6 +58,7 @@ template <class C, class Start, class Objective, class Scene>
   constexpr int room = joint_room(C::joints);
   using vector = small_vector<room>;
   require_options(options);
+  require_objective(objective, chain.size());
   const std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>
       model(chain, around);
   const vector theta = model.joints(start);
@@ -145,8 +146,9 @@ template <PosePath Path>
 ///                     to `tolerance`, half way between them to `deviation`
 /// \return the plan, its `tau` the parameter; where `reason` is not `reached`, the part up to there
 /// \throws invalid_input for a start outside the limits or of another size, a path that does not
-///         begin at the tip or goes nowhere, what is no pose, options out of range, a
-///         `scene` that is none and one that is too close at the start
+///         begin at the tip or goes nowhere, what is no pose, options out of range, a preferred
+///         posture of another size or not finite, a `scene` that is none and one that is too close
+///         at the start
 template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_objective,
           class Scene = no_scene>
 [[nodiscard]] motion_plan<C::joints>

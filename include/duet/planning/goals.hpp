@@ -88,6 +88,7 @@ wanted_solution(const C& chain, const G& goal, const Start& start,
                 const Scene& around) {
   constexpr int room = joint_room(C::joints);
   require_size(chain, start);
+  require_objective(objective, chain.size());
   using model_of_chain =
       std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>;
   const model_of_chain model(chain, around);
@@ -114,7 +115,8 @@ wanted_solution(const C& chain, const G& goal, const Start& start,
 /// \param around     a `scene`
 /// \return the joints, as of poses; `deviation` is what rows of lengths and of angles miss.
 /// `obstacle`: the goal was reached, but too close to obstacles; the joints are such ones
-/// \throws invalid_input as for poses, for a region that holds no pose and a `scene` that is none
+/// \throws invalid_input as for poses, for a region that holds no pose, a preferred posture of
+/// another size or not finite and a `scene` that is none
 template <SerialChain C, TipGoal G, VectorLike Start, class Objective = no_objective,
           class Scene = no_scene>
 [[nodiscard]] inverse_kinematics_result<C::joints>
@@ -136,6 +138,7 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
                    const Scene& around = {}) {
   detail::require_pose(goal, "inverse_kinematics", "the goal");
   detail::require_size(chain, start);
+  detail::require_objective(objective, chain.size());
   const detail::whole_pose whole{detail::place_of(normalized(goal))};
   const detail::chain_model<C> model(chain);
   if (model.reach.is_beyond(model.place(goal), model.tolerance(options.tolerance))) {

@@ -1,11 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/errors.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
 
 #include <Eigen/Core>
+
+#include <cmath>
 
 /// \file
 /// What joints are to lower where the tip leaves them free.
@@ -40,6 +43,20 @@ template <class V, class... W>
 preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
 
 namespace detail {
+
+/// \throws invalid_input for a posture of another number of joints, or what is not finite in it
+template <class Objective>
+void require_objective(const Objective&, int) {}
+template <class V>
+void require_objective(const preferred_posture<V>& wish, int joints) {
+  require(wish.posture.size() == joints, "duet: preferred_posture: ", wish.posture.size(),
+          " coordinates for ", joints, " joints");
+  for (int i = 0; i < joints; ++i) {
+    require(std::isfinite(double(wish.posture[i])), "duet: preferred_posture: joint ", i, " is ",
+            wish.posture[i]);
+  }
+  require(std::isfinite(wish.weight), "duet: preferred_posture: its weight is ", wish.weight);
+}
 
 /// The gradient of an objective: its own, or by dual numbers.
 template <class Objective, class X>
