@@ -95,8 +95,9 @@ TEST_CASE("what is wrong is said with file, line and element") {
        q + " <origin>: xyz=\"1e16\" is no number up to 1e6");
   says(joint_to_c("", "revolute"), q + ": no element <limit>, which a revolute joint must have");
   says(joint_to_c("<limit lower=\"2\" upper=\"1\"/>", "revolute"),
-       q + " <limit>: lower is above upper");
-  says(joint_to_c("<limit velocity=\"-1\"/>", "revolute"), q + " <limit>: velocity is negative");
+       q + " <limit>: lower 2 is above upper 1");
+  says(joint_to_c("<limit velocity=\"-1\"/>", "revolute"),
+       q + " <limit>: velocity=\"-1\" is negative");
   says(joint_to_c("<limit upper=\"1,5\"/>", "revolute"),
        q + " <limit>: upper=\"1,5\" is no number up to 1e6");
   says(joint_to_c("", "floating"),

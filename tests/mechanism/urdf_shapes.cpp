@@ -104,13 +104,15 @@ TEST_CASE("what is wrong with a shape: where, and what") {
   CHECK(fault_of_shape("<sphere radious=\"1\"/>") ==
         "6" + in + "<sphere>: unknown attribute \"radious\": there are \"radius\"");
   CHECK(fault_of_shape("<sphere/>") == "6" + in + "<sphere>: no attribute \"radius\"");
-  CHECK(fault_of_shape("<sphere radius=\"-1\"/>") == "6" + in + "<sphere>: radius is negative");
+  CHECK(fault_of_shape("<sphere radius=\"-1\"/>") ==
+        "6" + in + "<sphere>: radius=\"-1\" is negative");
   CHECK(fault_of_shape("<cylinder radius=\"1\" length=\"x\"/>") ==
         "6" + in + "<cylinder>: length=\"x\" is no number up to 1e6");
   CHECK(fault_of_shape("<box size=\"1 1\"/>") ==
         "6" + in + "<box>: size=\"1 1\" is not three numbers");
   CHECK(fault_of_shape("<box/>") == "6" + in + "<box>: no attribute \"size\"");
-  CHECK(fault_of_shape("<box size=\"1 1 -1\"/>") == "6" + in + "<box>: size is negative");
+  CHECK(fault_of_shape("<box size=\"1 1 -1\"/>") ==
+        "6" + in + "<box>: size=\"1 1 -1\" is negative");
   CHECK(fault_of_shape("<box size=\"1 1 1\" scale=\"1 1 2\"/>") ==
         "6" + in + "<box>: has a scale, which is for meshes");
   CHECK(fault_of_shape("<mesh scale=\"1 1 1\"/>") ==

@@ -122,7 +122,7 @@ TEST_CASE("mistakes, with file, line and element") {
   const std::string a = file + "4: <link name=\"a\"> ";
   says(weighs(""), a + "<inertial>: no element <mass>");
   says(weighs("<mass/>"), a + "<mass>: no attribute \"value\"");
-  says(weighs("<mass value=\"-1\"/>"), a + "<mass>: is negative");
+  says(weighs("<mass value=\"-1\"/>"), a + "<mass>: value=\"-1\" is negative");
   says(weighs("<mass value=\"1\" unit=\"kg\"/>"),
        a + "<mass>: unknown attribute \"unit\": there are \"value\"");
   says(weighs("<mass value=\"1\"/><mass value=\"1\"/>"),

@@ -95,6 +95,10 @@ public:
     return *value;
   }
 
+  [[noreturn]] void fail_negative(const urdf_place& place, std::string_view key) const {
+    fail(place, std::string(key) + "=\"" + attribute(place, key) + "\" is negative");
+  }
+
   /// A limit, infinite beyond 1e6 on the side of `sign`: as a number that stands for none.
   [[nodiscard]] double limit(const urdf_place& place, std::string_view key, double otherwise,
                              int sign) const {

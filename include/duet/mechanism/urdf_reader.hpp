@@ -114,7 +114,7 @@ private:
     }
     inertia.mass = document_.number({*mass, &element}, "value");
     if (inertia.mass < 0) {
-      document_.fail({*mass, &element}, "is negative");
+      document_.fail_negative({*mass, &element}, "value");
     }
     if (const xml_element* const moments = inertial->child("inertia")) {
       constexpr std::array<const char*, 6> keys = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
@@ -236,7 +236,7 @@ private:
     const urdf_place place{*limit, &element};
     result.velocity = document_.limit(place, "velocity", result.velocity, 1);
     if (result.velocity < 0) {
-      document_.fail(place, "velocity is negative");
+      document_.fail_negative(place, "velocity");
     }
     if (!is_bounded) {
       return result;
@@ -244,7 +244,8 @@ private:
     result.lower = document_.limit(place, "lower", 0, -1); // 0 as the format says
     result.upper = document_.limit(place, "upper", 0, 1);
     if (result.lower > result.upper) {
-      document_.fail(place, "lower is above upper");
+      document_.fail(place,
+                     "lower " + to_text(result.lower) + " is above upper " + to_text(result.upper));
     }
     if (const xml_element* soft = element.child("safety_controller")) {
       const urdf_place there{*soft, &element};

@@ -34,7 +34,7 @@ read_origin(const urdf_document& document, const xml_element& in, const xml_elem
                                       std::string_view key) {
   const double result = document.number(place, key);
   if (result < 0) {
-    document.fail(place, std::string(key) + " is negative");
+    document.fail_negative(place, key);
   }
   return result;
 }
@@ -61,7 +61,7 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
     }
     const collision_box given{document.numbers(place, "size", {})};
     if (given.size[0] < 0 || given.size[1] < 0 || given.size[2] < 0) {
-      document.fail(place, "size is negative");
+      document.fail_negative(place, "size");
     }
     result.geometry = given;
   } else if (shape.name == "cylinder") {
