@@ -113,6 +113,7 @@ TEST_CASE("OBJ: triangles, faces of more corners, numbers from the end back") {
   CHECK(m.corners[5] == std::array<double, 3>{0, 1, 0});
   CHECK(m.corners[6] == std::array<double, 3>{0, 1, 0});
   CHECK(m.corners[8] == std::array<double, 3>{1, 0, 0});
+  CHECK(read_mesh(write(".obj", "\xef\xbb\xbf" + corners + "f 1 2 3")).corners.size() == 3);
   CHECK(fault(".obj", corners) == " has no triangles");
   CHECK(fault(".obj", corners + "f 1 2\n") == "7: a face has three corners or more");
   for (const char* bad : {"0", "5", "-5", "1.5", "x", "", "nan", "1e99"}) {

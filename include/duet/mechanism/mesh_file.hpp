@@ -38,6 +38,7 @@ public:
   explicit mesh_reader(std::string path) : path_(std::move(path)), text_(content()) {}
 
   [[nodiscard]] mesh_surface read() {
+    at_ = text_.starts_with("\xef\xbb\xbf") ? 3 : 0; // a byte order mark
     const std::size_t dot = std::min(path_.rfind('.'), path_.size());
     std::string kind = path_.substr(dot);
     std::transform(kind.begin(), kind.end(), kind.begin(),
