@@ -22,18 +22,23 @@ std::vector<std::string> seeds() {
   const auto word = [](unsigned x) { // least byte first
     return std::string{char(x & 0xffU), char(x >> 8 & 0xffU), char(x >> 16 & 0xffU), char(x >> 24)};
   };
-  std::string binary = std::string(80, ' ') + word(2);
-  for (unsigned i = 0; i < 2; ++i) {
-    for (unsigned k = 0; k < 12; ++k) {
-      binary += word(0x3e800000 + (k << 20)); // 1/4, 9/32 …
+  const auto binary = [&](unsigned last) {
+    std::string result = std::string(80, ' ') + word(2);
+    for (unsigned i = 0; i < 2; ++i) {
+      for (unsigned k = 0; k < 11; ++k) {
+        result += word(0x3e800000 + (k << 20)); // 1/4, 9/32 …
+      }
+      result += word(last) + std::string(2, '\0');
     }
-    binary += std::string(2, '\0');
-  }
+    return result;
+  };
   const std::string facet = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1e-1 0 0\n"
                             "  vertex 0 +2 -3.5\n endloop\nendfacet\n";
   const std::string corners = "# a square\nmtllib a.mtl\no it\nv 0 0 0\nv 1 0 0 1\n"
                               "v 1 1e-3 0 .1 .2 .3\nv 0 -1 0\nvt .5 .5\nvn 0 0 1\n";
-  return {binary, "solid one\n" + facet + facet + "endsolid one\r\n\nsolid\n" + facet + "endsolid",
+  const unsigned no_number = 0x7fc00000;
+  return {binary(0x3f800000), binary(no_number),
+          "solid one\n" + facet + facet + "endsolid one\r\n\nsolid\n" + facet + "endsolid",
           corners + "s off\nf 1//1 2//1 3/1/1 4\nf -1 -2 -3\n",
           corners + "g a\nusemtl red\nf 1 2 3\nv 1 2 3\nf 3 4 5 1 2\nl 1 2\n"};
 }
