@@ -1,0 +1,75 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+/// \file
+/// Are the reasons true that plans give which do not reach their goals? A complete search by all
+/// solutions of six joints says of each whether there was a way, how far one leads, and what ends
+/// it. Arguments: the number of problems of each of five families (100), the seed (1), and anything
+/// to list what is not as it should be.
+/// build/bench/bench/duet_reasons_bench
+
+#include "planning/complete_search.hpp"
+#include "singular_problems.hpp"
+
+#include <duet/planning/plan_screw_motion.hpp>
+
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+using namespace singular_problems;
+
+struct score {
+  int failed = 0;       ///< plans that do not reach their goals
+  int given_up = 0;     ///< though there is a way
+  int before_end = 0;   ///< though a way leads on by more than 1e-4 of the path
+  int other_reason = 0; ///< than what ends the way there
+  int unknown = 0;      ///< the search could not tell
+};
+
+score check(const arm<6>& a, family kind, int count, unsigned seed, bool is_listed) {
+  random_source random(seed);
+  score result;
+  for (int k = 0; k < count; ++k) {
+    const auto p = make(a, kind, random);
+    const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
+    const auto plan = plan_screw_motion(a.chain, p.start, path.last);
+    if (plan.reason == stop_reason::reached) {
+      continue;
+    }
+    ++result.failed;
+    const auto way = duet_test::complete_search(a.chain, path)(p.start);
+    const bool is_open = way.why == stop_reason::reached;
+    const bool is_short = !is_open && way.end > plan.tau.back() + 1e-4;
+    const bool is_unknown = way.why == stop_reason::no_progress;
+    const bool is_false = !is_open && !is_short && !is_unknown && plan.reason != way.why &&
+                          plan.reason != stop_reason::out_of_reach;
+    result.given_up += is_open;
+    result.before_end += is_short;
+    result.unknown += is_unknown;
+    result.other_reason += is_false;
+    if (is_listed && (is_open || is_short || is_unknown || is_false || plan.tau.back() > way.end + 1e-4)) {
+      std::printf("  %d: %s at %.9g, sigma %.2g; there is %s at %.9g\n", k, to_text(plan.reason),
+                  plan.tau.back(), plan.smallest_singular_value, to_text(way.why), way.end);
+    }
+  }
+  return result;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  const int count = argc > 1 ? std::atoi(argv[1]) : 100;
+  const unsigned seed = argc > 2 ? unsigned(std::atoi(argv[2])) : 1;
+  std::printf("%-14s %-22s %6s %4s %6s %6s %7s\n", "arm", "from", "failed", "way", "before", "false",
+              "unknown");
+  for (const arm<6>& a : six_joints()) {
+    for (std::size_t k = 0; k < families.size(); ++k) {
+      const score s = check(a, family(k), count, seed, argc > 3);
+      std::printf("%-14s %-22s %6d %4d %6d %6d %7d\n", a.name, families[k], s.failed, s.given_up,
+                  s.before_end, s.other_reason, s.unknown);
+      std::fflush(stdout);
+    }
+  }
+}

@@ -1,0 +1,253 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/all_inverse_kinematics.hpp>
+#include <duet/planning/motion_plan.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+/// \file
+/// How far an arm of six joints can follow a path at all.
+
+namespace duet_test {
+
+/// How far, and what ends it: `reached`, `joint_limit` where a solution goes on beyond limits,
+/// `singular` where it ends, `no_progress` where the search cannot tell.
+struct path_verdict {
+  double end = 0;
+  duet::stop_reason why = duet::stop_reason::no_progress;
+};
+
+/// Follows all solutions of an arm along a path from one of them, by what `all_inverse_kinematics`
+/// finds at parameters as close as need be: 1/128 of the path, or 2⁻³⁰ of it where solutions do not
+/// go on. Two of them are connected where joints that move straight on from one to the other keep
+/// the tip within 1e-5 of the path. At the start and where a determinant changes its sign the
+/// joints may also move with the tip in place. Joints keep their limits and do not jump by turns.
+class complete_search {
+public:
+  using joints = Eigen::Matrix<double, 6, 1>;
+  using path_function = std::function<duet::dual_quaternion<double>(double)>;
+
+  complete_search(const duet::serial_chain<6>& arm, path_function path)
+      : arm_(arm), path_(std::move(path)) {}
+
+  [[nodiscard]] path_verdict operator()(const joints& start) {
+    constexpr int parts = 128;
+    verdict_ = {};
+    std::vector<joints> here = leave(start, 0);
+    for (int k = 0; k < parts && !here.empty(); ++k) {
+      here = advance(here, double(k) / parts, double(k + 1) / parts, 23);
+    }
+    if (!here.empty()) {
+      verdict_ = {1, duet::stop_reason::reached};
+    }
+    return verdict_;
+  }
+
+private:
+  static constexpr double beside = 1e-6, fibre_step = .02;
+
+  [[nodiscard]] bool is_within_limits(const joints& x) const {
+    for (int i = 0; i < 6; ++i) {
+      if (!(x[i] >= arm_.limits(i).lower - 1e-9 && x[i] <= arm_.limits(i).upper + 1e-9)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// All solutions at u, each turned next to x.
+  [[nodiscard]] std::vector<joints> solutions(double u, const joints& x) {
+    if (u != known_at_ || known_.empty()) {
+      known_at_ = u;
+      known_.clear();
+      for (const auto& each : duet::all_inverse_kinematics(arm_, path_(u)).solutions) {
+        known_.push_back(each.joints);
+      }
+    }
+    constexpr double turn = 2 * std::numbers::pi;
+    std::vector<joints> result = known_;
+    for (joints& each : result) {
+      for (int i = 0; i < 6; ++i) {
+        each[i] += turn * std::round((x[i] - each[i]) / turn);
+      }
+    }
+    return result;
+  }
+
+  [[nodiscard]] bool is_link(const joints& x, double u, const joints& y, double v) const {
+    if ((y - x).norm() > .5) {
+      return false;
+    }
+    for (const double part : {.5, .25, .75}) {
+      const auto off = duet::deviation_between(
+          arm_.pose(joints((1 - part) * x + part * y)), path_((1 - part) * u + part * v));
+      if (std::max(off.length, off.angle) > 1e-5) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] double determinant(const joints& x) const {
+    const Eigen::Matrix<double, 6, 6> j = duet::jacobian(arm_, x, duet::frame::hybrid);
+    return j.determinant();
+  }
+
+  static void add(std::vector<joints>& to, const joints& x) {
+    if (std::none_of(to.begin(), to.end(),
+                     [&](const joints& each) { return (each - x).norm() < 1e-7; })) {
+      to.push_back(x);
+    }
+  }
+
+  /// Where the joints can be at b that are at one of `from` at a.
+  [[nodiscard]] std::vector<joints> advance(const std::vector<joints>& from, double a, double b,
+                                            int halvings) {
+    std::vector<joints> result;
+    bool is_lost = false, is_beyond = false, is_singular = false;
+    for (const joints& x : from) {
+      bool goes_on = false, goes_beyond = false;
+      for (const joints& y : solutions(b, x)) {
+        if (!is_link(x, a, y, b)) {
+          continue;
+        }
+        if (!is_within_limits(y)) {
+          goes_beyond = true;
+          continue;
+        }
+        goes_on = true;
+        add(result, y);
+        if (halvings == 0) {
+          continue;
+        }
+        if (determinant(x) * determinant(y) < 0) {
+          for (const joints& z : cross(x, a, y, b)) {
+            add(result, z);
+          }
+        }
+      }
+      is_lost = is_lost || !goes_on;
+      is_beyond = is_beyond || goes_beyond;
+      is_singular = is_singular || (!goes_on && !goes_beyond && std::abs(determinant(x)) < 1e-3);
+    }
+    if (!is_lost) {
+      return result;
+    }
+    if (halvings > 0) {
+      const double middle = (a + b) / 2;
+      const auto there = advance(from, a, middle, halvings - 1);
+      return there.empty() ? there : advance(there, middle, b, halvings - 1);
+    }
+    if (result.empty() && a >= verdict_.end) {
+      verdict_ = {a, is_beyond     ? duet::stop_reason::joint_limit
+                     : is_singular ? duet::stop_reason::singular
+                                   : duet::stop_reason::no_progress};
+    }
+    return result;
+  }
+
+  /// Where the joints can be at b that get from x to y through a singularity, in which they may
+  /// move with the tip in place.
+  [[nodiscard]] std::vector<joints> cross(joints x, double a, const joints& y, double b) {
+    const double end = b;
+    joints z = y;
+    while (b - a > 1e-9) {
+      const double u = (a + b) / 2;
+      const joints middle = (x + z) / 2;
+      const auto all = solutions(u, middle);
+      const auto nearest = std::min_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
+        return (p - middle).norm() < (q - middle).norm();
+      });
+      if (nearest == all.end() || (*nearest - middle).norm() > (z - x).norm() + 1e-9) {
+        return {};
+      }
+      (determinant(*nearest) * determinant(x) > 0 ? x : z) = *nearest;
+      (z == *nearest ? b : a) = u;
+    }
+    const joints middle = (x + z) / 2;
+    if (fibre(middle, path_(a)).size() < 3) {
+      return {};
+    }
+    const double next = std::min(a + beside, end);
+    auto there = leave(middle, a);
+    return there.empty() || next == end ? there : advance(there, next, end, 0);
+  }
+
+  /// The configurations a little behind u that joints get to if they may first move in place.
+  [[nodiscard]] std::vector<joints> leave(const joints& from, double u) {
+    const auto all = fibre(from, path_(u));
+    std::vector<joints> result;
+    if (all.size() < 3) {
+      return {from};
+    }
+    for (const joints& x : all) {
+      for (const joints& y : solutions(u + beside, x)) {
+        if ((y - x).norm() < fibre_step && is_within_limits(y)) {
+          add(result, y);
+        }
+      }
+    }
+    return result;
+  }
+
+  /// What a singular configuration gets to with the tip in place, in small steps.
+  [[nodiscard]] std::vector<joints> fibre(const joints& from,
+                                          const duet::dual_quaternion<double>& pose) const {
+    std::vector<joints> result{from};
+    for (const double side : {1., -1.}) {
+      joints x = from, direction = joints::Zero();
+      for (int k = 0; k < 2000; ++k) {
+        const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
+            duet::jacobian(arm_, x, duet::frame::hybrid), Eigen::ComputeFullU | Eigen::ComputeFullV);
+        const joints along = svd.matrixV().col(5);
+        if (svd.singularValues()[5] > 1e-4) {
+          break;
+        }
+        direction = k == 0 ? joints(side * along) : joints(along.dot(direction) < 0 ? -along : along);
+        joints y = x + fibre_step * direction;
+        for (int round = 0; round < 5; ++round) {
+          const auto e = duet::detail::error_twist(duet::detail::place_of(arm_.pose(y)),
+                                                   duet::detail::place_of(pose));
+          Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> here(
+              duet::jacobian(arm_, y, duet::frame::hybrid),
+              Eigen::ComputeFullU | Eigen::ComputeFullV);
+          here.setThreshold(1e-4);
+          y += here.solve(Eigen::Map<const joints>(&e.values[0]));
+        }
+        const auto off = duet::deviation_between(arm_.pose(y), pose);
+        if (std::max(off.length, off.angle) > 1e-9 || (y - x).dot(direction) < .7 * fibre_step ||
+            !is_within_limits(y)) {
+          break;
+        }
+        result.push_back(y);
+        x = y;
+        if (k > 3 && (y - from).norm() < .7 * fibre_step) {
+          break;
+        }
+      }
+    }
+    return result;
+  }
+
+  const duet::serial_chain<6>& arm_;
+  path_function path_;
+  path_verdict verdict_;
+  double known_at_ = -1;
+  std::vector<joints> known_;
+};
+
+} // namespace duet_test
