@@ -49,7 +49,7 @@ public:
     verdict_ = {};
     std::vector<joints> here = leave(start, 0);
     for (int k = 0; k < parts && !here.empty(); ++k) {
-      here = advance(here, double(k) / parts, double(k + 1) / parts, 23);
+      here = advance(here, k == 0 ? beside : double(k) / parts, double(k + 1) / parts, 23);
     }
     if (!here.empty()) {
       verdict_ = {1, duet::stop_reason::reached};
@@ -58,7 +58,7 @@ public:
   }
 
 private:
-  static constexpr double beside = 1e-6, fibre_step = .02;
+  static constexpr double beside = 1e-4, fibre_step = .02;
 
   [[nodiscard]] bool is_within_limits(const joints& x) const {
     for (int i = 0; i < 6; ++i) {
@@ -179,34 +179,50 @@ private:
       (z == *nearest ? b : a) = u;
     }
     const joints middle = (x + z) / 2;
-    if (fibre(middle, path_(a)).size() < 3) {
+    if (fibre(middle, path_(a), true).size() < 3) {
       return {};
     }
-    const double next = std::min(a + beside, end);
-    auto there = leave(middle, a);
-    return there.empty() || next == end ? there : advance(there, next, end, 0);
+    const double next = a + beside;
+    if (next > end) {
+      return {};
+    }
+    const auto there = leave(middle, a);
+    return there.empty() ? there : advance(there, next, end, 20);
   }
 
-  /// The configurations a little behind u that joints get to if they may first move in place.
+  /// The configurations `beside` behind u that joints get to if they may first move in place.
   [[nodiscard]] std::vector<joints> leave(const joints& from, double u) {
-    const auto all = fibre(from, path_(u));
-    std::vector<joints> result;
+    const auto all = fibre(from, path_(u), true);
     if (all.size() < 3) {
-      return {from};
+      return advance({from}, u, u + beside, 17);
     }
-    for (const joints& x : all) {
-      for (const joints& y : solutions(u + beside, x)) {
-        if ((y - x).norm() < fibre_step && is_within_limits(y)) {
-          add(result, y);
+    std::vector<joints> result;
+    const auto next_to = [&](const std::vector<joints>& these) {
+      bool is_any = false;
+      for (const joints& x : these) {
+        for (const joints& y : solutions(u + beside, x)) {
+          const bool is_near = (y - x).norm() < fibre_step;
+          is_any = is_any || is_near;
+          if (is_near && is_within_limits(y)) {
+            add(result, y);
+          }
         }
       }
+      return is_any;
+    };
+    const bool is_any = next_to(all);
+    if (result.empty() && u >= verdict_.end) {
+      verdict_ = {u, is_any || next_to(fibre(from, path_(u), false)) ? duet::stop_reason::joint_limit
+                                                                    : duet::stop_reason::singular};
+      result.clear();
     }
     return result;
   }
 
   /// What a singular configuration gets to with the tip in place, in small steps.
   [[nodiscard]] std::vector<joints> fibre(const joints& from,
-                                          const duet::dual_quaternion<double>& pose) const {
+                                          const duet::dual_quaternion<double>& pose,
+                                          bool keeps_limits) const {
     std::vector<joints> result{from};
     for (const double side : {1., -1.}) {
       joints x = from, direction = joints::Zero();
@@ -230,7 +246,7 @@ private:
         }
         const auto off = duet::deviation_between(arm_.pose(y), pose);
         if (std::max(off.length, off.angle) > 1e-9 || (y - x).dot(direction) < .7 * fibre_step ||
-            !is_within_limits(y)) {
+            (keeps_limits && !is_within_limits(y))) {
           break;
         }
         result.push_back(y);
