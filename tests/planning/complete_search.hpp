@@ -69,7 +69,8 @@ private:
     return true;
   }
 
-  /// All solutions at u, each turned next to x.
+  /// All solutions at u, each turned next to x, and what Newton's method finds from there: of some
+  /// that are singular but for rounding `all_inverse_kinematics` does not tell.
   [[nodiscard]] std::vector<joints> solutions(double u, const joints& x) {
     if (u != known_at_ || known_.empty()) {
       known_at_ = u;
@@ -84,6 +85,20 @@ private:
       for (int i = 0; i < 6; ++i) {
         each[i] += turn * std::round((x[i] - each[i]) / turn);
       }
+    }
+    joints nearby = x;
+    const auto here = duet::detail::place_of(path_(u));
+    for (int round = 0; round < 5; ++round) {
+      const auto e =
+          duet::detail::error_twist(duet::detail::place_of(arm_.pose(nearby)), here);
+      const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
+          duet::jacobian(arm_, nearby, duet::frame::hybrid),
+          Eigen::ComputeFullU | Eigen::ComputeFullV);
+      nearby += svd.solve(Eigen::Map<const joints>(&e.values[0]));
+    }
+    const auto left = duet::deviation_between(arm_.pose(nearby), path_(u));
+    if (std::max(left.length, left.angle) < 1e-12) {
+      add(result, nearby);
     }
     return result;
   }
