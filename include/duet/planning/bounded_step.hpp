@@ -15,6 +15,8 @@ namespace duet::detail {
 
 /// Below this singular value steps are damped.
 inline constexpr double damping_threshold = 1e-3;
+/// Below this one rounding would make them.
+inline constexpr double undamped_threshold = 1e-6;
 
 /// A twist [v; ω].
 using small_twist = small_vector<6>;

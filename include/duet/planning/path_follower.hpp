@@ -183,6 +183,34 @@ private:
                     solver_.model.shortfall(middle) / deviation_.length);
   }
 
+  /// Do the joints move far in a step along the path that is as short as that?
+  [[nodiscard]] bool is_swinging(const waypoint& at, double step) const {
+    constexpr double least = 1e-12;
+    return solver_.damped_below == undamped_threshold && step > least &&
+           solver_.way_to(at.state, target_(std::min(at.u + step * length_, stops_.back()))) >
+               least_swing;
+  }
+
+  /// Once more from where a route came near a singularity, without damping and nearer to the path:
+  /// joints that are to swing there would lag behind.
+  [[nodiscard]] route undamped(route x) {
+    const auto first = std::find_if(x.waypoints.begin(), x.waypoints.end(), [](const waypoint& w) {
+      return w.smallest_singular_value < damping_threshold;
+    });
+    if (first == x.waypoints.end()) {
+      return x;
+    }
+    x.waypoints.erase(first, x.waypoints.end());
+    const pose_solver<Room> damped = solver_;
+    solver_.damped_below = undamped_threshold;
+    solver_.tolerance = {1e-3 * damped.tolerance.length, 1e-3 * damped.tolerance.angle};
+    x.step = options_.smallest_step;
+    go_on(x);
+    solver_.damped_below = damped.damped_below;
+    solver_.tolerance = damped.tolerance;
+    return x;
+  }
+
   /// On to the parameter `end`, in steps that keep the tip near the path between waypoints too.
   ///
   /// \param part  how much of the path that counts for
@@ -211,19 +239,23 @@ private:
         const double excess = excess_between(here, on);
         // Between waypoints the deviation grows with the square of the step.
         change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
-        if (excess <= .95) { // half way is not quite where it is largest
+        const bool is_creeping =
+            x.step < options_.smallest_step && norm(there.state.theta - theta) < least_swing;
+        if (excess <= .95 && !is_creeping) { // half way is not quite where it is largest
           way = next;
           x.waypoints.push_back(on);
         }
       }
       x.step = std::min(options_.largest_step, x.step * change);
-      if (way < 1 && (iterations_left_ <= 0 || x.step < options_.smallest_step)) {
+      if (way < 1 && (iterations_left_ <= 0 ||
+                      (x.step < options_.smallest_step && !is_swinging(x.back(), x.step)))) {
         return false;
       }
     }
     return true;
   }
 
+  static constexpr double least_swing = 1e-3;
   pose_solver<Room> solver_;
   pose_tolerance deviation_;
   const place_function& target_;
@@ -238,6 +270,12 @@ template <int Room>
 typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
   route best = stay(start);
   go_on(best);
+  if (!is_at_end(best)) {
+    route other = undamped(best);
+    if (other.back().u > best.back().u) {
+      best = std::move(other);
+    }
+  }
   // From where it got stuck, or else from the beginning.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
     if (is_at_end(best) || options_.search_step == 0) {

@@ -64,6 +64,7 @@ struct pose_solver {
   const planning_model<Room>& model;
   pose_tolerance tolerance;
   vector lower = model.lower, upper = model.upper; ///< the limits that count
+  double damped_below = damping_threshold; ///< singular values with which steps are damped first
 
   /// Why an attempt to get to a target beside a state has failed.
   [[nodiscard]] stop_reason what_stops(const attempt<Room>& there, const chain_state<Room>& here,
@@ -93,14 +94,21 @@ struct pose_solver {
   /// leaves the limits.
   [[nodiscard]] attempt<Room> approach(const chain_state<Room>& from, const tip_place& target,
                                        const vector& wish) const {
-    constexpr double rounding = 1e-6;
-    auto result = approach(from, target, wish, damping_threshold);
-    if (result.smallest_singular_value < damping_threshold && !result.is_within(tolerance)) {
+    auto result = approach(from, target, wish, damped_below);
+    if (result.smallest_singular_value < damped_below && !result.is_within(tolerance)) {
       const int before = result.iterations;
-      result = approach(from, target, wish, rounding);
+      result = approach(from, target, wish, undamped_threshold);
       result.iterations += before;
     }
     return result;
+  }
+
+  /// How far do joints go to a target beside a state, to first order, without damping?
+  [[nodiscard]] double way_to(const chain_state<Room>& from, const tip_place& target) const {
+    const auto step =
+        bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
+                     upper - from.theta, {undamped_threshold});
+    return norm(step.step);
   }
 
 private:
