@@ -67,17 +67,35 @@ public:
     }
     const waypoint& here = x.back();
     for (double step = options_.smallest_step; step < 1; step *= 2) {
-      const tip_place target = target_(std::min(here.u + step * length_, stops_.back()));
-      const auto there = solver_.approach(here.state, target, {});
-      if (!there.is_within(solver_.tolerance)) {
-        return solver_.what_stops(there, here.state, target);
+      const double u = std::min(here.u + step * length_, stops_.back());
+      const auto there = solver_.approach(here.state, target_(u), {});
+      if (there.is_within(solver_.tolerance)) {
+        continue;
       }
+      const bool is_near_singularity = there.smallest_singular_value < 10 * damping_threshold;
+      return there.is_blocked || there.shortfall > solver_.tolerance.length ? stop_reason::obstacle
+             : (there.is_bounded || is_near_singularity) && is_stopped_by_limits(x, u)
+                 ? stop_reason::joint_limit
+             : is_near_singularity ? stop_reason::singular
+                                   : stop_reason::no_progress;
     }
     return stop_reason::no_progress;
   }
   [[nodiscard]] int iterations() const { return options_.iterations - iterations_left_; }
 
 private:
+  /// Does the way lead beyond a parameter without limits?
+  [[nodiscard]] bool is_stopped_by_limits(const route& x, double u) const {
+    constexpr int enough = 10000;
+    path_follower free = *this;
+    free.iterations_left_ = enough;
+    free.solver_.without_limits();
+    const double beyond = std::min(u + 4 * (u - x.back().u), stops_.back());
+    free.stops_ = {stops_.front(), beyond};
+    return free.is_at_end(free.undamped(route(x.back()))) ||
+           free.is_at_end(free.undamped(before_singularity(x)));
+  }
+
   [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops_.back(); }
 
   /// What joints do with the freedom that the tip leaves them.
@@ -108,7 +126,7 @@ private:
     result.waypoints.assign(before.waypoints.begin(),
                             before.waypoints.begin() + std::ptrdiff_t(first) + 1);
     self_motion_search search(solver_, target_, options_.self_motion_step, iterations_left_);
-    const auto way = search.run(result.back().state, search_parameters(result.back().u));
+    const auto way = search.run(result.back().state, search_parameters(result.back()));
     iterations_left_ = search.iterations_left();
     for (std::size_t i = 1; i < way.size(); ++i) {
       const std::size_t kept = result.waypoints.size();
@@ -129,9 +147,15 @@ private:
     return result;
   }
 
-  /// From u on, where the search looks.
-  [[nodiscard]] std::vector<double> search_parameters(double u) const {
-    std::vector<double> result = {u};
+  /// From a waypoint on, where the search looks: nearer to it where it is singular, as ways out may
+  /// be short.
+  [[nodiscard]] std::vector<double> search_parameters(const waypoint& from) const {
+    std::vector<double> result = {from.u};
+    if (smallest_singular_value_of(from.state.jacobian) < damping_threshold) {
+      for (const double part : {1. / 256, 1. / 16}) {
+        result.push_back(std::min(from.u + part * options_.search_step * length_, stops_.back()));
+      }
+    }
     for (const double stop : stops_) {
       const double begin = result.back();
       if (stop > begin) {
@@ -191,16 +215,22 @@ private:
                least_swing;
   }
 
-  /// Once more from where a route came near a singularity, without damping and nearer to the path:
-  /// joints that are to swing there would lag behind.
+  /// As far as where a route last came near a singularity, if it did.
+  [[nodiscard]] route before_singularity(route x) const {
+    const auto drop_while = [&](bool is_near) {
+      while (x.waypoints.size() > 1 &&
+             (x.back().smallest_singular_value < damping_threshold) == is_near) {
+        x.waypoints.pop_back();
+      }
+    };
+    drop_while(false);
+    drop_while(true);
+    return x;
+  }
+
+  /// On without damping and nearer to the path: beside singularities joints that are to swing would
+  /// lag behind.
   [[nodiscard]] route undamped(route x) {
-    const auto first = std::find_if(x.waypoints.begin(), x.waypoints.end(), [](const waypoint& w) {
-      return w.smallest_singular_value < damping_threshold;
-    });
-    if (first == x.waypoints.end()) {
-      return x;
-    }
-    x.waypoints.erase(first, x.waypoints.end());
     const pose_solver<Room> damped = solver_;
     solver_.damped_below = undamped_threshold;
     solver_.tolerance = {1e-3 * damped.tolerance.length, 1e-3 * damped.tolerance.angle};
@@ -270,8 +300,9 @@ template <int Room>
 typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
   route best = stay(start);
   go_on(best);
-  if (!is_at_end(best)) {
-    route other = undamped(best);
+  for (route before = best; before.waypoints.size() > 1 && !is_at_end(best);) {
+    before = before_singularity(before);
+    route other = undamped(before);
     if (other.back().u > best.back().u) {
       best = std::move(other);
     }

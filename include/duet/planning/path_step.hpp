@@ -66,27 +66,11 @@ struct pose_solver {
   vector lower = model.lower, upper = model.upper; ///< the limits that count
   double damped_below = damping_threshold; ///< singular values with which steps are damped first
 
-  /// Why an attempt to get to a target beside a state has failed.
-  [[nodiscard]] stop_reason what_stops(const attempt<Room>& there, const chain_state<Room>& here,
-                                       const tip_place& target) const {
-    return there.is_blocked || there.shortfall > tolerance.length   ? stop_reason::obstacle
-           : there.is_bounded && is_stopped_by_limits(here, target) ? stop_reason::joint_limit
-           : there.smallest_singular_value < 10 * damping_threshold ? stop_reason::singular
-                                                                    : stop_reason::no_progress;
-  }
-
-  /// Are limits all that keeps the tip from getting to a target beside it?
-  [[nodiscard]] bool is_stopped_by_limits(const chain_state<Room>& from,
-                                          const tip_place& target) const {
-    constexpr double close_by = .5;
-    pose_solver free{model, tolerance};
-    for (std::ptrdiff_t i = 0; i < from.theta.size(); ++i) {
-      const double way = i < model.size ? std::numeric_limits<double>::infinity() : 0;
-      free.lower[i] = -way;
-      free.upper[i] = way;
+  void without_limits() {
+    for (std::ptrdiff_t i = 0; i < model.size; ++i) {
+      lower[i] = -std::numeric_limits<double>::infinity();
+      upper[i] = std::numeric_limits<double>::infinity();
     }
-    const auto there = free.approach(from, target, {});
-    return there.is_within(tolerance) && norm(there.state.theta - from.theta) < close_by;
   }
 
   /// From a state nearby, the step nearest to `wish` that takes the tip to the target to first

@@ -26,6 +26,7 @@ struct reachable {
   double u;
   std::ptrdiff_t from;     ///< its number, −1 for none
   bool is_way_out = false; ///< is that one singular, and this one beside it?
+  bool is_alone = false;   ///< is it a piece of its own?
 };
 
 /// Collects what is reachable, parameter by parameter.
@@ -62,7 +63,9 @@ public:
           if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
               (!is_singular || leads(next.state, u[k], here, u[k - 1]))) {
             found_.push_back({next.state, u[k], std::ptrdiff_t(i), is_singular});
-            follow(found_.size() - 1, target);
+            const std::size_t added = found_.size() - 1;
+            follow(added, target);
+            found_[added].is_alone = found_.size() == added + 1;
           }
         };
         add(go(here, found_[i].u, u[k], 6));
@@ -134,7 +137,8 @@ private:
   [[nodiscard]] bool is_known(const vector& theta, std::size_t first) const {
     return std::any_of(found_.begin() + std::ptrdiff_t(first), found_.end(), [&](const auto& x) {
       const vector apart = x.state.theta - theta;
-      return dot(apart, apart) < .5 * spacing_ * spacing_;
+      // Two that part at a singularity are near each other at first.
+      return dot(apart, apart) < (x.is_alone ? 1e-4 : .5) * spacing_ * spacing_;
     });
   }
 
