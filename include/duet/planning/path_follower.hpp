@@ -120,31 +120,55 @@ private:
     return slope_ ? centre - step * slope_(theta) : centre;
   }
 
-  /// A route with motions in place, from a waypoint of another one.
+  /// As far as possible without motions in place.
+  [[nodiscard]] route continued(route best) {
+    go_on(best);
+    for (route before = best; before.waypoints.size() > 1 && !is_at_end(best);) {
+      before = before_singularity(before);
+      keep_better(best, undamped(before));
+    }
+    return best;
+  }
+  static void keep_better(route& best, route other) {
+    if (other.back().u > best.back().u) {
+      best = std::move(other);
+    }
+  }
+
+  /// A better route with motions in place, from a waypoint of one, or that one.
   [[nodiscard]] route with_search(const route& before, std::size_t first) {
-    route result(before.waypoints.front());
-    result.waypoints.assign(before.waypoints.begin(),
-                            before.waypoints.begin() + std::ptrdiff_t(first) + 1);
+    route begin(before.waypoints.front());
+    begin.waypoints.assign(before.waypoints.begin(),
+                           before.waypoints.begin() + std::ptrdiff_t(first) + 1);
     self_motion_search search(solver_, target_, options_.self_motion_step, iterations_left_);
-    const auto way = search.run(result.back().state, search_parameters(result.back()));
+    const auto ways = search.run(begin.back().state, search_parameters(begin.back()));
     iterations_left_ = search.iterations_left();
+    route best = before;
+    for (const auto& way : ways) {
+      if (!is_at_end(best)) {
+        keep_better(best, along(begin, way));
+      }
+    }
+    return best;
+  }
+
+  /// On along a way that a search has found, and beyond.
+  [[nodiscard]] route along(route x, const typename self_motion_search<Room>::way& way) {
     for (std::size_t i = 1; i < way.size(); ++i) {
-      const std::size_t kept = result.waypoints.size();
+      const std::size_t kept = x.waypoints.size();
       const auto go = [&](bool is_back) {
-        result.step = options_.search_step;
-        return is_back ? travel_back(result, way[i])
-                       : travel(result, way[i].u, options_.search_step, {&way[i].state.theta});
+        x.step = options_.search_step;
+        return is_back ? travel_back(x, way[i])
+                       : travel(x, way[i].u, options_.search_step, {&way[i].state.theta});
       };
       if (!go(way[i].is_way_out)) {
-        result.waypoints.erase(result.waypoints.begin() + std::ptrdiff_t(kept),
-                               result.waypoints.end());
+        x.waypoints.erase(x.waypoints.begin() + std::ptrdiff_t(kept), x.waypoints.end());
         if (!go(!way[i].is_way_out)) {
-          return result;
+          return x;
         }
       }
     }
-    go_on(result);
-    return result;
+    return continued(std::move(x));
   }
 
   /// From a waypoint on, where the search looks: nearer to it where it is singular, as ways out may
@@ -298,24 +322,13 @@ private:
 
 template <int Room>
 typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
-  route best = stay(start);
-  go_on(best);
-  for (route before = best; before.waypoints.size() > 1 && !is_at_end(best);) {
-    before = before_singularity(before);
-    route other = undamped(before);
-    if (other.back().u > best.back().u) {
-      best = std::move(other);
-    }
-  }
+  route best = continued(stay(start));
   // From where it got stuck, or else from the beginning.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
     if (is_at_end(best) || options_.search_step == 0) {
       break;
     }
-    route other = with_search(best, first);
-    if (other.back().u > best.back().u) {
-      best = std::move(other);
-    }
+    best = with_search(best, first);
   }
   return best;
 }

@@ -46,13 +46,16 @@ public:
                      int iterations)
       : solver_(solver), target_(target), spacing_(spacing), left_(iterations) {}
 
-  /// The way from a state at u.front() to u.back(), or as far as it goes, each configuration a step
-  /// from the one before.
-  [[nodiscard]] std::vector<reachable<Room>> run(const chain_state<Room>& start,
-                                                 const std::vector<double>& u) {
+  /// Each configuration a step from the one before.
+  using way = std::vector<reachable<Room>>;
+
+  /// Ways from a state at u.front() to u.back(), or as far as they go: one that leads farthest, and
+  /// one to each other piece that is a point.
+  [[nodiscard]] std::vector<way> run(const chain_state<Room>& start, const std::vector<double>& u) {
     found_.push_back({start, u.front(), -1});
     follow(0, target_(u.front()));
     std::size_t first = 0;
+    farthest_ = {};
     for (std::size_t k = 1; k < u.size(); ++k) {
       const std::size_t end = found_.size();
       const tip_place target = target_(u[k]);
@@ -68,6 +71,7 @@ public:
             found_[added].is_alone = found_.size() == added + 1;
           }
         };
+        farthest_.now = i;
         add(go(here, found_[i].u, u[k], 6));
         if (is_singular) {
           leave(here, target, add);
@@ -78,16 +82,27 @@ public:
       }
       first = end;
     }
-    std::vector<reachable<Room>> way;
-    for (auto i = std::ptrdiff_t(first); i >= 0; i = found_[std::size_t(i)].from) {
-      way.push_back(found_[std::size_t(i)]);
+    const std::size_t best = std::max(first, farthest_.from);
+    std::vector<way> result{way_to(best)};
+    for (std::size_t i = first; i < found_.size(); ++i) {
+      if (i != best && found_[i].is_alone) {
+        result.push_back(way_to(i));
+      }
     }
-    std::reverse(way.begin(), way.end());
-    return way;
+    return result;
   }
   [[nodiscard]] int iterations_left() const { return left_; }
 
 private:
+  [[nodiscard]] way way_to(std::size_t last) const {
+    way result;
+    for (auto i = std::ptrdiff_t(last); i >= 0; i = found_[std::size_t(i)].from) {
+      result.push_back(found_[std::size_t(i)]);
+    }
+    std::reverse(result.begin(), result.end());
+    return result;
+  }
+
   [[nodiscard]] attempt<Room> tried(const chain_state<Room>& from, const tip_place& target,
                                     const vector& wish) {
     auto result = solver_.approach(from, target, wish);
@@ -102,6 +117,8 @@ private:
     if ((direct.is_within(solver_.tolerance) && !is_jump) || halvings == 0) {
       if (is_jump) {
         direct.left.length = std::numeric_limits<double>::infinity();
+      } else if (direct.is_within(solver_.tolerance) && to > farthest_.u) {
+        farthest_ = {to, farthest_.now, farthest_.now};
       }
       return direct;
     }
@@ -210,6 +227,10 @@ private:
   const place_function& target_;
   double spacing_;
   int left_;
+  struct {
+    double u = 0;
+    std::size_t from = 0, now = 0;
+  } farthest_; ///< how far steps have led, and from which configuration
   std::vector<reachable<Room>> found_;
 };
 
