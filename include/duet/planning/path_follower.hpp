@@ -86,14 +86,26 @@ public:
 private:
   /// Does the way lead beyond a parameter without limits?
   [[nodiscard]] bool is_stopped_by_limits(const route& x, double u) const {
-    constexpr int enough = 10000;
+    constexpr int enough = 100000;
     path_follower free = *this;
     free.iterations_left_ = enough;
     free.solver_.without_limits();
     const double beyond = std::min(u + 4 * (u - x.back().u), stops_.back());
     free.stops_ = {stops_.front(), beyond};
-    return free.is_at_end(free.undamped(route(x.back()))) ||
-           free.is_at_end(free.undamped(before_singularity(x)));
+    if (free.is_at_end(free.undamped(route(x.back())))) {
+      return true;
+    }
+    route before = x;
+    while (before.waypoints.size() > 1) {
+      before = before_singularity(before);
+      if (free.is_at_end(free.undamped(before))) {
+        return true;
+      }
+    }
+    return false;
+  }
+  [[nodiscard]] static bool is_singular(const waypoint& x) {
+    return smallest_singular_value_of(x.state.jacobian) < damping_threshold;
   }
 
   [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops_.back(); }
@@ -175,7 +187,7 @@ private:
   /// be short.
   [[nodiscard]] std::vector<double> search_parameters(const waypoint& from) const {
     std::vector<double> result = {from.u};
-    if (smallest_singular_value_of(from.state.jacobian) < damping_threshold) {
+    if (is_singular(from)) {
       for (const double part : {1. / 256, 1. / 16}) {
         result.push_back(std::min(from.u + part * options_.search_step * length_, stops_.back()));
       }

@@ -54,6 +54,7 @@ public:
   [[nodiscard]] std::vector<way> run(const chain_state<Room>& start, const std::vector<double>& u) {
     found_.push_back({start, u.front(), -1});
     follow(0, target_(u.front()));
+    found_[0].is_alone = found_.size() == 1;
     std::size_t first = 0;
     farthest_ = {};
     for (std::size_t k = 1; k < u.size(); ++k) {
@@ -61,10 +62,11 @@ public:
       const tip_place target = target_(u[k]);
       for (std::size_t i = first; i < end && left_ > 0; ++i) {
         const chain_state<Room> here = found_[i].state;
+        const bool is_alone = found_[i].is_alone;
         const bool is_singular = smallest_singular_value_of(here.jacobian) < damping_threshold;
         const auto add = [&](const attempt<Room>& next) {
           if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
-              (!is_singular || leads(next.state, u[k], here, u[k - 1]))) {
+              (!is_singular || leads(next.state, u[k], here, u[k - 1], is_alone))) {
             found_.push_back({next.state, u[k], std::ptrdiff_t(i), is_singular});
             const std::size_t added = found_.size() - 1;
             follow(added, target);
@@ -144,11 +146,12 @@ private:
     }
   }
 
-  /// Does the way back lead to where a configuration is?
+  /// Does the way back lead to a configuration, or near it on a piece that is no point?
   [[nodiscard]] bool leads(const chain_state<Room>& from, double u, const chain_state<Room>& to,
-                           double back) {
+                           double back, bool is_alone) {
     const auto end = go(from, u, back, 6);
-    return end.is_within(solver_.tolerance) && norm(end.state.theta - to.theta) < spacing_;
+    const double close = is_alone ? .5 * norm(from.theta - to.theta) : spacing_;
+    return end.is_within(solver_.tolerance) && norm(end.state.theta - to.theta) < close;
   }
 
   [[nodiscard]] bool is_known(const vector& theta, std::size_t first) const {
