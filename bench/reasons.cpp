@@ -49,7 +49,8 @@ score check(const arm<6>& a, family kind, int count, unsigned seed, bool is_list
     result.before_end += is_short;
     result.unknown += is_unknown;
     result.other_reason += is_false;
-    if (is_listed && (is_open || is_short || is_unknown || is_false || plan.tau.back() > way.end + 1e-4)) {
+    if (is_listed &&
+        (is_open || is_short || is_unknown || is_false || plan.tau.back() > way.end + 1e-4)) {
       std::printf("  %d: %s at %.9g, sigma %.2g; there is %s at %.9g\n", k, to_text(plan.reason),
                   plan.tau.back(), plan.smallest_singular_value, to_text(way.why), way.end);
     }
@@ -62,8 +63,8 @@ score check(const arm<6>& a, family kind, int count, unsigned seed, bool is_list
 int main(int argc, char** argv) {
   const int count = argc > 1 ? std::atoi(argv[1]) : 100;
   const unsigned seed = argc > 2 ? unsigned(std::atoi(argv[2])) : 1;
-  std::printf("%-14s %-22s %6s %4s %6s %6s %7s\n", "arm", "from", "failed", "way", "before", "false",
-              "unknown");
+  std::printf("%-14s %-22s %6s %4s %6s %6s %7s\n", "arm", "from", "failed", "way", "before",
+              "false", "unknown");
   for (const arm<6>& a : six_joints()) {
     for (std::size_t k = 0; k < families.size(); ++k) {
       const score s = check(a, family(k), count, seed, argc > 3);

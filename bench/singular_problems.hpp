@@ -35,7 +35,9 @@ struct arm {
   serial_chain<N> chain;
 };
 
-inline joint_limits<> degrees(double lower, double upper) { return {lower * pi / 180, upper * pi / 180}; }
+inline joint_limits<> degrees(double lower, double upper) {
+  return {lower * pi / 180, upper * pi / 180};
+}
 
 /// Five arms of six joints, from their makers' dimensions, in metres.
 inline std::vector<arm<6>> six_joints() {

@@ -89,8 +89,7 @@ private:
     joints nearby = x;
     const auto here = duet::detail::place_of(path_(u));
     for (int round = 0; round < 5; ++round) {
-      const auto e =
-          duet::detail::error_twist(duet::detail::place_of(arm_.pose(nearby)), here);
+      const auto e = duet::detail::error_twist(duet::detail::place_of(arm_.pose(nearby)), here);
       const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
           duet::jacobian(arm_, nearby, duet::frame::hybrid),
           Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -108,8 +107,8 @@ private:
       return false;
     }
     for (const double part : {.5, .25, .75}) {
-      const auto off = duet::deviation_between(
-          arm_.pose(joints((1 - part) * x + part * y)), path_((1 - part) * u + part * v));
+      const auto off = duet::deviation_between(arm_.pose(joints((1 - part) * x + part * y)),
+                                               path_((1 - part) * u + part * v));
       if (std::max(off.length, off.angle) > 1e-5) {
         return false;
       }
@@ -184,9 +183,10 @@ private:
       const double u = (a + b) / 2;
       const joints middle = (x + z) / 2;
       const auto all = solutions(u, middle);
-      const auto nearest = std::min_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
-        return (p - middle).norm() < (q - middle).norm();
-      });
+      const auto nearest =
+          std::min_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
+            return (p - middle).norm() < (q - middle).norm();
+          });
       if (nearest == all.end() || (*nearest - middle).norm() > (z - x).norm() + 1e-9) {
         return {};
       }
@@ -227,28 +227,30 @@ private:
     };
     const bool is_any = next_to(all);
     if (result.empty() && u >= verdict_.end) {
-      verdict_ = {u, is_any || next_to(fibre(from, path_(u), false)) ? duet::stop_reason::joint_limit
-                                                                    : duet::stop_reason::singular};
+      verdict_ = {u, is_any || next_to(fibre(from, path_(u), false))
+                         ? duet::stop_reason::joint_limit
+                         : duet::stop_reason::singular};
       result.clear();
     }
     return result;
   }
 
   /// What a singular configuration gets to with the tip in place, in small steps.
-  [[nodiscard]] std::vector<joints> fibre(const joints& from,
-                                          const duet::dual_quaternion<double>& pose,
-                                          bool keeps_limits) const {
+  [[nodiscard]] std::vector<joints>
+  fibre(const joints& from, const duet::dual_quaternion<double>& pose, bool keeps_limits) const {
     std::vector<joints> result{from};
     for (const double side : {1., -1.}) {
       joints x = from, direction = joints::Zero();
       for (int k = 0; k < 2000; ++k) {
         const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
-            duet::jacobian(arm_, x, duet::frame::hybrid), Eigen::ComputeFullU | Eigen::ComputeFullV);
+            duet::jacobian(arm_, x, duet::frame::hybrid),
+            Eigen::ComputeFullU | Eigen::ComputeFullV);
         const joints along = svd.matrixV().col(5);
         if (svd.singularValues()[5] > 1e-4) {
           break;
         }
-        direction = k == 0 ? joints(side * along) : joints(along.dot(direction) < 0 ? -along : along);
+        direction =
+            k == 0 ? joints(side * along) : joints(along.dot(direction) < 0 ? -along : along);
         joints y = x + fibre_step * direction;
         for (int round = 0; round < 5; ++round) {
           const auto e = duet::detail::error_twist(duet::detail::place_of(arm_.pose(y)),

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "planning/chains.hpp"
+#include "planning/complete_search.hpp"
 #include "planning/paths.hpp"
 
 #include <duet/mechanism/denavit_hartenberg.hpp>
@@ -61,6 +62,12 @@ void check_reached(const chain& arm, const vector& start, const vector& end) {
   CHECK(plan.tau.back() == 1);
   CHECK(worst(arm, plan, end) < 1.1e-5);
 }
+
+/// The shorter screw from pose to pose.
+struct screw_path {
+  dual_quaternion<double> first, last;
+  dual_quaternion<double> operator()(double u) const { return sclerp(first, last, u); }
+};
 
 double smallest_singular_value(const chain& arm, const vector& theta) {
   const detail::chain_model<chain> model(arm);
@@ -236,6 +243,77 @@ TEST_CASE("where joints slide plans do not depend on the unit of length") {
     }
     CHECK(reached >= 5);
   }
+}
+
+/// Joints 2, 3, 4 and 6 swing by several radians within a ten thousandth of the path.
+TEST_CASE("the UR5e's swing beside its wrist's singularity, which is no end") {
+  duet_test::random_source random(8);
+  int reached = 0;
+  for (int k = 0; k < 12; ++k) {
+    vector start = configuration(random, 2);
+    start[4] = random.uniform(.3, 1.5);
+    vector end = beside(start, random, k % 2 == 0 ? 1e-3 : 1e-4);
+    end[4] = -start[4];
+    const screw_path path{ur5e.pose(start), ur5e.pose(end)};
+    const auto way = duet_test::complete_search(ur5e, path)(start);
+    const auto plan = plan_to(ur5e, start, end);
+    CHECK((plan.reason == stop_reason::reached) == (way.why == stop_reason::reached));
+    reached += plan.reason == stop_reason::reached;
+    CHECK(worst(ur5e, plan, end) < 1.1e-5);
+  }
+  CHECK(reached >= 4);
+}
+
+TEST_CASE("plans stop only where all solutions end, for the reason by which they do") {
+  duet_test::random_source random(9);
+  const chain narrow =
+      with_limits(puma, vector(vector::Constant(-2.5)), vector(vector::Constant(2.5)));
+  int joint_limit = 0, singular = 0;
+  for (const chain& arm : {ur5e, narrow}) {
+    for (int k = 0; k < 30; ++k) {
+      vector start = configuration(random, 2);
+      vector end = beside(start, random, .5);
+      if (k % 3 == 0) {
+        end = start;
+        end[4] = -start[4] + random.uniform(-.01, .01);
+        end[3] += .01;
+      } else if (k % 3 == 1) {
+        start[2] = arm.limits(2).upper > 3 ? 0 : start[2]; // the UR5e's elbow is stretched
+      }
+      const screw_path path{arm.pose(start), arm.pose(end)};
+      const auto way = duet_test::complete_search(arm, path)(start);
+      const auto plan = plan_to(arm, start, end);
+      CAPTURE(k);
+      CHECK(plan.reason == way.why);
+      CHECK(plan.tau.back() > way.end - 1e-4);
+      joint_limit += plan.reason == stop_reason::joint_limit;
+      singular += plan.reason == stop_reason::singular;
+    }
+  }
+  CHECK(joint_limit >= 5);
+  CHECK(singular >= 5);
+}
+
+/// It would tell of a way where there is none, or of none where there is one.
+TEST_CASE("the complete search itself, where the answer is known") {
+  const vector theta = (vector() << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  const auto turning = [&](double u) {
+    return pose(exp(vector3<double>(0, 0, u)), vector3<double>(0, 0, 0)) * ur5e.pose(theta);
+  };
+  CHECK(duet_test::complete_search(ur5e, turning)(theta).why == stop_reason::reached);
+  // The base turns by 2u.
+  const chain limited = with_limits(ur5e, 0, {-1, theta[0] + .5});
+  const auto stopped = duet_test::complete_search(limited, turning)(theta);
+  CHECK(stopped.why == stop_reason::joint_limit);
+  CHECK(stopped.end == doctest::Approx(.25).epsilon(1e-6));
+  const auto out = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(2 * u, 0, 0)) * ur5e.pose(theta);
+  };
+  const auto ended = duet_test::complete_search(ur5e, out)(theta);
+  CHECK(ended.why == stop_reason::singular);
+  CHECK(!all_inverse_kinematics(ur5e, out(ended.end)).solutions.empty());
+  CHECK(all_inverse_kinematics(ur5e, out(ended.end + 1e-6)).solutions.size() <
+        all_inverse_kinematics(ur5e, out(ended.end - 1e-3)).solutions.size());
 }
 
 } // namespace test_planning_singular_paths

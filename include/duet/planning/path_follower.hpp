@@ -305,9 +305,9 @@ private:
         const double excess = excess_between(here, on);
         // Between waypoints the deviation grows with the square of the step.
         change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
-        const bool is_creeping =
-            x.step < options_.smallest_step && norm(there.state.theta - theta) < least_swing;
-        if (excess <= .95 && !is_creeping) { // half way is not quite where it is largest
+        if (x.step < options_.smallest_step && norm(there.state.theta - theta) < least_swing) {
+          change = .25;             // within tolerance of two parameters, but no way on
+        } else if (excess <= .95) { // half way is not quite where it is largest
           way = next;
           x.waypoints.push_back(on);
         }

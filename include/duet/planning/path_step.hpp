@@ -89,9 +89,8 @@ struct pose_solver {
 
   /// How far do joints go to a target beside a state, to first order, without damping?
   [[nodiscard]] double way_to(const chain_state<Room>& from, const tip_place& target) const {
-    const auto step =
-        bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
-                     upper - from.theta, {undamped_threshold});
+    const auto step = bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
+                                   upper - from.theta, {undamped_threshold});
     return norm(step.step);
   }
 
