@@ -3,6 +3,9 @@
 #include "planning/chains.hpp"
 
 #include <duet/planning/choose_start.hpp>
+#include <duet/planning/pairs_apart.hpp>
+#include <duet/spline/interpolate.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
 
@@ -157,6 +160,76 @@ TEST_CASE("the first pose without a solution, and why") {
   CHECK(blocked.reason == stop_reason::obstacle);
   CHECK(*blocked.unsolved > .3);
   CHECK(*blocked.unsolved < 1);
+}
+
+TEST_CASE("along a spline of poses, over all of its domain") {
+  const chain arm = robots::ur5e().table();
+  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  std::vector<double> u;
+  std::vector<dual_quaternion<double>> poses;
+  for (int i = 0; i < 5; ++i) {
+    vector x = theta;
+    x[0] += .2 * i;
+    x[3] -= .1 * i;
+    u.push_back(2 + i);
+    poses.push_back(arm.pose(x));
+  }
+  const auto curve = interpolate<rotation_vector_spline<dual<double, 1, screw_tag>>>(u, poses);
+  const auto found = choose_start(arm, curve);
+  CHECK(is_whole(arm, found, curve, 2, 6));
+  // Every knot is a waypoint.
+  for (const double each : u) {
+    CHECK(std::find(found.plan.tau.begin(), found.plan.tau.end(), each) != found.plan.tau.end());
+  }
+  // The objective says which start, as of other paths.
+  for (const auto& branch : all_inverse_kinematics(arm, curve(2)).solutions) {
+    const auto wanted = choose_start(arm, curve, {}, preferred_posture{branch.joints});
+    CHECK((wanted.reason != stop_reason::reached || wanted.starts > 1 ||
+           (wanted.plan.joints.front() - branch.joints).norm() < 1e-9));
+  }
+}
+
+/// The flange's body is kept apart from the upper arm's: of the elbow's two ways one is too near.
+TEST_CASE("links that are kept apart, in single solutions and along paths") {
+  const chain arm = robots::ur5e().table();
+  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  const auto all = all_inverse_kinematics(arm, arm.pose(theta));
+  REQUIRE(all.solutions.size() == 8);
+  scene around;
+  around.bodies = {{2, {vector3<double>(0, 0, .1), vector3<double>(-.4, 0, .1), .05}},
+                   {6, {vector3<double>(0, 0, 0), vector3<double>(0, 0, .1), .05}}};
+  around.pairs = {{0, 1}};
+  std::vector<double> distances;
+  for (const auto& branch : all.solutions) {
+    distances.push_back(clearance(arm, branch.joints, around).distance);
+  }
+  const auto [least, most] = std::minmax_element(distances.begin(), distances.end());
+  REQUIRE(*most > *least + .02);
+  around.margin = (*least + *most) / 2;
+  const vector too_near = all.solutions[std::size_t(least - distances.begin())].joints;
+  const auto goal = arm.pose(theta);
+  // Without pairs the solution at the start is the one; with them it is another.
+  const auto free = inverse_kinematics(arm, goal, too_near);
+  CHECK((free.joints - too_near).norm() < 1e-9);
+  const auto apart = inverse_kinematics(arm, goal, too_near, {}, no_objective{}, around);
+  REQUIRE(apart.reason == stop_reason::reached);
+  CHECK(clearance(arm, apart.joints, around).distance >= around.margin - 1e-6);
+
+  const auto path = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(0, 0, .02 * u)) * goal;
+  };
+  const preferred_posture wish{too_near};
+  CHECK((choose_start(arm, path, 0, 1, {}, wish).plan.joints.front() - too_near).norm() < 1e-9);
+  const auto found = choose_start(arm, path, 0, 1, {}, wish, around);
+  REQUIRE(is_whole(arm, found, path, 0, 1));
+  CHECK(found.plan.smallest_clearance >= around.margin - 1e-6);
+  // Nothing is far enough apart.
+  around.margin = *most + .3;
+  around.horizon = 1;
+  const auto none = choose_start(arm, path, 0, 1, {}, wish, around);
+  CHECK(none.reason == stop_reason::obstacle);
+  REQUIRE(none.unsolved);
+  CHECK(*none.unsolved == 0);
 }
 
 TEST_CASE("seven joints without a solution, and with one of few starts") {
