@@ -47,11 +47,12 @@ public:
       : solver_(solver), target_(target), spacing_(spacing), left_(iterations) {}
 
   /// Each configuration a step from the one before.
-  using way = std::vector<reachable<Room>>;
+  using configurations = std::vector<reachable<Room>>;
 
   /// Ways from a state at u.front() to u.back(), or as far as they go: one that leads farthest, and
   /// one to each other piece that is a point.
-  [[nodiscard]] std::vector<way> run(const chain_state<Room>& start, const std::vector<double>& u) {
+  [[nodiscard]] std::vector<configurations> run(const chain_state<Room>& start,
+                                                const std::vector<double>& u) {
     found_.push_back({start, u.front(), -1});
     follow(0, target_(u.front()));
     found_[0].is_alone = found_.size() == 1;
@@ -85,7 +86,7 @@ public:
       first = end;
     }
     const std::size_t best = std::max(first, farthest_.from);
-    std::vector<way> result{way_to(best)};
+    std::vector<configurations> result{way_to(best)};
     for (std::size_t i = first; i < found_.size(); ++i) {
       if (i != best && found_[i].is_alone) {
         result.push_back(way_to(i));
@@ -96,8 +97,8 @@ public:
   [[nodiscard]] int iterations_left() const { return left_; }
 
 private:
-  [[nodiscard]] way way_to(std::size_t last) const {
-    way result;
+  [[nodiscard]] configurations way_to(std::size_t last) const {
+    configurations result;
     for (auto i = std::ptrdiff_t(last); i >= 0; i = found_[std::size_t(i)].from) {
       result.push_back(found_[std::size_t(i)]);
     }

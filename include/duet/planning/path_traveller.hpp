@@ -1,0 +1,207 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/planning/bounded_step.hpp>
+#include <duet/planning/motion_plan.hpp>
+#include <duet/planning/path_step.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/planning/small_vector.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Steps along a path, waypoint by waypoint.
+
+namespace duet::detail {
+
+/// Takes the joints along a path as far as that goes without motions in place.
+template <int Room>
+class path_traveller {
+public:
+  using vector = small_vector<Room>;
+  /// The gradient of what the joints are to lower.
+  using slope_function = std::function<vector(const vector&)>;
+  struct waypoint {
+    chain_state<Room> state;
+    double u;
+    pose_deviation left = {};
+    /// Of the Jacobians on the way to it, as planners count lengths.
+    double smallest_singular_value = std::numeric_limits<double>::infinity();
+  };
+  struct route {
+    std::vector<waypoint> waypoints;
+    double step = .01; ///< the next one, of the path
+
+    explicit route(const waypoint& start) : waypoints{start} {}
+    [[nodiscard]] const waypoint& back() const { return waypoints.back(); }
+  };
+
+  /// \param target  the tip's pose
+  /// \param stops   parameters that become waypoints, increasing; the first and the last are the
+  ///                ends of the path
+  /// \param slope   or nothing
+  path_traveller(const planning_model<Room>& model, const place_function& target,
+                 std::vector<double> stops, const plan_options& options,
+                 const slope_function& slope)
+      : solver_{model, model.tolerance(options.tolerance)},
+        deviation_(model.tolerance(options.deviation)), target_(target), stops_(std::move(stops)),
+        options_(options), slope_(slope), length_(stops_.back() - stops_.front()),
+        iterations_left_(options.iterations) {}
+
+  /// Nothing but the start.
+  [[nodiscard]] route stay(const vector& start) const {
+    return route({solver_.model.at(start), stops_.front()});
+  }
+
+  [[nodiscard]] int iterations() const { return options_.iterations - iterations_left_; }
+
+protected:
+  [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops_.back(); }
+
+  /// What joints do with the freedom that the tip leaves them.
+  struct wishes {
+    const vector* aim = nullptr; ///< where they should be at the end
+    bool lowers = false;         ///< do they lower the objectives?
+  };
+
+  /// As far as possible without stopping.
+  void go_on(route& x) {
+    for (const double stop : stops_) {
+      if (stop > x.back().u && !travel(x, stop, (stop - x.back().u) / length_, {.lowers = true})) {
+        return;
+      }
+    }
+  }
+
+  /// What lowers the objectives.
+  [[nodiscard]] vector downhill(const vector& theta, double step) const {
+    const vector centre =
+        towards_middle(theta, solver_.model.lower, solver_.model.upper, options_.centring * step);
+    return slope_ ? centre - step * slope_(theta) : centre;
+  }
+
+  /// As far as possible without motions in place.
+  [[nodiscard]] route continued(route best) {
+    go_on(best);
+    for (route before = best; before.waypoints.size() > 1 && !is_at_end(best);) {
+      before = before_singularity(before);
+      keep_better(best, undamped(before));
+    }
+    return best;
+  }
+  static void keep_better(route& best, route other) {
+    if (other.back().u > best.back().u) {
+      best = std::move(other);
+    }
+  }
+
+  /// How many times the deviation is the tip off the path half way between two waypoints?
+  [[nodiscard]] double excess_between(const waypoint& a, const waypoint& b) const {
+    const vector middle = .5 * (a.state.theta + b.state.theta);
+    const pose_deviation half_way =
+        deviation_between(solver_.model.at(middle).tip, target_((a.u + b.u) / 2));
+    return std::max(deviation_.times(half_way),
+                    solver_.model.shortfall(middle) / deviation_.length);
+  }
+
+  /// Do the joints move far in a step along the path that is as short as that?
+  [[nodiscard]] bool is_swinging(const waypoint& at, double step) const {
+    constexpr double least = 1e-12;
+    return solver_.damped_below == undamped_threshold && step > least &&
+           solver_.way_to(at.state, target_(std::min(at.u + step * length_, stops_.back()))) >
+               least_swing;
+  }
+
+  /// As far as where a route last came near a singularity, if it did.
+  [[nodiscard]] route before_singularity(route x) const {
+    const auto drop_while = [&](bool is_near) {
+      while (x.waypoints.size() > 1 &&
+             (x.back().smallest_singular_value < damping_threshold) == is_near) {
+        x.waypoints.pop_back();
+      }
+    };
+    drop_while(false);
+    drop_while(true);
+    return x;
+  }
+
+  /// On without damping and nearer to the path: beside singularities joints that are to swing would
+  /// lag behind.
+  [[nodiscard]] route undamped(route x) {
+    const pose_solver<Room> damped = solver_;
+    solver_.damped_below = undamped_threshold;
+    solver_.tolerance = {1e-3 * damped.tolerance.length, 1e-3 * damped.tolerance.angle};
+    x.step = options_.smallest_step;
+    go_on(x);
+    solver_.damped_below = damped.damped_below;
+    solver_.tolerance = damped.tolerance;
+    return x;
+  }
+
+  /// On to the parameter `end`, in steps that keep the tip near the path between waypoints too.
+  ///
+  /// \param part  how much of the path that counts for
+  /// \return false where there is no going on
+  [[nodiscard]] bool travel(route& x, double end, double part, const wishes& have) {
+    const double begin = x.back().u;
+    double way = 0; // 1 at the end
+    while (way < 1) {
+      const waypoint& here = x.back();
+      const double next = way + x.step / part > 1 - 1e-9 ? 1 : way + x.step / part;
+      const double u = next == 1 ? end : begin + (end - begin) * next;
+      const vector& theta = here.state.theta;
+      const vector wish = have.aim != nullptr ? (next - way) / (1 - way) * (*have.aim - theta)
+                          : have.lowers       ? downhill(theta, (next - way) * part)
+                                              : vector{};
+      auto there = solver_.approach(here.state, target_(u), wish);
+      iterations_left_ -= there.iterations;
+      if (have.lowers && there.smallest_singular_value < damping_threshold) {
+        // A wish takes the joints to where the path leads no further.
+        there = solver_.approach(here.state, target_(u), {});
+        iterations_left_ -= there.iterations;
+      }
+      double change = .25;
+      if (there.is_within(solver_.tolerance)) {
+        const waypoint on{there.state, u, there.left, there.smallest_singular_value};
+        const double excess = excess_between(here, on);
+        // Between waypoints the deviation grows with the square of the step.
+        change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
+        if (x.step < options_.smallest_step && norm(there.state.theta - theta) < least_swing) {
+          change = .25;             // within tolerance of two parameters, but no way on
+        } else if (excess <= .95) { // half way is not quite where it is largest
+          way = next;
+          x.waypoints.push_back(on);
+        }
+      }
+      x.step = std::min(options_.largest_step, x.step * change);
+      if (way < 1 && (iterations_left_ <= 0 ||
+                      (x.step < options_.smallest_step && !is_swinging(x.back(), x.step)))) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  static constexpr double least_swing = 1e-3;
+  pose_solver<Room> solver_;
+  pose_tolerance deviation_;
+  const place_function& target_;
+  std::vector<double> stops_;
+  plan_options options_;
+  const slope_function& slope_;
+  double length_;
+  int iterations_left_;
+};
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE class path_traveller<8>;
+DUET_COMPILED_TEMPLATE class path_traveller<16>;
+#endif
+
+} // namespace duet::detail
