@@ -159,7 +159,7 @@ private:
     return std::any_of(found_.begin() + std::ptrdiff_t(first), found_.end(), [&](const auto& x) {
       const vector apart = x.state.theta - theta;
       // Two that part at a singularity are near each other at first.
-      return dot(apart, apart) < (x.is_alone ? 1e-2 : .5) * spacing_ * spacing_;
+      return dot(apart, apart) < (x.is_alone ? 1e-4 : .5) * spacing_ * spacing_;
     });
   }
 
