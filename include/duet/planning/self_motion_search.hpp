@@ -55,7 +55,6 @@ public:
                                                 const std::vector<double>& u) {
     found_.push_back({start, u.front(), -1});
     follow(0, target_(u.front()));
-    found_[0].is_alone = found_.size() == 1;
     std::size_t first = 0;
     farthest_ = {};
     for (std::size_t k = 1; k < u.size(); ++k) {
@@ -63,11 +62,10 @@ public:
       const tip_place target = target_(u[k]);
       for (std::size_t i = first; i < end && left_ > 0; ++i) {
         const chain_state<Room> here = found_[i].state;
-        const bool is_alone = found_[i].is_alone;
         const bool is_singular = smallest_singular_value_of(here.jacobian) < damping_threshold;
         const auto add = [&](const attempt<Room>& next) {
           if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
-              (!is_singular || leads(next.state, u[k], here, u[k - 1], is_alone))) {
+              (!is_singular || leads(next.state, u[k], here, u[k - 1]))) {
             found_.push_back({next.state, u[k], std::ptrdiff_t(i), is_singular});
             const std::size_t added = found_.size() - 1;
             follow(added, target);
@@ -147,12 +145,11 @@ private:
     }
   }
 
-  /// Does the way back lead to a configuration, or near it on a piece that is no point?
+  /// Does the way back lead to where a configuration is?
   [[nodiscard]] bool leads(const chain_state<Room>& from, double u, const chain_state<Room>& to,
-                           double back, bool is_alone) {
+                           double back) {
     const auto end = go(from, u, back, 6);
-    const double close = is_alone ? .5 * norm(from.theta - to.theta) : spacing_;
-    return end.is_within(solver_.tolerance) && norm(end.state.theta - to.theta) < close;
+    return end.is_within(solver_.tolerance) && norm(end.state.theta - to.theta) < spacing_;
   }
 
   [[nodiscard]] bool is_known(const vector& theta, std::size_t first) const {
