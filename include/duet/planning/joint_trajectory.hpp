@@ -49,12 +49,47 @@ struct joint_cubic {
   }
 };
 
-/// A part of a path, and when it is where: s = ṡ t + ½ s̈ t² from its beginning on.
+/// How far along a part of a path, with derivatives by time.
+struct path_place {
+  double s, speed, acceleration, jerk;
+};
+
+/// When a part of a path is where: s = a τ + b τ² + c τ³, where τ sets out with a speed and an
+/// acceleration and τ⃛ = growth τ̇; so τ̈ = acceleration + growth τ.
+struct time_law {
+  double time;         ///< of its beginning
+  double speed;        ///< τ̇ there
+  double acceleration; ///< τ̈ there
+  double growth = 0;
+  double a = 1, b = 0, c = 0;
+
+  /// Not beyond the end of a part, of that length.
+  [[nodiscard]] path_place at(double t, double length) const {
+    const double since = t - time;
+    double tau = since * (speed + since * acceleration / 2);
+    double rate = speed + since * acceleration;
+    if (growth != 0) {
+      // τ = speed sinh(ω t) / ω + acceleration (cosh(ω t) − 1) / ω², ω² = growth.
+      const double omega = std::sqrt(std::abs(growth)), angle = omega * since / 2;
+      const double half = (growth > 0 ? std::sinh(angle) : std::sin(angle)) / omega;
+      const double cosine = std::sqrt(std::max(0.0, 1 + growth * half * half));
+      const double sine = 2 * half * cosine, rise = 2 * half * half;
+      tau = speed * sine + acceleration * rise;
+      rate = speed * (1 + growth * rise) + acceleration * sine;
+    }
+    rate = std::max(0.0, rate);
+    const double change = acceleration + growth * tau;
+    const double slope = a + tau * (2 * b + 3 * c * tau), bend = 2 * b + 6 * c * tau;
+    return {std::clamp(tau * (a + tau * (b + tau * c)), 0.0, length), slope * rate,
+            bend * (rate * rate) + slope * change,
+            rate * (6 * c * (rate * rate) + 3 * bend * change + slope * growth)};
+  }
+};
+
+/// A part of a path, and when it is where.
 template <class V>
 struct timed_piece {
-  double time;
-  double speed;        ///< ṡ
-  double acceleration; ///< s̈
+  time_law law;
   joint_cubic<V> path;
 };
 
@@ -79,6 +114,24 @@ public:
   /// Up to 8 ulp of the duration beyond an end is that end.
   /// \throws invalid_input for t outside 0 … duration()
   [[nodiscard]] joint_motion<vector> operator()(double t) const {
+    const auto& [law, path] = piece_at(t);
+    const auto [s, speed, acceleration, jerk] = law.at(t, path.length);
+    const vector slope = path.first(s);
+    return {path.value(s), vector(speed * slope),
+            vector(acceleration * slope + speed * speed * path.second(s))};
+  }
+  /// The rates of change of accelerations at time t; where they jump, one of the two.
+  /// \throws invalid_input as `operator()`
+  [[nodiscard]] vector jerk(double t) const {
+    const auto& [law, path] = piece_at(t);
+    const auto [s, speed, acceleration, jerk] = law.at(t, path.length);
+    return jerk * path.first(s) + 3 * speed * acceleration * path.second(s) +
+           speed * speed * speed * 6 * path.c3;
+  }
+
+private:
+  /// The one in which t is, which is moved to an end if it is beyond that by rounding.
+  [[nodiscard]] const detail::timed_piece<vector>& piece_at(double& t) const {
     if (!(t >= 0 && t <= duration())) {
       t = detail::rounded_into(t, 0.0, duration());
       if (!(t >= 0 && t <= duration())) {
@@ -87,19 +140,12 @@ public:
                                     "; std::clamp makes it stay at its end"));
       }
     }
-    const auto next = std::upper_bound(pieces_.begin() + 1, pieces_.end(), t,
-                                       [](double a, const auto& piece) { return a < piece.time; });
-    const auto& piece = *(next - 1);
-    const double since = t - piece.time;
-    const double s =
-        std::clamp(since * (piece.speed + since * piece.acceleration / 2), 0.0, piece.path.length);
-    const double s_dot = std::max(0.0, piece.speed + since * piece.acceleration);
-    const vector slope = piece.path.first(s);
-    return {piece.path.value(s), vector(s_dot * slope),
-            vector(piece.acceleration * slope + s_dot * s_dot * piece.path.second(s))};
+    const auto next =
+        std::upper_bound(pieces_.begin() + 1, pieces_.end(), t,
+                         [](double at, const auto& piece) { return at < piece.law.time; });
+    return *(next - 1);
   }
 
-private:
   std::vector<detail::timed_piece<vector>> pieces_;
   std::vector<double> times_; ///< of the waypoints
 };

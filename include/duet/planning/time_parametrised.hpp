@@ -35,7 +35,7 @@ template <int N>
   const auto& polygon = problem.polygon;
   if (polygon.edges() == 0) {
     const auto zero = joint_vector<double, N>::Zero(problem.velocity.size());
-    return joint_trajectory<N>({{0, 0, 0, {polygon.points[0], zero, zero, zero, 0}}},
+    return joint_trajectory<N>({{{0, 0, 0}, {polygon.points[0], zero, zero, zero, 0}}},
                                std::vector<double>(problem.waypoints, 0.0));
   }
   const auto slopes = is_smooth ? smooth_slopes(polygon) : monotone_slopes(polygon);
@@ -63,8 +63,12 @@ struct time_options {
   std::vector<double> initial_rates = {};
   /// Of each joint at the end, the path's direction there; empty: at rest.
   std::vector<double> final_rates = {};
-  /// Not said: smooth for chains, where joints keep to their ranges on it; otherwise monotone.
+  /// Not said: smooth for chains, where joints keep to their ranges on it, and with limits of jerk;
+  /// otherwise monotone.
   std::optional<joint_curve> curve = {};
+  /// Limits of each joint's |q⃛|, positive or infinite, for motions from rest to rest on a smooth
+  /// curve; empty: none.
+  std::vector<double> jerk = {};
 };
 
 /// The fastest motion of joints along a curve through waypoints that keeps |q̇| and |q̈| of each
@@ -87,7 +91,8 @@ template <class V, VectorLike Velocity, VectorLike Acceleration>
                                      const Acceleration& acceleration,
                                      const time_options& options = {}) {
   const auto problem = detail::timing_problem_of(waypoints, velocity, acceleration, options);
-  return detail::timed_along(problem, options.curve == joint_curve::smooth);
+  const auto usual = options.jerk.empty() ? joint_curve::monotone : joint_curve::smooth;
+  return detail::timed_along(problem, options.curve.value_or(usual) == joint_curve::smooth);
 }
 
 /// The quickest motion along a plan's joint positions that keeps to limits of the joints'

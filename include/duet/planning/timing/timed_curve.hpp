@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/planning/joint_trajectory.hpp>
+#include <duet/planning/timing/jerk_limited.hpp>
 #include <duet/planning/timing/path_speeds.hpp>
 #include <duet/planning/timing/timing_problem.hpp>
 
@@ -49,12 +50,10 @@ inline void require_rates(const speed_refusal& refusal, double first, double las
 
 /// The fastest motion along a curve with constant s̈ in each part.
 template <int N>
-[[nodiscard]] joint_trajectory<N>
-timed(const timing_problem<N>& problem,
-      const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
-  using vector = joint_vector<double, N>;
-  const auto& polygon = problem.polygon;
-  const auto parts = parts_of(curve, polygon.s.back(), problem.parts);
+[[nodiscard]] auto
+timed_by_accelerations(const timing_problem<N>& problem,
+                       const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+  const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
   path_bounds bounds(problem.velocity.size());
   bounds.reserve(parts.size());
   for (const auto& part : parts) {
@@ -64,23 +63,39 @@ timed(const timing_problem<N>& problem,
   speed_refusal refusal;
   const std::vector<double> squares = path_speeds(bounds, first * first, last * last, refusal);
   require_rates(refusal, first, last);
-  std::vector<timed_piece<vector>> pieces;
-  pieces.reserve(parts.size());
-  std::vector<double> times; // of the waypoints
-  double time = 0, s = 0;
+  timed_path<joint_vector<double, N>> result;
+  result.pieces.reserve(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const double h = parts[i].length;
-    // Parts end where edges do, to rounding.
-    while (times.size() < problem.waypoints && polygon.given_at[times.size()] < s + h / 2) {
-      times.push_back(time);
-    }
     const double before = std::sqrt(squares[i]), after = std::sqrt(squares[i + 1]);
-    pieces.push_back({time, before, (squares[i + 1] - squares[i]) / (2 * h), parts[i]});
-    time += 2 * h / (before + after);
+    const double change = (squares[i + 1] - squares[i]) / (2 * h);
+    result.pieces.push_back({{result.duration, before, change}, parts[i]});
+    result.duration += 2 * h / (before + after);
+  }
+  return result;
+}
+
+/// The fastest motion along a curve, as `joint_trajectory`.
+template <int N>
+[[nodiscard]] joint_trajectory<N>
+timed(const timing_problem<N>& problem,
+      const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+  auto path = timed_by_accelerations(problem, curve);
+  if (!problem.jerk.array().isInf().all()) {
+    path = timed_by_jerks(problem, curve, path);
+  }
+  std::vector<double> times; // of the waypoints
+  double s = 0;
+  for (const auto& piece : path.pieces) {
+    const double h = piece.path.length;
+    // Pieces end where edges do, to rounding.
+    while (times.size() < problem.waypoints && problem.polygon.given_at[times.size()] < s + h / 2) {
+      times.push_back(piece.law.time);
+    }
     s += h;
   }
-  times.resize(problem.waypoints, time);
-  return joint_trajectory<N>(std::move(pieces), std::move(times));
+  times.resize(problem.waypoints, path.duration);
+  return joint_trajectory<N>(std::move(path.pieces), std::move(times));
 }
 
 } // namespace duet::detail

@@ -26,7 +26,7 @@ struct timing_problem {
 
   joint_polygon<vector> polygon;
   std::size_t waypoints;
-  vector velocity, acceleration;
+  vector velocity, acceleration, jerk;
   double initial_speed = 0, final_speed = 0; ///< ṡ
   int parts;
   vector lower, upper; ///< where joints may be on the curve, infinite where that is not asked
@@ -75,6 +75,9 @@ template <class V, class Velocity, class Acceleration, class Options>
   const Eigen::Index n = waypoints.front().size();
   const vector v = rate_limits(velocity, "velocity", n, true);
   const vector a = rate_limits(acceleration, "acceleration", n, false);
+  const vector j = options.jerk.empty()
+                       ? vector::Constant(n, std::numeric_limits<double>::infinity())
+                       : vector(rate_limits(options.jerk, "jerk", n, true));
   const vector none = vector::Constant(n, std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     require(waypoints[k].size() == n && waypoints[k].allFinite(),
@@ -82,7 +85,7 @@ template <class V, class Velocity, class Acceleration, class Options>
   }
   require(options.parts >= 1, "duet: time_parametrised: ", options.parts, " parts");
   problem result{
-      joint_polygon<vector>(waypoints), waypoints.size(), v, a, 0, 0, options.parts, -none, none};
+      joint_polygon<vector>(waypoints), waypoints.size(), v, a, j, 0, 0, options.parts, -none, none};
   result.initial_speed = speed_of(options.initial_rates, "initial", result.polygon.first_slope);
   result.final_speed = speed_of(options.final_rates, "final", result.polygon.last_slope);
   require(result.polygon.edges() > 0 || (result.initial_speed == 0 && result.final_speed == 0),

@@ -1,0 +1,143 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/joint_trajectory.hpp>
+#include <duet/planning/timing/piece_polynomial.hpp>
+#include <duet/planning/timing/reference_law.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// What limits of velocity, acceleration and jerk ask of a pace, which is τ̇² over τ. For those who
+/// extend duet.
+
+namespace duet::detail {
+
+/// What is linear in the three coefficients of a pace that matter in a piece.
+using pace_row = std::array<double, 3>;
+
+[[nodiscard]] inline double times(const pace_row& row, const double* c) {
+  return row[0] * c[0] + row[1] * c[1] + row[2] * c[2];
+}
+
+/// |x c| ≤ limit, in parts of one joint's limits: accelerations, and jerks divided by τ̇, by
+/// their three Bernstein coefficients in a piece. `beyond` c is as much as they may exceed these.
+struct joint_bounds {
+  std::array<pace_row, 3> acceleration{}, jerk{};
+  pace_row beyond_acceleration{}, beyond_jerk{};
+};
+
+/// The Bernstein coefficients of the pace in a piece, and of the largest rate, divided by τ̇.
+struct piece_bounds {
+  std::size_t first; ///< which coefficient of the pace is c[0]
+  double length;     ///< in τ
+  std::array<pace_row, 3> pace{};
+  std::array<double, 3> rate{};
+};
+
+/// What a pace has to keep that is a quadratic B-spline of τ with a positive coefficient more than
+/// there are nodes of τ; the outer ones are its values at the ends. Rates are q' s' √pace with
+/// s' = ds/dτ; accelerations and jerks / √pace are linear in it:
+///
+///     q̈     = q'' s'² pace + q' change,            change = s̈ = s'' pace + s' pace' / 2
+///     q⃛ / τ̇ = q''' s'³ pace + 3 q'' s' change + q' third,
+///     third  = s''' pace + 3/2 s'' pace' + s' pace'' / 2
+struct pace_bounds {
+  std::vector<piece_bounds> pieces;
+  std::vector<joint_bounds> joints; ///< of each piece, as many as there are joints
+
+  /// \param intervals  of τ
+  template <class V>
+  pace_bounds(const std::vector<joint_cubic<V>>& curve, const std::vector<reference_piece>& path,
+              std::size_t intervals, const V& velocity, const V& acceleration, const V& jerk) {
+    pieces.reserve(path.size());
+    joints.reserve(path.size() * std::size_t(velocity.size()));
+    for (const reference_piece& piece : path) {
+      add(curve[piece.edge], piece, intervals, velocity, acceleration, jerk);
+    }
+  }
+
+private:
+  /// Of the pace in interval k, by powers of τ − k.
+  [[nodiscard]] static std::array<pace_row, 3> powers(std::size_t k, std::size_t intervals) {
+    const pace_row start = k == 0 ? pace_row{1, 0, 0} : pace_row{.5, .5, 0};
+    const pace_row end = k + 1 == intervals ? pace_row{0, 0, 1} : pace_row{0, .5, .5};
+    std::array<pace_row, 3> result{start, {}, {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double middle = i == 1 ? 1 : 0;
+      result[1][i] = 2 * (middle - start[i]);
+      result[2][i] = start[i] - 2 * middle + end[i];
+    }
+    return result;
+  }
+
+  template <class V>
+  void add(const joint_cubic<V>& q, const reference_piece& piece, std::size_t intervals,
+           const V& velocity, const V& acceleration, const V& jerk) {
+    using polynomial = piece_polynomial;
+    const double l = piece.length, f = piece.from;
+    // With way = s − start: q' = p_0 + p_1 way + p_2 way² / 2, q'' = p_1 + p_2 way, q''' = p_2.
+    const std::array<V, 3> p{q.first(piece.start), q.second(piece.start), V(6 * q.c3)};
+    const polynomial way{{0, piece.a * l, piece.b * l * l, piece.c * l * l * l}};
+    const polynomial slope{{piece.a, 2 * piece.b * l, 3 * piece.c * l * l}};
+    const polynomial bend{{2 * piece.b, 6 * piece.c * l}};
+    const polynomial half_square = .5 * (way * way);
+
+    // What p_0, p_1 and p_2 are multiplied by; of accelerations and jerks for each coefficient.
+    const std::array rates{near_parabola(slope), near_parabola(way * slope),
+                           near_parabola(half_square * slope)};
+    std::array<std::array<near_parabola, 3>, 3> changes, jerks;
+    piece_bounds bounds{piece.interval, l, {}, {}};
+    const auto b = powers(piece.interval, intervals);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double start = b[0][i] + f * (b[1][i] + f * b[2][i]);
+      const double rise = b[1][i] + 2 * f * b[2][i], curvature = b[2][i];
+      bounds.pace[0][i] = start;
+      bounds.pace[1][i] = start + rise * l / 2;
+      bounds.pace[2][i] = start + l * (rise + l * curvature);
+      const polynomial pace{{start, rise * l, curvature * l * l}};
+      const polynomial half_rise{{rise / 2, curvature * l}};
+      const polynomial square = slope * slope * pace;
+      const polynomial change = bend * pace + slope * half_rise;
+      const polynomial both = 3 * (slope * change);
+      const polynomial third = 6 * piece.c * pace + 3 * (bend * half_rise) + curvature * slope;
+      changes[i] = {near_parabola(change), near_parabola(square + way * change),
+                    near_parabola(way * square + half_square * change)};
+      jerks[i] = {near_parabola(third), near_parabola(both + way * third),
+                  near_parabola(slope * square + way * both + half_square * third)};
+    }
+    for (Eigen::Index j = 0; j < velocity.size(); ++j) {
+      joint_bounds rows;
+      double beyond = 0;
+      std::array<double, 3> rate{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double factor = p[k][j], size = std::abs(factor);
+        for (std::size_t r = 0; r < 3; ++r) {
+          rate[r] += factor * rates[k].at[r];
+        }
+        beyond += size * rates[k].error;
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (std::size_t r = 0; r < 3; ++r) {
+            rows.acceleration[r][i] += factor * changes[i][k].at[r] / acceleration[j];
+            rows.jerk[r][i] += factor * jerks[i][k].at[r] / jerk[j];
+          }
+          rows.beyond_acceleration[i] += size * changes[i][k].error / acceleration[j];
+          rows.beyond_jerk[i] += size * jerks[i][k].error / jerk[j];
+        }
+      }
+      for (std::size_t r = 0; r < 3; ++r) {
+        bounds.rate[r] = std::max(bounds.rate[r], (std::abs(rate[r]) + beyond) / velocity[j]);
+      }
+      joints.push_back(rows);
+    }
+    pieces.push_back(bounds);
+  }
+};
+
+} // namespace duet::detail

@@ -1,0 +1,307 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/message.hpp"
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+
+#include <duet/dual/taylor.hpp>
+#include <duet/planning/time_parametrised.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace test_planning_jerk_limits {
+namespace {
+
+using namespace duet;
+using vector = Eigen::Matrix<double, 3, 1>;
+using one = Eigen::Matrix<double, 1, 1>;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The shortest time from rest to rest on a straight line: seven phases with constant jerk, fewer
+/// where the largest velocity or acceleration is not reached.
+double seven_phases(double way, double v, double a, double j) {
+  // How long it takes to a speed.
+  const auto rise = [&](double speed) {
+    return speed > a * a / j ? speed / a + a / j : 2 * std::sqrt(speed / j);
+  };
+  double low = 0, high = std::min(v, 1e9);
+  if (high * rise(high) <= way) {
+    return 2 * rise(high) + (way - high * rise(high)) / high;
+  }
+  for (int i = 0; i < 200; ++i) {
+    const double middle = (low + high) / 2;
+    (middle * rise(middle) < way ? low : high) = middle;
+  }
+  return 2 * rise(high);
+}
+
+/// The largest share of a limit at many times, between which that can't change by much.
+template <class Trajectory, class V>
+double largest_share(const Trajectory& q, const V& v, const V& a, const V& j, int count) {
+  double result = 0;
+  for (int i = 0; i <= count; ++i) {
+    const double t = q.duration() * i / count;
+    const auto now = q(t);
+    result = std::max({result, now.velocity.cwiseQuotient(v).cwiseAbs().maxCoeff(),
+                       now.acceleration.cwiseQuotient(a).cwiseAbs().maxCoeff(),
+                       q.jerk(t).cwiseQuotient(j).cwiseAbs().maxCoeff()});
+  }
+  return result;
+}
+
+std::vector<double> numbers(const vector& x) { return {x.begin(), x.end()}; }
+
+/// Steps of all joints, of one at a time, of very different lengths, and back and forth.
+std::vector<vector> random_waypoints(duet_test::random_source& random, int kind) {
+  std::vector<vector> result{vector(0, 0, 0)};
+  for (int i = random.integer(2, 8); i > 0; --i) {
+    vector step(random.normal(), random.normal(), random.normal());
+    if (kind == 1) {
+      step = random.normal() * vector::Unit(random.integer(0, 2));
+    } else if (kind == 2) {
+      step *= random.magnitude(1e-3, 1);
+    } else if (kind == 3) {
+      step = (i % 2 == 0 ? 1 : -.7) * vector(1, 2, .5);
+    }
+    result.push_back(result.back() + step);
+  }
+  return result;
+}
+
+} // namespace
+
+TEST_CASE("one joint: the seven phases of the closed form, and fewer") {
+  for (const double way : {1e-3, .1, 1.0, 30.0}) {
+    for (const double v : {2.0, infinity}) {
+      for (const double j : {.5, 10.0, 400.0}) {
+        CAPTURE(way);
+        CAPTURE(v);
+        CAPTURE(j);
+        const double a = 5, exact = seven_phases(way, v, a, j);
+        const std::vector<one> ends{one(1.0), one(1 + way)};
+        const auto q = time_parametrised(ends, std::array{v}, std::array{a}, {.jerk = {j}});
+        CHECK(q.duration() >= exact * (1 - 1e-12));
+        CHECK(q.duration() < exact * 1.02);
+        CHECK(largest_share(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
+        CHECK(q.times() == std::vector<double>{0, q.duration()});
+      }
+    }
+  }
+  // Backwards, by way of a waypoint, and in other units: the same motion.
+  const auto time = [](double scale, double units) {
+    const std::vector<one> line{one(0.0), one(-.3 * scale), one(-1 * scale)};
+    return units * time_parametrised(line, std::array{2 * scale * units},
+                                     std::array{5 * scale * units * units},
+                                     {.jerk = {40 * scale * units * units * units}})
+                       .duration();
+  };
+  CHECK(time(1, 1) < seven_phases(1, 2, 5, 40) * 1.02);
+  CHECK(time(1e6, 1e3) == doctest::Approx(time(1, 1)).epsilon(1e-3));
+  CHECK(time(1e-6, 1e-3) == doctest::Approx(time(1, 1)).epsilon(1e-3));
+}
+
+TEST_CASE("straight on, the slowest joint sets the pace") {
+  const std::vector<vector> ends{vector(0, 1, 0), vector(1, .5, 0)};
+  const vector v(1, 1, 1e-3), a(4, .5, 1e-3);
+  for (const double j : {1.0, 20.0}) {
+    const vector jerk(3 * j, j, 1e-3);
+    const auto q = time_parametrised(ends, v, a, {.jerk = numbers(jerk)});
+    // The second joint goes half as far.
+    const double exact = seven_phases(1, 1, 1, std::min(3 * j, 2 * j));
+    CHECK(q.duration() >= exact * (1 - 1e-12));
+    CHECK(q.duration() < exact * 1.02);
+  }
+}
+
+TEST_CASE("on hundreds of curves no limit is exceeded, and it is at rest at both ends") {
+  duet_test::random_source random(3);
+  int at_limit = 0;
+  for (int k = 0; k < 200; ++k) {
+    CAPTURE(k);
+    const auto waypoints = random_waypoints(random, k % 4);
+    const auto limits = [&](double from, double to) {
+      return vector(random.magnitude(from, to), random.magnitude(from, to),
+                    random.magnitude(from, to));
+    };
+    const vector v = limits(.3, 3), a = limits(.5, 20);
+    vector j = limits(1, 500);
+    if (k % 7 == 0) {
+      j[k % 3] = infinity;
+    }
+    const time_options options{.parts = 60 + k, .jerk = numbers(j)};
+    const auto q = time_parametrised(waypoints, v, a, options);
+    const double share = largest_share(q, v, a, j, 500);
+    CHECK(share <= 1 + 1e-10);
+    at_limit += share > .99;
+    CHECK(q(0).velocity.norm() < 1e-12);
+    CHECK(q(0).acceleration.norm() < 1e-12);
+    CHECK(q(q.duration()).velocity.cwiseQuotient(v).norm() < 1e-9);
+    CHECK(q(q.duration()).acceleration.cwiseQuotient(a).norm() < 1e-9);
+    REQUIRE(q.times().size() == waypoints.size());
+    for (std::size_t i = 0; i < waypoints.size(); ++i) {
+      CHECK((q(q.times()[i]).value - waypoints[i]).norm() < 1e-9);
+    }
+    // Never quicker than without limits of jerk.
+    CHECK(q.duration() >
+          .99 * time_parametrised(waypoints, v, a, {.curve = joint_curve::smooth}).duration());
+  }
+  CHECK(at_limit > 195);
+}
+
+TEST_CASE("accelerations don't jump, and velocities, accelerations and jerks are derivatives") {
+  duet_test::random_source random(4);
+  const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
+  for (int k = 0; k < 4; ++k) {
+    const auto waypoints = random_waypoints(random, k);
+    const auto q = time_parametrised(waypoints, v, a, {.jerk = numbers(j)});
+    const int count = 4000;
+    const double h = q.duration() / count;
+    int smooth = 0;
+    auto before = q(0);
+    vector jerk_before = q.jerk(0);
+    for (int i = 1; i <= count; ++i) {
+      const double t = std::min(q.duration(), i * h);
+      const auto now = q(t);
+      const vector jerk = q.jerk(t);
+      const double off = 1 + 1e-9;
+      CHECK(((now.acceleration - before.acceleration) / h).cwiseQuotient(j).cwiseAbs().maxCoeff() <=
+            off);
+      CHECK(((now.velocity - before.velocity) / h).cwiseQuotient(a).cwiseAbs().maxCoeff() <= off);
+      // Simpson's and the trapezoidal rule, whose errors are of third order at most.
+      const vector rate = (now.velocity + before.velocity) / 2;
+      const vector change = (now.acceleration + before.acceleration) / 2;
+      CHECK(((now.value - before.value) / h - rate).cwiseQuotient(j).cwiseAbs().maxCoeff() <
+            h * h / 6);
+      CHECK(((now.velocity - before.velocity) / h - change).cwiseQuotient(j).cwiseAbs().maxCoeff() <
+            h / 3);
+      const vector third = (jerk + jerk_before) / 2;
+      smooth += ((now.acceleration - before.acceleration) / h - third)
+                    .cwiseQuotient(j)
+                    .cwiseAbs()
+                    .maxCoeff() < .01;
+      before = now;
+      jerk_before = jerk;
+    }
+    CHECK(smooth > .9 * count); // not where jerks jump
+  }
+}
+
+TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digits, and are near") {
+  using duet_test::real_50;
+  using number = taylor<real_50, 3>;
+  duet_test::random_source random(6);
+  double widest = 0;
+  for (int k = 0; k < 40; ++k) {
+    const detail::joint_polygon<vector> polygon(random_waypoints(random, k % 4));
+    const auto curve = detail::hermite_curve(polygon, detail::smooth_slopes(polygon));
+    const std::size_t n = 30;
+    std::vector<double> places;
+    for (std::size_t i = 0; i <= n; ++i) {
+      const double x = double(i) / double(n);
+      places.push_back(polygon.s.back() * x * x * (3 - 2 * x));
+    }
+    const auto path = detail::reference_law(places).pieces(polygon.s);
+    const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
+    const detail::pace_bounds bounds(curve, path, n, v, a, j);
+    std::vector<double> pace;
+    for (std::size_t i = 0; i < n + 2; ++i) {
+      pace.push_back(random.uniform(.5, 2));
+    }
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const auto& piece = path[i];
+      const double* c = &pace[piece.interval];
+      const real_50 first = piece.interval == 0 ? c[0] : (real_50(c[0]) + c[1]) / 2;
+      const real_50 last = piece.interval + 1 == n ? c[2] : (real_50(c[1]) + c[2]) / 2;
+      for (int at = 0; at <= 4; ++at) {
+        const auto t = number::variable(real_50(piece.length) * at / 4);
+        const number s = number(piece.start) + t * (number(piece.a) + t * (number(piece.b) +
+                                                                          t * number(piece.c)));
+        const number y = number(piece.from) + t, z = number(1) - y;
+        const number p = number(first) * z * z + number(2 * c[1]) * y * z + number(last) * y * y;
+        for (int joint = 0; joint < 3; ++joint) {
+          const auto& q = curve[piece.edge];
+          const number f =
+              number(q.c0[joint]) +
+              s * (number(q.c1[joint]) + s * (number(q.c2[joint]) + s * number(q.c3[joint])));
+          const real_50 rate = f.derivative(1), square = p.value();
+          const real_50 change = f.derivative(2) * square + f.derivative(1) * p.derivative(1) / 2;
+          const real_50 jerk = f.derivative(3) * square + f.derivative(2) * p.derivative(1) * 3 / 2 +
+                               f.derivative(1) * p.derivative(2) / 2;
+          const auto& rows = bounds.joints[3 * i + std::size_t(joint)];
+          const auto& rates = bounds.pieces[i].rate;
+          CHECK(abs(rate) / v[joint] <= *std::max_element(rates.begin(), rates.end()) + 1e-13);
+          const auto check = [&](const real_50& exact, const auto& all, const auto& beyond) {
+            const std::array<double, 3> at_rows{detail::times(all[0], c), detail::times(all[1], c),
+                                                detail::times(all[2], c)};
+            const auto [low, high] = std::minmax_element(at_rows.begin(), at_rows.end());
+            const double more = detail::times(beyond, c);
+            const double rounding = 1e-12 * (1 + std::abs(*low) + std::abs(*high));
+            CHECK(exact <= *high + more + rounding);
+            CHECK(exact >= *low - more - rounding);
+            widest = std::max(widest, more / (1 + std::abs(*low) + std::abs(*high)));
+          };
+          check(change / a[joint], rows.acceleration, rows.beyond_acceleration);
+          check(jerk / j[joint], rows.jerk, rows.beyond_jerk);
+        }
+      }
+    }
+  }
+  CHECK(widest < .5);
+}
+
+TEST_CASE("infinite limits are none; what can't be done is said") {
+  const std::vector<vector> waypoints{vector(0, 1, 0), vector(1, .5, .3), vector(2, .7, -.2)};
+  const vector v(1, 1, 1), a(2, 3, 4);
+  const std::vector<double> none(3, infinity), j{20, 20, 20};
+  const double smooth = time_parametrised(waypoints, v, a, {.curve = joint_curve::smooth}).duration();
+  CHECK(time_parametrised(waypoints, v, a, {.jerk = none}).duration() == smooth);
+  CHECK(time_parametrised(waypoints, v, a, {.jerk = j}).duration() > smooth);
+  const auto refusal = [&](const time_options& options) {
+    return duet_test::message_of([&] { (void)time_parametrised(waypoints, v, a, options); });
+  };
+  CHECK(refusal({.jerk = {1, 2}}) == "duet: time_parametrised: 2 jerk limits for 3 joints");
+  CHECK(refusal({.jerk = {1, 2, 0}}) ==
+        "duet: time_parametrised: the jerk limit of joint 2 is 0");
+  CHECK(refusal({.initial_rates = {.1, 0, 0}, .jerk = j}) ==
+        "duet: time_parametrised: with limits of jerk motions are from rest to rest, without rates "
+        "at ends");
+  CHECK(refusal({.final_rates = {.1, 0, 0}, .jerk = j}) != "");
+  CHECK(time_parametrised(waypoints, v, a, {.initial_rates = {0, 0, 0}, .jerk = j}).duration() > 0);
+  CHECK(refusal({.curve = joint_curve::monotone, .jerk = j}) ==
+        "duet: time_parametrised: limits of jerk ask for a curve with continuous second "
+        "derivatives, as joint_curve::smooth where no joint leaves its range: at waypoint 1 that "
+        "of joint 2 jumps");
+  // Straight on every curve is smooth, and all waypoints in one place are no way.
+  const std::vector<vector> straight{vector(0, 0, 0), vector(1, 2, 3), vector(1, 2, 3),
+                                     vector(3, 6, 9)};
+  CHECK(time_parametrised(straight, v, a, {.curve = joint_curve::monotone, .jerk = j}).duration() >
+        0);
+  CHECK(time_parametrised(std::vector<vector>{v, v}, v, a, {.jerk = j}).duration() == 0);
+
+  // A chain's joint that leaves its range, and with a wider range.
+  for (const double range : {1.0, 2.0}) {
+    std::array<joint<>, 3> joints;
+    for (auto& each : joints) {
+      each.limits = {-range, range, 1};
+    }
+    const std::vector<vector> back{vector(0, 0, 0), vector(1, .3, .2), vector(0, .4, .6)};
+    const auto message = duet_test::message_of(
+        [&] { (void)time_parametrised(serial_chain<3>(joints), back, a, {.jerk = j}); });
+    CHECK(message.empty() == (range == 2));
+    if (range == 1) {
+      CHECK(message.find("at waypoint 1 that of joint 0 jumps") != std::string::npos);
+    }
+  }
+}
+
+} // namespace test_planning_jerk_limits
