@@ -17,6 +17,7 @@
 #include <duet/planning/time_parametrised.hpp>
 
 #include <chrono>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <future>
@@ -66,7 +67,13 @@ bool run(const problem& p) {
   example::require_folder(p.out);
   const plan_type found = plan(p);
   const Eigen::VectorXd acceleration = Eigen::VectorXd::Constant(p.arm.size(), p.acceleration);
-  const auto trajectory = duet::time_parametrised(found, velocities(p), acceleration);
+  duet::time_options options{.curve =
+                                 p.jerk ? duet::joint_curve::smooth : duet::joint_curve::monotone};
+  const auto without = duet::time_parametrised(found, velocities(p), acceleration, options);
+  if (p.jerk) {
+    options.jerk.assign(std::size_t(p.arm.size()), *p.jerk);
+  }
+  const auto trajectory = duet::time_parametrised(found, velocities(p), acceleration, options);
   std::filesystem::create_directories(p.out);
   std::string deviations;
   const worst_case worst = deviations_csv(p, found, deviations);
@@ -90,12 +97,21 @@ bool run(const problem& p) {
                 worst.clearance);
   }
   std::printf("duration                     %.3f s\n", trajectory.duration());
+  if (p.jerk) {
+    std::printf("without the limit of jerk    %.3f s\n", without.duration());
+  }
   const std::size_t rows = 11 * (found.joints.size() - 1); // of deviations.csv
   const bool drawn =
       found.joints.size() > 1 &&
       example::draw(p.out, "joints", 640, joints_script(p, found, velocities(p), 500)) &&
       example::draw(p.out, "deviation", 480, deviation_script(p, rows)) &&
       example::draw(p.out, "arm", 440, arm_script(arm, p, found, tip, nearest, rows));
+  if (p.jerk && drawn) {
+    constexpr int count = 1001;
+    duet::write_file(p.out + "/shares_without.csv", shares_csv(p, velocities(p), without, count));
+    duet::write_file(p.out + "/shares.csv", shares_csv(p, velocities(p), trajectory, count));
+    example::draw(p.out, "jerk", 520, jerk_script(trajectory.duration(), count));
+  }
   std::cout << "Tables" << (drawn ? " and pictures (SVG, PNG)" : "") << " are in "
             << duet::printable(p.out) << "\n";
   if (!drawn) {

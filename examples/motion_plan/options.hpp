@@ -34,6 +34,7 @@ struct problem {
   duet::scene around;
   double velocity = 1, acceleration = 2;
   std::string out = "motion_plan_out";
+  std::optional<double> jerk = {};
 
   /// Is there anything that the arm could touch?
   [[nodiscard]] bool has_margins() const {
@@ -165,6 +166,8 @@ inline example::po::options_description description() {
   add("velocity", po::value<double>()->value_name("V"),
       "limit of all joints, besides their own (default: 1)");
   add("acceleration", po::value<double>()->value_name("A"), "limit of all joints (default: 2)");
+  add("jerk", po::value<double>()->value_name("J"),
+      "limit of all joints (default: none); makes a picture of what that changes");
   add("out", text("DIR"), "folder for tables and pictures (default: motion_plan_out)");
   return result;
 }
@@ -215,6 +218,7 @@ inline std::optional<problem> parse(int argc, char** argv) {
   add_bodies(result.around, result.arm, *given);
   result.velocity = given->get<double>("velocity").value_or(result.velocity);
   result.acceleration = given->get<double>("acceleration").value_or(result.acceleration);
+  result.jerk = given->get<double>("jerk");
   result.out = given->text("out").value_or(result.out);
   return result;
 }

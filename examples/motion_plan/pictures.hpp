@@ -69,6 +69,28 @@ inline std::string joints_script(const problem& p, const plan_type& plan,
          "unset multiplot\n";
 }
 
+/// How much of its limits the joint takes that takes most: above without limits of jerk, where what
+/// is beyond the frame jumps, and below with them.
+/// \param duration  with limits of jerk
+/// \param rows  of both tables
+inline std::string jerk_script(double duration, std::size_t rows) {
+  using enum example::beside;
+  const auto panel = [&](const std::string& file) {
+    return example::plot_command(file, {{"1:4", "purple", "jerk", rows - 1, right},
+                                        {"1:2", "vermillion", "rate", rows / 2, above},
+                                        {"1:3", "blue", "acceleration", rows / 12, above}});
+  };
+  return "set multiplot layout 2,1 title " +
+         example::title("With limits of jerk accelerations rise and fall with them") +
+         "\nset lmargin 9\nset rmargin 9\nset xrange [0:" + duet::to_text(duration) +
+         "]\nset yrange [0:120]\nset ytics 50\nset format x ''\n"
+         "set ylabel 'without / % of limits'\n" +
+         panel("shares_without.csv") +
+         "unset label\nset format x '%g'\nset xlabel 'time / s'\nset ylabel 'with / % of "
+         "limits'\n" +
+         panel("shares.csv") + "unset multiplot\n";
+}
+
 /// \param rows  of deviations.csv, eleven between two waypoints
 inline std::string deviation_script(const problem& p, std::size_t rows) {
   using enum example::beside;

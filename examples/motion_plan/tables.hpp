@@ -5,6 +5,7 @@
 
 #include <duet/core/text/csv.hpp>
 #include <duet/duet.hpp>
+#include <duet/planning/joint_trajectory.hpp>
 #include <duet/planning/save_plan.hpp>
 
 #include <algorithm>
@@ -45,6 +46,20 @@ inline worst_case deviations_csv(const problem& p, const plan_type& plan, std::s
     }
   }
   return worst;
+}
+
+/// How much of its limits the joint takes that takes most, in per cent, at `rows` times.
+inline std::string shares_csv(const problem& p, const Eigen::VectorXd& velocities,
+                              const duet::joint_trajectory<-16>& trajectory, int rows) {
+  std::string text = "t [s],rate [%],acceleration [%],jerk [%]\n";
+  for (int k = 0; k < rows; ++k) {
+    const double t = trajectory.duration() * k / (rows - 1);
+    const auto now = trajectory(t);
+    text += duet::csv_line({t, 100 * now.velocity.cwiseAbs().cwiseQuotient(velocities).maxCoeff(),
+                            100 * now.acceleration.cwiseAbs().maxCoeff() / p.acceleration,
+                            100 * trajectory.jerk(t).cwiseAbs().maxCoeff() / p.jerk.value_or(1)});
+  }
+  return text;
 }
 
 } // namespace motion_plan_example

@@ -123,10 +123,9 @@ TEST_CASE("straight on, the slowest joint sets the pace") {
   }
 }
 
-TEST_CASE("on hundreds of curves no limit is exceeded, and it is at rest at both ends") {
+TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends") {
   duet_test::random_source random(3);
-  int at_limit = 0;
-  for (int k = 0; k < 200; ++k) {
+  for (int k = 0; k < 120; ++k) {
     CAPTURE(k);
     const auto waypoints = random_waypoints(random, k % 4);
     const auto limits = [&](double from, double to) {
@@ -138,11 +137,11 @@ TEST_CASE("on hundreds of curves no limit is exceeded, and it is at rest at both
     if (k % 7 == 0) {
       j[k % 3] = infinity;
     }
-    const time_options options{.parts = 60 + k, .jerk = numbers(j)};
+    const time_options options{.parts = 60 + k % 50, .jerk = numbers(j)};
     const auto q = time_parametrised(waypoints, v, a, options);
     const double share = largest_share(q, v, a, j, 500);
     CHECK(share <= 1 + 1e-10);
-    at_limit += share > .99;
+    CHECK(share > .9);
     CHECK(q(0).velocity.norm() < 1e-12);
     CHECK(q(0).acceleration.norm() < 1e-12);
     CHECK(q(q.duration()).velocity.cwiseQuotient(v).norm() < 1e-9);
@@ -155,7 +154,6 @@ TEST_CASE("on hundreds of curves no limit is exceeded, and it is at rest at both
     CHECK(q.duration() >
           .99 * time_parametrised(waypoints, v, a, {.curve = joint_curve::smooth}).duration());
   }
-  CHECK(at_limit > 195);
 }
 
 TEST_CASE("accelerations don't jump, and velocities, accelerations and jerks are derivatives") {
@@ -224,8 +222,8 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
       const real_50 last = piece.interval + 1 == n ? c[2] : (real_50(c[1]) + c[2]) / 2;
       for (int at = 0; at <= 4; ++at) {
         const auto t = number::variable(real_50(piece.length) * at / 4);
-        const number s = number(piece.start) + t * (number(piece.a) + t * (number(piece.b) +
-                                                                          t * number(piece.c)));
+        const number s = number(piece.start) +
+                         t * (number(piece.a) + t * (number(piece.b) + t * number(piece.c)));
         const number y = number(piece.from) + t, z = number(1) - y;
         const number p = number(first) * z * z + number(2 * c[1]) * y * z + number(last) * y * y;
         for (int joint = 0; joint < 3; ++joint) {
@@ -235,7 +233,8 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
               s * (number(q.c1[joint]) + s * (number(q.c2[joint]) + s * number(q.c3[joint])));
           const real_50 rate = f.derivative(1), square = p.value();
           const real_50 change = f.derivative(2) * square + f.derivative(1) * p.derivative(1) / 2;
-          const real_50 jerk = f.derivative(3) * square + f.derivative(2) * p.derivative(1) * 3 / 2 +
+          const real_50 jerk = f.derivative(3) * square +
+                               f.derivative(2) * p.derivative(1) * 3 / 2 +
                                f.derivative(1) * p.derivative(2) / 2;
           const auto& rows = bounds.joints[3 * i + std::size_t(joint)];
           const auto& rates = bounds.pieces[i].rate;
@@ -259,19 +258,60 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
   CHECK(widest < .5);
 }
 
+TEST_CASE("where a knot is next to a node, the piece between them has the same law") {
+  std::vector<double> places;
+  for (int i = 0; i <= 16; ++i) {
+    places.push_back(i * i * (3 - i / 8.0));
+  }
+  const detail::reference_law law(places);
+  const auto whole = law.pieces({0, places.back()});
+  REQUIRE(whole.size() == 16);
+  for (const double off : {-1e-9, -1e-12, -1e-14, 0.0, 1e-14, 1e-12, 1e-9}) {
+    CAPTURE(off);
+    const double knot = whole[6].start + off;
+    const auto path = law.pieces({0, knot, places.back()});
+    CHECK(path.size() <= 17);
+    const auto straight = [](double from, double length) {
+      return detail::joint_cubic<one>{one(from), one(1.0), one(0.0), one(0.0), length};
+    };
+    std::vector<double> pace;
+    for (int i = 0; i < 18; ++i) {
+      pace.push_back(1 + .1 * std::sin(i));
+    }
+    const auto motion = detail::timed_by_pace(
+        std::vector{straight(0, knot), straight(knot, places.back() - knot)}, path, 16, pace);
+    const auto uncut =
+        detail::timed_by_pace(std::vector{straight(0, places.back())}, whole, 16, pace);
+    CHECK(motion.duration == doctest::Approx(uncut.duration).epsilon(1e-13));
+    double length = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const auto& [here, line] = motion.pieces[i];
+      const auto& there = uncut.pieces[path[i].interval];
+      CHECK(here.growth == there.law.growth);
+      CHECK(here.speed ==
+            doctest::Approx(std::sqrt(pace[0])).epsilon(.2)); // no noise of differences
+      CHECK(std::abs(here.acceleration - there.law.acceleration - here.growth * path[i].from) <
+            1e-14);
+      CHECK(line.c0[0] == doctest::Approx(length).epsilon(1e-13));
+      length += line.length;
+    }
+    CHECK(length == doctest::Approx(places.back()).epsilon(1e-14));
+  }
+}
+
 TEST_CASE("infinite limits are none; what can't be done is said") {
   const std::vector<vector> waypoints{vector(0, 1, 0), vector(1, .5, .3), vector(2, .7, -.2)};
   const vector v(1, 1, 1), a(2, 3, 4);
   const std::vector<double> none(3, infinity), j{20, 20, 20};
-  const double smooth = time_parametrised(waypoints, v, a, {.curve = joint_curve::smooth}).duration();
+  const double smooth =
+      time_parametrised(waypoints, v, a, {.curve = joint_curve::smooth}).duration();
   CHECK(time_parametrised(waypoints, v, a, {.jerk = none}).duration() == smooth);
   CHECK(time_parametrised(waypoints, v, a, {.jerk = j}).duration() > smooth);
   const auto refusal = [&](const time_options& options) {
     return duet_test::message_of([&] { (void)time_parametrised(waypoints, v, a, options); });
   };
   CHECK(refusal({.jerk = {1, 2}}) == "duet: time_parametrised: 2 jerk limits for 3 joints");
-  CHECK(refusal({.jerk = {1, 2, 0}}) ==
-        "duet: time_parametrised: the jerk limit of joint 2 is 0");
+  CHECK(refusal({.jerk = {1, 2, 0}}) == "duet: time_parametrised: the jerk limit of joint 2 is 0");
   CHECK(refusal({.initial_rates = {.1, 0, 0}, .jerk = j}) ==
         "duet: time_parametrised: with limits of jerk motions are from rest to rest, without rates "
         "at ends");
@@ -280,7 +320,7 @@ TEST_CASE("infinite limits are none; what can't be done is said") {
   CHECK(refusal({.curve = joint_curve::monotone, .jerk = j}) ==
         "duet: time_parametrised: limits of jerk ask for a curve with continuous second "
         "derivatives, as joint_curve::smooth where no joint leaves its range: at waypoint 1 that "
-        "of joint 2 jumps");
+        "of joint 1 jumps");
   // Straight on every curve is smooth, and all waypoints in one place are no way.
   const std::vector<vector> straight{vector(0, 0, 0), vector(1, 2, 3), vector(1, 2, 3),
                                      vector(3, 6, 9)};

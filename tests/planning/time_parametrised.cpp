@@ -463,7 +463,8 @@ TEST_CASE("a smooth curve stays within ranges that all waypoints keep") {
     }
     const detail::joint_polygon<vector> polygon(waypoints);
     const auto smooth = detail::smooth_slopes(polygon);
-    const detail::timing_problem<3> problem{polygon, waypoints.size(), none, one, none, 0, 0, 1, -one, one};
+    const detail::timing_problem<3> problem{
+        polygon, waypoints.size(), none, one, none, 0, 0, 1, -one, one};
     const auto largest = [&](const std::vector<vector>& slopes) {
       double result = 0;
       for (const auto& q : detail::hermite_curve(polygon, slopes)) {

@@ -95,7 +95,8 @@ struct timed_piece {
 
 } // namespace detail
 
-/// Joint coordinates as a function of time, once continuously differentiable.
+/// Joint coordinates as a function of time, once continuously differentiable, and twice if there
+/// are limits of jerk.
 ///
 /// \tparam N  as of `serial_chain`
 template <int N>

@@ -16,7 +16,7 @@
 #include <vector>
 
 /// \file
-/// When a joint path may be where, under limits of velocity and acceleration.
+/// When a joint path may be where, under limits of velocity, acceleration and jerk.
 
 namespace duet {
 namespace detail {
@@ -57,7 +57,8 @@ enum class joint_curve {
 
 /// Settings of `time_parametrised`.
 struct time_options {
-  /// At least so many parts of the path have an s̈ of their own, and sixteen between waypoints.
+  /// At least so many parts of the path have an s̈ of their own, and sixteen between waypoints; with
+  /// limits of jerk half as many, and none for waypoints.
   int parts = 360;
   /// Of each joint at the start, the path's direction there; empty: at rest.
   std::vector<double> initial_rates = {};
@@ -78,6 +79,8 @@ struct time_options {
 /// from one pass backwards and one forwards, as in Pham and Pham, A new approach to time-optimal
 /// path parameterization based on reachability analysis, IEEE T-RO 2018.
 /// Limits are kept everywhere, not only at samples: what bounds them are Bernstein coefficients.
+/// With limits of jerk, from rest to rest, it is the fastest of those near it (docs/
+/// time_parametrisation.md), and accelerations are continuous.
 ///
 /// \param waypoints  joint coordinates, equal neighbours allowed
 /// \param velocity  of each joint, in coordinates per second, positive or infinite
@@ -85,7 +88,8 @@ struct time_options {
 /// \return `joint_trajectory<N>`
 /// \throws invalid_input for no waypoints, coordinates that are not finite, for limits that are not
 /// positive or of another number than the joints, and for rates that the limits do not allow: the
-/// message says which part of them they do
+/// message says which part of them they do; with limits of jerk for any rates, and for a curve
+/// whose second derivative jumps
 template <class V, VectorLike Velocity, VectorLike Acceleration>
 [[nodiscard]] auto time_parametrised(const std::vector<V>& waypoints, const Velocity& velocity,
                                      const Acceleration& acceleration,

@@ -49,7 +49,7 @@ template <class V>
                                       double curvature) {
   const double half = length / (first_rate + last_rate);
   const double omega = std::sqrt(std::abs(curvature)), angle = omega * half;
-  const double ratio = angle < 1e-9      ? 1
+  const double ratio = angle < 1e-9    ? 1
                        : curvature > 0 ? std::atanh(angle) / angle
                                        : std::atan(angle) / angle;
   return 2 * half * ratio;
@@ -78,30 +78,29 @@ void require_smooth(const timing_problem<N>& problem,
   }
 }
 
-/// The motion along a curve as a pace over a path's parameter says.
+/// The motion along a curve as a pace over n intervals of a path's parameter says.
 template <class V>
 [[nodiscard]] timed_path<V> timed_by_pace(const std::vector<joint_cubic<V>>& curve,
-                                          const std::vector<reference_piece>& path,
-                                          const pace_bounds& bounds,
+                                          const std::vector<reference_piece>& path, std::size_t n,
                                           const std::vector<double>& pace) {
   timed_path<V> result;
   result.pieces.reserve(path.size());
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const auto& [edge, interval, from, l, start, a, b, c] = path[i];
-    const auto& rows = bounds.pieces[i].pace;
-    const double p_0 = times(rows[0], &pace[interval]), p_1 = times(rows[1], &pace[interval]);
-    const double p_2 = times(rows[2], &pace[interval]);
-    const double curvature = (p_0 - 2 * p_1 + p_2) / (l * l);
-    result.pieces.push_back(
-        {{result.duration, std::sqrt(p_0), (p_1 - p_0) / l, curvature, a, b, c},
-         curve[edge].part(start, l * (a + l * (b + l * c)))});
-    result.duration += time_over(l, std::sqrt(p_0), std::sqrt(p_2), curvature);
+  for (const auto& [edge, interval, from, l, start, a, b, c] : path) {
+    const auto rows = pace_powers(interval, n);
+    const double* of = &pace[interval];
+    const double curvature = times(rows[2], of), rise = times(rows[1], of) + 2 * from * curvature;
+    const double before = times(rows[0], of) + from * (times(rows[1], of) + from * curvature);
+    const double rate = std::sqrt(before),
+                 end_rate = std::sqrt(before + l * (rise + l * curvature));
+    result.pieces.push_back({{result.duration, rate, rise / 2, curvature, a, b, c},
+                             curve[edge].part(start, l * (a + l * (b + l * c)))});
+    result.duration += time_over(l, rate, end_rate, curvature);
   }
   return result;
 }
 
-/// A fast motion from rest to rest that keeps limits of jerk as well: its pace over a parameter that
-/// is in proportion to the times of a motion without them, then to those of what is found.
+/// A fast motion from rest to rest that keeps limits of jerk as well: its pace over a parameter
+/// that is in proportion to the times of a motion without them, then to those of what is found.
 template <int N>
 [[nodiscard]] auto timed_by_jerks(const timing_problem<N>& problem,
                                   const std::vector<joint_cubic<joint_vector<double, N>>>& curve,
@@ -115,7 +114,7 @@ template <int N>
     const pace_bounds bounds(curve, path, intervals, problem.velocity, problem.acceleration,
                              problem.jerk);
     pace_search search(bounds);
-    motion = timed_by_pace(curve, path, bounds, search.quickest());
+    motion = timed_by_pace(curve, path, intervals, search.quickest());
   }
   return motion;
 }

@@ -26,6 +26,20 @@ using pace_row = std::array<double, 3>;
   return row[0] * c[0] + row[1] * c[1] + row[2] * c[2];
 }
 
+/// Of a pace that is a quadratic B-spline, its outer coefficients the values at the ends: in
+/// interval k, by powers of τ − k.
+[[nodiscard]] inline std::array<pace_row, 3> pace_powers(std::size_t k, std::size_t intervals) {
+  const pace_row start = k == 0 ? pace_row{1, 0, 0} : pace_row{.5, .5, 0};
+  const pace_row end = k + 1 == intervals ? pace_row{0, 0, 1} : pace_row{0, .5, .5};
+  std::array<pace_row, 3> result{start, {}, {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double middle = i == 1 ? 1 : 0;
+    result[1][i] = 2 * (middle - start[i]);
+    result[2][i] = start[i] - 2 * middle + end[i];
+  }
+  return result;
+}
+
 /// |x c| ≤ limit, in parts of one joint's limits: accelerations, and jerks divided by τ̇, by
 /// their three Bernstein coefficients in a piece. `beyond` c is as much as they may exceed these.
 struct joint_bounds {
@@ -64,19 +78,6 @@ struct pace_bounds {
   }
 
 private:
-  /// Of the pace in interval k, by powers of τ − k.
-  [[nodiscard]] static std::array<pace_row, 3> powers(std::size_t k, std::size_t intervals) {
-    const pace_row start = k == 0 ? pace_row{1, 0, 0} : pace_row{.5, .5, 0};
-    const pace_row end = k + 1 == intervals ? pace_row{0, 0, 1} : pace_row{0, .5, .5};
-    std::array<pace_row, 3> result{start, {}, {}};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double middle = i == 1 ? 1 : 0;
-      result[1][i] = 2 * (middle - start[i]);
-      result[2][i] = start[i] - 2 * middle + end[i];
-    }
-    return result;
-  }
-
   template <class V>
   void add(const joint_cubic<V>& q, const reference_piece& piece, std::size_t intervals,
            const V& velocity, const V& acceleration, const V& jerk) {
@@ -94,7 +95,7 @@ private:
                            near_parabola(half_square * slope)};
     std::array<std::array<near_parabola, 3>, 3> changes, jerks;
     piece_bounds bounds{piece.interval, l, {}, {}};
-    const auto b = powers(piece.interval, intervals);
+    const auto b = pace_powers(piece.interval, intervals);
     for (std::size_t i = 0; i < 3; ++i) {
       const double start = b[0][i] + f * (b[1][i] + f * b[2][i]);
       const double rise = b[1][i] + 2 * f * b[2][i], curvature = b[2][i];

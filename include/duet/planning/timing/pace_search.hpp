@@ -28,8 +28,8 @@ struct pace_bound {
 /// time. Each step is one of Newton's method for weight · time − Σ log(what is left of limits), in
 /// which second derivatives that may be negative are left out, halved until it stays inside.
 ///
-/// A limit in proportion to 1 / √p of the pace p is replaced by (3 m − p) / (2 m √m), its tangent at
-/// the pace m in the middle of a piece, which is below it.
+/// A limit in proportion to 1 / √p of the pace p is replaced by (3 m − p) / (2 m √m), its tangent
+/// at the pace m in the middle of a piece, which is below it.
 class pace_search {
 public:
   /// The same pace everywhere: in a time k times as long velocities, accelerations and jerks are

@@ -84,8 +84,16 @@ template <class V, class Velocity, class Acceleration, class Options>
             "duet: time_parametrised: waypoint ", k, " is not finite or of another size");
   }
   require(options.parts >= 1, "duet: time_parametrised: ", options.parts, " parts");
-  problem result{
-      joint_polygon<vector>(waypoints), waypoints.size(), v, a, j, 0, 0, options.parts, -none, none};
+  problem result{joint_polygon<vector>(waypoints),
+                 waypoints.size(),
+                 v,
+                 a,
+                 j,
+                 0,
+                 0,
+                 options.parts,
+                 -none,
+                 none};
   result.initial_speed = speed_of(options.initial_rates, "initial", result.polygon.first_slope);
   result.final_speed = speed_of(options.final_rates, "final", result.polygon.last_slope);
   require(result.polygon.edges() > 0 || (result.initial_speed == 0 && result.final_speed == 0),
