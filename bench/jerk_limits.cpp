@@ -188,10 +188,10 @@ private:
 };
 
 void compare(unsigned seeds) {
-  std::printf("| | without jerk's | sampled | worst (seed) | straight | worst (seed) | ms |\n"
-              "|---|---|---|---|---|---|---|\n");
+  std::printf("| | without | other search | worst (seed) | 2400 parts | worst (seed) | straight "
+              "| worst (seed) | ms |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const family& kind : families) {
-    statistics longer, sampled, straight;
+    statistics longer, sampled, finer, straight;
     stopwatch watch;
     for (unsigned seed = 1; seed <= seeds; ++seed) {
       const problem p = problem_of(kind, seed);
@@ -220,6 +220,9 @@ void compare(unsigned seeds) {
         best = std::min(best, reference(path, p, jerk, places).time());
       }
       sampled.add(motion.duration() / best, seed);
+      const auto fine = duet::time_parametrised(p.waypoints, p.velocity, p.acceleration,
+                                                {.parts = 2400, .jerk = limits});
+      finer.add(motion.duration() / fine.duration(), seed);
       const std::vector<vector> ends{p.waypoints[0], p.waypoints[1]};
       const vector way = ends[1] - ends[0];
       const auto least = [&](const vector& limit) {
@@ -230,7 +233,7 @@ void compare(unsigned seeds) {
                    seed);
     }
     std::printf("| %s | %.2f ", kind.name, longer.sum / seeds);
-    for (const statistics& each : {sampled, straight}) {
+    for (const statistics& each : {sampled, finer, straight}) {
       std::printf("| %.4f | %.4f (%u) ", each.sum / seeds, each.worst, each.seed);
     }
     std::printf("| %.0f |\n", watch.median() / 1000);
