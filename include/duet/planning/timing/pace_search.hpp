@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/planning/timing/pace_bounds.hpp>
 
 #include <algorithm>
@@ -32,9 +33,8 @@ struct pace_bound {
 /// at the pace m in the middle of a piece, which is below it.
 class pace_search {
 public:
-  /// The same pace everywhere: in a time k times as long velocities, accelerations and jerks are
-  /// k, k² and k³ times as small, so a long one keeps all bounds.
-  /// \param bounds  has to outlive it
+  /// From a constant pace that is slow enough: in a time k times as long velocities, accelerations
+  /// and jerks are k, k² and k³ times as small. \param bounds  has to outlive it
   explicit pace_search(const pace_bounds& bounds)
       : bounds_(bounds), pace_(bounds.pieces.back().first + 3, 1.0) {
     double stretch = 0;
