@@ -38,7 +38,10 @@ Spline curve_over(double first, double last) {
   const std::vector<double> u{first, first + (last - first) / 3, last};
   const auto q = duet_test::random_orientations(5, 0.7);
   if constexpr (std::is_same_v<Spline, quintic>) {
-    return {u, {q[0], q[1], q[2]}, {{q[1].vec(), q[0].vec()}, {q[2].vec(), q[1].vec()}, {}}};
+    const Eigen::Vector3d still = Eigen::Vector3d::Zero();
+    return {u,
+            {q[0], q[1], q[2]},
+            {{q[1].vec(), q[0].vec()}, {q[2].vec(), q[1].vec()}, {still, still}}};
   } else {
     return {duet::clamped_knots(u, 4), q};
   }

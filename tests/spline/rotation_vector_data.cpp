@@ -7,7 +7,11 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -50,8 +54,11 @@ TEST_CASE("parameters that rates overflow over") {
   using duet_test::message_of;
   using curve = duet::rotation_vector_spline<double>;
   const duet::quaternion<double> one(1);
+  const Eigen::Vector3d still = Eigen::Vector3d::Zero();
   const auto over = [&](double from, double to) {
-    return message_of([&] { static_cast<void>(curve::from_pieces({from, to}, {one, one}, {{}})); });
+    return message_of([&] {
+      static_cast<void>(curve::from_pieces({from, to}, {one, one}, {{still, still, still, still}}));
+    });
   };
   CHECK(over(0, 1) == "");
   CHECK(over(0, 5e-324) ==
@@ -59,6 +66,21 @@ TEST_CASE("parameters that rates overflow over") {
         "close: a derivative overflows");
   CHECK(over(-1.7e308, 1.7e308) ==
         "duet: rotation_vector_spline: the distance from -1.7e+308 to 1.7e+308 overflows");
+}
+
+TEST_CASE("rates are finite") {
+  using quintic = duet::rotation_vector_spline<double, 6>;
+  const duet::quaternion<double> one(1);
+  const Eigen::Vector3d still = Eigen::Vector3d::Zero();
+  for (const double x : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    for (const std::size_t row : {0, 1}) {
+      std::vector<std::array<Eigen::Vector3d, 2>> rates(2, {still, still});
+      rates[row][1 - row][2] = x;
+      CHECK(duet_test::message_of([&] {
+              quintic({0, 1}, {one, one}, rates);
+            }) == "duet: row " + std::to_string(row) + ": a rate is not finite");
+    }
+  }
 }
 
 } // namespace test_spline_rotation_vector_data

@@ -56,13 +56,20 @@ public:
 
   /// The Hermite curve: halved rates at the knots in body axes, element [i][0] is w with Q′ = Q w,
   /// [i][1] its derivative (order 6 only). Elements are normalised and their signs aligned.
-  /// \throws invalid_row as `aligned_orientations` and for parameters that do not increase;
-  /// invalid_input for fewer than two rows or counts that differ
+  /// \throws invalid_row as `aligned_orientations`, for parameters that do not increase and for a
+  /// rate that is not finite; invalid_input for fewer than two rows or counts that differ
   rotation_vector_spline(
       const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
       const std::vector<std::array<vector3<T>, std::size_t(Order) / 2 - 1>>& half_rates)
       : spans_(spans_over(checked(parameters, elements, half_rates, "rates", 0))),
         elements_(aligned_orientations(std::move(elements))) {
+    for (std::size_t i = 0; i < half_rates.size(); ++i) {
+      for (const vector3<T>& rate : half_rates[i]) {
+        if (!rate.allFinite()) {
+          detail::raise(invalid_row(i, "a rate is not finite"));
+        }
+      }
+    }
     pieces_.reserve(parameters.size() - 1);
     for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
       const segment s(parameters[i + 1] - parameters[i],
