@@ -68,7 +68,9 @@ template <class System>
   const auto add = [&](const joint_loop& l, int first, bool is_reversed) {
     const double quality = quality_of(l, static_cast<const System*>(nullptr));
     if (quality > 0) {
-      result.push_back({l, first, is_reversed, quality});
+      const loop_order next{l, first, is_reversed, quality};
+      const auto is_better = [](const auto& a, const auto& b) { return a.quality > b.quality; };
+      result.insert(std::upper_bound(result.begin(), result.end(), next, is_better), next);
     }
   };
   joint_loop from = loop;
@@ -77,8 +79,6 @@ template <class System>
     add(from.reversed(), first, true);
     from = from.shifted();
   }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const auto& a, const auto& b) { return a.quality > b.quality; });
   constexpr double usable = 1e-6; // worse ones lose solutions, and serve where there is no other
   const auto is_usable = [](const loop_order& o) { return o.quality > usable; };
   const auto worse = std::find_if_not(result.begin(), result.end(), is_usable);
