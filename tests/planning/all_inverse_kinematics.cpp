@@ -360,6 +360,29 @@ TEST_CASE("configurations of which there are infinitely many") {
   CHECK(is_met);
 }
 
+/// Where two axes are nearly one, angles that count as one leave it open how the joints on them
+/// turn.
+TEST_CASE("beside a singularity what is missing is not called complete") {
+  const chain ur5e = robots::ur5e().table();
+  duet_test::random_source random(4);
+  for (const chain& arm : {ur5e, puma()}) {
+    for (int k = 0; k < 10; ++k) {
+      vector theta = configuration(arm, random);
+      for (const int joint : {2, 4}) { // the elbow and the wrist
+        for (const double away : {1e-1, 1e-2, 1e-4, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-9, 0.}) {
+          CAPTURE(joint);
+          CAPTURE(away);
+          vector at = theta;
+          at[joint] = away;
+          const result found = all_inverse_kinematics(arm, arm.pose(at));
+          CHECK((holds(arm, found, at, 2e-6) || !found.is_complete));
+          CHECK((found.is_complete || (joint == 4 && away < 1e-6)));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("whatever a search from random starts finds is among them") {
   duet_test::random_source random(3);
   const chain arm = random_arm({"general"}, random);

@@ -56,7 +56,7 @@ public:
       theta[2] = theta3;
       const vector3d start = from.at(theta3) + at_third, end = to.at(theta1) + at_first;
       theta[1] = angle_about(second.axis, start, end);
-      is_determined = is_determined && !is_on(second.axis, start);
+      is_determined = is_determined && !is_lost(second.axis, start);
       is_determined = wrist(theta, multiplicity, visit) && is_determined;
     });
     return has_pairs && is_determined;
@@ -114,7 +114,7 @@ public:
       theta[5] = theta6;
       const vector3d start = from.at(theta6);
       theta[4] = angle_about(fifth.axis, start, to.at(theta4));
-      is_determined = is_determined && !is_on(fifth.axis, start);
+      is_determined = is_determined && !is_lost(fifth.axis, start);
       is_determined = plane(theta, multiplicity, visit) && is_determined;
     });
     return has_pairs && is_determined;
@@ -139,7 +139,7 @@ private:
                       const vector3d from = offset + arm.at(theta2);
                       theta[1] = theta2;
                       theta[0] = angle_about(n, from, to);
-                      is_determined = is_determined && !is_on(n, from);
+                      is_determined = is_determined && !is_lost(n, from);
                       theta[2] =
                           dot(n, third.axis) * (whole - theta[0] - dot(n, second.axis) * theta2);
                       visit(theta, multiplicity * m);

@@ -38,6 +38,10 @@ struct turned_vector {
   constexpr double rounding = 1e-9;
   return length_of(cross(n, v)) < rounding;
 }
+/// Is it unknown by which angle about n v turns? Angles that count as one may have put it on n.
+[[nodiscard]] inline bool is_lost(const vector3d& n, const vector3d& v) {
+  return length_of(cross(n, v)) < 2 * one_angle;
+}
 
 /// The angle of a rotation about n.
 [[nodiscard]] inline double angle_of(const quaternion<double>& q, const vector3d& n) {
@@ -69,7 +73,7 @@ bool visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_join
                     const vector3d from = last.at(beta);
                     const bool is_free = is_on(a.axis, from);
                     const double alpha = is_free ? 0. : angle_about(a.axis, from, goal);
-                    is_determined = is_determined && !is_free;
+                    is_determined = is_determined && !is_lost(a.axis, from);
                     const quaternion<double> before = two_turns(a.axis, alpha, b.axis, beta);
                     visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
                   });
