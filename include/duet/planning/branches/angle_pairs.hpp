@@ -27,11 +27,12 @@ struct turning_value {
 /// Zeros nearer than that count as one, of multiplicity 2: rounding takes them that far apart.
 inline constexpr double one_angle = 3e-7;
 
-/// Calls visit(θ, multiplicity) where a + b cos θ + c sin θ = 0.
-/// \return false where all of it is zero but for rounding
+/// Calls visit(θ, multiplicity) where a + b cos θ + c sin θ = 0, and where it nearly is: the pair
+/// of zeros there may be complex by rounding alone, of a, b and c by angles that were
+/// ill-conditioned. \return false where all of it is zero but for rounding
 template <class Visit>
 bool visit_zeros(const turning_value& f, const Visit& visit) {
-  constexpr double rounding = 1e-12;
+  constexpr double rounding = 1e-12, nearly = 1e-9;
   const double r = std::sqrt(f.b * f.b + f.c * f.c);
   if (!(r > rounding)) {
     return std::abs(f.a) > rounding;
@@ -41,7 +42,7 @@ bool visit_zeros(const turning_value& f, const Visit& visit) {
     const double turn = std::acos(cosine);
     visit(middle + turn, 1);
     visit(middle - turn, 1);
-  } else if (std::abs(cosine) <= 1 + one_angle * one_angle) {
+  } else if (std::abs(cosine) <= 1 + nearly) {
     visit(cosine > 0 ? middle : middle + std::acos(-1.), 2);
   }
   return true;

@@ -84,17 +84,21 @@ template <class Form, class... Rest>
 bool branch_search<Loop>::solve(branch_method method, int first, const Loop& loop,
                                 const Rest&... rest) {
   constexpr int most = std::same_as<Form, sliding_loop> ? 2 : 8;
-  const bool is_determined =
-      Form(loop, rest...)([&](const six_coordinates& theta, int multiplicity) {
-        loop_solution found{theta, multiplicity};
-        for (int k = 0; k < 6; ++k) {
-          const auto i = std::size_t((k + first) % 6);
-          found.theta[Eigen::Index(i)] =
-              loop.joints[std::size_t(k)].turns ? turned_back(theta[k]) : theta[k];
-        }
-        answer_.solutions.push_back(found);
-        answer_.complex_solutions -= multiplicity;
-      });
+  constexpr double rounding = 1e-12;
+  const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
+    if (multiplicity > 1 && loop_gap(loop, theta).twist.norm() > rounding &&
+        !close_loop(loop, theta)) {
+      return; // a complex pair that is nearly real
+    }
+    loop_solution found{theta, multiplicity};
+    for (int k = 0; k < 6; ++k) {
+      const auto i = std::size_t((k + first) % 6);
+      found.theta[Eigen::Index(i)] =
+          loop.joints[std::size_t(k)].turns ? turned_back(theta[k]) : theta[k];
+    }
+    answer_.solutions.push_back(found);
+    answer_.complex_solutions -= multiplicity;
+  });
   if (!is_determined && answer_.solutions.empty()) {
     answer_.complex_solutions = 0;
     return false;
