@@ -236,7 +236,7 @@ void compare(unsigned seeds) {
     for (const statistics& each : {sampled, finer, straight}) {
       std::printf("| %.4f | %.4f (%u) ", each.sum / seeds, each.worst, each.seed);
     }
-    std::printf("| %.0f |\n", watch.median() / 1000);
+    std::printf("| %.0f |\n", watch.median());
     std::fflush(stdout);
   }
 }

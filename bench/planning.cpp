@@ -5,6 +5,8 @@
 /// problems are solved, and how long one takes. A program of its own:
 /// build/bench/bench/duet_planning_bench
 
+#include "support/stopwatch.hpp"
+
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/mechanism/robots.hpp>
@@ -13,7 +15,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
@@ -32,29 +33,6 @@ vector gripper_down() {
   theta << 0, -quarter, 0, -3 * quarter, 0, 2 * quarter, quarter;
   return theta;
 }
-
-/// In milliseconds.
-class times_of_plans {
-public:
-  template <class Plan>
-  auto of(const Plan& plan) {
-    const auto before = std::chrono::steady_clock::now();
-    auto result = plan();
-    const std::chrono::duration<double, std::milli> time =
-        std::chrono::steady_clock::now() - before;
-    times_.push_back(time.count());
-    return result;
-  }
-  bool is_empty() const { return times_.empty(); }
-  double median() {
-    const auto middle = times_.begin() + std::ptrdiff_t(times_.size() / 2);
-    std::nth_element(times_.begin(), middle, times_.end());
-    return *middle;
-  }
-
-private:
-  std::vector<double> times_;
-};
 
 struct problem {
   vector start, end;
@@ -157,7 +135,7 @@ std::vector<problem_beside_ball> problems_beside_balls(unsigned seed) {
 /// between them, are of the first.
 void plan_beside_balls(benchmark::State& state, unsigned seed) {
   const auto all = problems_beside_balls(seed);
-  times_of_plans times;
+  stopwatch times;
   int reached = 0;
   double largest = 0, nearest = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
@@ -202,7 +180,7 @@ void plan_all(benchmark::State& state, const std::vector<family>& kinds, unsigne
   fine.search_step /= 10;
   fine.self_motion_step /= 10;
   fine.iterations = std::numeric_limits<int>::max();
-  times_of_plans times;
+  stopwatch times;
   int reached = 0, reached_finely = 0;
   double largest = 0;
   for (auto _ : state) {

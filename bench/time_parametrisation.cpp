@@ -154,7 +154,7 @@ void compare(unsigned seeds) {
     for (const statistics& each : {same, spline, smooth}) {
       std::printf("| %.4f | %.4f (%u) ", each.sum / seeds, each.worst, each.seed);
     }
-    std::printf("| %.0f |\n", watch.median());
+    std::printf("| %.0f |\n", 1000 * watch.median());
     std::fflush(stdout);
   }
 }

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "support/stopwatch.hpp"
+
 #include <duet/core/random_source.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
@@ -10,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -149,28 +150,6 @@ struct statistics {
       seed = of;
     }
   }
-};
-
-/// The median of what calls take, in microseconds.
-class stopwatch {
-public:
-  template <class F>
-  auto of(const F& f) {
-    const auto before = std::chrono::steady_clock::now();
-    auto result = f();
-    const std::chrono::duration<double, std::micro> time =
-        std::chrono::steady_clock::now() - before;
-    times_.push_back(time.count());
-    return result;
-  }
-  double median() {
-    const auto middle = times_.begin() + std::ptrdiff_t(times_.size() / 2);
-    std::nth_element(times_.begin(), middle, times_.end());
-    return *middle;
-  }
-
-private:
-  std::vector<double> times_;
 };
 
 } // namespace timing_bench
