@@ -7,8 +7,8 @@
 #undef DUET_COMPILED_TEMPLATE
 #define DUET_COMPILED_TEMPLATE template
 
-#include <duet/planning/all_inverse_kinematics.hpp>
 #include <duet/planning/enclosing_capsule.hpp>
 #include <duet/planning/goals.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
+#include <duet/planning/start_chooser.hpp>

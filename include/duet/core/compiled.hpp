@@ -10,9 +10,14 @@
 /// having defined `DUET_COMPILED_TEMPLATE` anew, as `template`.
 ///
 /// A list keeps compilers from functions that are neither inline, as are those defined within a
-/// class, nor return `auto`.
+/// class, nor return `auto`. Functions that are no templates are declared with
+/// `DUET_COMPILED_FUNCTION` and defined in a header of their own, which comes in only where there is
+/// no library.
 
-#ifdef DUET_COMPILED
+#ifndef DUET_COMPILED
+#define DUET_COMPILED_FUNCTION inline
+#else
+#define DUET_COMPILED_FUNCTION
 #define DUET_COMPILED_TEMPLATE extern template
 
 namespace duet::detail {

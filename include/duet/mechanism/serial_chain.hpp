@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -109,11 +110,12 @@ public:
                                   const placement<T>& tool = {})
       : serial_chain(std::span<const joint<T>>(given), tool) {}
 
-  /// A chain with its number of joints no more in the type, so that code for it is compiled
-  /// once for all of up to −N.
-  template <int M>
-    requires(M != N && N < 0 && (M > 0 ? M : -M) <= -N)
-  constexpr serial_chain(const serial_chain<M, T>& other) : tip_(other.tip()), size_(other.size()) {
+  /// A chain of any type with its number of joints no more in the type, so that code for it is
+  /// compiled once for all of up to −N.
+  template <SerialChain C>
+    requires(C::joints != N && N < 0 && (C::joints > 0 ? C::joints : -C::joints) <= -N &&
+             std::same_as<typename C::scalar_type, T>)
+  constexpr serial_chain(const C& other) : tip_(other.tip()), size_(other.size()) {
     for (int i = 0; i < size_; ++i) {
       take(other, i, std::size_t(i));
     }
@@ -171,8 +173,8 @@ public:
   }
 
 private:
-  template <int M>
-  constexpr void take(const serial_chain<M, T>& other, int from, std::size_t to) {
+  template <class C>
+  constexpr void take(const C& other, int from, std::size_t to) {
     steps_[to] = other.steps()[std::size_t(from)];
     frames_[to] = other.link(from + 1).offset;
     kinds_[to] = other.kind(from);

@@ -217,7 +217,7 @@ all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {
   detail::require_six_joints(chain);
   detail::require_pose(goal, "all_inverse_kinematics", "the goal");
   const detail::branches_of_chain<C> branches(chain, goal);
-  const detail::branch_search<detail::joint_loop> search(branches.loop());
+  const detail::branch_search search(branches.loop());
   all_inverse_kinematics_result<C::joints> result;
   result.complex_solutions = search.answer().complex_solutions;
   result.method = search.method();

@@ -13,9 +13,12 @@
 #include <duet/planning/path_step.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/start_chooser.hpp>
+#include <duet/planning/start_problem.hpp>
 
+#include <algorithm>
 #include <concepts>
 #include <limits>
+#include <utility>
 
 /// \file
 /// From which configuration on a chain can follow a whole path; or where it has no solution.
@@ -34,6 +37,24 @@ inline void require_options(const start_options& o) {
   require_part("sampling", o.sampling);
 }
 
+/// A plan with its joint coordinates in vectors of another type.
+template <int N, int M>
+[[nodiscard]] motion_plan<N> with_vectors_of(motion_plan<M> plan) {
+  if constexpr (N == M) {
+    return plan;
+  } else {
+    return {{plan.joints.begin(), plan.joints.end()},
+            std::move(plan.poses),
+            std::move(plan.tau),
+            std::move(plan.deviations),
+            plan.smallest_singular_value,
+            plan.smallest_limit_margin,
+            plan.smallest_clearance,
+            plan.iterations,
+            plan.reason};
+  }
+}
+
 template <class C, class Objective, class Scene, class Follow>
 [[nodiscard]] start_choice<C::joints>
 chosen_start(const C& chain, const path_function& path, double first, double last,
@@ -41,17 +62,22 @@ chosen_start(const C& chain, const path_function& path, double first, double las
              const Follow& follow) {
   require_options(options);
   require_objective(objective, chain.size());
+  constexpr int room = std::max(16, joint_room(C::joints)); // 16 is compiled once
+  using joints = typename start_problem<room>::joints;
+  start_problem<room> problem{chain, nullptr, path, first, last, options, {}, {}};
   if constexpr (std::same_as<Scene, scene>) {
     require_scene(chain, around);
+    problem.around = &around;
   }
-  const start_chooser<C, Scene, Follow> choose(chain, around, options, follow, [&](const auto& x) {
-    if constexpr (std::same_as<Objective, no_objective>) {
-      return distance_from_middle(chain, x);
-    } else {
-      return double(objective(x));
-    }
-  });
-  return choose(path, first, last);
+  problem.follow = [&](const joints& start, const plan_options& how) {
+    return with_vectors_of<-room>(follow(own_joints(chain, start), how));
+  };
+  if constexpr (!std::same_as<Objective, no_objective>) {
+    problem.objective = [&](const joints& x) { return double(objective(own_joints(chain, x))); };
+  }
+  auto found = chosen_start(problem);
+  return {with_vectors_of<C::joints>(std::move(found.plan)), found.starts, found.unsolved,
+          found.reason, found.is_certain};
 }
 
 } // namespace detail

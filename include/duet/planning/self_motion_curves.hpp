@@ -6,17 +6,14 @@
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/serial_chain.hpp>
-#include <duet/planning/branches/branch_search.hpp>
 #include <duet/planning/branches/chain_loop.hpp>
-#include <duet/planning/branches/curve_tracer.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/seven_joints.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/norm.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -67,26 +64,36 @@ void require_seven_joints(const C& chain) {
           " sliding joints, of which 1 is the most");
 }
 
-/// The configurations with joint `held` at a value, from all solutions of the other six.
+/// What the search sees of a chain and a goal; it refers to the chain.
 template <class C>
-void add_held(const C& chain, const tip_place& goal, int held, double value,
-              std::vector<seven_coordinates>& found) {
-  joint_vector<double, C::joints> theta = joint_vector<double, C::joints>::Zero(chain.size());
-  theta[held] = value;
-  const chain_axes axes(chain, theta, held);
-  const branch_search<joint_loop> search(axes.loop_to(goal));
-  if (!search.answer().is_complete) {
-    return; // this joint stands still, or cannot be held there
+[[nodiscard]] seven_joints seven_joints_of(const C& chain, const tip_place& goal) {
+  using joints = joint_vector<double, C::joints>;
+  const chain_model<C> model(chain);
+  seven_joints result;
+  result.size = model.length;
+  result.goal = goal;
+  for (std::size_t i = 0; i < 7; ++i) {
+    result.turns[i] = model.turns[i];
   }
-  for (const loop_solution& x : search.answer().solutions) {
-    seven_coordinates result;
-    for (int i = 0, k = 0; i < 7; ++i) {
-      const bool turns = chain.steps()[std::size_t(i)].turns;
-      result[i] = i == held ? value : x.theta[k] * (turns ? 1 : axes.size);
-      k += i != held;
+  result.gap = [model, place = tip_place{goal.rotation, 1 / model.length * goal.translation}](
+                   const seven_coordinates& x, seven_columns& jacobian) {
+    const auto state = model.at(model.joints(x));
+    const small_twist e = error_twist(state.tip, place);
+    six_coordinates left;
+    for (int k = 0; k < 6; ++k) {
+      left[k] = e[k];
+      for (int i = 0; i < 7; ++i) {
+        jacobian(k, i) = state.jacobian(k, i);
+      }
     }
-    found.push_back(result);
-  }
+    return left;
+  };
+  result.axes_beside = [&chain](int held, double value) {
+    joints theta = joints::Zero(chain.size());
+    theta[held] = value;
+    return chain_axes(chain, theta, held);
+  };
+  return result;
 }
 
 } // namespace detail
@@ -110,22 +117,9 @@ self_motion_curves(const C& chain, const dual_quaternion<double>& goal,
   detail::require_pose(goal, "self_motion_curves", "the goal");
   detail::require_option("self_motion_curves", "resolution", options.resolution,
                          options.resolution > 0 && options.resolution <= 1, "within (0, 1]");
-  const detail::tip_place place = detail::place_of(normalized(goal));
-  const detail::curve_tracer<C> tracer(chain, place, options.resolution);
-  std::vector<detail::seven_coordinates> seeds;
-  const int count = int(std::ceil(2 * std::numbers::pi / options.resolution));
-  for (int held = 0; held < 7; ++held) {
-    for (int k = 0; k < count && tracer.turns(held); ++k) {
-      // not at a table's round numbers, where arms are singular
-      const double turn = 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi;
-      detail::add_held(chain, place, held, turn, seeds);
-    }
-  }
+  const auto arm = detail::seven_joints_of(chain, detail::place_of(normalized(goal)));
   std::vector<self_motion_curve<C::joints>> result;
-  while (!seeds.empty()) {
-    const detail::traced_curve curve = tracer.trace(seeds.back());
-    seeds.pop_back();
-    std::erase_if(seeds, [&](const auto& seed) { return tracer.is_on(curve, seed); });
+  for (const detail::traced_curve& curve : detail::all_curves(arm, options.resolution)) {
     self_motion_curve<C::joints> own;
     own.is_closed = curve.is_closed;
     for (const auto& x : curve.points) {

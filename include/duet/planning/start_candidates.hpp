@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <numbers>
@@ -38,19 +37,20 @@ template <class C>
     }
     sliding += chain.kind(i) == joint_kind::prismatic;
   }
-  return chain.size() == n && sliding <= 1;
+  return chain.size() == n && sliding <= (n == 6 ? 3 : 1);
 }
 
-/// The solutions for poses of the tip that a chain has among obstacles.
-template <class C, class Scene>
+/// The solutions for poses of the tip that a chain has among obstacles, if there are any.
+template <int Room>
 class pose_solutions {
 public:
-  using joints = joint_vector<double, C::joints>;
+  using chain = serial_chain<-Room>;
+  using joints = joint_vector<double, -Room>;
   /// Solutions that joints can move between with the tip in place.
   using family = std::vector<joints>;
 
-  pose_solutions(const C& chain, const Scene& around, const pose_tolerance& tolerance)
-      : chain_(chain), around_(around), tolerance_(tolerance) {}
+  pose_solutions(const chain& arm, const scene* around, const pose_tolerance& tolerance)
+      : chain_(arm), around_(around), tolerance_(tolerance) {}
 
   /// All ways for six joints; seven joints along their curves, points `resolution` apart; others,
   /// and where these find none or not all, as random starts show them.
@@ -58,22 +58,17 @@ public:
                                        double resolution) const {
     std::vector<family> result;
     bool is_complete = false;
-    if constexpr (C::joints == 6 || C::joints < 0) {
-      if (is_algebraic(chain_, 6)) {
-        const auto all = all_inverse_kinematics(chain_, goal);
-        is_complete = all.is_complete;
-        for (const auto& branch : all.solutions) {
-          add(result, {branch.joints});
-        }
+    if (is_algebraic(chain_, 6)) {
+      const auto all = all_inverse_kinematics(chain_, goal);
+      is_complete = all.is_complete;
+      for (const auto& branch : all.solutions) {
+        add(result, {branch.joints});
       }
-    }
-    if constexpr (C::joints == 7 || C::joints < 0) {
-      if (is_algebraic(chain_, 7)) {
-        for (auto& curve : self_motion_curves(chain_, goal, {.resolution = resolution})) {
-          add(result, std::move(curve.joints));
-        }
-        is_complete = !result.empty();
+    } else if (is_algebraic(chain_, 7)) {
+      for (auto& curve : self_motion_curves(chain_, goal, {.resolution = resolution})) {
+        add(result, std::move(curve.joints));
       }
+      is_complete = !result.empty();
     }
     split_mix random(1);
     for (int i = 0; i < 100 && !is_complete; ++i) {
@@ -87,16 +82,14 @@ public:
 
   /// One solution, or why there is none.
   /// \param part  of the tolerance
-  [[nodiscard]] inverse_kinematics_result<C::joints> from(const joints& start,
+  [[nodiscard]] inverse_kinematics_result<-Room> from(const joints& start,
                                                           const dual_quaternion<double>& goal,
                                                           int restarts, double part = 1) const {
     const inverse_kinematics_options options{
         .tolerance = {part * tolerance_.length, part * tolerance_.angle}, .restarts = restarts};
-    if constexpr (std::same_as<Scene, no_scene>) {
-      return inverse_kinematics(chain_, goal, start, options);
-    } else {
-      return inverse_kinematics(chain_, goal, start, options, no_objective{}, around_);
-    }
+    return around_ == nullptr
+               ? inverse_kinematics(chain_, goal, start, options)
+               : inverse_kinematics(chain_, goal, start, options, no_objective{}, *around_);
   }
 
   /// Joints turned by whole turns into their limits, as far as that is possible.
@@ -117,11 +110,8 @@ public:
     return true;
   }
   [[nodiscard]] bool is_clear(const joints& theta) const {
-    if constexpr (std::same_as<Scene, no_scene>) {
-      return true;
-    } else {
-      return clearance(chain_, theta, around_).distance >= around_.margin - tolerance_.length;
-    }
+    return around_ == nullptr ||
+           clearance(chain_, theta, *around_).distance >= around_->margin - tolerance_.length;
   }
 
 private:
@@ -150,8 +140,8 @@ private:
     return theta;
   }
 
-  const C& chain_;
-  const Scene& around_;
+  const chain& chain_;
+  const scene* around_;
   pose_tolerance tolerance_;
 };
 

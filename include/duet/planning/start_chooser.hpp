@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiled.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/limits.hpp>
 #include <duet/mechanism/serial_chain.hpp>
@@ -9,85 +10,26 @@
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/path_step.hpp>
 #include <duet/planning/start_candidates.hpp>
+#include <duet/planning/start_problem.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <utility>
 #include <vector>
 
 /// \file
 /// The search for a start from which a chain can follow a path.
 
-namespace duet {
+namespace duet::detail {
 
-/// Settings of `choose_start`.
-struct start_options {
-  /// How paths are followed.
-  plan_options plan = {};
-  /// How many starts are tried at most.
-  int starts = 64;
-  /// From one configuration to the next at most, where seven joints move with the tip in place.
-  double resolution = .3;
-  /// From one pose to the next where poses without a solution are looked for, a fraction of the
-  /// path.
-  double sampling = .01;
-};
-
-/// What `choose_start` found.
-///
-/// \tparam N  as of `serial_chain`
-template <int N>
-struct start_choice {
-  /// Along the path from the start that was chosen, `plan.joints.front()`; where none leads to its
-  /// end, the one that comes farthest. Empty where no start has a solution.
-  motion_plan<N> plan;
-  int starts = 0; ///< how many were tried
-  /// Where no start leads to the end: the first parameter, to 1e-6 of the path, at which no joint
-  /// coordinates were found; nothing where all poses that were looked at have some.
-  std::optional<double> unsolved;
-  /// `reached`; else what is in the way there: at `unsolved`, or else of `plan`.
-  stop_reason reason = stop_reason::no_solution;
-  /// Is it certain that there is no solution at `unsolved`? Of six joints all are known.
-  bool is_certain = false;
-
-  /// For those who extend duet: for `to_text`.
-  void for_each_field(const auto& f) const {
-    f("plan", plan);
-    f("starts", starts);
-    f("unsolved", unsolved.value_or(std::numeric_limits<double>::quiet_NaN()));
-    f("reason", reason);
-    f("is_certain", is_certain);
-  }
-};
-
-namespace detail {
-
-/// How far joints are from the middle of their limits, in parts of the range; of those without
-/// limits, from 0.
-template <class C, class X>
-[[nodiscard]] double distance_from_middle(const C& chain, const X& theta) {
-  double sum = 0;
-  for (int i = 0; i < chain.size(); ++i) {
-    const auto& limits = chain.limits(i);
-    const double range = limits.upper - limits.lower;
-    const double x = range - range == 0 && range > 0 ? (theta[i] - limits.lower) / range - .5
-                                                     : theta[i] / (4 * std::numbers::pi);
-    sum += x * x;
-  }
-  return sum;
-}
-
-/// \tparam Follow  start, options ↦ plan
-template <class C, class Scene, class Follow>
+/// \tparam Room  for joints
+template <int Room>
 class start_chooser {
-  using solutions = pose_solutions<C, Scene>;
-  using joints = typename solutions::joints;
-  using choice = start_choice<C::joints>;
+  using joints = joint_vector<double, -Room>;
+  using choice = start_choice<-Room>;
   struct candidate {
     joints start;
     std::size_t rank; ///< in its family
@@ -95,19 +37,18 @@ class start_chooser {
   };
 
 public:
-  start_chooser(const C& chain, const Scene& around, const start_options& options,
-                const Follow& follow, std::function<double(const joints&)> cost)
-      : chain_(chain), options_(options), follow_(follow), cost_(std::move(cost)),
-        solutions_(chain, around, options.plan.tolerance) {}
+  explicit start_chooser(const start_problem<Room>& problem)
+      : problem_(problem), chain_(problem.chain), options_(problem.options),
+        solutions_(chain_, problem.around, options_.plan.tolerance) {}
 
-  [[nodiscard]] choice operator()(const path_function& path, double first, double last) const {
+  [[nodiscard]] choice choose() const {
     choice result;
-    std::vector<candidate> candidates = candidates_at(path(first));
+    std::vector<candidate> candidates = candidates_at(problem_.path(problem_.first));
     plan_options quick = options_.plan;
     quick.search_step = 0;
     for (std::size_t k = 0; k < candidates.size() && result.starts < options_.starts; ++k) {
       const joints start = candidates[k].start;
-      auto plan = follow_(start, quick);
+      auto plan = problem_.follow(start, quick);
       // Where a limit was in the way that joint begins anew a turn before it.
       const joints other = turned_back(start, plan);
       const bool is_known = std::any_of(candidates.begin(), candidates.end(),
@@ -122,17 +63,17 @@ public:
     // Then with motions in place, from one start of each family.
     for (const candidate& each : candidates) {
       const bool is_tried = options_.plan.search_step > 0 && chain_.size() > 6 && each.rank == 0;
-      if (is_tried && keep(result, follow_(each.start, options_.plan))) {
+      if (is_tried && keep(result, problem_.follow(each.start, options_.plan))) {
         return result;
       }
     }
-    find_unsolved(result, path, first, last);
+    find_unsolved(result);
     return result;
   }
 
 private:
   /// Is that plan the last one wanted?
-  static bool keep(choice& of, motion_plan<C::joints> plan) {
+  static bool keep(choice& of, motion_plan<-Room> plan) {
     ++of.starts;
     if (of.plan.tau.empty() || plan.tau.back() > of.plan.tau.back() ||
         plan.reason == stop_reason::reached) {
@@ -151,7 +92,7 @@ private:
     for (const auto& family : solutions_.at(pose, options_.resolution)) {
       std::vector<candidate> all;
       for (const joints& x : family) {
-        all.push_back({x, 0, cost_(x)});
+        all.push_back({x, 0, cost(x)});
       }
       std::sort(all.begin(), all.end(), is_before);
       std::vector<candidate> chosen;
@@ -170,8 +111,26 @@ private:
     return result;
   }
 
+  [[nodiscard]] double cost(const joints& theta) const {
+    return problem_.objective ? problem_.objective(theta) : distance_from_middle(theta);
+  }
+
+  /// How far joints are from the middle of their limits, in parts of the range; of those without
+  /// limits, from 0.
+  [[nodiscard]] double distance_from_middle(const joints& theta) const {
+    double sum = 0;
+    for (int i = 0; i < chain_.size(); ++i) {
+      const auto& limits = chain_.limits(i);
+      const double range = limits.upper - limits.lower;
+      const double x = range - range == 0 && range > 0 ? (theta[i] - limits.lower) / range - .5
+                                                       : theta[i] / (4 * std::numbers::pi);
+      sum += x * x;
+    }
+    return sum;
+  }
+
   /// The start with the joints that a plan ends with at a limit a whole turn away from it.
-  [[nodiscard]] joints turned_back(joints start, const motion_plan<C::joints>& plan) const {
+  [[nodiscard]] joints turned_back(joints start, const motion_plan<-Room>& plan) const {
     constexpr double turn = 2 * std::numbers::pi, close = 1e-2;
     const joints& end = plan.joints.back();
     for (int i = 0; i < chain_.size() && plan.reason == stop_reason::joint_limit; ++i) {
@@ -189,7 +148,9 @@ private:
     return start;
   }
 
-  void find_unsolved(choice& result, const path_function& path, double first, double last) const {
+  void find_unsolved(choice& result) const {
+    const double first = problem_.first, last = problem_.last;
+    const path_function& path = problem_.path;
     joints nearby = result.plan.joints.empty() ? middle() : result.plan.joints.front();
     const auto is_solved = [&](double u) {
       const auto found = solutions_.from(nearby, path(u), 100);
@@ -218,10 +179,7 @@ private:
 
   /// What a search for one solution did not find all six joints' solutions may have.
   [[nodiscard]] bool is_solved_otherwise(const dual_quaternion<double>& pose) const {
-    if constexpr (C::joints == 6 || C::joints < 0) {
-      return is_algebraic(chain_, 6) && !solutions_.at(pose, options_.resolution).empty();
-    }
-    return false;
+    return is_algebraic(chain_, 6) && !solutions_.at(pose, options_.resolution).empty();
   }
 
   void explain(choice& result, const dual_quaternion<double>& pose) const {
@@ -231,13 +189,11 @@ private:
     if (result.reason == stop_reason::out_of_reach || result.reason == stop_reason::obstacle) {
       return;
     }
-    if constexpr (C::joints == 6 || C::joints < 0) {
-      if (is_algebraic(chain_, 6)) {
-        const auto all = all_inverse_kinematics(chain_, pose);
-        result.is_certain = all.is_complete;
-        result.reason = all.solutions.empty() ? stop_reason::no_solution : stop_reason::joint_limit;
-        return;
-      }
+    if (is_algebraic(chain_, 6)) {
+      const auto all = all_inverse_kinematics(chain_, pose);
+      result.is_certain = all.is_complete;
+      result.reason = all.solutions.empty() ? stop_reason::no_solution : stop_reason::joint_limit;
+      return;
     }
     const auto infinity = joints::Constant(chain_.size(), std::numeric_limits<double>::infinity());
     const auto without_limits = with_limits(chain_, joints(-infinity), joints(infinity));
@@ -256,12 +212,19 @@ private:
     return result;
   }
 
-  const C& chain_;
+  const start_problem<Room>& problem_;
+  const serial_chain<-Room>& chain_;
   const start_options& options_;
-  const Follow& follow_;
-  std::function<double(const joints&)> cost_;
-  solutions solutions_;
+  pose_solutions<Room> solutions_;
 };
 
-} // namespace detail
-} // namespace duet
+template <int Room>
+[[nodiscard]] start_choice<-Room> chosen_start(const start_problem<Room>& problem) {
+  return start_chooser<Room>(problem).choose();
+}
+
+#ifdef DUET_COMPILED
+DUET_COMPILED_TEMPLATE start_choice<-16> chosen_start(const start_problem<16>&);
+#endif
+
+} // namespace duet::detail

@@ -2,19 +2,11 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
-#include <duet/planning/branches/closed_forms.hpp>
-#include <duet/planning/branches/general_loop.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/loop_solutions.hpp>
-#include <duet/planning/branches/turns.hpp>
-#include <duet/planning/planning_model.hpp>
-#include <duet/quaternion/three_vector.hpp>
+#include <duet/planning/branches/loop_answer.hpp>
 
-#include <algorithm>
 #include <array>
-#include <concepts>
 #include <cstddef>
-#include <optional>
 
 /// \file
 /// Which way all solutions of a loop are found.
@@ -39,11 +31,10 @@ enum class branch_method {
 
 namespace detail {
 
-/// All solutions of a loop, by the way that suits it. (A template, to be compiled once.)
-template <class Loop>
+/// All solutions of a loop, by the way that suits it.
 class branch_search {
 public:
-  explicit branch_search(const Loop& loop);
+  explicit branch_search(const joint_loop& loop);
 
   [[nodiscard]] const loop_answer& answer() const { return answer_; }
   [[nodiscard]] branch_method method() const { return method_; }
@@ -51,105 +42,20 @@ public:
 private:
   /// Solves the loop that begins with its joint number `first` as a loop of the type `Form`.
   template <class Form, class... Rest>
-  bool solve(branch_method method, int first, const Loop& loop, const Rest&... rest);
+  bool solve(branch_method method, int first, const joint_loop& loop, const Rest&... rest);
 
   loop_answer answer_;
   branch_method method_ = branch_method::elimination;
 };
 
-/// The point in which the axes of three joints meet, if there is one.
-[[nodiscard]] inline std::optional<vector3d> common_point(const loop_joint& a, const loop_joint& b,
-                                                          const loop_joint& c) {
-  constexpr double rounding = 1e-9, across = 1e-6;
-  const vector3d n = cross(a.axis, b.axis);
-  const double square = dot(n, n);
-  if (!a.turns || !b.turns || !c.turns || square < across * across ||
-      length_of(cross(b.axis, c.axis)) < across) {
-    return {};
-  }
-  const vector3d way = b.point - a.point;
-  const vector3d point = a.point + dot(cross(way, b.axis), n) / square * a.axis;
-  const auto is_on_axis = [&](const loop_joint& j) {
-    return length_of(cross(j.axis, point - j.point)) < rounding;
-  };
-  return is_on_axis(b) && is_on_axis(c) ? std::optional(point) : std::nullopt;
-}
-
-[[nodiscard]] inline bool are_parallel(const loop_joint& a, const loop_joint& b) {
-  return a.turns && b.turns && is_on(a.axis, b.axis);
-}
-
-template <class Loop>
-template <class Form, class... Rest>
-bool branch_search<Loop>::solve(branch_method method, int first, const Loop& loop,
-                                const Rest&... rest) {
-  constexpr int most = std::same_as<Form, sliding_loop> ? 2 : 8;
-  constexpr double rounding = 1e-12;
-  const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
-    if (multiplicity > 1 && loop_gap(loop, theta).twist.norm() > rounding &&
-        !close_loop(loop, theta)) {
-      return; // a complex pair that is nearly real
-    }
-    loop_solution found{theta, multiplicity};
-    for (int k = 0; k < 6; ++k) {
-      const auto i = std::size_t((k + first) % 6);
-      found.theta[Eigen::Index(i)] =
-          loop.joints[std::size_t(k)].turns ? turned_back(theta[k]) : theta[k];
-    }
-    answer_.solutions.push_back(found);
-    answer_.complex_solutions -= multiplicity;
-  });
-  if (!is_determined && answer_.solutions.empty()) {
-    answer_.complex_solutions = 0;
-    return false;
-  }
-  method_ = method;
-  answer_.complex_solutions += most;
-  answer_.is_complete = is_determined;
-  return true;
-}
-
-template <class Loop>
-branch_search<Loop>::branch_search(const Loop& loop) {
-  const auto& joints = loop.joints;
-  const auto sliding =
-      std::count_if(joints.begin(), joints.end(), [](const loop_joint& j) { return !j.turns; });
-  if (sliding == 3) {
-    solve<sliding_loop>(branch_method::three_slides, 0, loop);
-    return;
-  }
-  if (sliding == 2) {
-    answer_ = solve_general_loop<two_slides>(loop);
-    method_ = branch_method::two_slides;
-    return;
-  }
-  const auto from = [&](int first) {
-    Loop result = loop;
-    for (int k = 0; k < first; ++k) {
-      result = result.shifted();
-    }
-    return result;
-  };
-  for (std::size_t i = 0; i < 4 && sliding == 0; ++i) {
-    const loop_joint &a = joints[i], &b = joints[i + 1], &c = joints[i + 2];
-    const int first = int(i), after = (first + 3) % 6;
-    if (const auto centre = common_point(a, b, c)) {
-      const vector3d in_loop = after == 0 ? *centre : inverse_place(loop.closing).point(*centre);
-      if (solve<spherical_loop>(branch_method::spherical_wrist, after, from(after), in_loop)) {
-        return;
-      }
-    } else if (are_parallel(a, b) && are_parallel(b, c)) {
-      if (solve<planar_loop>(branch_method::parallel_axes, first, from(first))) {
-        return;
-      }
-    }
-  }
-  answer_ = solve_general_loop<elimination>(loop);
-}
-
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class branch_search<joint_loop>;
-#endif
+/// Newton's method from θ to a solution, to the level of rounding.
+/// \return did it get there?
+[[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop,
+                                                     six_coordinates& theta);
 
 } // namespace detail
 } // namespace duet
+
+#ifndef DUET_COMPILED
+#include <duet/planning/branches/branch_solver.hpp>
+#endif

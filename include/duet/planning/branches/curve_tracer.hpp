@@ -1,51 +1,35 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/planning/branches/loop_solutions.hpp>
-#include <duet/planning/motion_plan.hpp>
-#include <duet/planning/planning_model.hpp>
+#include <duet/core/compiled.hpp>
+#include <duet/planning/branches/branch_search.hpp>
+#include <duet/planning/branches/chain_loop.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/seven_joints.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/QR>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <vector>
 
 /// \file
-/// Curves of joint coordinates of seven joints on which the tip stays where it is.
+/// Curves of joint coordinates of seven joints on which the tip stays where it is are followed; the
+/// library duet::compiled holds it.
 
 namespace duet::detail {
 
-using seven_coordinates = Eigen::Matrix<double, 7, 1>;
-
-/// Points of a curve, one after the other.
-struct traced_curve {
-  std::vector<seven_coordinates> points;
-  bool is_closed = false;
-};
-
-/// Follows the curves of one chain and goal.
-template <class C>
+/// Follows the curves of one arm and goal.
 class curve_tracer {
-  using jacobian_matrix = Eigen::Matrix<double, 6, 7>;
-
 public:
-  curve_tracer(const C& chain, const tip_place& goal, double step)
-      : chain_(chain), goal_(goal), step_(step) {
-    const chain_model<C> model(chain);
-    size_ = model.length;
-    for (int i = 0; i < 7; ++i) {
-      turns_[std::size_t(i)] = chain.steps()[std::size_t(i)].turns;
-    }
-  }
-
-  [[nodiscard]] bool turns(int i) const { return turns_[std::size_t(i)]; }
+  /// \param step  from one point to the next at most
+  curve_tracer(const seven_joints& arm, double step) : arm_(arm), step_(step) {}
 
   /// The curve through a point on it: once around, or to both ends.
   [[nodiscard]] traced_curve trace(const seven_coordinates& start) const {
@@ -84,40 +68,23 @@ private:
                                              const seven_coordinates& a) const {
     seven_coordinates d = b - a;
     for (int i = 0; i < 7; ++i) {
-      d[i] = turns(i) ? turned_back(d[i]) : d[i] / size_;
+      d[i] = arm_.turns[std::size_t(i)] ? turned_back(d[i]) : d[i] / arm_.size;
     }
     return d;
   }
   [[nodiscard]] seven_coordinates moved(seven_coordinates x, const seven_coordinates& d) const {
     for (int i = 0; i < 7; ++i) {
-      x[i] += turns(i) ? d[i] : size_ * d[i];
+      x[i] += arm_.turns[std::size_t(i)] ? d[i] : arm_.size * d[i];
     }
     return x;
-  }
-
-  /// The tip's gap from the goal, and the Jacobian, lengths in parts of the arm's size.
-  [[nodiscard]] six_coordinates gap(const seven_coordinates& x, jacobian_matrix& jacobian) const {
-    small_matrix<6, 8> columns;
-    const tip_place tip = fill_jacobian<hybrid_frame, true, double>(
-        columns, chain_, own_joints(chain_, x), tip_of_chain{});
-    const small_twist e = error_twist(tip, goal_);
-    six_coordinates result;
-    for (int k = 0; k < 6; ++k) {
-      const double unit = k < 3 ? 1 / size_ : 1;
-      result[k] = unit * e[k];
-      for (int i = 0; i < 7; ++i) {
-        jacobian(k, i) = unit * (turns(i) ? 1 : size_) * columns(k, i);
-      }
-    }
-    return result;
   }
 
   /// Newton's method with the least steps.
   [[nodiscard]] std::optional<seven_coordinates> corrected(seven_coordinates x) const {
     constexpr double rounding = 1e-12;
     for (int k = 0; k < 12; ++k) {
-      jacobian_matrix j;
-      const six_coordinates e = gap(x, j);
+      seven_columns j;
+      const six_coordinates e = arm_.gap(x, j);
       if (e.norm() < rounding) {
         return x;
       }
@@ -134,8 +101,8 @@ private:
   /// The unit vector that the Jacobian takes to 0; none where there are two.
   [[nodiscard]] std::optional<seven_coordinates> direction(const seven_coordinates& x) const {
     constexpr double singular = 1e-9;
-    jacobian_matrix j;
-    static_cast<void>(gap(x, j));
+    seven_columns j;
+    static_cast<void>(arm_.gap(x, j));
     const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 7, 6>> qr(j.transpose());
     const auto pivots = qr.matrixQR().diagonal().cwiseAbs();
     if (!(pivots.minCoeff() > singular * pivots.maxCoeff())) {
@@ -200,11 +167,47 @@ private:
     return false;
   }
 
-  const C& chain_;
-  tip_place goal_;
+  const seven_joints& arm_;
   double step_;
-  double size_ = 1;
-  std::array<bool, 7> turns_{};
 };
+
+/// The configurations with joint `held` at a value, from all solutions of the other six.
+inline void add_held(const seven_joints& arm, int held, double value,
+                     std::vector<seven_coordinates>& found) {
+  const chain_axes axes = arm.axes_beside(held, value);
+  const branch_search search(axes.loop_to(arm.goal));
+  if (!search.answer().is_complete) {
+    return; // this joint stands still, or cannot be held there
+  }
+  for (const loop_solution& x : search.answer().solutions) {
+    seven_coordinates result;
+    for (int i = 0, k = 0; i < 7; ++i) {
+      result[i] = i == held ? value : x.theta[k] * (arm.turns[std::size_t(i)] ? 1 : axes.size);
+      k += i != held;
+    }
+    found.push_back(result);
+  }
+}
+
+DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& arm,
+                                                            double resolution) {
+  const curve_tracer tracer(arm, resolution);
+  std::vector<seven_coordinates> seeds;
+  const int count = int(std::ceil(2 * std::numbers::pi / resolution));
+  for (int held = 0; held < 7; ++held) {
+    for (int k = 0; k < count && arm.turns[std::size_t(held)]; ++k) {
+      // not at a table's round numbers, where arms are singular
+      const double turn = 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi;
+      add_held(arm, held, turn, seeds);
+    }
+  }
+  std::vector<traced_curve> result;
+  while (!seeds.empty()) {
+    result.push_back(tracer.trace(seeds.back()));
+    seeds.pop_back();
+    std::erase_if(seeds, [&](const auto& seed) { return tracer.is_on(result.back(), seed); });
+  }
+  return result;
+}
 
 } // namespace duet::detail

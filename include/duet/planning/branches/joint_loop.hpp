@@ -9,7 +9,6 @@
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -122,27 +121,5 @@ struct loop_gap {
         twice * left.rotation.y(), twice * left.rotation.z();
   }
 };
-
-/// Newton's method from θ to a solution, to the level of rounding.
-/// \return did it get there?
-[[nodiscard]] inline bool close_loop(const joint_loop& loop, six_coordinates& theta) {
-  constexpr double rounding = 2e-15, good = 1e-13;
-  double before = HUGE_VAL;
-  for (int k = 0; k < 40; ++k) {
-    const loop_gap gap(loop, theta);
-    const double left = gap.twist.norm() / gap.size;
-    if (left <= rounding || (left <= good && left >= before / 2)) {
-      return true;
-    }
-    before = left;
-    six_coordinates step = Eigen::PartialPivLU<six_columns>(gap.jacobian).solve(gap.twist);
-    const double length = step.norm();
-    if (!(length < 1e6)) {
-      return false;
-    }
-    theta += std::min(1.0, .5 / length) * step;
-  }
-  return false;
-}
 
 } // namespace duet::detail

@@ -1,0 +1,115 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/planning/branches/branch_search.hpp>
+#include <duet/planning/branches/close_loop.hpp>
+#include <duet/planning/branches/closed_forms.hpp>
+#include <duet/planning/branches/general_loop.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/turns.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <optional>
+
+/// \file
+/// Which way all solutions of a loop are found; the library duet::compiled holds it.
+
+namespace duet::detail {
+
+/// The point in which the axes of three joints meet, if there is one.
+[[nodiscard]] inline std::optional<vector3d> common_point(const loop_joint& a, const loop_joint& b,
+                                                          const loop_joint& c) {
+  constexpr double rounding = 1e-9, across = 1e-6;
+  const vector3d n = cross(a.axis, b.axis);
+  const double square = dot(n, n);
+  if (!a.turns || !b.turns || !c.turns || square < across * across ||
+      length_of(cross(b.axis, c.axis)) < across) {
+    return {};
+  }
+  const vector3d way = b.point - a.point;
+  const vector3d point = a.point + dot(cross(way, b.axis), n) / square * a.axis;
+  const auto is_on_axis = [&](const loop_joint& j) {
+    return length_of(cross(j.axis, point - j.point)) < rounding;
+  };
+  return is_on_axis(b) && is_on_axis(c) ? std::optional(point) : std::nullopt;
+}
+
+[[nodiscard]] inline bool are_parallel(const loop_joint& a, const loop_joint& b) {
+  return a.turns && b.turns && is_on(a.axis, b.axis);
+}
+
+template <class Form, class... Rest>
+bool branch_search::solve(branch_method method, int first, const joint_loop& loop,
+                                const Rest&... rest) {
+  constexpr int most = std::same_as<Form, sliding_loop> ? 2 : 8;
+  constexpr double rounding = 1e-12;
+  const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
+    if (multiplicity > 1 && loop_gap(loop, theta).twist.norm() > rounding &&
+        !close_loop(loop, theta)) {
+      return; // a complex pair that is nearly real
+    }
+    loop_solution found{theta, multiplicity};
+    for (int k = 0; k < 6; ++k) {
+      const auto i = std::size_t((k + first) % 6);
+      found.theta[Eigen::Index(i)] =
+          loop.joints[std::size_t(k)].turns ? turned_back(theta[k]) : theta[k];
+    }
+    answer_.solutions.push_back(found);
+    answer_.complex_solutions -= multiplicity;
+  });
+  if (!is_determined && answer_.solutions.empty()) {
+    answer_.complex_solutions = 0;
+    return false;
+  }
+  method_ = method;
+  answer_.complex_solutions += most;
+  answer_.is_complete = is_determined;
+  return true;
+}
+
+DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
+  const auto& joints = loop.joints;
+  const auto sliding =
+      std::count_if(joints.begin(), joints.end(), [](const loop_joint& j) { return !j.turns; });
+  if (sliding == 3) {
+    solve<sliding_loop>(branch_method::three_slides, 0, loop);
+    return;
+  }
+  if (sliding == 2) {
+    answer_ = solve_general_loop<two_slides>(loop);
+    method_ = branch_method::two_slides;
+    return;
+  }
+  const auto from = [&](int first) {
+    joint_loop result = loop;
+    for (int k = 0; k < first; ++k) {
+      result = result.shifted();
+    }
+    return result;
+  };
+  for (std::size_t i = 0; i < 4 && sliding == 0; ++i) {
+    const loop_joint &a = joints[i], &b = joints[i + 1], &c = joints[i + 2];
+    const int first = int(i), after = (first + 3) % 6;
+    if (const auto centre = common_point(a, b, c)) {
+      const vector3d in_loop = after == 0 ? *centre : inverse_place(loop.closing).point(*centre);
+      if (solve<spherical_loop>(branch_method::spherical_wrist, after, from(after), in_loop)) {
+        return;
+      }
+    } else if (are_parallel(a, b) && are_parallel(b, c)) {
+      if (solve<planar_loop>(branch_method::parallel_axes, first, from(first))) {
+        return;
+      }
+    }
+  }
+  answer_ = solve_general_loop<elimination>(loop);
+}
+
+} // namespace duet::detail

@@ -1,0 +1,43 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/planning/branches/chain_loop.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+/// \file
+/// Of which size a loop of six joints is, and about where, which the library duet::compiled holds.
+
+namespace duet::detail {
+
+DUET_COMPILED_FUNCTION void chain_axes::choose_units() {
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const loop_joint& j : joints) {
+    const Eigen::Vector3d n = j.axis, p = j.point;
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - n * n.transpose();
+    squares += across;
+    sum += across * p;
+  }
+  middle = components(Eigen::Vector3d(squares.ldlt().solve(sum)));
+  double largest = 0, reach = length_of(middle);
+  for (loop_joint& j : joints) {
+    reach = std::max(reach, length_of(j.point));
+    const auto from_middle = j.point - middle;
+    j.point = from_middle - dot(from_middle, j.axis) * j.axis;
+    largest = std::max(largest, length_of(j.point));
+  }
+  const double to_tip = length_of(tip.translation - middle), rounding = 1e-12 * reach;
+  size = largest > rounding ? largest : to_tip > rounding ? to_tip : 1; // all axes meet
+  for (loop_joint& j : joints) {
+    j.point = 1 / size * j.point;
+  }
+}
+
+} // namespace duet::detail

@@ -1,0 +1,40 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+/// \file
+/// Newton's method for loops of six joints, which the library duet::compiled holds.
+
+namespace duet::detail {
+
+/// Newton's method from θ to a solution, to the level of rounding.
+/// \return did it get there?
+[[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop,
+                                                     six_coordinates& theta) {
+  constexpr double rounding = 2e-15, good = 1e-13;
+  double before = HUGE_VAL;
+  for (int k = 0; k < 40; ++k) {
+    const loop_gap gap(loop, theta);
+    const double left = gap.twist.norm() / gap.size;
+    if (left <= rounding || (left <= good && left >= before / 2)) {
+      return true;
+    }
+    before = left;
+    six_coordinates step = Eigen::PartialPivLU<six_columns>(gap.jacobian).solve(gap.twist);
+    const double length = step.norm();
+    if (!(length < 1e6)) {
+      return false;
+    }
+    theta += std::min(1.0, .5 / length) * step;
+  }
+  return false;
+}
+
+} // namespace duet::detail

@@ -1,0 +1,48 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/planning/branches/chain_loop.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/planning_model.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <functional>
+#include <vector>
+
+/// \file
+/// What the search for curves of seven joints sees of an arm and a goal, whatever their types.
+
+namespace duet::detail {
+
+using seven_coordinates = Eigen::Matrix<double, 7, 1>;
+using seven_columns = Eigen::Matrix<double, 6, 7>;
+
+/// An arm of seven joints, and where its tip is to stay.
+struct seven_joints {
+  std::array<bool, 7> turns{};
+  double size = 1; ///< of the arm
+  tip_place goal{};
+  /// How far the tip is from the goal, and the Jacobian; lengths in parts of the arm's size.
+  std::function<six_coordinates(const seven_coordinates&, seven_columns&)> gap;
+  /// The axes of the other joints, with one held at a coordinate.
+  std::function<chain_axes(int, double)> axes_beside;
+};
+
+/// Points of a curve, one after the other.
+struct traced_curve {
+  std::vector<seven_coordinates> points;
+  bool is_closed = false;
+};
+
+/// The curves on which the tip is at the goal.
+[[nodiscard]] DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& arm,
+                                                                          double resolution);
+
+} // namespace duet::detail
+
+#ifndef DUET_COMPILED
+#include <duet/planning/branches/curve_tracer.hpp>
+#endif

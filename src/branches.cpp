@@ -1,0 +1,7 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// All solutions of six and seven joints.
+
+#include <duet/planning/branches/branch_solver.hpp>
+#include <duet/planning/branches/chain_loop_units.hpp>
+#include <duet/planning/branches/curve_tracer.hpp>
