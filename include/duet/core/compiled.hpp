@@ -11,8 +11,8 @@
 ///
 /// A list keeps compilers from functions that are neither inline, as are those defined within a
 /// class, nor return `auto`. Functions that are no templates are declared with
-/// `DUET_COMPILED_FUNCTION` and defined in a header of their own, which comes in only where there is
-/// no library.
+/// `DUET_COMPILED_FUNCTION` and defined in a header of their own, which comes in only where there
+/// is no library.
 
 #ifndef DUET_COMPILED
 #define DUET_COMPILED_FUNCTION inline

@@ -83,8 +83,8 @@ public:
   /// One solution, or why there is none.
   /// \param part  of the tolerance
   [[nodiscard]] inverse_kinematics_result<-Room> from(const joints& start,
-                                                          const dual_quaternion<double>& goal,
-                                                          int restarts, double part = 1) const {
+                                                      const dual_quaternion<double>& goal,
+                                                      int restarts, double part = 1) const {
     const inverse_kinematics_options options{
         .tolerance = {part * tolerance_.length, part * tolerance_.angle}, .restarts = restarts};
     return around_ == nullptr

@@ -48,7 +48,7 @@ namespace duet::detail {
 
 template <class Form, class... Rest>
 bool branch_search::solve(branch_method method, int first, const joint_loop& loop,
-                                const Rest&... rest) {
+                          const Rest&... rest) {
   constexpr int most = std::same_as<Form, sliding_loop> ? 2 : 8;
   constexpr double rounding = 1e-12;
   const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
@@ -73,6 +73,10 @@ bool branch_search::solve(branch_method method, int first, const joint_loop& loo
   answer_.complex_solutions += most;
   answer_.is_complete = is_determined;
   return true;
+}
+
+DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop) {
+  return solve_general_loop<elimination>(loop);
 }
 
 DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
@@ -109,7 +113,7 @@ DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
       }
     }
   }
-  answer_ = solve_general_loop<elimination>(loop);
+  answer_ = eliminated(loop);
 }
 
 } // namespace duet::detail
