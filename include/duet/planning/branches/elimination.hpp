@@ -155,14 +155,15 @@ public:
       low = kernel.topRows(9).template cast<complex>();
       high = kernel.bottomRows(9).template cast<complex>();
     }
+    orthonormalise(low, high);
     using square = Eigen::Matrix<complex, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 12, 12>;
-    const square normal = low.adjoint() * low, right = low.adjoint() * high;
+    const square right = low.adjoint().lazyProduct(high);
     if (count == 1) {
-      return visit_factors(theta, right(0, 0) / normal(0, 0), low.col(0), visit);
+      return visit_factors(theta, right(0, 0), low.col(0), visit);
     }
-    const Eigen::ComplexEigenSolver<square> eigen(normal.partialPivLu().solve(right).eval());
+    const Eigen::ComplexEigenSolver<square> eigen(right);
     const auto& z = eigen.eigenvalues();
-    const auto products = (low * eigen.eigenvectors()).eval();
+    const auto products = low.lazyProduct(eigen.eigenvectors()).eval();
     int real = 0;
     for (int k = 0; k < count; ++k) {
       int other = -1; // a solution with the same θ₄
@@ -185,13 +186,18 @@ public:
 private:
   using complex = std::complex<double>;
 
-  template <class M>
-  static void orthonormalise(M& m) {
+  /// The same sums of columns of others.
+  template <class M, class... Others>
+  static void orthonormalise(M& m, Others&... others) {
     for (Eigen::Index j = 0; j < m.cols(); ++j) {
       for (Eigen::Index k = 0; k < j; ++k) {
-        m.col(j) -= m.col(k).dot(m.col(j)) * m.col(k);
+        const auto part = m.col(k).dot(m.col(j));
+        m.col(j) -= part * m.col(k);
+        ((others.col(j) -= part * others.col(k)), ...);
       }
-      m.col(j).normalize();
+      const double size = m.col(j).norm();
+      m.col(j) /= size;
+      ((others.col(j) /= size), ...);
     }
   }
 
