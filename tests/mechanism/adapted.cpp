@@ -3,6 +3,7 @@
 #include "mechanism/arms.hpp"
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/mechanism/adapted.hpp>
@@ -82,8 +83,8 @@ TEST_CASE("tools and bases: poses, links and Jacobians") {
       }
       CHECK(transform_matrix(standing.pose(theta, 0)) == Eigen::Matrix4d::Identity());
       duet_test::for_each_frame([&](auto frame) {
-        const auto by_duals =
-            jacobian([&](const auto& x) { return base * arm.pose(x) * tool; }, theta, frame);
+        const auto by_duals = jacobian<duet_test::shared_tag>(
+            [&](const auto& x) { return base * arm.pose(x) * tool; }, theta, frame);
         CHECK(gap(jacobian(both, theta, frame), by_duals.jacobian) < 4e-14);
       });
     }

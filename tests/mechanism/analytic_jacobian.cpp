@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "mechanism/arms.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/mechanism/analytic_jacobian.hpp>
@@ -20,8 +21,9 @@ void check_euler(const Chain& arm, const X& theta) {
     const auto angles = euler<Sequence>(rotation(a));
     return std::array{t[0], t[1], t[2], angles[0], angles[1], angles[2]};
   };
-  const auto by_duals =
-      jacobian([&](const auto& x) { return coordinates_of(arm.pose(x)); }, theta).jacobian;
+  const auto by_duals = jacobian<duet_test::shared_tag>(
+                            [&](const auto& x) { return coordinates_of(arm.pose(x)); }, theta)
+                            .jacobian;
   const auto closed = euler_jacobian<Sequence>(arm, theta);
   // Towards gimbal lock both grow, and so do their errors.
   const double size = std::max(1.0, by_duals.cwiseAbs().maxCoeff());
@@ -58,7 +60,8 @@ TEST_CASE("N20, N21: ∂γ/∂θ against dual numbers, and J2 of it is the spati
       const auto check = [&](const auto&... at) {
         const auto closed = pose_coordinates_jacobian(arm, theta, at...);
         const auto by_duals =
-            jacobian([&](const auto& x) { return pose_coordinates(arm.pose(x, at...)); }, theta)
+            jacobian<duet_test::shared_tag>(
+                [&](const auto& x) { return pose_coordinates(arm.pose(x, at...)); }, theta)
                 .jacobian;
         CHECK(gap(closed, by_duals) < 1e-13);
         CHECK(gap(pose_rate_matrix(arm.pose(theta, at...)) * closed,

@@ -4,6 +4,7 @@
 #include "support/gap.hpp"
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/dual_quaternion/pose.hpp>
@@ -122,7 +123,8 @@ TEST_CASE("the Jacobian of every kind of loop between all kinds of joints, again
   }
   const closed_tree mechanism(tree, loops);
   for (const VectorXd& q : coordinates_of(tree, 10)) {
-    const auto expected = jacobian([&](const auto& x) { return mechanism.residuals(x); }, q);
+    const auto expected =
+        jacobian<duet_test::shared_tag>([&](const auto& x) { return mechanism.residuals(x); }, q);
     CHECK(gap(mechanism.residuals(q), expected.value) < 1e-14);
     CHECK(gap(mechanism.constraint_jacobian(q), expected.jacobian) <
           1e-14 * std::max(1.0, expected.jacobian.cwiseAbs().maxCoeff()));

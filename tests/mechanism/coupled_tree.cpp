@@ -4,6 +4,7 @@
 #include "support/gap.hpp"
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/jacobian.hpp>
@@ -58,13 +59,15 @@ TEST_CASE("a function of four numbers moves all joints: against dual numbers thr
     }
     const auto check = [&](const auto& at) {
       for_each_frame([&](auto frame) {
-        const auto by_duals = jacobian([&](const auto& x) { return tree.pose(x, at); }, y, frame);
+        const auto by_duals = jacobian<duet_test::shared_tag>(
+            [&](const auto& x) { return tree.pose(x, at); }, y, frame);
         const auto closed = pose_and_jacobian(tree, y, frame, at);
         CHECK(gap(transform_matrix(closed.value), transform_matrix(by_duals.value)) < 2e-14);
         CHECK(gap(closed.jacobian, by_duals.jacobian) < 1e-13);
         CHECK(gap(jacobian(tree, y, frame, at), closed.jacobian) < 1e-13);
         const auto rate =
-            derivative([&](const auto& t) { return jacobian(tree, along(y, v, t), frame, at); }, 0.)
+            derivative<duet_test::shared_tag>(
+                [&](const auto& t) { return jacobian(tree, along(y, v, t), frame, at); }, 0.)
                 .derivative;
         const auto both = jacobian_with_rate(tree, y, v, frame, at);
         const double scale = 1 + rate.cwiseAbs().maxCoeff();
@@ -83,10 +86,13 @@ TEST_CASE("a function of four numbers moves all joints: against dual numbers thr
     check(relative);
     check(tree.tree().link("finger").link);
     CHECK(gap(translation(tree.poses(y)[0]), translation(tree.pose(y, 0))) < 1e-14);
-    const auto m = jacobian([&](const auto& x) { return centre_of_mass(tree, x); }, y).jacobian;
+    const auto m =
+        jacobian<duet_test::shared_tag>([&](const auto& x) { return centre_of_mass(tree, x); }, y)
+            .jacobian;
     CHECK(gap(centre_of_mass_jacobian(tree, y), m) < 2e-14);
     const auto rate =
-        derivative([&](const auto& t) { return centre_of_mass_jacobian(tree, along(y, v, t)); }, 0.)
+        derivative<duet_test::shared_tag>(
+            [&](const auto& t) { return centre_of_mass_jacobian(tree, along(y, v, t)); }, 0.)
             .derivative;
     CHECK(gap(centre_of_mass_jacobian_rate(tree, y, v), rate) < 1e-13);
     const auto h = centre_of_mass_hessian(tree, y);

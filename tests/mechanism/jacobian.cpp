@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "mechanism/arms.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/mechanism/jacobian.hpp>
@@ -24,18 +25,21 @@ TEST_CASE("N18, N20: Jacobians of the tip, of links and of points against dual n
     const auto point = arm.link(arm.size() - 2).at_point({.3, -.2, .5});
     for (const auto& theta : duet_test::configurations(arm, 20)) {
       for_each_frame([&](auto frame) {
-        const auto tip =
-            jacobian([&](const auto& x) { return arm.pose(x); }, theta, frame).jacobian;
+        const auto tip = jacobian<duet_test::shared_tag>([&](const auto& x) { return arm.pose(x); },
+                                                         theta, frame)
+                             .jacobian;
         CHECK(gap(jacobian(arm, theta, frame), tip) < 1e-13);
-        const auto on_link =
-            jacobian([&](const auto& x) { return arm.pose(x, point); }, theta, frame).jacobian;
+        const auto on_link = jacobian<duet_test::shared_tag>(
+                                 [&](const auto& x) { return arm.pose(x, point); }, theta, frame)
+                                 .jacobian;
         CHECK(gap(jacobian(arm, theta, frame, point), on_link) < 1e-13);
       });
     }
     const auto theta = duet_test::configurations(arm, 1).back();
     for (int i = 0; i <= arm.size(); ++i) {
-      const auto of_link =
-          jacobian([&](const auto& x) { return arm.pose(x, i); }, theta, frame::hybrid).jacobian;
+      const auto of_link = jacobian<duet_test::shared_tag>(
+                               [&](const auto& x) { return arm.pose(x, i); }, theta, frame::hybrid)
+                               .jacobian;
       const auto m = jacobian(arm, theta, frame::hybrid, i);
       CHECK(gap(m, of_link) < 1e-13);
       CHECK(m.rightCols(arm.size() - i).isZero(0));
@@ -47,8 +51,9 @@ TEST_CASE("the upper rows of the hybrid Jacobian are those of a point's coordina
   const auto arm = robots::iiwa14().table();
   const auto point = arm.tip().at_point({.1, .2, .3});
   for (const auto& theta : duet_test::configurations(arm, 5)) {
-    const auto of_point =
-        jacobian([&](const auto& x) { return translation(arm.pose(x, point)); }, theta).jacobian;
+    const auto of_point = jacobian<duet_test::shared_tag>(
+                              [&](const auto& x) { return translation(arm.pose(x, point)); }, theta)
+                              .jacobian;
     CHECK(gap(jacobian(arm, theta, frame::hybrid, point).topRows<3>(), of_point) < 1e-13);
   }
 }

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "mechanism/arms.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/jacobian.hpp>
@@ -42,7 +43,7 @@ TEST_CASE("Jacobian rates and Hessians against derivatives of the Jacobian") {
             }
             return jacobian(arm, x, frame, at...);
           };
-          const auto [m, m_dot] = derivative(along, 0.0);
+          const auto [m, m_dot] = derivative<duet_test::shared_tag>(along, 0.0);
           const auto closed = jacobian_with_rate(arm, theta, v, frame, at...);
           CHECK(gap(closed.jacobian, m) < 1e-13);
           CHECK(gap(closed.rate, m_dot) < 1e-13);
@@ -68,7 +69,7 @@ TEST_CASE("every matrix of the Hessian, by dual numbers through the pose alone")
       return jacobian([&](const auto& y) { return translation(arm.pose(y)); }, x).jacobian;
     };
     for (int j = 0; j < 7; ++j) {
-      const auto by_j = derivative(
+      const auto by_j = derivative<duet_test::shared_tag>(
           [&](const auto& t) {
             using S = std::decay_t<decltype(t)>;
             Eigen::Matrix<S, 7, 1> x = theta.template cast<S>();

@@ -5,6 +5,7 @@
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/jacobian.hpp>
@@ -163,7 +164,8 @@ TEST_CASE("Jacobians of frames, points and relative poses against dual numbers")
   for (const VectorXd& q : coordinates_of(tree, 5)) {
     for_each_place(tree, [&](const auto& at) {
       for_each_frame([&](auto frame) {
-        const auto by_duals = jacobian([&](const auto& x) { return tree.pose(x, at); }, q, frame);
+        const auto by_duals = jacobian<duet_test::shared_tag>(
+            [&](const auto& x) { return tree.pose(x, at); }, q, frame);
         const auto closed = pose_and_jacobian(tree, q, frame, at);
         CHECK(gap(closed.jacobian, by_duals.jacobian) < 2e-13);
         CHECK(gap(transform_matrix(closed.value), transform_matrix(by_duals.value)) < 2e-14);
@@ -184,7 +186,7 @@ TEST_CASE("rates and Hessians against derivatives of the Jacobian") {
     const VectorXd v = random_vector(q.size(), random);
     for_each_place(tree, [&](const auto& at) {
       for_each_frame([&](auto frame) {
-        const auto [m, m_dot] = derivative(
+        const auto [m, m_dot] = derivative<duet_test::shared_tag>(
             [&](const auto& t) { return jacobian(tree, along(q, v, t), frame, at); }, 0.0);
         const auto closed = jacobian_with_rate(tree, q, v, frame, at);
         const double scale = 1 + m_dot.cwiseAbs().maxCoeff();
@@ -226,10 +228,11 @@ TEST_CASE("the centre of mass, its Jacobian, rate and Hessian") {
     }
     CHECK(gap(centre_of_mass(tree, q), Vector3d(sum / mass)) < 1e-14);
     const auto by_duals =
-        jacobian([&](const auto& x) { return centre_of_mass(tree, x); }, q).jacobian;
+        jacobian<duet_test::shared_tag>([&](const auto& x) { return centre_of_mass(tree, x); }, q)
+            .jacobian;
     CHECK(gap(centre_of_mass_jacobian(tree, q), by_duals) < 1e-14);
     const VectorXd v = random_vector(q.size(), random);
-    const auto rate = derivative(
+    const auto rate = derivative<duet_test::shared_tag>(
         [&](const auto& t) { return centre_of_mass_jacobian(tree, along(q, v, t)); }, 0.0);
     CHECK(gap(centre_of_mass_jacobian_rate(tree, q, v), rate.derivative) < 2e-14);
     const auto h = centre_of_mass_hessian(tree, q);
@@ -359,8 +362,9 @@ TEST_CASE("paths of all lengths, with balls anywhere on them, are walked alike")
     k += moves.coordinates();
     CHECK(gap(transform_matrix(tree.pose(q, i)), transform_matrix(at)) < 1e-13);
     if (i % 8 <= 1) { // 16, 17, 32, 33 among them
-      const auto by_duals =
-          jacobian([&](const auto& x) { return tree.pose(x, i); }, q, frame::body).jacobian;
+      const auto by_duals = jacobian<duet_test::shared_tag>(
+                                [&](const auto& x) { return tree.pose(x, i); }, q, frame::body)
+                                .jacobian;
       CHECK(gap(jacobian(tree, q, frame::body, i), by_duals) < 1e-12);
     }
   }
