@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual_quaternion/cases.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/screw.hpp>
@@ -58,17 +59,19 @@ TEST_CASE("squad goes through the poses, with one velocity where segments join")
     };
   };
   for (std::size_t i = 1; i + 3 < p.size(); ++i) {
-    const auto begin = duet::derivative(segment(i), 0.0);
-    const auto end = duet::derivative(segment(i), 1.0);
+    const auto begin = duet::derivative<duet_test::shared_tag>(segment(i), 0.0);
+    const auto end = duet::derivative<duet_test::shared_tag>(segment(i), 1.0);
     CHECK(gap(begin.value, p[i]) < 2e-15);
     CHECK(gap(end.value, p[i + 1]) < 4e-15);
-    CHECK(gap(body_twist(end), body_twist(duet::derivative(segment(i + 1), 0.0))) < 4e-14);
+    CHECK(gap(body_twist(end),
+              body_twist(duet::derivative<duet_test::shared_tag>(segment(i + 1), 0.0))) < 4e-14);
   }
   // The velocity there: the mean of the logarithms to both sides.
   const auto forth = log(conj(p[1]) * p[2]).vec();
   const auto back = log(conj(p[1]) * p[0]).vec();
   const duet::dual_vector<double> mean = forth - back;
-  CHECK(gap(body_twist(duet::derivative(segment(1), 0.0)), duet::twist_of(mean)) < 2e-14);
+  CHECK(gap(body_twist(duet::derivative<duet_test::shared_tag>(segment(1), 0.0)),
+            duet::twist_of(mean)) < 2e-14);
 }
 
 TEST_CASE("Bézier curves start and end along the control polygon, n times as fast") {
@@ -76,8 +79,8 @@ TEST_CASE("Bézier curves start and end along the control polygon, n times as fa
   for (std::size_t n = 1; n <= 4; ++n) {
     const std::vector<dual_quaternion> points(p.begin(), p.begin() + int(n) + 1);
     const auto curve = [&](const auto& tau) { return bezier(points, tau); };
-    const auto begin = duet::derivative(curve, 0.0);
-    const auto end = duet::derivative(curve, 1.0);
+    const auto begin = duet::derivative<duet_test::shared_tag>(curve, 0.0);
+    const auto end = duet::derivative<duet_test::shared_tag>(curve, 1.0);
     CHECK(gap(begin.value, points.front()) < 2e-15);
     CHECK(gap(end.value, points.back()) < 2e-14);
     const auto speed = double(n) * 2.0;
@@ -99,7 +102,7 @@ TEST_CASE("third derivatives agree with the slopes of second ones") {
   const auto curve = [&](const auto& tau) { return bezier(p, tau); };
   const auto d = duet::derivatives<3>(curve, 0.4);
   const auto second = [&](const auto& tau) { return duet::derivatives<2>(curve, tau)[2]; };
-  CHECK(gap(d[3], duet::derivative(second, 0.4).derivative) < 4e-12);
+  CHECK(gap(d[3], duet::derivative<duet_test::shared_tag>(second, 0.4).derivative) < 4e-12);
 }
 
 TEST_CASE("the long way round, the short one, and the one the signs say") {
@@ -107,7 +110,8 @@ TEST_CASE("the long way round, the short one, and the one the signs say") {
   const auto b = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 1.0), vector(0, 0, 2));
   for (const auto& goal : {b, -b}) {
     const auto angle = [&](way round) {
-      const auto d = duet::derivative([&](auto t) { return sclerp(a, goal, t, round); }, 0.0);
+      const auto d = duet::derivative<duet_test::shared_tag>(
+          [&](auto t) { return sclerp(a, goal, t, round); }, 0.0);
       CHECK(gap(duet::transform_matrix(sclerp(a, goal, 1.0, round)), duet::transform_matrix(b)) <
             2e-15);
       return duet::twist(d.value, d.derivative, duet::frame::body)[5];

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual_quaternion/cases.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/distance.hpp>
@@ -52,7 +53,7 @@ TEST_CASE("distances whose squares overflow, and the nearest place among such") 
   for (const double size : {1e-320, 1e-200, 1e-160, 1e160, 1e300}) {
     CAPTURE(size);
     CHECK(distance(at(0), at(size), 1e-300) == doctest::Approx(size).epsilon(1e-15));
-    const auto slope = duet::derivative(
+    const auto slope = duet::derivative<duet_test::shared_tag>(
         [&](const auto& x) {
           using S = std::decay_t<decltype(x)>;
           return distance(
@@ -131,7 +132,7 @@ TEST_CASE("the nearest place is differentiated by the equation that it solves") 
   };
   const double h = 1e-3;
   const auto slope = [&](double step) { return (tau(0.4 + step) - tau(0.4 - step)) / (2 * step); };
-  CHECK(duet::derivative(tau, 0.4).derivative ==
+  CHECK(duet::derivative<duet_test::shared_tag>(tau, 0.4).derivative ==
         doctest::Approx((4 * slope(h) - slope(2 * h)) / 3).epsilon(1e-8));
 }
 
@@ -144,7 +145,7 @@ TEST_CASE("N21: J2 takes the rate of [t; α] to the spatial twist, and back") {
     const auto rate = duet::pose_coordinates_rate(a, v);
     CHECK(gap(duet::pose_rate_matrix(a) * rate, v) < 1e-14);
     // The same by AD: along A exp(½Vt) in spatial axes.
-    const auto by_ad = duet::derivative(
+    const auto by_ad = duet::derivative<duet_test::shared_tag>(
         [&](auto t) {
           using S = decltype(t);
           const duet::dual_vector<S> half = duet::dual_vector_of<S>(v.cast<S>() * S(t / 2));

@@ -2,6 +2,7 @@
 
 #include "dual_quaternion/cases.hpp"
 #include "support/identical.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
@@ -58,7 +59,7 @@ TEST_CASE("rates of poses by AD are J_l ẋ in spatial and J_r ẋ in body axes"
   for (const twist& x : twists()) {
     CAPTURE(x.transpose());
     const twist x_dot = make_twist(vector(0.7, -0.4, 0.2), vector(-0.3, 0.5, 0.9));
-    const auto [a, a_dot] = duet::derivative(
+    const auto [a, a_dot] = duet::derivative<duet_test::shared_tag>(
         [&](auto t) {
           using S = decltype(t);
           return pose_of<S>(x.cast<S>() + t * x_dot.cast<S>());
@@ -138,7 +139,7 @@ TEST_CASE("wrenches: power does not depend on the frame, and coad is the rate of
     CHECK(gap(moved.tail<3>(), moment + duet::translation(a).cross(force)) < 4e-14);
   }
   const twist v = make_twist(vector(0.7, -0.4, 0.2), vector(-0.3, 0.5, 0.9));
-  const auto rate = duet::derivative(
+  const auto rate = duet::derivative<duet_test::shared_tag>(
       [&](auto t) {
         using S = decltype(t);
         return duet::coAd(pose_of<S>(v.cast<S>() * t));

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual_quaternion/cases.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/rotations.hpp>
@@ -65,7 +66,8 @@ TEST_CASE("a pure translation is a straight line") {
   const auto a = duet::pose(duet::quaternion<double>(1.0), vector(1, 0, 0));
   const auto b = duet::pose(duet::quaternion<double>(1.0), vector(1, 4, -2));
   CHECK(gap(duet::translation(sclerp(a, b, 0.25)), vector(1, 1, -0.5)) == 0);
-  const auto [c, rate] = duet::derivative([&](auto t) { return sclerp(a, b, t); }, 0.25);
+  const auto [c, rate] =
+      duet::derivative<duet_test::shared_tag>([&](auto t) { return sclerp(a, b, t); }, 0.25);
   CHECK(gap(2 * duet::dual_part(rate).vec(), vector(0, 4, -2)) == 0);
 }
 
@@ -132,7 +134,7 @@ TEST_CASE("the derivative of ScLERP is a constant twist, judged in fifty digits"
   const auto automatic = [&](const auto& w, const auto& t, const auto& tau) {
     const auto [a, b] = ends(w, t);
     const auto path = [a = a, b = b](const auto& u) { return sclerp(a, b, u); };
-    const auto rate = duet::derivative(path, tau).derivative;
+    const auto rate = duet::derivative<duet_test::shared_tag>(path, tau).derivative;
     return std::array{duet::real_part(rate), duet::dual_part(rate)};
   };
   const auto closed_form = [&](const auto& w, const auto& t, const auto& tau) {

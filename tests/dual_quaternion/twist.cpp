@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual_quaternion/cases.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
@@ -45,7 +46,7 @@ TEST_CASE("twists of a moving pose, from the motion of its parts") {
                       (p + u * t + a * (t * t / 2)).eval());
   };
   const double t = 0.6;
-  const auto [pose, rate] = duet::derivative(motion, t);
+  const auto [pose, rate] = duet::derivative<duet_test::shared_tag>(motion, t);
   const vector velocity = u + a * t;
   const vector place = duet::translation(pose);
   const auto R = duet::rotation_matrix(duet::rotation(pose));
@@ -82,14 +83,14 @@ TEST_CASE("Ad is a homomorphism, ad its derivative and the Lie bracket") {
     const auto step = exp((duet::dual_vector_of(v_body) * (t / 2)).eval());
     return (Ad(step) * w).eval();
   };
-  CHECK(gap(duet::derivative(moved, 0).derivative, ad(v_body) * w) < 1e-15);
+  CHECK(gap(duet::derivative<duet_test::shared_tag>(moved, 0).derivative, ad(v_body) * w) < 1e-15);
   CHECK(gap(ad(v_body) * w, -(ad(w) * v_body)) < 1e-15);
 }
 
 TEST_CASE("Jacobians of and into poses") {
   for (const auto& a : poses()) {
     const auto place = [](const auto& x) { return duet::transform_point(x, point); };
-    const auto body = duet::jacobian(place, a, frame::body).jacobian;
+    const auto body = duet::jacobian<duet_test::shared_tag>(place, a, frame::body).jacobian;
     const auto R = duet::rotation_matrix(duet::rotation(a));
     Eigen::Matrix<double, 3, 6> expected;
     expected.leftCols<3>() = R;
@@ -97,10 +98,12 @@ TEST_CASE("Jacobians of and into poses") {
       expected.col(3 + j) = R * vector(vector::Unit(j)).cross(point);
     }
     CHECK(gap(body, expected) < 1e-14);
-    CHECK(gap(duet::jacobian(place, a, frame::spatial).jacobian * Ad(a), body) < 4e-14);
+    CHECK(gap(duet::jacobian<duet_test::shared_tag>(place, a, frame::spatial).jacobian * Ad(a),
+              body) < 4e-14);
 
     const auto inverse = [](const auto& x) { return conj(x); };
-    CHECK(gap(duet::jacobian(inverse, a, frame::body).jacobian, -Ad(a)) < 1e-14);
+    CHECK(gap(duet::jacobian<duet_test::shared_tag>(inverse, a, frame::body).jacobian, -Ad(a)) <
+          1e-14);
   }
 }
 
@@ -118,17 +121,18 @@ TEST_CASE("Jacobians of and into poses whose origins move apart from their rotat
     const duet::matrix3<double> zero = duet::matrix3<double>::Zero();
 
     const auto place = [](const auto& x) { return duet::transform_point(x, point); };
-    CHECK(gap(duet::jacobian(place, a, frame::hybrid).jacobian, with_turn(one, -hat(R * point))) <
-          1e-14);
+    CHECK(gap(duet::jacobian<duet_test::shared_tag>(place, a, frame::hybrid).jacobian,
+              with_turn(one, -hat(R * point))) < 1e-14);
 
     const auto same = [](const auto& x) { return x; };
-    const auto [value, J] = duet::jacobian(same, a, frame::hybrid);
+    const auto [value, J] = duet::jacobian<duet_test::shared_tag>(same, a, frame::hybrid);
     CHECK(value == a);
     CHECK(gap(J, duet::matrix6<double>::Identity()) < 4e-14);
 
     // (R, t) ↦ (Rᵀ, −Rᵀt)
     const auto inverse = [](const auto& x) { return conj(x); };
-    const auto of_inverse = duet::jacobian(inverse, a, frame::hybrid).jacobian;
+    const auto of_inverse =
+        duet::jacobian<duet_test::shared_tag>(inverse, a, frame::hybrid).jacobian;
     CHECK(gap(of_inverse.topRows<3>(), with_turn(-R.transpose(), -R.transpose() * hat(t))) < 4e-14);
     CHECK(gap(of_inverse.bottomRows<3>(), with_turn(zero, -R.transpose())) < 1e-14);
   }
@@ -140,7 +144,8 @@ TEST_CASE("a pose, a rotation and a number in the hybrid frame") {
   const auto f = [](const auto& x, const auto& r, const auto& s) {
     return (duet::translation(x) + duet::rotate(r * duet::rotation(x), point) * s).eval();
   };
-  const auto J = duet::jacobian(f, std::tuple(a, q, 2.0), frame::hybrid).jacobian;
+  const auto J =
+      duet::jacobian<duet_test::shared_tag>(f, std::tuple(a, q, 2.0), frame::hybrid).jacobian;
   const vector turned = duet::rotate(q * duet::rotation(a), point);
   CHECK(gap(J.leftCols<3>(), duet::matrix3<double>::Identity()) < 1e-15);
   CHECK(gap(J.middleCols<3>(3), -2 * hat(turned) * duet::rotation_matrix(q)) < 4e-14);
@@ -161,7 +166,8 @@ TEST_CASE("gradients and Hessians by poses: half the squared distance of a point
     vector6<double> slope;
     slope << d, r.cross(d);
     CHECK(gap(g, slope) < 1e-14 * scale);
-    CHECK(gap(duet::gradient(f, a, frame::hybrid).gradient, slope) < 1e-14 * scale);
+    CHECK(gap(duet::gradient<duet_test::shared_tag>(f, a, frame::hybrid).gradient, slope) <
+          1e-14 * scale);
     // ½|d + v + ω × r + ½ ω × (ω × r)|² to second order
     duet::matrix6<double> expected;
     expected.topLeftCorner<3, 3>().setIdentity();
@@ -209,8 +215,10 @@ TEST_CASE("accelerations: the classical one is not the derivative of the spatial
     };
   };
   const double t = 0.8;
-  CHECK(duet::derivative(twists(frame::spatial), t).derivative.norm() < 1e-15);
-  const auto classical = duet::derivative(twists(frame::hybrid), t).derivative;
+  CHECK(duet::derivative<duet_test::shared_tag>(twists(frame::spatial), t).derivative.norm() <
+        1e-15);
+  const auto classical =
+      duet::derivative<duet_test::shared_tag>(twists(frame::hybrid), t).derivative;
   CHECK(gap(classical.head<3>(), vector(-2 * std::cos(t), -2 * std::sin(t), 0)) < 1e-15);
 }
 

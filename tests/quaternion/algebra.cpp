@@ -2,6 +2,7 @@
 
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -173,8 +174,8 @@ TEST_CASE("N6: d(pq) = ṗq + pq̇") {
   for (int n = 0; n < 20; ++n) {
     const auto p = whole_quaternion<double>(random), p_dot = whole_quaternion<double>(random);
     const auto q = whole_quaternion<double>(random), q_dot = whole_quaternion<double>(random);
-    const auto [y, dy] =
-        duet::derivative([&](const auto& t) { return (p + t * p_dot) * (q + t * q_dot); }, 0.0);
+    const auto [y, dy] = duet::derivative<duet_test::shared_tag>(
+        [&](const auto& t) { return (p + t * p_dot) * (q + t * q_dot); }, 0.0);
     CHECK(y == p * q);
     CHECK(dy == p_dot * q + p * q_dot);
     const auto ys =

@@ -3,6 +3,7 @@
 #include "support/gap.hpp"
 #include "support/lanes.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/interop/multiprecision.hpp>
@@ -95,13 +96,14 @@ TEST_CASE("derivatives, also at and near zero") {
   for (const double theta : {1e-150, 1e-30, 1e-8, 1e-3, 0.4, 2.0, 3.1}) {
     CAPTURE(theta);
     const quaternion b = duet::from_rotation_vector(vector(theta * axis)) * start;
-    CHECK(gap(duet::gradient(square, b, frame::spatial).gradient, vector(2 * theta * axis)) <
-          4e-15);
+    CHECK(gap(duet::gradient<duet_test::shared_tag>(square, b, frame::spatial).gradient,
+              vector(2 * theta * axis)) < 4e-15);
     const matrix across = theta / 2 / std::tan(theta / 2) * (matrix::Identity() - along);
     CHECK(gap(duet::hessian(square, b, frame::spatial).hessian, matrix(2 * (across + along))) <
           1e-13);
     if (theta > 1e-4) {
-      CHECK(gap(duet::gradient(angle, b, frame::spatial).gradient, axis) < 1e-15 / theta);
+      CHECK(gap(duet::gradient<duet_test::shared_tag>(angle, b, frame::spatial).gradient, axis) <
+            1e-15 / theta);
       CHECK(gap(duet::hessian(angle, b, frame::spatial).hessian, matrix(across / theta)) <
             1e-14 / (theta * theta));
     }
@@ -114,12 +116,14 @@ TEST_CASE("derivatives, also at and near zero") {
   const auto from_one = [](const auto& b) { return distance(quaternion(1), b); };
   for (const double theta : {1e-300, 1e-150, 1e-8}) {
     const quaternion b = duet::from_rotation_vector(vector(theta * axis));
-    CHECK(gap(duet::gradient(from_one, b, frame::spatial).gradient, axis) < 1e-15);
+    CHECK(gap(duet::gradient<duet_test::shared_tag>(from_one, b, frame::spatial).gradient, axis) <
+          1e-15);
   }
   // By both ends.
   const auto both = [](const auto& a, const auto& b) { return squared_distance(a, b); };
   const quaternion end = duet::from_rotation_vector(vector(0.8 * axis)) * start;
-  const auto g = duet::gradient(both, std::tuple(start, end), frame::spatial).gradient;
+  const auto g =
+      duet::gradient<duet_test::shared_tag>(both, std::tuple(start, end), frame::spatial).gradient;
   CHECK(gap(g.head<3>(), vector(-1.6 * axis)) < 4e-15);
   CHECK(gap(g.tail<3>(), vector(1.6 * axis)) < 4e-15);
 }
@@ -128,7 +132,7 @@ TEST_CASE("half a turn apart the derivative is that of the sign as given") {
   const quaternion half_turn(0, 1, 0, 0);
   const auto square = [](const auto& b) { return squared_distance(quaternion(1), b); };
   const auto way = [&](const quaternion& b) {
-    return vector(duet::gradient(square, b, frame::spatial).gradient);
+    return vector(duet::gradient<duet_test::shared_tag>(square, b, frame::spatial).gradient);
   };
   CHECK(square(half_turn) == doctest::Approx(pi * pi).epsilon(1e-15));
   CHECK(gap(way(half_turn), vector(2 * pi, 0, 0)) < 4e-15);

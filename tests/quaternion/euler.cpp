@@ -2,6 +2,7 @@
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/core/constants.hpp>
@@ -168,11 +169,11 @@ TEST_CASE("rates of the angles: AD of euler(q(t)), and the inverse of euler_rate
         return duet::from_euler<S>(x, y, z);
       };
       const double t = 0.1;
-      const auto there = duet::derivative(
+      const auto there = duet::derivative<duet_test::shared_tag>(
           [=](const auto& u) { return angles_along<std::decay_t<decltype(u)>, S>(u, b); }, t);
-      const auto back =
-          duet::derivative([&](const auto& u) { return duet::euler<S>(curve(u)); }, t);
-      const auto [q, q_dot] = duet::derivative(curve, t);
+      const auto back = duet::derivative<duet_test::shared_tag>(
+          [&](const auto& u) { return duet::euler<S>(curve(u)); }, t);
+      const auto [q, q_dot] = duet::derivative<duet_test::shared_tag>(curve, t);
       const duet::vector3<double> omega = angular_velocity(q, q_dot, duet::frame::spatial);
       const duet::matrix3<double> A = duet::euler_rate_matrix<S>(there.value[0], there.value[1]);
       const duet::vector3<double> by_matrix = A.inverse() * omega;
@@ -338,7 +339,7 @@ TEST_CASE("the zero quaternion has no angles") {
 TEST_CASE("in gimbal lock the angles give the rotation, without derivatives") {
   const auto q = duet::from_euler<duet::zyx>(0.3, pi / 2, 0.1);
   CHECK(defect<duet::zyx>(q) <= 1e-15);
-  const auto [value, slope] = duet::derivative(
+  const auto [value, slope] = duet::derivative<duet_test::shared_tag>(
       [](const auto& t) {
         using T = std::decay_t<decltype(t)>;
         return duet::euler<duet::zxz>(quaternion<T>(T(1), t, T(0), T(0)));

@@ -2,6 +2,7 @@
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/derivative/derivative.hpp>
@@ -47,7 +48,7 @@ M in_paper_order(const M& letters) {
 /// ω of given angles and rates by AD of the quaternion alone.
 duet::vector3<double> automatic(double psi, double theta, double phi, double psi_rate,
                                 double theta_rate, double phi_rate) {
-  const auto [q, q_dot] = duet::derivative(
+  const auto [q, q_dot] = duet::derivative<duet_test::shared_tag>(
       [=](const auto& t) {
         return duet::from_euler<duet::zyx>(psi + psi_rate * t, theta + theta_rate * t,
                                            phi + phi_rate * t);
@@ -107,7 +108,7 @@ TEST_CASE("P5: the derivative of delta, A'{...} + A{...}'', is AD's second deriv
   };
   const double u = 0.7;
   const auto y = duet::derivatives<2>(angles, u);
-  const auto [a, a_dot] = duet::derivative(
+  const auto [a, a_dot] = duet::derivative<duet_test::shared_tag>(
       [&](const auto& t) {
         const auto v = angles(t);
         return in_paper_order(duet::euler_rate_matrix<duet::zyx>(v[2], v[1]));

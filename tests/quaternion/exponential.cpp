@@ -3,6 +3,7 @@
 #include "quaternion/closed_forms.hpp"
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -77,7 +78,8 @@ TEST_CASE("N4: exp, value and first derivative") {
         [&](const truth::real& t) { return truth::exp(truth::sum(x, dx, t)); }, 1);
     const truth::real scale =
         truth::length(exact_slope) + truth::change_of_derivative(truth::exp, x, dx, 1);
-    const auto automatic = duet::derivative([&](const auto& t) { return exp(q + t * q_dot); }, 0.0);
+    const auto automatic = duet::derivative<duet_test::shared_tag>(
+        [&](const auto& t) { return exp(q + t * q_dot); }, 0.0);
     slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
     closed.add(truth::ulps(duet_test::closed_form::exp_derivative(q, q_dot), exact_slope, scale), q,
                q_dot);

@@ -4,6 +4,7 @@
 #include "quaternion/hard_inputs.hpp"
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -41,7 +42,8 @@ TEST_CASE("N4: log, value and first derivative") {
         [&](const truth::real& t) { return truth::log(truth::sum(x, dx, t)); }, 1, smooth);
     const truth::real scale =
         truth::length(exact_slope) + truth::change_of_derivative(truth::log, x, dx, smooth);
-    const auto automatic = duet::derivative([&](const auto& t) { return log(q + t * q_dot); }, 0.0);
+    const auto automatic = duet::derivative<duet_test::shared_tag>(
+        [&](const auto& t) { return log(q + t * q_dot); }, 0.0);
     slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
     // The closed form has φ in it and loses digits near a full turn, where AD does not.
     if (q.w() > 0 || smooth > truth::length(x) / 10) {

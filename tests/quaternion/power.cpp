@@ -4,6 +4,7 @@
 #include "quaternion/hard_inputs.hpp"
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -62,8 +63,8 @@ TEST_CASE("N5: pow, value and first derivative by base and exponent") {
         truth::change_of_derivative(power, x, dx, smooth) +
         std::abs(rho_dot) * truth::length(exact) *
             truth::change_of_value(truth::log, x, duet_test::smooth_length(x));
-    const auto automatic =
-        duet::derivative([&](const auto& t) { return pow(q + t * q_dot, rho + t * rho_dot); }, 0.0);
+    const auto automatic = duet::derivative<duet_test::shared_tag>(
+        [&](const auto& t) { return pow(q + t * q_dot, rho + t * rho_dot); }, 0.0);
     slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, rho, q_dot, rho_dot);
     if (duet_test::smooth_length(x) > truth::length(x) / 10) {
       closed.add(truth::ulps(duet_test::closed_form::pow_derivative(q, q_dot, rho, rho_dot),
@@ -119,10 +120,10 @@ TEST_CASE("whole powers are smooth at a full turn") {
           return quaternion_t(base.w() * 0 + 1);
         }
       };
-      const auto [y, dy] =
-          duet::derivative([&](const auto& t) { return pow(q + t * q_dot, rho); }, 0.0);
-      const auto [z, dz] =
-          duet::derivative([&](const auto& t) { return repeated(q + t * q_dot); }, 0.0);
+      const auto [y, dy] = duet::derivative<duet_test::shared_tag>(
+          [&](const auto& t) { return pow(q + t * q_dot, rho); }, 0.0);
+      const auto [z, dz] = duet::derivative<duet_test::shared_tag>(
+          [&](const auto& t) { return repeated(q + t * q_dot); }, 0.0);
       CHECK(norm(y - z) <= 1e-15);
       CHECK(norm(dy - dz) <= 5e-15);
     }

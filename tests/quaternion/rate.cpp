@@ -2,6 +2,7 @@
 
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -56,7 +57,8 @@ Eigen::Matrix3d slope(const M& m) {
 TEST_CASE("N7: the angular velocity from the rate is that of the rotation matrix") {
   // ω̂^s = Ṙ Rᵀ and ω̂^b = Rᵀ Ṙ, by AD of the matrix alone.
   for (double t = -2; t <= 2; t += 0.125) {
-    const auto [q, q_dot] = duet::derivative([](const auto& u) { return motion(u); }, t);
+    const auto [q, q_dot] =
+        duet::derivative<duet_test::shared_tag>([](const auto& u) { return motion(u); }, t);
     const auto matrix = rotation_matrix(motion(duet::dual<double>::variable(t)));
     const Eigen::Matrix3d r = rotation_matrix(q);
     const Eigen::Matrix3d r_dot = slope(matrix);
@@ -75,7 +77,7 @@ TEST_CASE("N7: the angular velocity from the rate is that of the rotation matrix
 TEST_CASE("angular accelerations are rates of angular velocities, and back") {
   const auto check = [](double t, auto axes) {
     const auto q = duet::derivatives<2>([](const auto& u) { return motion(u); }, t);
-    const auto [omega, rate] = duet::derivative(
+    const auto [omega, rate] = duet::derivative<duet_test::shared_tag>(
         [&](const auto& u) {
           const auto [value, slope] = duet::derivative([](const auto& w) { return motion(w); }, u);
           return angular_velocity(value, slope, axes);
@@ -176,7 +178,7 @@ TEST_CASE("N8: E and G, ω = 2 E q̇ = 2 R G q̇, E Gᵀ = R") {
 TEST_CASE("N7: angular velocity of a Taylor number carries the angular acceleration") {
   const double t = 0.4;
   const auto ys = duet::derivatives<2>([](const auto& u) { return motion(u); }, t);
-  const auto by_ad = duet::derivative(
+  const auto by_ad = duet::derivative<duet_test::shared_tag>(
       [](const auto& u) {
         struct inner;
         const auto [q, q_dot] = duet::derivative<inner>([](const auto& w) { return motion(w); }, u);

@@ -3,6 +3,7 @@
 #include "quaternion/hard_inputs.hpp"
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -83,8 +84,8 @@ TEST_CASE("axis and angle") {
 
   // ω of a turn about a fixed axis is that axis.
   const vector3<double> n(1, 2, 2);
-  const auto [q, q_dot] =
-      duet::derivative([&](const auto& t) { return duet::from_axis_angle(n, t); }, 0.7);
+  const auto [q, q_dot] = duet::derivative<duet_test::shared_tag>(
+      [&](const auto& t) { return duet::from_axis_angle(n, t); }, 0.7);
   CHECK(norm(q_dot - q * quaternion<double>(0, vector3<double>(n / 6))) <= 1e-16);
 }
 
@@ -116,7 +117,7 @@ TEST_CASE("the rotation vector has derivatives everywhere but across a half turn
   for (const double angle : {0.0, 1e-300, 1e-8, 1e-4, 1.0, 3.0, pi - 1e-8}) {
     const vector3<double> r = angle * direction(random);
     const vector3<double> d = direction(random);
-    const auto [back, rate] = duet::derivative(
+    const auto [back, rate] = duet::derivative<duet_test::shared_tag>(
         [&](const auto& t) {
           using T = std::decay_t<decltype(t)>;
           const duet::vector3<T> moved(r[0] + t * d[0], r[1] + t * d[1], r[2] + t * d[2]);
@@ -167,7 +168,7 @@ TEST_CASE("from_two_vectors of opposite vectors turns by half, about some perpen
       static_cast<void>(duet::from_two_vectors(vector3<double>(0, 0, 0), vector3<double>(1, 0, 0))),
       duet::invalid_input);
   // There is no derivative to be had.
-  const auto [value, rate] = duet::derivative(
+  const auto [value, rate] = duet::derivative<duet_test::shared_tag>(
       [](const auto& t) {
         using T = std::decay_t<decltype(t)>;
         return duet::from_two_vectors(duet::vector3<T>(T(1), T(0), T(0)),
@@ -183,7 +184,7 @@ TEST_CASE("derivatives through from_two_vectors") {
     const vector3<double> a = direction(random);
     const vector3<double> n = a.cross(direction(random)).normalized();
     // b turns about n, so q does, half as fast in half angles; lengths change and do not matter.
-    const auto [q, q_dot] = duet::derivative(
+    const auto [q, q_dot] = duet::derivative<duet_test::shared_tag>(
         [&](const auto& t) {
           using T = std::decay_t<decltype(t)>;
           const duet::vector3<T> from(a[0] * (1 + t), a[1] * (1 + t), a[2] * (1 + t));

@@ -3,6 +3,7 @@
 #include "quaternion/closed_forms.hpp"
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -66,8 +67,8 @@ TEST_CASE("N9: slerp, value and derivative by the parameter") {
     const truth::four exact_slope = truth::difference(
         [&](const truth::real& t) { return truth::slerp(wide_a, near_b, truth::real(tau + t)); },
         1);
-    const auto automatic =
-        duet::derivative([&, p = a, q = b](const auto& t) { return slerp(p, q, t); }, tau);
+    const auto automatic = duet::derivative<duet_test::shared_tag>(
+        [&, p = a, q = b](const auto& t) { return slerp(p, q, t); }, tau);
     // A small rotation has a small rate, with all its digits.
     const truth::real scale = truth::length(exact_slope);
     slope.add(truth::ulps(automatic.derivative, exact_slope, scale), a, b, tau);
@@ -101,7 +102,7 @@ TEST_CASE("N9: slerp, derivative by its ends") {
           return truth::slerp(moved_a, truth::times(moved_b, sign), tau);
         },
         1);
-    const auto automatic = duet::derivative(
+    const auto automatic = duet::derivative<duet_test::shared_tag>(
         [&, p = a, q = b](const auto& t) { return slerp(p + t * a_dot, q + t * b_dot, tau); }, 0.0);
     slope.add(truth::ulps(automatic.derivative, exact, 1 + truth::length(exact)), a, b, tau);
   }
@@ -146,7 +147,8 @@ TEST_CASE("the angular velocity of slerp is constant") {
   const auto a = random_rotation(random);
   const auto b = random_rotation(random);
   const auto omega = [&, p = a, q = b](double tau) {
-    const auto [value, rate] = duet::derivative([&](const auto& t) { return slerp(p, q, t); }, tau);
+    const auto [value, rate] =
+        duet::derivative<duet_test::shared_tag>([&](const auto& t) { return slerp(p, q, t); }, tau);
     return angular_velocity(value, rate, duet::frame::body);
   };
   for (const double tau : {0.0, 0.2, 0.9, 1.0}) {
