@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/planning/branches/circle_roots.hpp>
+#include <duet/planning/branches/complex_eigenvectors.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/line_coordinates.hpp>
 
@@ -29,6 +30,8 @@
 namespace duet::detail {
 
 class elimination {
+  using complex = std::complex<double>;
+
 public:
   using matrix = Eigen::Matrix<double, 12, 12>;
   using decomposition = Eigen::PartialPivLU<matrix>;
@@ -65,7 +68,12 @@ public:
     factors_.setThreshold(1e-10);
     factors_.compute(goal_);
     Eigen::Matrix<double, 14, 27> rest = arm_;
-    rest.applyOnTheLeft(factors_.householderQ().transpose());
+    Eigen::Matrix<double, 27, 1>
+        workspace; // (by blocks, as Eigen applies them, compilers take longer)
+    for (Eigen::Index k = 0; k < 8; ++k) {
+      rest.bottomRows(14 - k).applyHouseholderOnTheLeft(factors_.matrixQR().col(k).tail(13 - k),
+                                                        factors_.hCoeffs()[k], workspace.data());
+    }
     const Eigen::Index rank = factors_.rank();
     if (rank == 8) {
       left_ = rest.bottomRows<6>();
@@ -156,14 +164,13 @@ public:
       high = kernel.bottomRows(9).template cast<complex>();
     }
     orthonormalise(low, high);
-    using square = Eigen::Matrix<complex, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 12, 12>;
-    const square right = low.adjoint().lazyProduct(high);
+    const small_square right = low.adjoint().lazyProduct(high);
     if (count == 1) {
       return visit_factors(theta, right(0, 0), low.col(0), visit);
     }
-    const Eigen::ComplexEigenSolver<square> eigen(right);
-    const auto& z = eigen.eigenvalues();
-    const auto products = low.lazyProduct(eigen.eigenvectors()).eval();
+    const complex_eigenvectors eigen(right);
+    const auto& z = eigen.values;
+    const auto products = low.lazyProduct(eigen.vectors).eval();
     int real = 0;
     for (int k = 0; k < count; ++k) {
       int other = -1; // a solution with the same θ₄
@@ -184,23 +191,6 @@ public:
   }
 
 private:
-  using complex = std::complex<double>;
-
-  /// The same sums of columns of others.
-  template <class M, class... Others>
-  static void orthonormalise(M& m, Others&... others) {
-    for (Eigen::Index j = 0; j < m.cols(); ++j) {
-      for (Eigen::Index k = 0; k < j; ++k) {
-        const auto part = m.col(k).dot(m.col(j));
-        m.col(j) -= part * m.col(k);
-        ((others.col(j) -= part * others.col(k)), ...);
-      }
-      const double size = m.col(j).norm();
-      m.col(j) /= size;
-      ((others.col(j) /= size), ...);
-    }
-  }
-
   [[nodiscard]] bool is_real(complex z) const {
     return loop_.joints[3].turns ? std::abs(std::log(std::abs(z))) < .1
                                  : std::abs(z.imag()) < .1 * (1 + std::abs(z));

@@ -8,7 +8,7 @@
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/QR>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -186,14 +186,16 @@ private:
     set(2, gamma);
     set(3, angle_of(conj(two_turns(b.axis, beta, c.axis, gamma)) * rest, d.axis));
     const loop_gap left(loop_, result);
-    Eigen::Matrix<double, 3, 2> ways;
-    for (int k = 0; k < 2; ++k) {
-      ways.col(k) = left.jacobian.col(Eigen::Index(sliding_[std::size_t(k)])).head<3>();
-    }
-    const Eigen::Vector2d along = ways.colPivHouseholderQr().solve(left.twist.head<3>());
-    for (int k = 0; k < 2; ++k) {
-      result[Eigen::Index(sliding_[std::size_t(k)])] = along[k];
-    }
+    const auto rows = [](const auto& x) { return Eigen::Vector3d(x.template head<3>()); };
+    const auto way = [&](std::size_t k) {
+      return rows(left.jacobian.col(Eigen::Index(sliding_[k])));
+    };
+    // Along both ways, and across what they span.
+    const Eigen::Vector3d first = way(0), second = way(1), gap = rows(left.twist);
+    const Eigen::Vector3d across = first.cross(second);
+    const double square = across.squaredNorm();
+    result[Eigen::Index(sliding_[0])] = gap.cross(second).dot(across) / square;
+    result[Eigen::Index(sliding_[1])] = first.cross(gap).dot(across) / square;
     return result;
   }
 
