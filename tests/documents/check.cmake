@@ -5,9 +5,10 @@
 # are excerpts for the eye and are not compiled.
 #
 # A program that begins with duet/duet.hpp, as all do that can, is given it precompiled: nothing else
-# is, so that it must still include what else it needs.
+# is, so that it must still include what else it needs. Others, of what is heavier, are linked to the library
+# duet::compiled where it is given.
 #
-# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dprecompiled=<header>
+# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dprecompiled=<header> [-Dlibrary=<file>]
 #   -Dfolder=<for programs> -P check.cmake
 
 cmake_minimum_required(VERSION 3.22)
@@ -45,11 +46,15 @@ while(TRUE)
   set(program ${folder}/snippet_${count})
   file(WRITE ${program}.cpp "${code}")
   set(include "")
+  set(link "")
   if(precompiled AND code MATCHES "^\n*#include <duet/duet.hpp>\n")
     set(include -include ${precompiled})
+  elseif(library)
+    set(include -DDUET_COMPILED)
+    set(link ${library} -lexpat)
   endif()
   execute_process(
-    COMMAND ${compile} -Wall -Wextra -Werror ${include} ${program}.cpp -o ${program}
+    COMMAND ${compile} -Wall -Wextra -Werror ${include} ${program}.cpp -o ${program} ${link}
     RESULT_VARIABLE result ERROR_VARIABLE log)
   if(NOT result EQUAL 0)
     message("${code}\n${log}")
