@@ -130,7 +130,8 @@ public:
     if (result.residual > rounding) {
       loop_solution refined = x;
       static_cast<void>(close_loop(loop_, refined.theta));
-      result = described(refined);
+      const branch other = described(refined);
+      result = other.residual < result.residual ? other : result; // it may run away
     }
     return result;
   }

@@ -22,6 +22,11 @@ struct turning_value {
   [[nodiscard]] double at(double theta) const {
     return a + b * std::cos(theta) + c * std::sin(theta);
   }
+  [[nodiscard]] double rate(double theta) const {
+    return c * std::cos(theta) - b * std::sin(theta);
+  }
+  /// Of the most that it can be away from a.
+  [[nodiscard]] double square() const { return b * b + c * c; }
 };
 
 /// Zeros nearer than that count as one, of multiplicity 2: rounding takes them that far apart.

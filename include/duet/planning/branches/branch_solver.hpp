@@ -70,7 +70,7 @@ bool branch_search::solve(branch_method method, int first, const joint_loop& loo
     return false;
   }
   method_ = method;
-  answer_.complex_solutions += most;
+  answer_.complex_solutions = std::max(0, answer_.complex_solutions + most);
   answer_.is_complete = is_determined;
   return true;
 }

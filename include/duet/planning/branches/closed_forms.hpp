@@ -3,13 +3,16 @@
 
 #include <duet/planning/branches/angle_pairs.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/turn_between.hpp>
 #include <duet/planning/branches/turns.hpp>
 #include <duet/planning/planning_model.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 /// \file
@@ -36,30 +39,24 @@ public:
     const vector3d goal = loop_.closing.point(centre_);
     // In a frame with its origin on the second axis: those points e₃ c and e₁⁻¹ goal agree along
     // that axis, and in their squares.
-    const turned_vector from(third.axis, centre_ - third.point);
-    const turned_vector to(-1 * first.axis, goal - first.point);
-    const auto height = [&](const turned_vector& x, const vector3d& offset) {
-      return turning_value{dot(second.axis, x.along + offset), dot(second.axis, x.across),
-                           dot(second.axis, x.beside)};
+    const turned_vector from(third.axis, centre_ - third.point, third.point - second.point);
+    const turned_vector to(-1 * first.axis, goal - first.point, first.point - second.point);
+    const auto height = [&](const turned_vector& x) { return part_along(second.axis, x); };
+    const auto square = [&](const turned_vector& x) {
+      const double still = dot(x.across, x.across) + dot(x.along, x.along);
+      return turning_value{still, 2 * dot(x.along, x.across), 2 * dot(x.along, x.beside)};
     };
-    const auto square = [&](const turned_vector& x, const vector3d& offset) {
-      const double still = dot(x.across, x.across) + dot(x.along + offset, x.along + offset);
-      return turning_value{still, 2 * dot(offset, x.across), 2 * dot(offset, x.beside)};
-    };
-    const vector3d at_first = first.point - second.point, at_third = third.point - second.point;
-    const angle_pairs pairs{{height(to, at_first), square(to, at_first)},
-                            {height(from, at_third), square(from, at_third)}};
+    const angle_pairs pairs{{height(to), square(to)}, {height(from), square(from)}};
+    turn_between middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
     bool is_determined = true;
-    const bool has_pairs = pairs([&](double theta1, double theta3, int multiplicity) {
-      six_coordinates theta = six_coordinates::Zero();
-      theta[0] = theta1;
-      theta[2] = theta3;
-      const vector3d start = from.at(theta3) + at_third, end = to.at(theta1) + at_first;
-      theta[1] = angle_about(second.axis, start, end);
-      is_determined = is_determined && !is_lost(second.axis, start);
-      is_determined = wrist(theta, multiplicity, visit) && is_determined;
+    const bool has_pairs = pairs([&](double near1, double near3, int m) {
+      middle(near3, near1, m, [&](double theta3, double theta1, double theta2, int multiplicity) {
+        six_coordinates theta;
+        theta << theta1, theta2, theta3, 0, 0, 0;
+        is_determined = wrist(theta, multiplicity, visit) && is_determined;
+      });
     });
-    return has_pairs && is_determined;
+    return has_pairs && middle.is_determined() && is_determined;
   }
 
 private:
@@ -95,56 +92,78 @@ public:
     // Of planes that turn about the fifth axis, the normal along it does not change, nor the
     // distance from a point on it.
     const turned_vector from(sixth.axis, goal_normal), to(-1 * fourth.axis, n);
-    const auto slope = [&](const turned_vector& x) {
-      return turning_value{dot(fifth.axis, x.along), dot(fifth.axis, x.across),
-                           dot(fifth.axis, x.beside)};
-    };
     const auto distance = [&](const turned_vector& x, double before, const vector3d& offset) {
-      return turning_value{before + dot(x.along, offset), dot(x.across, offset),
-                           dot(x.beside, offset)};
+      turning_value result = part_along(offset, x);
+      result.a += before;
+      return result;
     };
     const angle_pairs pairs{
-        {slope(to), distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
-        {slope(from),
+        {part_along(fifth.axis, to),
+         distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
+        {part_along(fifth.axis, from),
          distance(from, goal_distance - dot(goal_normal, sixth.point), sixth.point - fifth.point)}};
+    turn_between middle(fifth.axis, from, to, pairs.g[1], pairs.f[1]);
     bool is_determined = true;
-    const bool has_pairs = pairs([&](double theta4, double theta6, int multiplicity) {
-      six_coordinates theta = six_coordinates::Zero();
-      theta[3] = theta4;
-      theta[5] = theta6;
-      const vector3d start = from.at(theta6);
-      theta[4] = angle_about(fifth.axis, start, to.at(theta4));
-      is_determined = is_determined && !is_lost(fifth.axis, start);
-      is_determined = plane(theta, multiplicity, visit) && is_determined;
+    const bool has_pairs = pairs([&](double near4, double near6, int m) {
+      middle(near6, near4, m, [&](double theta6, double theta4, double theta5, int multiplicity) {
+        six_coordinates theta;
+        theta << 0, 0, 0, theta4, theta5, theta6;
+        const auto visit_plane = [&](double angle, int times) {
+          theta[4] = angle;
+          is_determined = plane(theta, times, visit) && is_determined;
+        };
+        if (!middle.is_open(theta6, theta4) || !visit_zeros(beyond_reach(theta), visit_plane)) {
+          visit_plane(theta5, multiplicity);
+        }
+      });
     });
-    return has_pairs && is_determined;
+    return has_pairs && middle.is_determined() && is_determined;
   }
 
 private:
+  /// Where the fifth axis has become parallel to the first three: 0 at the θ₅ with which the third
+  /// is as far from the first as in the middle of all that they can be.
+  [[nodiscard]] turning_value beyond_reach(const six_coordinates& theta) const {
+    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2],
+               &fifth = loop_.joints[4];
+    const auto across = [&](const loop_joint& j, const vector3d& x) {
+      return x - dot(j.axis, x) * j.axis;
+    };
+    const tip_place after = loop_.closing * inverse_place(product_of_joints(loop_, theta, 5, 1)),
+                    before = inverse_place(product_of_joints(loop_, theta, 3, 1));
+    const turned_vector way(-1 * fifth.axis, before.point(third.point) - fifth.point);
+    const vector3d still = across(fifth, fifth.point - inverse_place(after).point(first.point));
+    const double a = length_of(across(first, second.point - first.point)), c = length_of(still),
+                 b = length_of(across(first, third.point - second.point)),
+                 d = length_of(way.across),
+                 radius = (std::max(std::abs(a - b), std::abs(c - d)) + std::min(a + b, c + d)) / 2;
+    return {c * c + d * d - radius * radius, 2 * dot(still, way.across),
+            2 * dot(still, way.beside)};
+  }
+
   template <class Visit>
   bool plane(six_coordinates& theta, int multiplicity, const Visit& visit) const {
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
     const tip_place motion = loop_.closing * inverse_place(product_of_joints(loop_, theta, 3, 3));
     const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
     const double whole = angle_of(motion.rotation, n); // of turns about n and −n
-    const turned_vector arm(second.axis, third.point - second.point);
     const vector3d offset = second.point - first.point;
+    const turned_vector arm(second.axis, third.point - second.point, offset);
     const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
     const vector3d across = in_plane(offset), goal = in_plane(to);
-    bool is_determined = true;
-    const bool has_second =
-        visit_zeros({dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
-                     2 * dot(across, arm.across), 2 * dot(across, arm.beside)},
-                    [&](double theta2, int m) {
-                      const vector3d from = offset + arm.at(theta2);
-                      theta[1] = theta2;
-                      theta[0] = angle_about(n, from, to);
-                      is_determined = is_determined && !is_lost(n, from);
-                      theta[2] =
-                          dot(n, third.axis) * (whole - theta[0] - dot(n, second.axis) * theta2);
-                      visit(theta, multiplicity * m);
-                    });
-    return has_second && is_determined;
+    turn_between turn(n, arm, to);
+    const bool has_second = visit_zeros(
+        {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
+         2 * dot(across, arm.across), 2 * dot(across, arm.beside)},
+        [&](double near2, int near_multiplicity) {
+          turn(near2, 0, near_multiplicity, [&](double theta2, double, double theta1, int m) {
+            theta[0] = theta1;
+            theta[1] = theta2;
+            theta[2] = dot(n, third.axis) * (whole - theta1 - dot(n, second.axis) * theta2);
+            visit(theta, multiplicity * m);
+          });
+        });
+    return has_second && turn.is_determined();
   }
 
   const joint_loop& loop_;

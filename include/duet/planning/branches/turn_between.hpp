@@ -1,0 +1,219 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/branches/angle_pairs.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+/// \file
+/// The turn about an axis that takes one vector to another, both of which turn about other axes.
+
+namespace duet::detail {
+
+using vector3d = three_vector<double>;
+
+/// R v + t of a rotation by θ about a unit vector n is `along` + cos θ `across` + sin θ `beside`.
+struct turned_vector {
+  vector3d along{}, across{}, beside{};
+
+  turned_vector(const vector3d& n, const vector3d& v, const vector3d& t = {})
+      : along(dot(n, v) * n), across(v - along), beside(cross(n, v)) {
+    along = along + t;
+  }
+  /// One that stays where it is.
+  explicit turned_vector(const vector3d& t) : along(t) {}
+
+  [[nodiscard]] vector3d at(double theta) const {
+    return along + std::cos(theta) * across + std::sin(theta) * beside;
+  }
+  [[nodiscard]] vector3d rate(double theta) const {
+    return std::cos(theta) * beside - std::sin(theta) * across;
+  }
+};
+
+/// n·v
+[[nodiscard]] inline turning_value part_along(const vector3d& n, const turned_vector& v) {
+  return {dot(n, v.along), dot(n, v.across), dot(n, v.beside)};
+}
+
+/// The angle by which a turn about n takes u to v, of n × u and n × v; 0 where they are.
+[[nodiscard]] inline double angle_across(const vector3d& n, const vector3d& u, const vector3d& v) {
+  return std::atan2(dot(n, cross(u, v)), dot(u, v));
+}
+[[nodiscard]] inline double angle_about(const vector3d& n, const vector3d& u, const vector3d& v) {
+  return angle_across(n, cross(n, u), cross(n, v));
+}
+
+/// The turn about an axis n that takes one vector, turned by θ, to another, turned by φ. They have
+/// to be as far from the axis as each other, and f(θ) = g(φ).
+///
+/// The cosine of an angle says little of it where that is small. Near the axis their ways from it
+/// are taken instead, U = n × v: that |U + U′t| = |V + V′t| along the line on which f = g has two
+/// solutions. They are next to each other in θ and φ, but not in the angle of the turn.
+class turn_between {
+public:
+  turn_between(const vector3d& axis, const turned_vector& start, const turned_vector& end,
+               const turning_value& f, const turning_value& g)
+      : axis_(axis), start_(start), end_(end), f_(f), g_(g),
+        close_by_(reach * reach *
+                  std::max(dot(start.across, start.across), dot(end.across, end.across))) {}
+  /// To a vector that stays where it is, with φ = 0.
+  turn_between(const vector3d& axis, const turned_vector& start, const vector3d& end)
+      : turn_between(axis, start, turned_vector(end), {0, 0, 0}, {0, 0, 1}) {}
+
+  /// Calls visit(θ, φ, angle of the turn, multiplicity) for a θ and φ that solve both equations but
+  /// for rounding; near the axis for all that are beside them and have not been visited before.
+  template <class Visit>
+  void operator()(double theta, double phi, int multiplicity, const Visit& visit) {
+    const place x{theta, phi};
+    const ways w(*this, x);
+    if (w.square < close_by_) {
+      const beside here(*this, x);
+      if (here.is_close(1)) {
+        visit_beside(x, here, visit);
+        return;
+      }
+    }
+    visit_one(x, w, multiplicity, visit);
+  }
+
+  /// Was the angle of each visited turn?
+  [[nodiscard]] bool is_determined() const { return is_determined_; }
+
+  /// May a turn that was visited have any angle?
+  [[nodiscard]] bool is_open(double theta, double phi) const {
+    return !is_determined_ && ways(*this, {theta, phi}).square <= rounding * rounding;
+  }
+
+private:
+  /// What is one may be that far from its middle.
+  static constexpr double rounding = 3e-13;
+  /// An angle within which second order is enough to begin with.
+  static constexpr double reach = 1e-3;
+
+  struct place {
+    double theta = 0, phi = 0;
+  };
+
+  struct ways {
+    vector3d from, to;
+    double square; ///< of the distance from the axis
+
+    ways(const turn_between& turn, const place& x)
+        : from(cross(turn.axis_, turn.start_.at(x.theta))),
+          to(cross(turn.axis_, turn.end_.at(x.phi))), square(dot(from, from)) {}
+  };
+
+  /// a t² + 2 b t + c = |U + U′t|² − |V + V′t|² along the line through `at` on which f = g.
+  struct beside {
+    place at, way{1, 0};
+    double a = 0, b = 0, c = 0;
+    double distance = 0;  ///< |U| + |V|
+    double rate = 0;      ///< (U′² + V′²)^½
+    bool is_fold = false; ///< f and g do not change to first order: `at` itself counts twice
+
+    beside(const turn_between& turn, const place& x) : at(x) {
+      const double level = turn.f_.at(x.theta) - turn.g_.at(x.phi);
+      const double by_theta = turn.f_.rate(x.theta), by_phi = -turn.g_.rate(x.phi);
+      const double slope = by_theta * by_theta + by_phi * by_phi;
+      is_fold = !(slope > 2 * one_angle * one_angle * (turn.f_.square() + turn.g_.square()));
+      if (!is_fold) {
+        const double size = std::sqrt(slope);
+        way = {by_phi / size, -by_theta / size};
+        at = {x.theta - level * by_theta / slope, x.phi - level * by_phi / slope};
+      }
+      const ways w(turn, at);
+      const vector3d from_rate = way.theta * cross(turn.axis_, turn.start_.rate(at.theta)),
+                     to_rate = way.phi * cross(turn.axis_, turn.end_.rate(at.phi));
+      const double from = std::sqrt(w.square), to = length_of(w.to);
+      const double square = dot(from_rate, from_rate), other = dot(to_rate, to_rate);
+      distance = from + to;
+      rate = std::sqrt(square + other);
+      a = square - other;
+      b = dot(w.from, from_rate) - dot(w.to, to_rate);
+      c = (from - to) * distance;
+    }
+
+    [[nodiscard]] bool is_close(double times) const { return distance < times * 2 * reach * rate; }
+    [[nodiscard]] place after(double t) const {
+      return {at.theta + t * way.theta, at.phi + t * way.phi};
+    }
+    [[nodiscard]] bool has_middle() const { return std::abs(b) < 2 * reach * std::abs(a); }
+    [[nodiscard]] place middle() const { return after(-b / a); }
+    [[nodiscard]] double discriminant() const { return b * b - a * c; }
+    /// The zero that is nearer, or the one that is farther.
+    [[nodiscard]] place zero(bool is_nearer) const {
+      const double q = -b - std::copysign(std::sqrt(std::max(0., discriminant())), b);
+      return after(is_nearer ? c / q : q / a);
+    }
+  };
+
+  template <class Visit>
+  void visit_beside(const place& seed, beside here, const Visit& visit) {
+    constexpr int steps = 5; // the error is squared in each
+    for (int k = 0; k < steps && here.has_middle(); ++k) {
+      here = beside(*this, here.middle());
+    }
+    const double off = here.discriminant(),
+                 half = here.rate * std::sqrt(std::abs(off)) / std::abs(here.a);
+    const bool is_on_axis = here.distance + half <= rounding,
+               is_double = half <= .01 * here.distance &&
+                           std::abs(off) <= rounding * here.distance * std::abs(here.a);
+    const int folds = here.is_fold ? 2 : 1;
+    if (here.has_middle() && (is_on_axis || is_double)) {
+      visit_new(here.middle(), 2 * folds, visit);
+      return;
+    }
+    if (!here.has_middle() && std::abs(here.b) <= rounding * here.rate) { // all along the line
+      is_determined_ = false;
+      visit_new(seed, 2 * folds, visit);
+      return;
+    }
+    if (off < 0) {
+      return; // a complex pair
+    }
+    for (const bool is_nearer : {true, false}) {
+      place x = here.zero(is_nearer);
+      for (int k = 0; k < steps; ++k) {
+        x = beside(*this, x).zero(true);
+      }
+      if (beside(*this, x).is_close(2)) { // others are solutions by themselves
+        visit_new(x, folds, visit);
+      }
+    }
+  }
+
+  template <class Visit>
+  void visit_new(const place& x, int multiplicity, const Visit& visit) {
+    const ways w(*this, x);
+    const double apart = 1e-8 * std::sqrt(std::max(rounding, std::sqrt(w.square)));
+    const auto is_same = [&](const place& y) {
+      const double turn = 2 * std::numbers::pi;
+      return std::abs(std::remainder(x.theta - y.theta, turn)) < apart &&
+             std::abs(std::remainder(x.phi - y.phi, turn)) < apart;
+    };
+    if (std::none_of(visited_.begin(), visited_.end(), is_same)) {
+      visited_.push_back(x);
+      visit_one(x, w, multiplicity, visit);
+    }
+  }
+
+  template <class Visit>
+  void visit_one(const place& x, const ways& w, int multiplicity, const Visit& visit) {
+    is_determined_ = is_determined_ && w.square > rounding * rounding;
+    visit(x.theta, x.phi, angle_across(axis_, w.from, w.to), multiplicity);
+  }
+
+  vector3d axis_;
+  turned_vector start_, end_;
+  turning_value f_, g_;
+  double close_by_; ///< a squared distance from the axis
+  bool is_determined_ = true;
+  std::vector<place> visited_; ///< near the axis
+};
+
+} // namespace duet::detail
