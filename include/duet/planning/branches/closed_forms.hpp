@@ -3,7 +3,7 @@
 
 #include <duet/planning/branches/angle_pairs.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/turn_between.hpp>
+#include <duet/planning/branches/middle_turn.hpp>
 #include <duet/planning/branches/turns.hpp>
 #include <duet/planning/planning_model.hpp>
 
@@ -47,7 +47,7 @@ public:
       return turning_value{still, 2 * dot(x.along, x.across), 2 * dot(x.along, x.beside)};
     };
     const angle_pairs pairs{{height(to), square(to)}, {height(from), square(from)}};
-    turn_between middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
+    middle_turn middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
     bool is_determined = true;
     const bool has_pairs = pairs([&](double near1, double near3, int m) {
       middle(near3, near1, m, [&](double theta3, double theta1, double theta2, int multiplicity) {
@@ -56,7 +56,7 @@ public:
         is_determined = wrist(theta, multiplicity, visit) && is_determined;
       });
     });
-    return has_pairs && middle.is_determined() && is_determined;
+    return has_pairs && middle.nearest() > 0 && is_determined;
   }
 
 private:
@@ -64,11 +64,26 @@ private:
   bool wrist(six_coordinates& theta, int multiplicity, const Visit& visit) const {
     const quaternion<double> turn =
         conj(product_of_joints(loop_, theta, 0, 3).rotation) * loop_.closing.rotation;
-    return visit_three_turns(loop_.joints[3], loop_.joints[4], loop_.joints[5], turn,
-                             [&](double alpha, double beta, double gamma, int m) {
-                               theta.tail<3>() << alpha, beta, gamma;
-                               visit(theta, multiplicity * m);
-                             });
+    const double nearest =
+        visit_three_turns(loop_.joints[3], loop_.joints[4], loop_.joints[5], turn,
+                          [&](double alpha, double beta, double gamma, int m) {
+                            theta.tail<3>() << alpha, beta, gamma;
+                            visit(theta, multiplicity * m);
+                          });
+    constexpr double close_by = 1e-3;
+    return nearest > close_by || (nearest > 0 && nearest > error_of(theta));
+  }
+
+  /// Of the first three coordinates, by rounding of where the centre is.
+  [[nodiscard]] double error_of(const six_coordinates& theta) const {
+    constexpr double rounding = 3e-15;
+    const six_columns all = loop_gap(loop_, theta).jacobian;
+    const Eigen::Vector3d goal = loop_.closing.point(centre_);
+    Eigen::Matrix3d ways;
+    for (int i = 0; i < 3; ++i) {
+      ways.col(i) = all.col(i).head<3>() + all.col(i).tail<3>().cross(goal);
+    }
+    return rounding * ways.inverse().norm();
   }
 
   const joint_loop& loop_;
@@ -102,7 +117,7 @@ public:
          distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
         {part_along(fifth.axis, from),
          distance(from, goal_distance - dot(goal_normal, sixth.point), sixth.point - fifth.point)}};
-    turn_between middle(fifth.axis, from, to, pairs.g[1], pairs.f[1]);
+    middle_turn middle(fifth.axis, from, to, pairs.g[1], pairs.f[1]);
     bool is_determined = true;
     const bool has_pairs = pairs([&](double near4, double near6, int m) {
       middle(near6, near4, m, [&](double theta6, double theta4, double theta5, int multiplicity) {
@@ -112,12 +127,12 @@ public:
           theta[4] = angle;
           is_determined = plane(theta, times, visit) && is_determined;
         };
-        if (!middle.is_open(theta6, theta4) || !visit_zeros(beyond_reach(theta), visit_plane)) {
+        if (!middle.is_open() || !visit_zeros(beyond_reach(theta), visit_plane)) {
           visit_plane(theta5, multiplicity);
         }
       });
     });
-    return has_pairs && middle.is_determined() && is_determined;
+    return has_pairs && middle.nearest() > 0 && is_determined;
   }
 
 private:
@@ -151,7 +166,7 @@ private:
     const turned_vector arm(second.axis, third.point - second.point, offset);
     const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
     const vector3d across = in_plane(offset), goal = in_plane(to);
-    turn_between turn(n, arm, to);
+    middle_turn turn(n, arm, to);
     const bool has_second = visit_zeros(
         {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
          2 * dot(across, arm.across), 2 * dot(across, arm.beside)},
@@ -163,7 +178,8 @@ private:
             visit(theta, multiplicity * m);
           });
         });
-    return has_second && turn.is_determined();
+    // Angles that count as one may have put it on the first.
+    return has_second && turn.nearest() > (multiplicity > 1 ? 2 * one_angle : 0);
   }
 
   const joint_loop& loop_;
@@ -185,7 +201,7 @@ public:
     }
     const auto joint = [&](std::size_t k) { return loop_.joints[std::size_t(turning[k])]; };
     bool is_determined = true;
-    const bool has_turns =
+    const double nearest =
         visit_three_turns(joint(0), joint(1), joint(2), loop_.closing.rotation,
                           [&](double alpha, double beta, double gamma, int multiplicity) {
                             six_coordinates theta = six_coordinates::Zero();
@@ -205,7 +221,7 @@ public:
                             }
                             visit(theta, multiplicity);
                           });
-    return has_turns && is_determined;
+    return nearest > 0 && is_determined;
   }
 
 private:

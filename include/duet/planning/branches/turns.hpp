@@ -4,7 +4,7 @@
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/planning/branches/angle_pairs.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/turn_between.hpp>
+#include <duet/planning/branches/middle_turn.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -35,14 +35,15 @@ namespace duet::detail {
 
 /// Calls visit(α, β, γ, multiplicity) where turns by α, β and γ about the axes of three joints are,
 /// one after the other, a given one.
-/// \return false where α or β are undetermined
+/// \return how far the last axis has been from the first, at least, as the sine of the angle
+/// between them; 0 where α or β are undetermined
 template <class Visit>
-bool visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_joint& c,
-                       const quaternion<double>& turn, const Visit& visit) {
+double visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_joint& c,
+                         const quaternion<double>& turn, const Visit& visit) {
   // The last axis stays where it is in the last turn, the angle between it and the first in that.
   const turned_vector last(b.axis, c.axis);
   const vector3d goal = rotated(turn, c.axis);
-  turn_between first(a.axis, last, goal);
+  middle_turn first(a.axis, last, goal);
   const bool has_beta =
       visit_zeros({dot(a.axis, last.along) - dot(a.axis, goal), dot(a.axis, last.across),
                    dot(a.axis, last.beside)},
@@ -54,7 +55,7 @@ bool visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_join
                             visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
                           });
                   });
-  return has_beta && first.is_determined();
+  return has_beta ? first.nearest() : 0;
 }
 
 } // namespace duet::detail

@@ -54,16 +54,16 @@ struct turned_vector {
 /// The cosine of an angle says little of it where that is small. Near the axis their ways from it
 /// are taken instead, U = n × v: that |U + U′t| = |V + V′t| along the line on which f = g has two
 /// solutions. They are next to each other in θ and φ, but not in the angle of the turn.
-class turn_between {
+class middle_turn {
 public:
-  turn_between(const vector3d& axis, const turned_vector& start, const turned_vector& end,
-               const turning_value& f, const turning_value& g)
+  middle_turn(const vector3d& axis, const turned_vector& start, const turned_vector& end,
+              const turning_value& f, const turning_value& g)
       : axis_(axis), start_(start), end_(end), f_(f), g_(g),
         close_by_(reach * reach *
                   std::max(dot(start.across, start.across), dot(end.across, end.across))) {}
   /// To a vector that stays where it is, with φ = 0.
-  turn_between(const vector3d& axis, const turned_vector& start, const vector3d& end)
-      : turn_between(axis, start, turned_vector(end), {0, 0, 0}, {0, 0, 1}) {}
+  middle_turn(const vector3d& axis, const turned_vector& start, const vector3d& end)
+      : middle_turn(axis, start, turned_vector(end), {0, 0, 0}, {0, 0, 1}) {}
 
   /// Calls visit(θ, φ, angle of the turn, multiplicity) for a θ and φ that solve both equations but
   /// for rounding; near the axis for all that are beside them and have not been visited before.
@@ -78,16 +78,15 @@ public:
         return;
       }
     }
-    visit_one(x, w, multiplicity, visit);
+    visit_one(x, w, rounding, multiplicity, visit);
   }
 
-  /// Was the angle of each visited turn?
-  [[nodiscard]] bool is_determined() const { return is_determined_; }
+  /// How far from the axis the vectors have been that were visited, at least; 0 where the angle of
+  /// a turn is undetermined.
+  [[nodiscard]] double nearest() const { return nearest_; }
 
-  /// May a turn that was visited have any angle?
-  [[nodiscard]] bool is_open(double theta, double phi) const {
-    return !is_determined_ && ways(*this, {theta, phi}).square <= rounding * rounding;
-  }
+  /// May that of the turn that is being visited be any?
+  [[nodiscard]] bool is_open() const { return is_open_; }
 
 private:
   /// What is one may be that far from its middle.
@@ -103,7 +102,7 @@ private:
     vector3d from, to;
     double square; ///< of the distance from the axis
 
-    ways(const turn_between& turn, const place& x)
+    ways(const middle_turn& turn, const place& x)
         : from(cross(turn.axis_, turn.start_.at(x.theta))),
           to(cross(turn.axis_, turn.end_.at(x.phi))), square(dot(from, from)) {}
   };
@@ -112,18 +111,20 @@ private:
   struct beside {
     place at, way{1, 0};
     double a = 0, b = 0, c = 0;
-    double distance = 0;  ///< |U| + |V|
-    double rate = 0;      ///< (U′² + V′²)^½
-    bool is_fold = false; ///< f and g do not change to first order: `at` itself counts twice
+    double distance = 0;     ///< |U| + |V|
+    double rate = 0;         ///< (U′² + V′²)^½
+    double error = rounding; ///< of U and V
+    bool is_fold = false;    ///< f and g do not change to first order: `at` itself counts twice
 
-    beside(const turn_between& turn, const place& x) : at(x) {
+    beside(const middle_turn& turn, const place& x) : at(x) {
       const double level = turn.f_.at(x.theta) - turn.g_.at(x.phi);
       const double by_theta = turn.f_.rate(x.theta), by_phi = -turn.g_.rate(x.phi);
       const double slope = by_theta * by_theta + by_phi * by_phi;
       is_fold = !(slope > 2 * one_angle * one_angle * (turn.f_.square() + turn.g_.square()));
       if (!is_fold) {
-        const double size = std::sqrt(slope);
+        const double size = std::sqrt(slope), level_error = 1e-14;
         way = {by_phi / size, -by_theta / size};
+        error = std::max(rounding, level_error * std::sqrt(turn.close_by_) / (reach * size));
         at = {x.theta - level * by_theta / slope, x.phi - level * by_phi / slope};
       }
       const ways w(turn, at);
@@ -160,17 +161,17 @@ private:
     }
     const double off = here.discriminant(),
                  half = here.rate * std::sqrt(std::abs(off)) / std::abs(here.a);
-    const bool is_on_axis = here.distance + half <= rounding,
+    const bool is_on_axis = here.distance + half <= here.error,
                is_double = half <= .01 * here.distance &&
                            std::abs(off) <= rounding * here.distance * std::abs(here.a);
     const int folds = here.is_fold ? 2 : 1;
     if (here.has_middle() && (is_on_axis || is_double)) {
-      visit_new(here.middle(), 2 * folds, visit);
+      visit_new(here.middle(), here.error, 2 * folds, visit);
       return;
     }
     if (!here.has_middle() && std::abs(here.b) <= rounding * here.rate) { // all along the line
-      is_determined_ = false;
-      visit_new(seed, 2 * folds, visit);
+      nearest_ = 0;
+      visit_new(seed, here.error, 2 * folds, visit);
       return;
     }
     if (off < 0) {
@@ -182,13 +183,13 @@ private:
         x = beside(*this, x).zero(true);
       }
       if (beside(*this, x).is_close(2)) { // others are solutions by themselves
-        visit_new(x, folds, visit);
+        visit_new(x, here.error, folds, visit);
       }
     }
   }
 
   template <class Visit>
-  void visit_new(const place& x, int multiplicity, const Visit& visit) {
+  void visit_new(const place& x, double error, int multiplicity, const Visit& visit) {
     const ways w(*this, x);
     const double apart = 1e-8 * std::sqrt(std::max(rounding, std::sqrt(w.square)));
     const auto is_same = [&](const place& y) {
@@ -198,13 +199,15 @@ private:
     };
     if (std::none_of(visited_.begin(), visited_.end(), is_same)) {
       visited_.push_back(x);
-      visit_one(x, w, multiplicity, visit);
+      visit_one(x, w, error, multiplicity, visit);
     }
   }
 
   template <class Visit>
-  void visit_one(const place& x, const ways& w, int multiplicity, const Visit& visit) {
-    is_determined_ = is_determined_ && w.square > rounding * rounding;
+  void visit_one(const place& x, const ways& w, double error, int multiplicity,
+                 const Visit& visit) {
+    is_open_ = !(w.square > error * error);
+    nearest_ = is_open_ ? 0 : std::min(nearest_, std::sqrt(w.square));
     visit(x.theta, x.phi, angle_across(axis_, w.from, w.to), multiplicity);
   }
 
@@ -212,7 +215,8 @@ private:
   turned_vector start_, end_;
   turning_value f_, g_;
   double close_by_; ///< a squared distance from the axis
-  bool is_determined_ = true;
+  double nearest_ = HUGE_VAL;
+  bool is_open_ = false;
   std::vector<place> visited_; ///< near the axis
 };
 

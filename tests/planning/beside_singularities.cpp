@@ -1,0 +1,206 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/denavit_hartenberg.hpp>
+#include <duet/mechanism/jacobian.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/all_inverse_kinematics.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace test_planning_beside_singularities {
+namespace {
+
+using namespace duet;
+using duet_test::real_50;
+using std::numbers::pi;
+using chain = serial_chain<6>;
+using joints = Eigen::Matrix<double, 6, 1>;
+using wide_joints = Eigen::Matrix<real_50, 6, 1>;
+using result = all_inverse_kinematics_result<6>;
+
+constexpr std::array distances{1e-3,  3e-4,  1e-4,  1e-5,  1e-6,  3e-7,  1e-7,  1e-8, 1e-9,
+                               1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16, 0.};
+
+/// A shoulder whose axes do not meet, an elbow, and a wrist whose axes meet: the outer ones are one
+/// where the coordinate of the middle one is 0.
+chain with_wrist(duet_test::random_source& random, double tilt) {
+  const auto length = [&] { return random.uniform(.1, 1); };
+  return from_dh(std::array<dh_row<>, 6>{{{.a = length(), .d = length(), .alpha = pi / 2},
+                                          {.a = length(), .d = length()},
+                                          {.a = length(), .alpha = -pi / 2},
+                                          {.d = length(), .alpha = tilt},
+                                          {.alpha = -tilt},
+                                          {.d = length()}}});
+}
+
+/// Three parallel axes; the sixth is parallel to them where the coordinate of the fifth is 0.
+chain with_parallel_axes(duet_test::random_source& random, bool is_apart) {
+  const auto length = [&] { return random.uniform(.1, 1); };
+  return from_dh(
+      std::array<dh_row<>, 6>{{{.d = length(), .alpha = pi / 2},
+                               {.a = length()},
+                               {.a = length()},
+                               {.d = length(), .alpha = pi / 2},
+                               {.a = is_apart ? length() : 0., .d = length(), .alpha = -pi / 2},
+                               {.d = length()}}});
+}
+
+int count_of(const result& found) {
+  int count = 0;
+  for (const auto& s : found.solutions) {
+    count += s.multiplicity;
+  }
+  return count;
+}
+
+double distance(const joints& a, const joints& b) {
+  double largest = 0;
+  for (int i = 0; i < 6; ++i) {
+    largest = std::max(largest, std::abs(std::remainder(a[i] - b[i], 2 * pi)));
+  }
+  return largest;
+}
+
+/// The rotation vector and the way to a goal, to first order.
+wide_joints way_to(const dual_quaternion<real_50>& goal, const dual_quaternion<real_50>& tip) {
+  const auto turn = rotation(goal) * conj(rotation(tip));
+  const Eigen::Matrix<real_50, 3, 1> way = translation(goal) - translation(tip);
+  wide_joints result;
+  const real_50 twice = turn.w() < 0 ? -2 : 2;
+  result << way[0], way[1], way[2], twice * turn.x(), twice * turn.y(), twice * turn.z();
+  return result;
+}
+
+/// The solution in 50 digits that θ is near to, by the Jacobian at θ.
+wide_joints exact_solution(const chain& arm, const dual_quaternion<real_50>& goal,
+                           const joints& theta) {
+  const Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> lu(jacobian(arm, theta, frame::hybrid));
+  wide_joints exact = theta.cast<real_50>();
+  for (int k = 0; k < 60; ++k) {
+    const wide_joints way = way_to(goal, arm.pose(exact));
+    const double size = double(way.norm());
+    if (size < 1e-40) {
+      break;
+    }
+    const joints step = lu.solve((way / size).cast<double>());
+    exact += real_50(size) * step.cast<real_50>();
+  }
+  return exact;
+}
+
+/// \param joint  whose coordinate is how far θ is from a singularity
+void check_beside(const chain& arm, joints theta, int joint, branch_method method) {
+  const double singular = theta[joint];
+  for (const double side : {1., -1.}) {
+    theta[joint] = singular + side * 2e-3;
+    const int count = count_of(all_inverse_kinematics(arm, arm.pose(theta)));
+    for (const double away : distances) {
+      CAPTURE(side);
+      CAPTURE(away);
+      theta[joint] = singular + side * away;
+      const result found = all_inverse_kinematics(arm, arm.pose(theta));
+      CHECK(found.method == method);
+      CHECK_FALSE(found.solutions.empty());
+      for (const auto& s : found.solutions) {
+        CHECK(s.residual <= 1e-12);
+      }
+      const bool is_certain = away >= 1e-12;
+      CHECK(found.is_complete == is_certain);
+      if (!is_certain) { // the joints move with the tip in place
+        continue;
+      }
+      CHECK(count_of(found) == count);
+      CHECK(found.complex_solutions == 8 - count);
+      const auto goal = arm.pose(wide_joints(theta.cast<real_50>()));
+      int met = 0;
+      for (const auto& s : found.solutions) {
+        CHECK(s.multiplicity == 1);
+        const double rounding = (1e-14 + 2 * s.residual) / s.smallest_singular_value;
+        const wide_joints exact = exact_solution(arm, goal, s.joints);
+        CHECK(double(way_to(goal, arm.pose(exact)).norm()) < 1e-35);
+        CHECK(distance(exact.cast<double>(), s.joints) < rounding);
+        met += distance(theta, s.joints) < rounding;
+        for (const auto& other : found.solutions) {
+          CHECK((&s == &other || distance(s.joints, other.joints) > .1));
+        }
+      }
+      CHECK(met == 1);
+    }
+  }
+}
+
+double smallest_singular_value(const chain& arm, const joints& theta) {
+  return detail::smallest_singular_value(jacobian(arm, theta, frame::hybrid));
+}
+
+/// With one coordinate 0, beside which nothing else is singular.
+joints configuration(const chain& arm, duet_test::random_source& random, int joint) {
+  constexpr double beside = 2e-3;
+  joints theta;
+  do {
+    for (double& x : theta) {
+      x = random.uniform(-pi, pi);
+    }
+    theta[joint] = beside;
+  } while (smallest_singular_value(arm, theta) < .02 * beside);
+  theta[joint] = 0;
+  return theta;
+}
+
+TEST_CASE("beside the singularity of a wrist") {
+  duet_test::random_source random(1);
+  for (int k = 0; k < 5; ++k) {
+    CAPTURE(k);
+    const chain arm = with_wrist(random, k < 3 ? pi / 2 : random.uniform(.5, 1.2));
+    check_beside(arm, configuration(arm, random, 4), 4, branch_method::spherical_wrist);
+  }
+}
+
+TEST_CASE("beside the singularity of a wrist after three parallel axes") {
+  duet_test::random_source random(2);
+  for (int k = 0; k < 5; ++k) {
+    CAPTURE(k);
+    const chain arm = with_parallel_axes(random, k >= 3);
+    check_beside(arm, configuration(arm, random, 4), 4, branch_method::parallel_axes);
+  }
+}
+
+/// Whatever else is nearly singular.
+TEST_CASE("in the singularity of a wrist") {
+  duet_test::random_source random(3);
+  for (int k = 0; k < 200; ++k) {
+    CAPTURE(k);
+    const chain arm =
+        k % 2 == 0 ? with_wrist(random, pi / 2) : with_parallel_axes(random, k % 4 == 1);
+    joints theta;
+    for (double& x : theta) {
+      x = random.uniform(-pi, pi);
+    }
+    for (const double away : {0., 1e-16, 1e-14}) {
+      theta[4] = away;
+      const result found = all_inverse_kinematics(arm, arm.pose(theta));
+      CHECK_FALSE(found.is_complete);
+      bool is_met = false;
+      for (const auto& s : found.solutions) {
+        CHECK(s.residual <= 1e-12);
+        is_met = is_met || s.smallest_singular_value < 1e-10;
+      }
+      CHECK(is_met);
+    }
+  }
+}
+
+} // namespace
+} // namespace test_planning_beside_singularities
