@@ -122,14 +122,18 @@ private:
       const double slope = by_theta * by_theta + by_phi * by_phi;
       is_fold = !(slope > 2 * one_angle * one_angle * (turn.f_.square() + turn.g_.square()));
       if (!is_fold) {
-        const double size = std::sqrt(slope), level_error = 1e-14;
+        const double size = std::sqrt(slope);
         way = {by_phi / size, -by_theta / size};
-        error = std::max(rounding, level_error * std::sqrt(turn.close_by_) / (reach * size));
         at = {x.theta - level * by_theta / slope, x.phi - level * by_phi / slope};
       }
       const ways w(turn, at);
-      const vector3d from_rate = way.theta * cross(turn.axis_, turn.start_.rate(at.theta)),
-                     to_rate = way.phi * cross(turn.axis_, turn.end_.rate(at.phi));
+      const vector3d by_start = cross(turn.axis_, turn.start_.rate(at.theta)),
+                     by_end = cross(turn.axis_, turn.end_.rate(at.phi));
+      if (!is_fold) { // of f − g, by as much as at best
+        error = std::max({rounding, 1e-14 * std::abs(by_theta) * length_of(by_start) / slope,
+                          1e-14 * std::abs(by_phi) * length_of(by_end) / slope});
+      }
+      const vector3d from_rate = way.theta * by_start, to_rate = way.phi * by_end;
       const double from = std::sqrt(w.square), to = length_of(w.to);
       const double square = dot(from_rate, from_rate), other = dot(to_rate, to_rate);
       distance = from + to;
