@@ -77,10 +77,10 @@ double distance(const joints& a, const joints& b) {
 wide_joints way_to(const dual_quaternion<real_50>& goal, const dual_quaternion<real_50>& tip) {
   const auto turn = rotation(goal) * conj(rotation(tip));
   const Eigen::Matrix<real_50, 3, 1> way = translation(goal) - translation(tip);
-  wide_joints result;
+  wide_joints twist;
   const real_50 twice = turn.w() < 0 ? -2 : 2;
-  result << way[0], way[1], way[2], twice * turn.x(), twice * turn.y(), twice * turn.z();
-  return result;
+  twist << way[0], way[1], way[2], twice * turn.x(), twice * turn.y(), twice * turn.z();
+  return twist;
 }
 
 /// The solution in 50 digits that θ is near to, by the Jacobian at θ.
