@@ -100,13 +100,20 @@ private:
     route begin(before.waypoints.front());
     begin.waypoints.assign(before.waypoints.begin(),
                            before.waypoints.begin() + std::ptrdiff_t(first) + 1);
-    self_motion_search search(solver_, target_, options_.self_motion_step, iterations_left_);
-    const auto ways = search.run(begin.back().state, search_parameters(begin.back()));
-    iterations_left_ = search.iterations_left();
     route best = before;
-    for (const auto& way : ways) {
-      if (!is_at_end(best)) {
-        keep_better(best, along(begin, way));
+    // Ways beside a singularity may lead over it where the tip cannot go: then those that do not.
+    for (const double singular : {damping_threshold, no_singular_value}) {
+      self_motion_search search(solver_, target_, options_.self_motion_step, singular,
+                                iterations_left_);
+      const auto ways = search.run(begin.back().state, search_parameters(begin.back()));
+      iterations_left_ = search.iterations_left();
+      for (const auto& way : ways) {
+        if (!is_at_end(best)) {
+          keep_better(best, along(begin, way));
+        }
+      }
+      if (best.back().u >= ways.front().back().u) {
+        break;
       }
     }
     return best;
@@ -159,8 +166,14 @@ private:
     route back({to.state, to.u});
     back.step = options_.search_step;
     const double u = x.back().u;
-    if (!travel(back, u, options_.search_step, {}) || !arrive(x, back.back().state.theta) ||
-        excess_between(x.back(), back.back()) > 1) {
+    if (!travel(back, u, options_.search_step, {})) {
+      return false;
+    }
+    for (int round = 0; round < 5 && excess_between(x.back(), back.back()) > 1; ++round) {
+      arrive(x, back.back().state.theta);
+      arrive(back, x.back().state.theta);
+    }
+    if (excess_between(x.back(), back.back()) > 1) {
       return false;
     }
     x.waypoints.insert(x.waypoints.end(), back.waypoints.rbegin(), back.waypoints.rend());

@@ -42,9 +42,11 @@ class self_motion_search {
 public:
   using vector = small_vector<Room>;
 
+  /// \param singular  configurations with a singular value below it are left to both sides, too
   self_motion_search(const pose_solver<Room>& solver, const place_function& target, double spacing,
-                     int iterations)
-      : solver_(solver), target_(target), spacing_(spacing), left_(iterations) {}
+                     double singular, int iterations)
+      : solver_(solver), target_(target), spacing_(spacing), singular_(singular),
+        left_(iterations) {}
 
   /// Each configuration a step from the one before.
   using configurations = std::vector<reachable<Room>>;
@@ -62,7 +64,7 @@ public:
       const tip_place target = target_(u[k]);
       for (std::size_t i = first; i < end && left_ > 0; ++i) {
         const chain_state<Room> here = found_[i].state;
-        const bool is_singular = smallest_singular_value_of(here.jacobian) < damping_threshold;
+        const bool is_singular = smallest_singular_value_of(here.jacobian) < singular_;
         const auto add = [&](const attempt<Room>& next) {
           if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
               (!is_singular || leads(next.state, u[k], here, u[k - 1]))) {
@@ -214,7 +216,10 @@ private:
       if (next.is_within(solver_.tolerance) && norm(moved) < 2 * reach &&
           dot(moved, end.direction) > .7 * reach) {
         const vector direction = self_motion_direction(next.state.jacobian, end.direction);
-        if (dot(direction, end.direction) > .7) {
+        const bool is_turned = orientation(next.state.jacobian, direction) *
+                                   orientation(here.jacobian, end.direction) <
+                               0;
+        if (dot(direction, end.direction) > .7 && (!is_turned || reach < spacing_ / 50)) {
           found_.push_back({next.state, found_[end.at].u, std::ptrdiff_t(end.at)});
           end = {found_.size() - 1, direction, std::min(spacing_, 2 * reach)};
           return true;
@@ -226,7 +231,7 @@ private:
 
   const pose_solver<Room>& solver_;
   const place_function& target_;
-  double spacing_;
+  double spacing_, singular_;
   int left_;
   struct {
     double u = 0;

@@ -5,6 +5,9 @@
 #include <duet/planning/small_vector.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
+#include <Eigen/Core>
+#include <Eigen/LU>
+
 #include <cstddef>
 
 /// \file
@@ -12,13 +15,15 @@
 
 namespace duet::detail {
 
+/// A singular value that counts as none.
+inline constexpr double no_singular_value = 1e-5;
+
 /// What of a step of the joints leaves the tip in place: λ (JᵀJ + λ)⁻¹ of it, with λ the square of
-/// a singular value that counts as none.
+/// `no_singular_value`.
 template <int Room>
 [[nodiscard]] small_vector<Room> in_place(const small_matrix<6, Room>& jacobian,
                                           small_vector<Room> step) {
-  constexpr double none = 1e-5;
-  const damped_gram gram(gram_of(jacobian), {0, none * none});
+  const damped_gram gram(gram_of(jacobian), {0, no_singular_value * no_singular_value});
   const small_twist force = gram.solve(what_is_left({}, jacobian, step));
   for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
     step[i] += column_dot(jacobian, i, force);
@@ -40,6 +45,25 @@ template <int Room>
     wish = 1 / length * wish;
   }
   return wish;
+}
+
+/// The sign of the determinant of J with a direction of self-motion below it, where one joint is to
+/// spare, else 1. Along a curve of self-motion it stays as it is; it is another beyond where curves
+/// cross, and on the curve beyond where two nearly do.
+template <int Room>
+[[nodiscard]] double orientation(const small_matrix<6, Room>& jacobian,
+                                 const small_vector<Room>& direction) {
+  if (jacobian.cols() != 7) {
+    return 1;
+  }
+  Eigen::Matrix<double, 7, 7> square;
+  for (int i = 0; i < 7; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      square(k, i) = jacobian(k, i);
+    }
+    square(6, i) = direction[i];
+  }
+  return square.determinant() < 0 ? -1 : 1;
 }
 
 /// The direction, of unit length, in which a singular configuration is left fastest; its opposite
