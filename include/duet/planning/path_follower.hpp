@@ -182,16 +182,14 @@ private:
   }
 
   /// In place, to a configuration or as near to it as the joints get.
-  [[nodiscard]] bool arrive(route& x, const vector& aim) {
+  void arrive(route& x, const vector& aim) {
     for (double before = std::numeric_limits<double>::infinity();;) {
       const double left = norm(aim - x.back().state.theta);
-      if (left < 1e-9 || !(left < .9 * before)) {
-        return true;
+      if (left < 1e-9 || !(left < .9 * before) ||
+          !travel(x, x.back().u, options_.search_step, {&aim})) {
+        return;
       }
       before = left;
-      if (!travel(x, x.back().u, options_.search_step, {&aim})) {
-        return false;
-      }
     }
   }
 };

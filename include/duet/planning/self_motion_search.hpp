@@ -69,9 +69,7 @@ public:
           if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
               (!is_singular || leads(next.state, u[k], here, u[k - 1]))) {
             found_.push_back({next.state, u[k], std::ptrdiff_t(i), is_singular});
-            const std::size_t added = found_.size() - 1;
-            follow(added, target);
-            found_[added].is_alone = found_.size() == added + 1;
+            follow(found_.size() - 1, target);
           }
         };
         farthest_.now = i;
@@ -133,10 +131,16 @@ private:
   /// Configurations for a target near that of a singular one, which lie to both sides of it.
   template <class Add>
   void leave(const chain_state<Room>& singular, const tip_place& target, const Add& add) {
-    const vector out = way_out(singular.jacobian);
-    const double way = norm(error_twist(singular.tip, target));
-    for (const double s : {way, -way, std::sqrt(way), -std::sqrt(way)}) {
-      vector beside = singular.theta + s * out;
+    const singular_point<Room> here(singular.jacobian);
+    const small_twist e = error_twist(singular.tip, target);
+    const vector out = here.way_out(), step = here.step_for(e);
+    const double way = norm(e);
+    for (const vector& offset :
+         {step, -1 * step, way * out, -way * out, std::sqrt(way) * out, -std::sqrt(way) * out}) {
+      if (!(norm(offset) > 0)) {
+        continue;
+      }
+      vector beside = singular.theta + offset;
       for (std::ptrdiff_t i = 0; i < beside.size(); ++i) {
         beside[i] = std::clamp(beside[i], solver_.model.lower[i], solver_.model.upper[i]);
       }
@@ -162,23 +166,25 @@ private:
     });
   }
 
-  /// Adds the piece that found_[start] is on, in both directions by turns, so that what is near
-  /// comes first.
+  /// Adds the piece that found_[start] is on, unless no more than `tolerance` makes it one.
   void follow(std::size_t start, const tip_place& target) {
-    const auto& jacobian = found_[start].state.jacobian;
-    vector best;
-    double largest = 0;
-    for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
-      vector unit;
-      unit[i] = 1;
-      const vector d = self_motion_direction(jacobian, unit);
-      if (std::abs(d[i]) > largest) { // d[i] is how much of the unit vector is in d
-        largest = std::abs(d[i]);
-        best = d;
-      }
+    extend(start, target);
+    const bool is_alone =
+        std::all_of(found_.begin() + std::ptrdiff_t(start), found_.end(), [&](const auto& x) {
+          return norm(x.state.theta - found_[start].state.theta) < .1 * spacing_;
+        });
+    if (is_alone) {
+      found_.erase(found_.begin() + std::ptrdiff_t(start) + 1, found_.end());
+      found_[start].is_alone = true;
     }
-    front ends[2] = {{start, best, spacing_}, {start, -1 * best, spacing_}};
-    bool is_open[2] = {largest > 0, largest > 0};
+  }
+
+  /// Adds what is on a curve with found_[start], in both directions by turns, so that what is near
+  /// comes first.
+  void extend(std::size_t start, const tip_place& target) {
+    const vector along = any_self_motion_direction(found_[start].state.jacobian);
+    front ends[2] = {{start, along, spacing_}, {start, -1 * along, spacing_}};
+    bool is_open[2] = {norm(along) > 0, norm(along) > 0};
     for (int count = 0; (is_open[0] || is_open[1]) && left_ > 0; ++count) {
       const int side = count % 2;
       if (is_open[side]) {

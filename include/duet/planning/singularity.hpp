@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
+#include <cmath>
 #include <cstddef>
 
 /// \file
@@ -32,14 +33,14 @@ template <int Room>
 }
 
 /// The direction next to `wish`, of unit length, in which the joints move without the tip; zero
-/// where there is none.
+/// where none is near it.
 template <int Room>
 [[nodiscard]] small_vector<Room> self_motion_direction(const small_matrix<6, Room>& jacobian,
                                                        small_vector<Room> wish) {
   for (int round = 0; round < 2; ++round) { // the second time for rounding
     wish = in_place(jacobian, wish);
     const double length = norm(wish);
-    if (!(length > 1e-3)) {
+    if (!(length > .3)) {
       return {};
     }
     wish = 1 / length * wish;
@@ -66,57 +67,91 @@ template <int Room>
   return square.determinant() < 0 ? -1 : 1;
 }
 
-/// The direction, of unit length, in which a singular configuration is left fastest; its opposite
-/// is as good. w being the twist that no joint rates make, wᵀJ = 0, and H that of wᵀ ∂J/∂θ, the
-/// second derivatives of the tip's way along w,
-///
-/// H_jk = w · [ω_j × v_k; ½ ω_j × ω_k], j ≤ k, of the columns [v; ω] of J in `frame::hybrid`,
-///
-/// the joint rates n that leave the tip in place no longer do so at θ + s d, by s wᵀHd·n: d is the
-/// unit vector for which that is largest, of all n of length 1.
+/// Any direction of unit length in which the joints move without the tip; zero where there is none.
 template <int Room>
-[[nodiscard]] small_vector<Room> way_out(const small_matrix<6, Room>& jacobian) {
-  constexpr double none = 1e-6;
-  const damped_gram gram(gram_of(jacobian), {0, none * none});
-  small_twist w{{1, .7, -.4, .9, -.6, .5}};
-  for (int k = 0; k < 3; ++k) {
-    w = gram.solve(w);
-    w = 1 / norm(w) * w;
-  }
-  const three_vector<double> force{w[0], w[1], w[2]}, moment{w[3], w[4], w[5]};
-  small_matrix<Room, Room> h;
-  for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
-    const auto& column = jacobian.columns[std::size_t(k)];
-    const three_vector<double> v{column[0], column[1], column[2]};
-    const three_vector<double> omega{column[3], column[4], column[5]};
-    for (std::ptrdiff_t j = 0; j <= k; ++j) {
-      const auto& before = jacobian.columns[std::size_t(j)];
-      const three_vector<double> axis{before[3], before[4], before[5]};
-      h(j, k) = dot(force, cross(axis, v)) + .5 * dot(moment, cross(axis, omega));
-      h(k, j) = h(j, k);
+[[nodiscard]] small_vector<Room> any_self_motion_direction(const small_matrix<6, Room>& jacobian) {
+  small_vector<Room> best;
+  double largest = 0;
+  for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
+    small_vector<Room> unit;
+    unit[i] = 1;
+    const auto d = self_motion_direction(jacobian, unit);
+    if (std::abs(d[i]) > largest) { // d[i] is how much of the unit vector is in d
+      largest = std::abs(d[i]);
+      best = d;
     }
   }
-  const auto times_h = [&](const small_vector<Room>& x) {
-    small_vector<Room> result;
+  return best;
+}
+
+/// A singular configuration to second order: w, the twist that no joint rates make, wᵀJ = 0, and H,
+/// the second derivatives of the tip's way along w,
+///
+/// H_jk = w · [ω_j × v_k; ½ ω_j × ω_k], j ≤ k, of the columns [v; ω] of J in `frame::hybrid`.
+template <int Room>
+class singular_point {
+public:
+  explicit singular_point(const small_matrix<6, Room>& jacobian) : jacobian_(jacobian) {
+    constexpr double none = 1e-6;
+    const damped_gram gram(gram_of(jacobian), {0, none * none});
+    for (int k = 0; k < 3; ++k) {
+      w_ = gram.solve(w_);
+      w_ = 1 / norm(w_) * w_;
+    }
+    const three_vector<double> force{w_[0], w_[1], w_[2]}, moment{w_[3], w_[4], w_[5]};
     for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
-      result = result + x[k] * h.columns[std::size_t(k)];
+      const auto& column = jacobian.columns[std::size_t(k)];
+      const three_vector<double> v{column[0], column[1], column[2]};
+      const three_vector<double> omega{column[3], column[4], column[5]};
+      for (std::ptrdiff_t j = 0; j <= k; ++j) {
+        const auto& before = jacobian.columns[std::size_t(j)];
+        const three_vector<double> axis{before[3], before[4], before[5]};
+        h_(j, k) = dot(force, cross(axis, v)) + .5 * dot(moment, cross(axis, omega));
+        h_(k, j) = h_(j, k);
+      }
+    }
+  }
+
+  /// The direction, of unit length, in which the configuration is left fastest; its opposite is as
+  /// good. The joint rates n that leave the tip in place no longer do so at θ + s d, by s wᵀHd·n: d
+  /// is the unit vector for which that is largest, of all n of length 1.
+  [[nodiscard]] small_vector<Room> way_out() const {
+    small_vector<Room> d;
+    for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
+      d[i] = 1 + .1 * double(i);
+    }
+    for (int k = 0; k < 8; ++k) {
+      d = times_h(in_place(jacobian_, times_h(d)));
+      const double length = norm(d);
+      if (!(length > 1e-12)) {
+        return {};
+      }
+      d = 1 / length * d;
+    }
+    return d;
+  }
+
+  /// The step s n, J n = 0, that moves the tip by a small twist along w, ½ s² nᵀHn = w·e; its
+  /// opposite is as good. Zero where there is none.
+  [[nodiscard]] small_vector<Room> step_for(const small_twist& e) const {
+    const auto n = any_self_motion_direction(jacobian_);
+    const double square = 2 * dot(w_, e) / dot(n, times_h(n));
+    return square > 0 && square < 1 ? std::sqrt(square) * n : small_vector<Room>{};
+  }
+
+private:
+  [[nodiscard]] small_vector<Room> times_h(const small_vector<Room>& x) const {
+    small_vector<Room> result;
+    for (std::ptrdiff_t k = 0; k < jacobian_.cols(); ++k) {
+      result = result + x[k] * h_.columns[std::size_t(k)];
     }
     return result;
-  };
-  small_vector<Room> d;
-  for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
-    d[i] = 1 + .1 * double(i);
   }
-  for (int k = 0; k < 8; ++k) {
-    d = times_h(in_place(jacobian, times_h(d)));
-    const double length = norm(d);
-    if (!(length > 1e-12)) {
-      return {};
-    }
-    d = 1 / length * d;
-  }
-  return d;
-}
+
+  const small_matrix<6, Room>& jacobian_;
+  small_twist w_{{1, .7, -.4, .9, -.6, .5}};
+  small_matrix<Room, Room> h_;
+};
 
 /// The smallest singular value of a Jacobian, from above.
 template <int Room>
