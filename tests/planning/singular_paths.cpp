@@ -161,8 +161,8 @@ TEST_CASE("the way out of a singularity is the one on which it is left fastest")
     vector theta = configuration(random, 1);
     theta[2] += 1.5;
     theta[4] = 0;
-    const auto out =
-        detail::own_joints(puma, detail::way_out(model.at(model.joints(theta)).jacobian));
+    const auto at = model.at(model.joints(theta));
+    const vector out = detail::own_joints(puma, detail::singular_point(at.jacobian).way_out());
     CHECK(out.norm() == doctest::Approx(1));
     CHECK(std::abs(out[4]) == doctest::Approx(1)); // all axes but that of joint 5 go on meeting
     const double h = 1e-3, left = smallest_singular_value(puma, theta + h * out);
@@ -201,8 +201,8 @@ TEST_CASE("the way out of a singularity is the gradient of the determinant, by d
       const vector middle = (low + high) / 2;
       (determinant(low) * determinant(middle) > 0 ? low : high) = middle;
     }
-    const vector out =
-        detail::own_joints(general, detail::way_out(model.at(model.joints(low)).jacobian));
+    const auto at = model.at(model.joints(low));
+    const vector out = detail::own_joints(general, detail::singular_point(at.jacobian).way_out());
     const vector slope = gradient(determinant, low).gradient.normalized();
     CHECK(std::abs(out.dot(slope)) == doctest::Approx(1).epsilon(1e-6));
   }
@@ -292,6 +292,98 @@ TEST_CASE("plans stop only where all solutions end, for the reason by which they
   }
   CHECK(joint_limit >= 5);
   CHECK(singular >= 5);
+}
+
+/// A stretched elbow bends by ±s n, and that moves the tip inwards by s².
+TEST_CASE("how far a stretched elbow bends for the tip to go inwards") {
+  const detail::chain_model<chain> model(ur5e);
+  duet_test::random_source random(10);
+  for (int k = 0; k < 5; ++k) {
+    vector theta = configuration(random, 1);
+    theta[2] = 0;
+    theta[4] = 1 + .3 * theta[4];
+    const auto at = model.at(model.joints(theta));
+    const detail::singular_point here(at.jacobian);
+    const auto n = detail::any_self_motion_direction(at.jacobian);
+    for (const double bend : {.01, -.02}) {
+      const auto e = detail::error_twist(at.tip, model.at(at.theta + bend * n).tip);
+      CHECK(norm(here.step_for(e)) == doctest::Approx(std::abs(bend)).epsilon(std::abs(bend)));
+      CHECK(norm(here.step_for(-1 * e)) == 0);
+    }
+  }
+}
+
+using seven = duet_test::coordinates<7>;
+
+TEST_CASE("a curve of self-motion keeps its orientation") {
+  const auto arm = robots::panda().table();
+  const detail::chain_model<serial_chain<7>> model(arm);
+  duet_test::random_source random(11);
+  for (int k = 0; k < 5; ++k) {
+    seven start;
+    for (int i = 0; i < 7; ++i) {
+      start[i] = random.uniform(-1, 1) - (i == 3 ? 1.5 : 0);
+    }
+    auto at = model.at(model.joints(start));
+    auto n = detail::any_self_motion_direction(at.jacobian);
+    const double first = detail::orientation(at.jacobian, n);
+    CHECK(detail::orientation(at.jacobian, -1 * n) == -first);
+    for (int step = 0; step < 300; ++step) {
+      at = model.at(at.theta + .005 * n);
+      n = detail::self_motion_direction(at.jacobian, n);
+      CHECK(norm(n) == doctest::Approx(1));
+      CHECK(detail::orientation(at.jacobian, n) == first);
+    }
+  }
+}
+
+template <int N>
+void check_is_planned(const serial_chain<N>& arm, const duet_test::coordinates<N>& start,
+                      const duet_test::coordinates<N>& end) {
+  const screw_path path{arm.pose(start), arm.pose(end)};
+  const auto plan = plan_screw_motion(arm, start, path.last);
+  CHECK(plan.reason == stop_reason::reached);
+  CHECK(plan.joints.front() == start);
+  CHECK(plan.tau.back() == 1);
+  CHECK(duet_test::largest_deviation(arm, plan, path) < 1.1e-5);
+}
+
+/// Each has a way, by Newton's method from its end and in place to its start.
+TEST_CASE("seven joints keep to their way where another curve of self-motion comes near") {
+  const auto panda = robots::panda().table(), iiwa = robots::iiwa14().table(),
+             baxter = robots::baxter_left().table();
+  seven start, end;
+  start << 2.094, .452, -1.599, -2.326, -1.616, 3.068, -1.331;
+  end << 1.786, -.452, -1.55, -2.82, -1.93, 3.377, -1.477;
+  check_is_planned(panda, start, end);
+  start << 2.28538, -1.22115, -1.159, -.80361, -2.1876, 3.10306, .66382;
+  end << 2.28549, 1.22115, -1.15898, -.80359, -2.18752, 3.10312, .66381;
+  check_is_planned(panda, start, end);
+  start << 1.8445, -.7148, .9794, -.8978, 1.6857, .7854, 1.8321;
+  end << 1.8442, -.7148, .9796, -.8983, 1.6854, -.7854, 1.832;
+  check_is_planned(iiwa, start, end);
+  start << .45, -.13, -.94, .7, 1.49, -.68, -1.7;
+  end << .45, -.13, -.94, .7, 1.49, .68, -1.7;
+  check_is_planned(baxter, start, end);
+}
+
+/// By a complete search each has a way, with the elbow to one side but not to the other.
+TEST_CASE("from a stretched elbow beside the wrist's singularity, to the side that leads on") {
+  const auto degrees = [](std::array<double, 6> x) {
+    return vector(Eigen::Map<const vector>(x.data()) * (pi / 180));
+  };
+  const chain limited = with_limits(puma, degrees({-160, -225, -225, -110, -100, -266}),
+                                    degrees({160, 45, 45, 170, 100, 266}));
+  vector start, end;
+  start << -.45793, -.9896, -1.52382, -.53564, -.07137, 1.25488;
+  end << -.27789, -1.37498, -1.56042, -.86047, .16358, .91994;
+  check_is_planned(limited, start, end);
+  start << -.99518, -1.36755, -1.52382, -.98997, -.11179, 2.14885;
+  end << -.70383, -1.57117, -1.38841, -.54673, .13715, 2.33595;
+  check_is_planned(limited, start, end);
+  start << 1.9469, -2.4579, -1.5238, -1.0966, .1102, -2.5373;
+  end << 1.9115, -2.4834, -1.1631, -.8743, -.2154, -2.6595;
+  check_is_planned(limited, start, end);
 }
 
 /// It would tell of a way where there is none, or of none where there is one.
