@@ -333,6 +333,10 @@ TEST_CASE("a curve of self-motion keeps its orientation") {
       n = detail::self_motion_direction(at.jacobian, n);
       CHECK(norm(n) == doctest::Approx(1));
       CHECK(detail::orientation(at.jacobian, n) == first);
+      Eigen::Matrix<double, 7, 7> square;
+      square << jacobian(arm, seven(detail::own_joints(arm, at.theta)), frame::hybrid),
+          detail::own_joints(arm, n).transpose();
+      CHECK(square.determinant() * first > 0);
     }
   }
 }

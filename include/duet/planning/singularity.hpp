@@ -5,11 +5,9 @@
 #include <duet/planning/small_vector.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
-#include <Eigen/Core>
-#include <Eigen/LU>
-
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 /// \file
 /// Singular configurations: how the tip can stand still there, and which way leads out.
@@ -57,14 +55,27 @@ template <int Room>
   if (jacobian.cols() != 7) {
     return 1;
   }
-  Eigen::Matrix<double, 7, 7> square;
-  for (int i = 0; i < 7; ++i) {
-    for (int k = 0; k < 6; ++k) {
-      square(k, i) = jacobian(k, i);
+  small_matrix<7, 7> m;
+  for (int k = 0; k < 7; ++k) {
+    for (int i = 0; i < 6; ++i) {
+      m(i, k) = jacobian(i, k);
     }
-    square(6, i) = direction[i];
+    m(6, k) = direction[k];
   }
-  return square.determinant() < 0 ? -1 : 1;
+  double sign = 1;
+  for (int i = 0; i < 7; ++i) {
+    int pivot = i;
+    for (int k = i + 1; k < 7; ++k) {
+      pivot = std::abs(m(i, k)) > std::abs(m(i, pivot)) ? k : pivot;
+    }
+    std::swap(m.columns[std::size_t(i)], m.columns[std::size_t(pivot)]);
+    sign = (m(i, i) < 0) != (pivot != i) ? -sign : sign;
+    for (int k = i + 1; k < 7 && m(i, i) != 0; ++k) {
+      auto& column = m.columns[std::size_t(k)];
+      column = column - m(i, k) / m(i, i) * m.columns[std::size_t(i)];
+    }
+  }
+  return sign;
 }
 
 /// Any direction of unit length in which the joints move without the tip; zero where there is none.
