@@ -215,7 +215,7 @@ void compare(unsigned seeds) {
                                                      duet::detail::smooth_slopes(problem.polygon));
       const auto start = duet::detail::timed_by_accelerations(problem, path);
       double best = std::numeric_limits<double>::infinity();
-      for (const auto& each : {start, duet::detail::timed_by_jerks(problem, path, start)}) {
+      for (const auto& each : {start, duet::detail::timed_within_jerks(problem, path)}) {
         const auto places = duet::detail::places_of(each, 300, problem.polygon.s.back());
         best = std::min(best, reference(path, p, jerk, places).time());
       }

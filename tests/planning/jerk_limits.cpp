@@ -156,6 +156,227 @@ TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends")
   }
 }
 
+TEST_CASE(
+    "a path's parameter rises, also where it is in motion at ends, and begins and ends there") {
+  duet_test::random_source random(8);
+  for (int k = 0; k < 200; ++k) {
+    CAPTURE(k);
+    std::vector<double> places{1.0};
+    for (int i = random.integer(4, 30); i > 0; --i) {
+      places.push_back(places.back() + random.magnitude(1e-3, 1));
+    }
+    const detail::reference_law law(places, {k % 2 == 0, k % 4 < 2});
+    const std::vector<double> knots{places.front(), places.back()};
+    const auto path = law.pieces(knots);
+    CHECK((law.first_slope() > 0) == (k % 2 == 1));
+    CHECK((law.last_slope() > 0) == (k % 4 >= 2));
+    CHECK(path.front().start == doctest::Approx(0).epsilon(1e-13));
+    CHECK(path.front().a == doctest::Approx(law.first_slope()).epsilon(1e-12));
+    const auto& last = path.back();
+    CHECK(last.a + 2 * last.b + 3 * last.c == doctest::Approx(law.last_slope()).epsilon(1e-9));
+    CHECK(last.start + last.a + last.b + last.c ==
+          doctest::Approx(places.back() - places.front()).epsilon(1e-13));
+    for (const auto& piece : path) {
+      for (const double x : {0.0, .25, .5, .75, 1.0}) {
+        CHECK(piece.a + x * (2 * piece.b + 3 * x * piece.c) > -1e-12);
+      }
+    }
+  }
+}
+
+TEST_CASE("one joint from rate to rate: the phases of the closed form") {
+  // From v0 with the largest acceleration at once, which then falls to none at the largest rate.
+  const auto rise = [](double from, double v, double a, double j) {
+    const double held = (v - from - a * a / (2 * j)) / a, fall = a / j;
+    REQUIRE(held >= 0);
+    const double before = from + a * held;
+    const double way = (from + before) / 2 * held + before * fall + a * fall * fall / 3;
+    return std::array{held + fall, way};
+  };
+  for (const double first : {0.01, .5, 1.0}) {
+    for (const double last : {.2, 1.1}) {
+      CAPTURE(first);
+      CAPTURE(last);
+      const double v = 2, a = 5, j = 40, way = 3;
+      const auto up = rise(first, v, a, j), down = rise(last, v, a, j);
+      const double exact = up[0] + down[0] + (way - up[1] - down[1]) / v;
+      for (const double sign : {-1.0, 1.0}) {
+        const std::vector<one> ends{one(1.0), one(1 + sign * way)};
+        const auto q = time_parametrised(
+            ends, std::array{v}, std::array{a},
+            {.initial_rates = {sign * first}, .final_rates = {sign * last}, .jerk = {j}});
+        CHECK(q.duration() >= exact * (1 - 1e-12));
+        CHECK(q.duration() < exact * (first < .1 ? 1.03 : 1.01)); // nearly at rest: by coarse steps
+        CHECK(largest_share(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
+        CHECK(q(0).velocity[0] == doctest::Approx(sign * first).epsilon(1e-12));
+        CHECK(q(q.duration()).velocity[0] == doctest::Approx(sign * last).epsilon(1e-9));
+      }
+    }
+  }
+  // At its limit at both ends: as fast all the way.
+  const std::vector<one> ends{one(0.0), one(0.0), one(1.0), one(2.0)};
+  for (const double v : {.3, 1.0, 7.0}) {
+    const auto q = time_parametrised(ends, std::array{v}, std::array{2.0},
+                                     {.initial_rates = {v}, .final_rates = {v}, .jerk = {5}});
+    CHECK(q.duration() >= 2 / v * (1 - 1e-12));
+    CHECK(q.duration() < 2 / v * 1.002);
+    CHECK(largest_share(q, one(v), one(2.0), one(5.0), 3000) <= 1 + 1e-12);
+  }
+  // Away from the goal at first, and back from beyond it.
+  const std::vector<one> line{one(0.0), one(1.0)};
+  const auto q = time_parametrised(line, std::array{1.0}, std::array{2.0},
+                                   {.initial_rates = {-.2}, .final_rates = {-.1}, .jerk = {20}});
+  CHECK(largest_share(q, one(1.0), one(2.0), one(20.0), 3000) <= 1 + 1e-12);
+  CHECK(q(0).velocity[0] == doctest::Approx(-.2).epsilon(1e-12));
+  CHECK(q(.01).value[0] < 0);
+  CHECK(q(q.duration() - .01).value[0] > 1);
+}
+
+TEST_CASE("from rates of motions that are known, along a middle piece, none is refused") {
+  duet_test::random_source random(9);
+  for (int k = 0; k < 24; ++k) {
+    CAPTURE(k);
+    const auto limits = [&](double from, double to) {
+      return vector(random.magnitude(from, to), random.magnitude(from, to),
+                    random.magnitude(from, to));
+    };
+    const vector v = limits(.3, 3), a = limits(.5, 20), j = limits(1, 500);
+    const auto waypoints = random_waypoints(random, k % 4);
+    const time_options options{.parts = 120, .jerk = numbers(j)};
+    auto problem = detail::timing_problem_of(waypoints, v, a, options);
+    auto& polygon = problem.polygon;
+    const auto curve = detail::hermite_curve(polygon, detail::smooth_slopes(polygon));
+    const auto whole = detail::timed_within_jerks(problem, curve);
+    // Where and how fast it is at two times.
+    double from = random.uniform(0, .8) * whole.duration;
+    const double to = std::min(whole.duration, from + random.uniform(.02, 1) * whole.duration);
+    from *= k % 5 == 0 ? 0 : 1;
+    const auto at = [&](double t) {
+      double s = 0;
+      std::size_t i = 0;
+      for (; i + 1 < whole.pieces.size() && whole.pieces[i + 1].law.time <= t; ++i) {
+        s += whole.pieces[i].path.length;
+      }
+      const auto [way, speed, acceleration, jerk] =
+          whole.pieces[i].law.at(t, whole.pieces[i].path.length);
+      return std::array{s + way, speed};
+    };
+    const auto [first, first_speed] = at(from);
+    const auto [last, last_speed] = at(to);
+    std::vector<detail::joint_cubic<vector>> middle;
+    std::vector<double> knots{0};
+    for (std::size_t e = 0; e < curve.size(); ++e) {
+      const double begin = std::max(polygon.s[e], first), end = std::min(polygon.s[e + 1], last);
+      if (end - begin > 1e-12) {
+        middle.push_back(curve[e].part(begin - polygon.s[e], end - begin));
+        knots.push_back(knots.back() + end - begin);
+      }
+    }
+    polygon.s = polygon.given_at = knots;
+    problem.waypoints = knots.size();
+    problem.initial_speed = from > 0 ? first_speed : 0;
+    problem.final_speed = to < whole.duration ? last_speed : 0;
+    const auto q = detail::timed(problem, middle);
+    CHECK(largest_share(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK(q.duration() < 1.1 * (to - from));
+    const auto& end = middle.back();
+    CHECK((q(0).velocity - problem.initial_speed * middle[0].first(0)).norm() < 1e-9);
+    CHECK((q(q.duration()).velocity - problem.final_speed * end.first(end.length)).norm() < 1e-9);
+    CHECK((q(q.duration()).value - end.value(end.length)).norm() < 1e-9);
+  }
+}
+
+TEST_CASE(
+    "from and to any rates limits are kept, or a part of the rates is named that is possible") {
+  duet_test::random_source random(10);
+  const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30), rest(0, 0, 0);
+  int refused = 0;
+  for (int k = 0; k < 16; ++k) {
+    CAPTURE(k);
+    const auto waypoints = random_waypoints(random, k % 4);
+    // In any direction: where it is not that of the way, the curve turns.
+    const double size = k % 6 == 5 ? .6 : .1;
+    vector first = size * vector(random.normal(), random.normal(), .2);
+    vector last = size * vector(random.normal(), random.normal(), .2);
+    (k % 3 == 1 ? first : last) *= k % 3 == 2 ? 1 : 0;
+    const auto timed = [&] {
+      return time_parametrised(waypoints, v, a,
+                               {.parts = 120,
+                                .initial_rates = numbers(first),
+                                .final_rates = numbers(last),
+                                .jerk = numbers(j)});
+    };
+    std::string message = duet_test::message_of([&] { (void)timed(); });
+    if (message.find("beyond its limit") != std::string::npos) {
+      const double most = std::max(first.cwiseQuotient(v).cwiseAbs().maxCoeff(),
+                                   last.cwiseQuotient(v).cwiseAbs().maxCoeff());
+      CHECK(most > 1);
+      first *= .999 / most;
+      last *= .999 / most;
+      message = duet_test::message_of([&] { (void)timed(); });
+    }
+    if (!message.empty()) {
+      ++refused;
+      const bool is_first = message.find("from the initial rates, only from ") != std::string::npos;
+      const auto at = message.find(is_first ? "only from " : "only up to ");
+      REQUIRE(at != std::string::npos);
+      const double part = std::stod(message.substr(at + (is_first ? 10 : 11)));
+      CHECK(part > 0);
+      CHECK(part < 1);
+      CHECK(message.find(" of them, by reason of joint ") != std::string::npos);
+      first *= .95 * part;
+      last *= .95 * part;
+    }
+    const auto q = timed();
+    CHECK(largest_share(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK((q(0).velocity - first).norm() < 1e-12);
+    CHECK((q(q.duration()).velocity - last).norm() < 1e-9);
+    CHECK((q(q.duration()).value - waypoints.back()).norm() < 1e-9);
+  }
+  CHECK(refused > 0);
+  CHECK(refused < 8);
+}
+
+TEST_CASE("seven joints in motion at ends, and one that has no way to stop") {
+  using seven = Eigen::Matrix<double, 7, 1>;
+  duet_test::random_source random(11);
+  const auto some = [&] {
+    seven result;
+    for (double& x : result) {
+      x = random.normal();
+    }
+    return result;
+  };
+  for (int k = 0; k < 2; ++k) {
+    const std::vector<seven> waypoints{some(), some(), some(), some()};
+    const seven v = some().cwiseAbs() + seven::Constant(.5), a = seven::Constant(4),
+                j = seven::Constant(50);
+    const seven first = .2 * some().cwiseMin(1).cwiseMax(-1);
+    const auto q = time_parametrised(waypoints, v, a,
+                                     {.parts = 120,
+                                      .initial_rates = {first.begin(), first.end()},
+                                      .jerk = {j.begin(), j.end()}});
+    CHECK(largest_share(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK((q(0).velocity - first).norm() < 1e-12);
+  }
+  // From 1 to rest over way without acceleration there: way ≥ √(2 / j) / 3.
+  const double least = std::sqrt(2.0 / 8) / 3;
+  const auto stop = [&](double way) {
+    const std::vector<one> line{one(0.0), one(way)};
+    return duet_test::message_of([&] {
+      (void)time_parametrised(line, std::array{2.0}, std::array{100.0},
+                              {.initial_rates = {1}, .jerk = {8}});
+    });
+  };
+  CHECK(stop(least * 1.01) == "");
+  const std::string message = stop(least * .9);
+  CAPTURE(message);
+  CHECK(
+      message.find("duet: time_parametrised: the limits could not be kept from the initial rates, "
+                   "only from 0.9") == 0);
+  CHECK(message.find(" of them, by reason of joint 0, whose rate is 1") != std::string::npos);
+}
+
 TEST_CASE("accelerations don't jump, and velocities, accelerations and jerks are derivatives") {
   duet_test::random_source random(4);
   const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
@@ -195,6 +416,15 @@ TEST_CASE("accelerations don't jump, and velocities, accelerations and jerks are
 }
 
 TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digits, and are near") {
+  // At u by Bernstein coefficients.
+  const auto bernstein = [](const auto& at, int degree, double u) {
+    double sum = 0, binomial = 1;
+    for (int k = 0; k <= degree; ++k) {
+      sum += binomial * std::pow(u, k) * std::pow(1 - u, degree - k) * at(std::size_t(k));
+      binomial *= double(degree - k) / double(k + 1);
+    }
+    return sum;
+  };
   using duet_test::real_50;
   using number = taylor<real_50, 3>;
   duet_test::random_source random(6);
@@ -208,7 +438,8 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
       const double x = double(i) / double(n);
       places.push_back(polygon.s.back() * x * x * (3 - 2 * x));
     }
-    const auto path = detail::reference_law(places).pieces(polygon.s);
+    const detail::ends_at_rest rest{k % 2 == 0, k % 3 == 0};
+    const auto path = detail::reference_law(places, rest).pieces(polygon.s);
     const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
     const detail::pace_bounds bounds(curve, path, n, v, a, j);
     std::vector<double> pace;
@@ -237,17 +468,26 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
                                f.derivative(2) * p.derivative(1) * 3 / 2 +
                                f.derivative(1) * p.derivative(2) / 2;
           const auto& rows = bounds.joints[3 * i + std::size_t(joint)];
-          const auto& rates = bounds.pieces[i].rate;
-          CHECK(abs(rate) / v[joint] <= *std::max_element(rates.begin(), rates.end()) + 1e-13);
+          const double u = at / 4.0;
+          const auto& rates = bounds.pieces[i].square_rate;
+          const double square_rate =
+              bernstein([&](std::size_t r) { return detail::times(rates[r], c); }, 9, u);
+          CHECK(rate * rate * square / (v[joint] * v[joint]) <= square_rate * (1 + 1e-12) + 1e-28);
           const auto check = [&](const real_50& exact, const auto& all, const auto& beyond) {
-            const std::array<double, 3> at_rows{detail::times(all[0], c), detail::times(all[1], c),
-                                                detail::times(all[2], c)};
-            const auto [low, high] = std::minmax_element(at_rows.begin(), at_rows.end());
-            const double more = detail::times(beyond, c);
-            const double rounding = 1e-12 * (1 + std::abs(*low) + std::abs(*high));
-            CHECK(exact <= *high + more + rounding);
-            CHECK(exact >= *low - more - rounding);
-            widest = std::max(widest, more / (1 + std::abs(*low) + std::abs(*high)));
+            // The middle two coefficients are moved; so it is exact at ends.
+            const auto moved = [&](double sign) {
+              return bernstein(
+                  [&](std::size_t r) {
+                    const double off = r == 1 || r == 2 ? detail::times(beyond, c) : 0;
+                    return detail::times(all[r], c) + sign * off;
+                  },
+                  3, u);
+            };
+            const double low = moved(-1), high = moved(1);
+            const double size = 1 + std::abs(low) + std::abs(high), rounding = 1e-12 * size;
+            CHECK(exact <= high + rounding);
+            CHECK(exact >= low - rounding);
+            widest = std::max(widest, (high - low) / size);
           };
           check(change / a[joint], rows.acceleration, rows.beyond_acceleration);
           check(jerk / j[joint], rows.jerk, rows.beyond_jerk);
@@ -312,10 +552,10 @@ TEST_CASE("infinite limits are none; what can't be done is said") {
   };
   CHECK(refusal({.jerk = {1, 2}}) == "duet: time_parametrised: 2 jerk limits for 3 joints");
   CHECK(refusal({.jerk = {1, 2, 0}}) == "duet: time_parametrised: the jerk limit of joint 2 is 0");
-  CHECK(refusal({.initial_rates = {.1, 0, 0}, .jerk = j}) ==
-        "duet: time_parametrised: with limits of jerk motions are from rest to rest, without rates "
-        "at ends");
-  CHECK(refusal({.final_rates = {.1, 0, 0}, .jerk = j}) != "");
+  CHECK(refusal({.initial_rates = {.1, 0, -1.5}, .jerk = j}) ==
+        "duet: time_parametrised: the initial rate of joint 2 is -1.5, beyond its limit 1");
+  CHECK(refusal({.final_rates = {.1, 1.25, 0}, .jerk = j}) ==
+        "duet: time_parametrised: the final rate of joint 1 is 1.25, beyond its limit 1");
   CHECK(time_parametrised(waypoints, v, a, {.initial_rates = {0, 0, 0}, .jerk = j}).duration() > 0);
   CHECK(refusal({.curve = joint_curve::monotone, .jerk = j}) ==
         "duet: time_parametrised: limits of jerk ask for a curve with continuous second "

@@ -67,8 +67,8 @@ struct time_options {
   /// Not said: smooth for chains, where joints keep to their ranges on it, and with limits of jerk;
   /// otherwise monotone.
   std::optional<joint_curve> curve = {};
-  /// Limits of each joint's |q⃛|, positive or infinite, for motions from rest to rest on a smooth
-  /// curve; empty: none.
+  /// Limits of each joint's |q⃛|, positive or infinite, for motions on a smooth curve; empty: none.
+  /// At rest at an end accelerations are zero; in motion they are what is quickest, within limits.
   std::vector<double> jerk = {};
 };
 
@@ -79,8 +79,9 @@ struct time_options {
 /// from one pass backwards and one forwards, as in Pham and Pham, A new approach to time-optimal
 /// path parameterization based on reachability analysis, IEEE T-RO 2018.
 /// Limits are kept everywhere, not only at samples: what bounds them are Bernstein coefficients.
-/// With limits of jerk, from rest to rest, it is the fastest of those near it (docs/
-/// time_parametrisation.md), and accelerations are continuous.
+/// With limits of jerk it is the fastest of those near it (docs/time_parametrisation.md), and
+/// accelerations are continuous: from and to zero at ends at rest; at ends in motion they are not
+/// given, but what is quickest.
 ///
 /// \param waypoints  joint coordinates, equal neighbours allowed
 /// \param velocity  of each joint, in coordinates per second, positive or infinite
@@ -88,8 +89,8 @@ struct time_options {
 /// \return `joint_trajectory<N>`
 /// \throws invalid_input for no waypoints, coordinates that are not finite, for limits that are not
 /// positive or of another number than the joints, and for rates that the limits do not allow: the
-/// message says which part of them they do; with limits of jerk for any rates, and for a curve
-/// whose second derivative jumps
+/// message says which part of them they do, with limits of jerk also by reason of which joint; with
+/// limits of jerk for a curve whose second derivative jumps
 template <class V, VectorLike Velocity, VectorLike Acceleration>
 [[nodiscard]] auto time_parametrised(const std::vector<V>& waypoints, const Velocity& velocity,
                                      const Acceleration& acceleration,

@@ -9,12 +9,13 @@
 #include <duet/planning/timing/timing_problem.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
 /// \file
-/// Motions from rest to rest within limits of jerk. For those who extend duet.
+/// Motions within limits of jerk. For those who extend duet.
 
 namespace duet::detail {
 
@@ -55,13 +56,10 @@ template <class V>
   return 2 * half * ratio;
 }
 
-/// \throws invalid_input for rates at ends, and where second derivatives jump
+/// \throws invalid_input where second derivatives jump
 template <int N>
 void require_smooth(const timing_problem<N>& problem,
                     const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
-  require(problem.initial_speed == 0 && problem.final_speed == 0,
-          "duet: time_parametrised: with limits of jerk motions are from rest to rest, without "
-          "rates at ends");
   for (std::size_t k = 1; k < curve.size(); ++k) {
     const auto &before = curve[k - 1], &after = curve[k];
     const auto jump = (after.second(0) - before.second(before.length)).eval();
@@ -74,6 +72,30 @@ void require_smooth(const timing_problem<N>& problem,
                                   "continuous second derivatives, as joint_curve::smooth where no "
                                   "joint leaves its range: at waypoint ",
                                   given, " that of joint ", joint, " jumps")));
+    }
+  }
+}
+
+/// Of all joints at the first and the last end.
+template <int N>
+[[nodiscard]] std::array<joint_vector<double, N>, 2>
+rates_at(const timing_problem<N>& problem,
+         const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+  const auto& last = curve.back();
+  return {problem.initial_speed * curve.front().first(0),
+          problem.final_speed * last.first(last.length)};
+}
+
+/// \throws invalid_input for a rate at an end that exceeds its limit by more than rounding
+template <int N>
+void require_slow_ends(const timing_problem<N>& problem,
+                       const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+  const auto rates = rates_at(problem, curve);
+  for (const bool is_last : {false, true}) {
+    for (Eigen::Index i = 0; i < problem.velocity.size(); ++i) {
+      require(std::abs(rates[is_last][i]) <= problem.velocity[i] * (1 + 1e-12),
+              "duet: time_parametrised: the ", is_last ? "final" : "initial", " rate of joint ", i,
+              " is ", rates[is_last][i], ", beyond its limit ", problem.velocity[i]);
     }
   }
 }
@@ -99,24 +121,45 @@ template <class V>
   return result;
 }
 
-/// A fast motion from rest to rest that keeps limits of jerk as well: its pace over a parameter
-/// that is in proportion to the times of a motion without them, then to those of what is found.
+/// What a search for a pace finds.
+template <class V>
+struct jerk_search_result {
+  timed_path<V> motion;
+  std::array<double, 2> reached{}; ///< of the rates at both ends, where these are not kept
+  std::size_t nearest_joint = 0;   ///< whose limits are
+
+  /// The end at which less is reached.
+  [[nodiscard]] std::size_t end() const { return reached[1] < reached[0]; }
+  [[nodiscard]] bool is_allowed() const { return reached[end()] == 1; }
+};
+
+/// A fast motion that keeps limits of jerk as well: its pace over a parameter that is in proportion
+/// to the times of another motion, in a number of intervals.
+/// \param accuracy  as of `pace_search::quickest`
 template <int N>
 [[nodiscard]] auto timed_by_jerks(const timing_problem<N>& problem,
                                   const std::vector<joint_cubic<joint_vector<double, N>>>& curve,
-                                  timed_path<joint_vector<double, N>> motion) {
-  require_smooth(problem, curve);
+                                  const timed_path<joint_vector<double, N>>& motion,
+                                  std::size_t intervals, double accuracy) {
   const auto& knots = problem.polygon.s;
-  for (const int share : {6, 3, 2}) {
-    const auto intervals = std::size_t(std::max(16, problem.parts / share));
-    const reference_law law(places_of(motion, intervals, knots.back()));
-    const auto path = law.pieces(knots);
-    const pace_bounds bounds(curve, path, intervals, problem.velocity, problem.acceleration,
-                             problem.jerk);
-    pace_search search(bounds);
-    motion = timed_by_pace(curve, path, intervals, search.quickest());
+  const std::array<double, 2> speeds{problem.initial_speed, problem.final_speed};
+  const reference_law law(places_of(motion, intervals, knots.back()),
+                          {speeds[0] == 0, speeds[1] == 0});
+  const auto path = law.pieces(knots);
+  const pace_bounds bounds(curve, path, intervals, problem.velocity, problem.acceleration,
+                           problem.jerk);
+  std::array<double, 2> ends{};
+  for (std::size_t e = 0; e < 2; ++e) {
+    const double rate = speeds[e] / (e == 0 ? law.first_slope() : law.last_slope());
+    ends[e] = speeds[e] > 0 ? rate * rate : 0;
   }
-  return motion;
+  pace_search search(bounds, ends);
+  jerk_search_result<joint_vector<double, N>> result;
+  const auto [first, last] = search.reach_ends();
+  result.reached = {std::sqrt(first), std::sqrt(last)};
+  result.nearest_joint = search.nearest_joint();
+  result.motion = timed_by_pace(curve, path, intervals, search.quickest(accuracy));
+  return result;
 }
 
 } // namespace duet::detail

@@ -41,19 +41,39 @@ using pace_row = std::array<double, 3>;
 }
 
 /// |x c| ≤ limit, in parts of one joint's limits: accelerations, and jerks divided by τ̇, by
-/// their three Bernstein coefficients in a piece. `beyond` c is as much as they may exceed these.
+/// their four Bernstein coefficients in a piece. `beyond` c is as much as the middle two may be
+/// off: the others are values at the ends.
 struct joint_bounds {
-  std::array<pace_row, 3> acceleration{}, jerk{};
+  std::array<pace_row, 4> acceleration{}, jerk{};
   pace_row beyond_acceleration{}, beyond_jerk{};
 };
 
-/// The Bernstein coefficients of the pace in a piece, and of the largest rate, divided by τ̇.
+/// The Bernstein coefficients of the pace in a piece, and of the square of the largest rate.
 struct piece_bounds {
   std::size_t first; ///< which coefficient of the pace is c[0]
   double length;     ///< in τ
-  std::array<pace_row, 3> pace{};
-  std::array<double, 3> rate{};
+  std::array<pace_row, 4> pace{};
+  std::array<pace_row, 10> square_rate{};
 };
+
+/// The Bernstein coefficients of p u² for cubic polynomials u and p by theirs, p linear in others.
+[[nodiscard]] inline std::array<pace_row, 10> times_square(const std::array<pace_row, 4>& p,
+                                                           const std::array<double, 4>& u) {
+  constexpr std::array<double, 4> of_3{1, 3, 3, 1}; // binomials
+  constexpr std::array<double, 10> of_9{1, 9, 36, 84, 126, 126, 84, 36, 9, 1};
+  std::array<pace_row, 10> result{};
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) {
+      for (std::size_t r = 0; r < 4; ++r) {
+        const double factor = of_3[a] * of_3[b] * of_3[r] / of_9[a + b + r] * u[a] * u[b];
+        for (std::size_t i = 0; i < 3; ++i) {
+          result[a + b + r][i] += factor * p[r][i];
+        }
+      }
+    }
+  }
+  return result;
+}
 
 /// What a pace has to keep that is a quadratic B-spline of τ with a positive coefficient more than
 /// there are nodes of τ; the outer ones are its values at the ends. Rates are q' s' √pace with
@@ -91,40 +111,42 @@ private:
     const polynomial half_square = .5 * (way * way);
 
     // What p_0, p_1 and p_2 are multiplied by; of accelerations and jerks for each coefficient.
-    const std::array rates{near_parabola(slope), near_parabola(way * slope),
-                           near_parabola(half_square * slope)};
-    std::array<std::array<near_parabola, 3>, 3> changes, jerks;
+    const std::array rates{near_cubic(slope), near_cubic(way * slope),
+                           near_cubic(half_square * slope)};
+    std::array<std::array<near_cubic, 3>, 3> changes, jerks;
     piece_bounds bounds{piece.interval, l, {}, {}};
     const auto b = pace_powers(piece.interval, intervals);
     for (std::size_t i = 0; i < 3; ++i) {
       const double start = b[0][i] + f * (b[1][i] + f * b[2][i]);
       const double rise = b[1][i] + 2 * f * b[2][i], curvature = b[2][i];
       bounds.pace[0][i] = start;
-      bounds.pace[1][i] = start + rise * l / 2;
-      bounds.pace[2][i] = start + l * (rise + l * curvature);
+      bounds.pace[1][i] = start + rise * l / 3;
+      bounds.pace[2][i] = start + l * (2 * rise + l * curvature) / 3;
+      bounds.pace[3][i] = start + l * (rise + l * curvature);
       const polynomial pace{{start, rise * l, curvature * l * l}};
       const polynomial half_rise{{rise / 2, curvature * l}};
       const polynomial square = slope * slope * pace;
       const polynomial change = bend * pace + slope * half_rise;
       const polynomial both = 3 * (slope * change);
       const polynomial third = 6 * piece.c * pace + 3 * (bend * half_rise) + curvature * slope;
-      changes[i] = {near_parabola(change), near_parabola(square + way * change),
-                    near_parabola(way * square + half_square * change)};
-      jerks[i] = {near_parabola(third), near_parabola(both + way * third),
-                  near_parabola(slope * square + way * both + half_square * third)};
+      changes[i] = {near_cubic(change), near_cubic(square + way * change),
+                    near_cubic(way * square + half_square * change)};
+      jerks[i] = {near_cubic(third), near_cubic(both + way * third),
+                  near_cubic(slope * square + way * both + half_square * third)};
     }
+    std::array<double, 4> largest_rate{};
     for (Eigen::Index j = 0; j < velocity.size(); ++j) {
       joint_bounds rows;
       double beyond = 0;
-      std::array<double, 3> rate{};
+      std::array<double, 4> rate{};
       for (std::size_t k = 0; k < 3; ++k) {
         const double factor = p[k][j], size = std::abs(factor);
-        for (std::size_t r = 0; r < 3; ++r) {
+        for (std::size_t r = 0; r < 4; ++r) {
           rate[r] += factor * rates[k].at[r];
         }
         beyond += size * rates[k].error;
         for (std::size_t i = 0; i < 3; ++i) {
-          for (std::size_t r = 0; r < 3; ++r) {
+          for (std::size_t r = 0; r < 4; ++r) {
             rows.acceleration[r][i] += factor * changes[i][k].at[r] / acceleration[j];
             rows.jerk[r][i] += factor * jerks[i][k].at[r] / jerk[j];
           }
@@ -132,11 +154,13 @@ private:
           rows.beyond_jerk[i] += size * jerks[i][k].error / jerk[j];
         }
       }
-      for (std::size_t r = 0; r < 3; ++r) {
-        bounds.rate[r] = std::max(bounds.rate[r], (std::abs(rate[r]) + beyond) / velocity[j]);
+      for (std::size_t r = 0; r < 4; ++r) {
+        const double size = std::abs(rate[r]) + (r == 1 || r == 2 ? beyond : 0);
+        largest_rate[r] = std::max(largest_rate[r], size / velocity[j]);
       }
       joints.push_back(rows);
     }
+    bounds.square_rate = times_square(bounds.pace, largest_rate);
     pieces.push_back(bounds);
   }
 };

@@ -3,12 +3,14 @@
 
 #include <duet/core/config.hpp>
 #include <duet/planning/timing/pace_bounds.hpp>
+#include <duet/planning/timing/pace_model.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 /// \file
@@ -20,6 +22,7 @@ namespace duet::detail {
 /// from `first` on. Of an order n it is that of the n-th derivative by time.
 struct pace_bound {
   int order;
+  std::optional<std::size_t> joint; ///< where it is that of one alone
   std::size_t first;
   double limit, beyond, x;
   const pace_row &limit_by, &beyond_by, &x_by;
@@ -34,74 +37,85 @@ struct pace_bound {
 class pace_search {
 public:
   /// From a constant pace that is slow enough: in a time k times as long velocities, accelerations
-  /// and jerks are k, k² and k³ times as small. \param bounds  has to outlive it
-  explicit pace_search(const pace_bounds& bounds)
-      : bounds_(bounds), pace_(bounds.pieces.back().first + 3, 1.0) {
+  /// and jerks are k, k² and k³ times as small.
+  /// \param bounds  has to outlive it
+  /// \param ends  what the pace is to be at the ends, where rates keep their limits; 0: anything
+  explicit pace_search(const pace_bounds& bounds, const std::array<double, 2>& ends = {0, 0})
+      : bounds_(bounds), ends_(ends), pace_(bounds.pieces.back().first + 3, 1.0) {
     double stretch = 0;
     for_each_bound(pace_, [&](const pace_bound& b) {
       stretch = std::max(stretch, std::pow((std::abs(b.x) + b.beyond) / b.limit, 1.0 / b.order));
     });
-    std::fill(pace_.begin(), pace_.end(), .7 / (stretch * stretch));
+    double slow = .7 / (stretch * stretch);
+    for (const double end : ends_) {
+      slow = end > 0 ? std::min(slow, end) : slow;
+    }
+    std::fill(pace_.begin(), pace_.end(), slow);
+    is_kept_ = {ends_[0] == slow, ends_[1] == slow};
+  }
+
+  /// Makes the pace at the ends as fast as asked for. The paces that keep all bounds, each with
+  /// all slower ones in proportion, are searched for those with the fastest ends.
+  /// \return what it is of what it should be, at both ends; 1 where nothing is asked for
+  [[nodiscard]] std::array<double, 2> reach_ends() {
+    double count =
+        0; // of logarithms: for a convex set their part of what is missing is count / lift
+    for_each_bound(pace_, [&](const pace_bound&) { count += 2; });
+    const auto missing = [&] {
+      double result = 0;
+      for (std::size_t e = 0; e < 2; ++e) {
+        result = std::max(result, is_slow(e) ? 1 - pace_[end_of(e)] / ends_[e] : 0);
+      }
+      return result;
+    };
+    for (double lift = count / 64;
+         are_ends_slow() && lift < 1e9 * count && count > .01 * lift * missing(); lift *= 4) {
+      for (int steps = 0; steps < 60 && are_ends_slow() && step({0, lift}) > .1; ++steps) {
+      }
+    }
+    return {is_slow(0) ? pace_.front() / ends_[0] : 1, is_slow(1) ? pace_.back() / ends_[1] : 1};
+  }
+
+  /// The joint whose limits of acceleration and jerk are the nearest, in sum over the path.
+  [[nodiscard]] std::size_t nearest_joint() const {
+    std::vector<double> sums(bounds_.joints.size() / bounds_.pieces.size());
+    for_each_bound(pace_, [&](const pace_bound& b) {
+      if (b.joint) {
+        sums[*b.joint] += b.limit / (b.limit - b.beyond - std::abs(b.x));
+      }
+    });
+    return std::size_t(std::max_element(sums.begin(), sums.end()) - sums.begin());
   }
 
   /// The coefficients of a pace that is nearly the quickest: what bounds are kept off their limits
-  /// costs less than a thousandth of the time.
-  [[nodiscard]] const std::vector<double>& quickest() {
+  /// costs about 10 / accuracy of the time. Ends that were not reached are nearly what they are.
+  [[nodiscard]] const std::vector<double>& quickest(double accuracy) {
+    if (are_ends_slow()) {
+      for (double& each : pace_) {
+        each *= .95;
+      }
+      for (std::size_t e = 0; e < 2; ++e) {
+        ends_[e] = ends_[e] > 0 ? pace_[end_of(e)] : 0;
+      }
+      is_kept_ = {true, true};
+    }
     const double unit = double(bounds_.pieces.size()) / time(pace_);
-    for (double weight = 40 * unit; weight < 1e4 * unit; weight *= 4) {
-      for (int steps = 0; steps < 60 && step(weight) > .1; ++steps) {
+    for (double weight = 40 * unit; weight < accuracy * unit; weight *= 4) {
+      for (int steps = 0; steps < 60 && step({weight, 0}) > .1; ++steps) {
       }
     }
     return pace_;
   }
 
 private:
-  /// The first derivatives of a function of the coefficients, and a band of second ones: (i, i),
-  /// (i, i + 1) and (i, i + 2).
-  struct model {
-    std::vector<double> gradient;
-    std::vector<pace_row> matrix;
-
-    explicit model(std::size_t n) : gradient(n), matrix(n) {}
-    /// Of f of what is linear in the coefficients: f' and f''.
-    void add(std::size_t first, const pace_row& by, double slope, double curvature) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        gradient[first + i] += slope * by[i];
-        for (std::size_t j = i; j < 3; ++j) {
-          matrix[first + i][j - i] += curvature * by[i] * by[j];
-        }
-      }
-    }
-    /// Where it is least: the matrix is L D Lᵀ.
-    [[nodiscard]] std::vector<double> solution() {
-      const std::size_t n = gradient.size();
-      matrix[n - 1][1] = matrix[n - 1][2] = matrix[n - 2][2] = 0;
-      std::vector<double> x(n + 2);
-      for (std::size_t i = 0; i < n; ++i) {
-        auto& [d, one, two] = matrix[i];
-        x[i] -= gradient[i];
-        if (i + 1 < n) {
-          matrix[i + 1][0] -= one * one / d;
-          matrix[i + 1][1] -= one * two / d;
-        }
-        if (i + 2 < n) {
-          matrix[i + 2][0] -= two * two / d;
-        }
-        one /= d;
-        two /= d;
-        x[i + 1] -= one * x[i];
-        x[i + 2] -= two * x[i];
-      }
-      x.resize(n);
-      for (std::size_t i = n; i-- > 0;) {
-        x[i] /= matrix[i][0];
-        for (std::size_t k = 1; k < 3 && i + k < n; ++k) {
-          x[i] -= matrix[i][k] * x[i + k];
-        }
-      }
-      return x;
-    }
+  /// What is to be least, but for the logarithms: time · `time` − lift · Σ pace / end.
+  struct aim {
+    double time, lift;
   };
+
+  [[nodiscard]] std::size_t end_of(std::size_t e) const { return e == 0 ? 0 : pace_.size() - 1; }
+  [[nodiscard]] bool is_slow(std::size_t e) const { return ends_[e] > 0 && !is_kept_[e]; }
+  [[nodiscard]] bool are_ends_slow() const { return is_slow(0) || is_slow(1); }
 
   void for_each_bound(const std::vector<double>& pace, const auto& f) const {
     static constexpr pace_row zero{};
@@ -111,24 +125,38 @@ private:
       const double* c = &pace[piece.first];
       const pace_row row = middle_of(piece);
       const double m = times(row, c), scale = 1 / (m * std::sqrt(m));
-      std::array<double, 3> limit;
-      std::array<pace_row, 3> limit_by;
-      for (std::size_t r = 0; r < 3; ++r) {
+      std::array<double, 4> limit;
+      std::array<pace_row, 4> limit_by;
+      for (std::size_t r = 0; r < 4; ++r) {
         const double p = times(piece.pace[r], c);
         limit[r] = (3 * m - p) * scale / 2;
         for (std::size_t i = 0; i < 3; ++i) {
           limit_by[r][i] = (1.5 * (p / m - 1) * row[i] - piece.pace[r][i]) * scale / 2;
         }
-        f(pace_bound{1, piece.first, limit[r], 0, piece.rate[r], limit_by[r], zero, zero});
+      }
+      const bool is_first = &piece == &bounds_.pieces.front();
+      const bool is_last = &piece == &bounds_.pieces.back();
+      // At ends in motion nothing is left of them to search for.
+      for (std::size_t r = is_first && ends_[0] > 0; r + (is_last && ends_[1] > 0) < 10; ++r) {
+        f(pace_bound{2,
+                     {},
+                     piece.first,
+                     1,
+                     0,
+                     times(piece.square_rate[r], c),
+                     zero,
+                     zero,
+                     piece.square_rate[r]});
       }
       for (std::size_t j = 0; j < joints; ++j, ++joint) {
         const double change = times(joint->beyond_acceleration, c);
         const double jerk = times(joint->beyond_jerk, c);
-        for (std::size_t r = 0; r < 3; ++r) {
-          f(pace_bound{2, piece.first, 1, change, times(joint->acceleration[r], c), zero,
-                       joint->beyond_acceleration, joint->acceleration[r]});
-          f(pace_bound{3, piece.first, limit[r], jerk, times(joint->jerk[r], c), limit_by[r],
-                       joint->beyond_jerk, joint->jerk[r]});
+        for (std::size_t r = 0; r < 4; ++r) {
+          const bool is_end = r == 0 || r == 3;
+          f(pace_bound{2, j, piece.first, 1, is_end ? 0 : change, times(joint->acceleration[r], c),
+                       zero, is_end ? zero : joint->beyond_acceleration, joint->acceleration[r]});
+          f(pace_bound{3, j, piece.first, limit[r], is_end ? 0 : jerk, times(joint->jerk[r], c),
+                       limit_by[r], is_end ? zero : joint->beyond_jerk, joint->jerk[r]});
         }
       }
     }
@@ -136,7 +164,8 @@ private:
   [[nodiscard]] static pace_row middle_of(const piece_bounds& piece) {
     pace_row result;
     for (std::size_t i = 0; i < 3; ++i) {
-      result[i] = (piece.pace[0][i] + 2 * piece.pace[1][i] + piece.pace[2][i]) / 4;
+      result[i] =
+          (piece.pace[0][i] + 3 * (piece.pace[1][i] + piece.pace[2][i]) + piece.pace[3][i]) / 8;
     }
     return result;
   }
@@ -157,12 +186,15 @@ private:
   /// Of limits in proportion to 1 / √pace half a logarithm of the pace each goes off: else these
   /// would be the farther off the slower it is.
   [[nodiscard]] double rooted_limits() const {
-    return 3 * (1 + double(bounds_.joints.size()) / double(bounds_.pieces.size()));
+    return 4 * (double(bounds_.joints.size()) / double(bounds_.pieces.size()));
   }
 
   /// What is to be least, infinite outside the bounds.
-  [[nodiscard]] double value(const std::vector<double>& pace, double weight) const {
-    double sum = weight * time(pace), product = 1;
+  [[nodiscard]] double value(const std::vector<double>& pace, aim weights) const {
+    double sum = weights.time * time(pace), product = 1;
+    for (std::size_t e = 0; e < 2; ++e) {
+      sum -= is_slow(e) ? weights.lift * pace[end_of(e)] / ends_[e] : 0;
+    }
     bool is_inside = true;
     const auto take = [&](double factor) {
       is_inside = is_inside && factor > 0;
@@ -184,8 +216,8 @@ private:
     return is_inside ? sum - std::log(product) : std::numeric_limits<double>::infinity();
   }
 
-  [[nodiscard]] model model_of(double weight) const {
-    model result(pace_.size());
+  [[nodiscard]] pace_model model_of(aim weights) const {
+    pace_model result(pace_.size());
     for (std::size_t i = 0; i < pace_.size(); ++i) {
       const double inverse = 1 / pace_[i];
       result.gradient[i] -= inverse;
@@ -203,29 +235,50 @@ private:
       }
     });
     for_each_middle(pace_, [&](const piece_bounds& piece, const pace_row& row, double m) {
-      const double by_time = weight * piece.length / (2 * m * std::sqrt(m));
+      const double by_time = weights.time * piece.length / (2 * m * std::sqrt(m));
       result.add(piece.first, row, -by_time - rooted_limits() / m,
                  (1.5 * by_time + rooted_limits() / m) / m);
     });
+    for (std::size_t e = 0; e < 2; ++e) {
+      if (is_slow(e)) {
+        result.gradient[end_of(e)] -= weights.lift / ends_[e];
+      } else if (ends_[e] > 0) {
+        result.fix(end_of(e));
+      }
+    }
     return result;
   }
 
   /// \return by how much the model falls, twice; 0 where no step is found
-  double step(double weight) {
-    model here = model_of(weight);
+  double step(aim weights) {
+    pace_model here = model_of(weights);
     const std::vector<double> slope = here.gradient, way = here.solution();
     double fall = 0;
     for (std::size_t i = 0; i < way.size(); ++i) {
       fall -= slope[i] * way[i];
     }
-    const double before = value(pace_, weight);
+    // The part at which an end has the pace it should have.
+    std::array<double, 2> arrival{2, 2};
+    for (std::size_t e = 0; e < 2; ++e) {
+      const std::size_t i = end_of(e);
+      if (is_slow(e) && pace_[i] + way[i] >= ends_[e]) {
+        arrival[e] = (ends_[e] - pace_[i]) / way[i];
+      }
+    }
+    const double before = value(pace_, weights);
     std::vector<double> next(way.size());
-    for (double part = 1; part > 1e-6; part /= 2) {
+    for (double part = std::min({1.0, arrival[0], arrival[1]}); part > 1e-6; part /= 2) {
       for (std::size_t i = 0; i < way.size(); ++i) {
         next[i] = pace_[i] + part * way[i];
       }
-      if (value(next, weight) < before - 1e-3 * part * fall) {
+      if (value(next, weights) < before - 1e-3 * part * fall) {
         pace_ = next;
+        for (std::size_t e = 0; e < 2; ++e) {
+          if (part == arrival[e]) {
+            pace_[end_of(e)] = ends_[e];
+            is_kept_[e] = true;
+          }
+        }
         return fall;
       }
     }
@@ -233,6 +286,8 @@ private:
   }
 
   const pace_bounds& bounds_;
+  std::array<double, 2> ends_;
+  std::array<bool, 2> is_kept_{};
   std::vector<double> pace_;
 };
 

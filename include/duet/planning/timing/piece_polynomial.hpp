@@ -9,7 +9,7 @@
 #include <cstddef>
 
 /// \file
-/// Polynomials over a short piece, and parabolas near them. For those who extend duet.
+/// Polynomials over a short piece, and cubic ones near them. For those who extend duet.
 
 namespace duet::detail {
 
@@ -40,33 +40,37 @@ struct piece_polynomial {
   }
 };
 
-/// A parabola by its Bernstein coefficients, and how far from it a polynomial is at most.
-struct near_parabola {
-  std::array<double, 3> at{};
+/// A cubic polynomial by its Bernstein coefficients, and by how much the middle two have to be
+/// moved, up and down, for another polynomial to lie between.
+struct near_cubic {
+  std::array<double, 4> at{};
   double error = 0;
 
-  near_parabola() = default;
-  /// The parabola that has its values at both ends and in the middle. The difference lies between
-  /// its own Bernstein coefficients.
-  explicit near_parabola(piece_polynomial p) {
-    double middle = 0, end = 0, power = 1;
-    for (const double x : p.of) {
-      middle += x * power;
-      end += x;
-      power /= 2;
+  near_cubic() = default;
+  /// That which has a polynomial's values at 0, 1/3, 2/3 and 1. The difference, with Bernstein
+  /// coefficients e_j, e_0 = e_9 = 0, is u (1 − u) Σ 72 / (j (9 − j)) e_j B_{j−1}(u) with those of
+  /// seventh degree, and 3 u (1 − u) is what the middle two are multiplied by.
+  explicit near_cubic(piece_polynomial p) {
+    double end = 0, third = 0, two_thirds = 0;
+    for (std::size_t i = 10; i-- > 0;) {
+      end += p.of[i];
+      third = third / 3 + p.of[i];
+      two_thirds = two_thirds * 2 / 3 + p.of[i];
     }
     const double start = p.of[0];
-    at = {start, 2 * middle - (start + end) / 2, end};
+    at = {start, 3 * third - 1.5 * two_thirds + end / 3 - 5 * start / 6,
+          3 * two_thirds - 1.5 * third + start / 3 - 5 * end / 6, end};
     p.of[0] = 0;
-    p.of[1] -= 2 * (at[1] - at[0]);
-    p.of[2] -= at[0] - 2 * at[1] + at[2];
-    for (std::size_t j = 1; j < 10; ++j) {
+    p.of[1] -= 3 * (at[1] - at[0]);
+    p.of[2] -= 3 * (at[0] - 2 * at[1] + at[2]);
+    p.of[3] -= at[3] - at[0] + 3 * (at[1] - at[2]);
+    for (std::size_t j = 1; j < 9; ++j) {
       double sum = 0, share = 1; // binomial(j, i) / binomial(9, i)
       for (std::size_t i = 0; i <= j; ++i) {
         sum += share * p.of[i];
         share *= double(j - i) / double(9 - i);
       }
-      error = std::max(error, std::abs(sum));
+      error = std::max(error, 24.0 / double(j * (9 - j)) * std::abs(sum));
     }
   }
 };

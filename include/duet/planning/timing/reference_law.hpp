@@ -9,7 +9,8 @@
 #include <vector>
 
 /// \file
-/// A path over a parameter that makes motions from rest to rest smooth. For those who extend duet.
+/// A path over a parameter that makes motions smooth, also from and to rest. For those who extend
+/// duet.
 
 namespace duet::detail {
 
@@ -20,22 +21,38 @@ struct reference_piece {
   double from, length, start, a, b, c;
 };
 
+/// Of both ends of a path, whether a motion is at rest there.
+struct ends_at_rest {
+  bool first = true, last = true;
+};
+
 /// The length s of a path as a cubic B-spline of τ, 0 ≤ τ ≤ n: twice continuously differentiable,
-/// and it rises as its coefficients do. At the ends s grows with τ³, so that a motion with any
-/// τ̇ > 0 there is at rest, and without acceleration.
+/// and it rises, as its coefficients do but for the outer ones. At ends at rest s grows with τ³, so
+/// that a motion with any τ̇ > 0 there is at rest, and without acceleration.
 class reference_law {
 public:
-  /// \param places  about where it is at τ = 0, 1, …, n, n ≥ 4
-  explicit reference_law(const std::vector<double>& places) {
+  /// \param places  about where it is at τ = 0, 1, …, n, n ≥ 4; there exactly at τ = 0 and n
+  explicit reference_law(const std::vector<double>& places, ends_at_rest rest = {}) {
     const std::size_t n = places.size() - 1;
     c_.assign(n + 3, places.back());
     std::fill_n(c_.begin(), 3, places.front());
-    for (std::size_t i = 2; i + 1 < n; ++i) {
+    const std::size_t first = rest.first ? 2 : 1, last = rest.last ? n - 2 : n - 1;
+    for (std::size_t i = first; i <= last; ++i) {
       // With a sixth of the second difference taken off cubic polynomials stay what they are.
       const double before = places[i] - places[i - 1], after = places[i + 1] - places[i];
       c_[i + 1] = places[i] - std::clamp((after - before) / 6, -after / 2, before / 2);
     }
+    if (!rest.first) {
+      go_on(places[0], places[1], places[2], c_[2], c_[1], c_[0]);
+    }
+    if (!rest.last) {
+      go_on(places[n], places[n - 1], places[n - 2], c_[n], c_[n + 1], c_[n + 2]);
+    }
   }
+
+  /// ds/dτ at an end.
+  [[nodiscard]] double first_slope() const { return (c_[2] - c_[0]) / 2; }
+  [[nodiscard]] double last_slope() const { return (c_[c_.size() - 1] - c_[c_.size() - 3]) / 2; }
 
   /// All of it, cut where intervals end and where edges do.
   /// \param knots  where in s edges begin and end
@@ -64,6 +81,15 @@ public:
   }
 
 private:
+  /// The last two coefficients c_1 and c_0, where it is in motion at an end at place p_0, by the
+  /// two places and the coefficient before it.
+  static void go_on(double p_0, double p_1, double p_2, double c_2, double& c_1, double& c_0) {
+    // Of one sign. There ds/dτ is c_2 + 2 c_1 − 3 p_0: it keeps a twentieth of c_2 − p_0 at least.
+    const double near_end = p_1 - p_0, next = p_2 - p_1, most = 2.85 * (c_2 - p_0);
+    const double bend = std::clamp((next - near_end) / near_end, -.5, most / near_end) * near_end;
+    c_1 = p_0 - bend / 6;
+    c_0 = 6 * p_0 - 4 * c_1 - c_2;
+  }
   /// Of s in [k, k + 1], by powers of τ − k.
   [[nodiscard]] std::array<double, 4> powers(std::size_t k) const {
     const double d_0 = c_[k + 1] - c_[k], d_1 = c_[k + 2] - c_[k + 1], d_2 = c_[k + 3] - c_[k + 2];

@@ -8,8 +8,10 @@
 #include <duet/planning/timing/timing_problem.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -48,22 +50,11 @@ inline void require_rates(const speed_refusal& refusal, double first, double las
   }
 }
 
-/// The fastest motion along a curve with constant s̈ in each part.
-template <int N>
-[[nodiscard]] auto
-timed_by_accelerations(const timing_problem<N>& problem,
-                       const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
-  const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
-  path_bounds bounds(problem.velocity.size());
-  bounds.reserve(parts.size());
-  for (const auto& part : parts) {
-    bounds.add(part, problem.velocity, problem.acceleration);
-  }
-  const double first = problem.initial_speed, last = problem.final_speed;
-  speed_refusal refusal;
-  const std::vector<double> squares = path_speeds(bounds, first * first, last * last, refusal);
-  require_rates(refusal, first, last);
-  timed_path<joint_vector<double, N>> result;
+/// The motion with given ṡ² at the ends of parts.
+template <class V>
+[[nodiscard]] timed_path<V> timed_by_squares(const std::vector<joint_cubic<V>>& parts,
+                                             const std::vector<double>& squares) {
+  timed_path<V> result;
   result.pieces.reserve(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const double h = parts[i].length;
@@ -75,15 +66,163 @@ timed_by_accelerations(const timing_problem<N>& problem,
   return result;
 }
 
+template <class V>
+[[nodiscard]] path_bounds bounds_of(const std::vector<joint_cubic<V>>& parts, const V& velocity,
+                                    const V& acceleration) {
+  path_bounds result(velocity.size());
+  result.reserve(parts.size());
+  for (const auto& part : parts) {
+    result.add(part, velocity, acceleration);
+  }
+  return result;
+}
+
+/// The fastest motion along a curve with constant s̈ in each part.
+/// \throws invalid_input for rates at ends that are too fast
+template <int N>
+[[nodiscard]] auto
+timed_by_accelerations(const timing_problem<N>& problem,
+                       const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+  const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
+  const double first = problem.initial_speed, last = problem.final_speed;
+  speed_refusal refusal;
+  const std::vector<double> squares =
+      path_speeds(bounds_of(parts, problem.velocity, problem.acceleration), first * first,
+                  last * last, refusal);
+  require_rates(refusal, first, last);
+  return timed_by_squares(parts, squares);
+}
+
+/// A motion with about the given rates at its ends that needs the least accelerations for them, in
+/// parts of the limits, as limits of jerk leave it. (Beside the fastest one, speeds near ends would
+/// have to become others, and searches that set out there end in a corner.)
+template <int N>
+[[nodiscard]] auto gentle_motion(const timing_problem<N>& problem,
+                                 const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+  const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
+  std::array<double, 2> ends{problem.initial_speed * problem.initial_speed,
+                             problem.final_speed * problem.final_speed};
+  speed_refusal refusal;
+  std::vector<double> squares;
+  const auto is_found = [&](double scale) {
+    const joint_vector<double, N> acceleration = scale * problem.acceleration;
+    refusal = {};
+    squares =
+        path_speeds(bounds_of(parts, problem.velocity, acceleration), ends[0], ends[1], refusal);
+    return !refusal.at_start && !refusal.at_end;
+  };
+  while (!is_found(1)) {
+    ends[refusal.at_start ? 0 : 1] = refusal.largest > 0 ? .99 * refusal.largest : 0;
+  }
+  if (ends[0] + ends[1] > 0) {
+    double low = 1e-4, high = 1;
+    for (int i = 0; i < 8; ++i) {
+      const double middle = std::sqrt(low * high);
+      (is_found(middle) ? high : low) = middle;
+    }
+    (void)is_found(high);
+  }
+  return timed_by_squares(parts, squares);
+}
+
+/// The search for motions within limits of jerk, from rates and to rates. It goes from a gentle
+/// motion to one after another in finer steps. Where that leads to none it begins with limits of
+/// jerk so wide that it does, and narrows them: so that rates at ends are right all along.
+template <int N>
+class jerk_search {
+public:
+  using vector = joint_vector<double, N>;
+  using motion = timed_path<vector>;
+
+  jerk_search(const timing_problem<N>& problem, const std::vector<joint_cubic<vector>>& curve)
+      : problem_(problem), curve_(curve), gentle_(gentle_motion(problem, curve)) {}
+
+  /// Empty where none is found.
+  [[nodiscard]] std::optional<motion> found() {
+    std::optional<motion> result;
+    motion last = gentle_;
+    for (const double share : {6, 3, 2}) {
+      auto next = find(last, share, 1);
+      if (next.is_allowed()) {
+        result = next.motion;
+      } else if (next.reached[next.end()] > nearest_.reached[nearest_.end()]) {
+        nearest_ = next;
+      }
+      last = std::move(next.motion);
+    }
+    return result ? result : narrowed();
+  }
+  /// Of motions that were not allowed that which comes nearest.
+  [[nodiscard]] const jerk_search_result<vector>& nearest() const { return nearest_; }
+
+private:
+  /// With limits of jerk in a scale, coarsely where that is not 1.
+  [[nodiscard]] jerk_search_result<vector> find(const motion& from, double share, double scale) {
+    timing_problem<N> loose = problem_;
+    loose.jerk *= scale;
+    return timed_by_jerks(loose, curve_, from, std::size_t(std::max(16.0, problem_.parts / share)),
+                          scale > 1 ? 200 : 5e4);
+  }
+  [[nodiscard]] std::optional<motion> narrowed() {
+    double scale = 2;
+    auto last = find(gentle_, 3, scale);
+    while (!last.is_allowed() && scale < 1e4) {
+      scale *= 2;
+      last = find(gentle_, 3, scale);
+    }
+    for (double step = 1.5; last.is_allowed() && step > 1.01;) {
+      const double narrower = std::max(1.0, scale / step);
+      auto next = find(last.motion, 2, narrower);
+      if (!next.is_allowed()) {
+        next = find(last.motion, 1, narrower);
+      }
+      if (!next.is_allowed()) {
+        step = std::sqrt(step);
+      } else if (narrower == 1) {
+        return next.motion;
+      } else {
+        scale = narrower;
+        last = std::move(next);
+      }
+    }
+    return {};
+  }
+
+  const timing_problem<N>& problem_;
+  const std::vector<joint_cubic<vector>>& curve_;
+  motion gentle_;
+  jerk_search_result<vector> nearest_;
+};
+
+/// The fastest motion along a curve within limits of jerk as well.
+/// \throws invalid_input for rates at ends with which none is found
+template <int N>
+[[nodiscard]] auto
+timed_within_jerks(const timing_problem<N>& problem,
+                   const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+  require_smooth(problem, curve);
+  require_slow_ends(problem, curve);
+  jerk_search<N> search(problem, curve);
+  if (auto result = search.found()) {
+    return *result;
+  }
+  const auto& nearest = search.nearest();
+  const std::size_t end = nearest.end(), joint = nearest.nearest_joint;
+  const char* towards = end == 0 ? "from" : "up to";
+  raise(invalid_input(message("duet: time_parametrised: the limits could not be kept ", towards,
+                              " the ", end == 0 ? "initial" : "final", " rates, only ", towards,
+                              " ", std::floor(1e4 * nearest.reached[end]) / 1e4,
+                              " of them, by reason of joint ", joint, ", whose rate is ",
+                              rates_at(problem, curve)[end][Eigen::Index(joint)])));
+}
+
 /// The fastest motion along a curve, as `joint_trajectory`.
 template <int N>
 [[nodiscard]] joint_trajectory<N>
 timed(const timing_problem<N>& problem,
       const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
-  auto path = timed_by_accelerations(problem, curve);
-  if (!problem.jerk.array().isInf().all()) {
-    path = timed_by_jerks(problem, curve, path);
-  }
+  auto path = problem.jerk.array().isInf().all() ? timed_by_accelerations(problem, curve)
+                                                 : timed_within_jerks(problem, curve);
   std::vector<double> times; // of the waypoints
   double s = 0;
   for (const auto& piece : path.pieces) {

@@ -1,0 +1,126 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+/// \file
+/// Whether `time_parametrised` with limits of jerk finds motions that are known to exist, with
+/// rates at both ends: along middle pieces of motions from rest to rest, with the rates that these
+/// have there. Prints the table of docs/time_parametrisation.md; how many seeds of each family, of
+/// four pieces each, may be said: build/bench/bench/duet_jerk_limits_in_motion_bench 50
+
+#include "timing_families.hpp"
+
+#include <duet/core/errors.hpp>
+#include <duet/planning/time_parametrised.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+namespace {
+
+using namespace timing_bench;
+using timing = duet::detail::timing_problem<-16>;
+using motion = duet::detail::timed_path<vector>;
+
+/// Where a motion is at a time, and how fast.
+std::array<double, 2> place_of(const motion& path, double t) {
+  double s = 0;
+  std::size_t i = 0;
+  for (; i + 1 < path.pieces.size() && path.pieces[i + 1].law.time <= t; ++i) {
+    s += path.pieces[i].path.length;
+  }
+  const auto place = path.pieces[i].law.at(t, path.pieces[i].path.length);
+  return {s + place.s, place.speed};
+}
+
+/// The largest share of a limit at 1000 times.
+double largest_share(const duet::joint_trajectory<-16>& q, const timing& limits) {
+  double result = 0;
+  for (int i = 0; i <= 1000; ++i) {
+    const double t = q.duration() * i / 1000;
+    const auto now = q(t);
+    result = std::max({result, now.velocity.cwiseQuotient(limits.velocity).cwiseAbs().maxCoeff(),
+                       now.acceleration.cwiseQuotient(limits.acceleration).cwiseAbs().maxCoeff(),
+                       q.jerk(t).cwiseQuotient(limits.jerk).cwiseAbs().maxCoeff()});
+  }
+  return result;
+}
+
+/// The problem of a piece from one time to another, whose curve becomes that of the piece.
+timing piece_of(timing problem, curve& path, const motion& whole, double from, double to) {
+  const bool starts = from <= 0, ends = to >= whole.duration;
+  auto& s = problem.polygon.s;
+  const auto [first, first_speed] = starts ? std::array{0.0, 0.0} : place_of(whole, from);
+  const auto [last, last_speed] = ends ? std::array{s.back(), 0.0} : place_of(whole, to);
+  curve piece;
+  std::vector<double> knots{0};
+  for (std::size_t e = 0; e < path.size(); ++e) {
+    const double begin = std::max(s[e], first), end = std::min(s[e + 1], last);
+    if (end - begin > 1e-12 * s.back()) {
+      piece.push_back(path[e].part(begin - s[e], end - begin));
+      knots.push_back(knots.back() + end - begin);
+    }
+  }
+  path = piece;
+  problem.polygon.s = problem.polygon.given_at = knots;
+  problem.waypoints = knots.size();
+  problem.initial_speed = first_speed;
+  problem.final_speed = last_speed;
+  return problem;
+}
+
+void compare(unsigned seeds) {
+  std::printf("| | pieces | refused | duration | longest (seed) | largest share | ms | longest |\n"
+              "|---|---|---|---|---|---|---|---|\n");
+  for (const family& kind : families) {
+    statistics longer, share, slowest;
+    stopwatch watch;
+    int pieces = 0, refused = 0;
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+      const problem p = problem_of(kind, seed);
+      random_source random(seed + 1000);
+      std::vector<double> jerk;
+      for (Eigen::Index i = 0; i < p.velocity.size(); ++i) {
+        jerk.push_back(random.magnitude(3, 300));
+      }
+      const timing problem = duet::detail::timing_problem_of(
+          p.waypoints, p.velocity, p.acceleration, duet::time_options{.jerk = jerk});
+      const curve path = duet::detail::hermite_curve(problem.polygon,
+                                                     duet::detail::smooth_slopes(problem.polygon));
+      const motion whole = duet::detail::timed_within_jerks(problem, path);
+      for (int k = 0; k < 4; ++k) {
+        double from = random.uniform(0, .99), to = random.uniform(from + .01, 1);
+        if (k == 1) { // short
+          to = std::min(1.0, from + random.magnitude(1e-3, .1));
+        } else if (k == 2) {
+          (seed % 2 == 0 ? from : to) = seed % 2 == 0 ? 0 : 1;
+        }
+        const double time = (to - from) * whole.duration;
+        curve piece = path;
+        const timing part =
+            piece_of(problem, piece, whole, from * whole.duration, to * whole.duration);
+        ++pieces;
+        try {
+          stopwatch single;
+          const auto q =
+              watch.of([&] { return single.of([&] { return duet::detail::timed(part, piece); }); });
+          slowest.add(single.median(), seed);
+          longer.add(q.duration() / time, seed);
+          share.add(largest_share(q, part), seed);
+        } catch (const duet::invalid_input&) {
+          ++refused;
+        }
+      }
+    }
+    std::printf("| %s | %d | %d | %.4f | %.4f (%u) | 1 %+.0e | %.0f | %.0f |\n", kind.name, pieces,
+                refused, longer.sum / (pieces - refused), longer.worst, longer.seed,
+                share.worst - 1, watch.median(), slowest.worst);
+    std::fflush(stdout);
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv) { compare(argc > 1 ? unsigned(std::atoi(argv[1])) : 50); }

@@ -1,0 +1,69 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/timing/pace_bounds.hpp>
+
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// A function of the coefficients of a pace, to second order. For those who extend duet.
+
+namespace duet::detail {
+
+/// The first derivatives of a function of the coefficients, and a band of second ones: (i, i),
+/// (i, i + 1) and (i, i + 2).
+struct pace_model {
+  std::vector<double> gradient;
+  std::vector<pace_row> matrix;
+
+  explicit pace_model(std::size_t n) : gradient(n), matrix(n) {}
+  /// Of f of what is linear in the coefficients: f' and f''.
+  void add(std::size_t first, const pace_row& by, double slope, double curvature) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      gradient[first + i] += slope * by[i];
+      for (std::size_t j = i; j < 3; ++j) {
+        matrix[first + i][j - i] += curvature * by[i] * by[j];
+      }
+    }
+  }
+  /// A coefficient stays what it is.
+  void fix(std::size_t i) {
+    gradient[i] = 0;
+    matrix[i] = {1, 0, 0};
+    for (std::size_t k = 1; k < 3 && k <= i; ++k) {
+      matrix[i - k][k] = 0;
+    }
+  }
+  /// Where it is least: the matrix is L D Lᵀ.
+  [[nodiscard]] std::vector<double> solution() {
+    const std::size_t n = gradient.size();
+    matrix[n - 1][1] = matrix[n - 1][2] = matrix[n - 2][2] = 0;
+    std::vector<double> x(n + 2);
+    for (std::size_t i = 0; i < n; ++i) {
+      auto& [d, one, two] = matrix[i];
+      x[i] -= gradient[i];
+      if (i + 1 < n) {
+        matrix[i + 1][0] -= one * one / d;
+        matrix[i + 1][1] -= one * two / d;
+      }
+      if (i + 2 < n) {
+        matrix[i + 2][0] -= two * two / d;
+      }
+      one /= d;
+      two /= d;
+      x[i + 1] -= one * x[i];
+      x[i + 2] -= two * x[i];
+    }
+    x.resize(n);
+    for (std::size_t i = n; i-- > 0;) {
+      x[i] /= matrix[i][0];
+      for (std::size_t k = 1; k < 3 && i + k < n; ++k) {
+        x[i] -= matrix[i][k] * x[i + k];
+      }
+    }
+    return x;
+  }
+};
+
+} // namespace duet::detail
