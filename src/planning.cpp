@@ -12,3 +12,4 @@
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/planning/start_chooser.hpp>
+#include <duet/planning/timing/pace_search.hpp>

@@ -4,7 +4,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/planning/joint_trajectory.hpp>
 #include <duet/planning/timing/pace_bounds.hpp>
-#include <duet/planning/timing/pace_search.hpp>
+#include <duet/planning/timing/quickest_pace.hpp>
 #include <duet/planning/timing/reference_law.hpp>
 #include <duet/planning/timing/timing_problem.hpp>
 
@@ -135,7 +135,7 @@ struct jerk_search_result {
 
 /// A fast motion that keeps limits of jerk as well: its pace over a parameter that is in proportion
 /// to the times of another motion, in a number of intervals.
-/// \param accuracy  as of `pace_search::quickest`
+/// \param accuracy  as of `quickest_pace`
 template <int N>
 [[nodiscard]] auto timed_by_jerks(const timing_problem<N>& problem,
                                   const std::vector<joint_cubic<joint_vector<double, N>>>& curve,
@@ -153,12 +153,11 @@ template <int N>
     const double rate = speeds[e] / (e == 0 ? law.first_slope() : law.last_slope());
     ends[e] = speeds[e] > 0 ? rate * rate : 0;
   }
-  pace_search search(bounds, ends);
+  const found_pace pace = quickest_pace(bounds, ends, accuracy);
   jerk_search_result<joint_vector<double, N>> result;
-  const auto [first, last] = search.reach_ends();
-  result.reached = {std::sqrt(first), std::sqrt(last)};
-  result.nearest_joint = search.nearest_joint();
-  result.motion = timed_by_pace(curve, path, intervals, search.quickest(accuracy));
+  result.reached = {std::sqrt(pace.reached[0]), std::sqrt(pace.reached[1])};
+  result.nearest_joint = pace.nearest_joint;
+  result.motion = timed_by_pace(curve, path, intervals, pace.coefficients);
   return result;
 }
 

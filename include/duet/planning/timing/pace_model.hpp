@@ -1,15 +1,28 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/planning/timing/pace_bounds.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 /// \file
-/// A function of the coefficients of a pace, to second order. For those who extend duet.
+/// A bound on a pace, and a function of its coefficients to second order. For those who extend
+/// duet.
 
 namespace duet::detail {
+
+/// One bound on a pace: |x| + beyond ≤ limit, with the derivatives of all three by its coefficients
+/// from `first` on. Of an order n it is that of the n-th derivative by time.
+struct pace_bound {
+  int order;
+  std::optional<std::size_t> joint; ///< where it is that of one alone
+  std::size_t first;
+  double limit, beyond, x;
+  const pace_row &limit_by, &beyond_by, &x_by;
+};
 
 /// The first derivatives of a function of the coefficients, and a band of second ones: (i, i),
 /// (i, i + 1) and (i, i + 2).

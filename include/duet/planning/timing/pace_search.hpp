@@ -1,9 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
+#include <duet/core/compiled.hpp>
 #include <duet/planning/timing/pace_bounds.hpp>
 #include <duet/planning/timing/pace_model.hpp>
+#include <duet/planning/timing/quickest_pace.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,19 +15,10 @@
 #include <vector>
 
 /// \file
-/// The quickest pace within bounds. For those who extend duet.
+/// The search for the quickest pace, which the library duet::compiled holds. For those who extend
+/// duet.
 
 namespace duet::detail {
-
-/// One bound on a pace: |x| + beyond ≤ limit, with the derivatives of all three by its coefficients
-/// from `first` on. Of an order n it is that of the n-th derivative by time.
-struct pace_bound {
-  int order;
-  std::optional<std::size_t> joint; ///< where it is that of one alone
-  std::size_t first;
-  double limit, beyond, x;
-  const pace_row &limit_by, &beyond_by, &x_by;
-};
 
 /// A pace within bounds that becomes quicker and never leaves them, so that it may stop at any
 /// time. Each step is one of Newton's method for weight · time − Σ log(what is left of limits), in
@@ -290,5 +282,16 @@ private:
   std::array<bool, 2> is_kept_{};
   std::vector<double> pace_;
 };
+
+DUET_COMPILED_FUNCTION found_pace quickest_pace(const pace_bounds& bounds,
+                                                const std::array<double, 2>& ends,
+                                                double accuracy) {
+  pace_search search(bounds, ends);
+  found_pace result;
+  result.reached = search.reach_ends();
+  result.nearest_joint = search.nearest_joint();
+  result.coefficients = search.quickest(accuracy);
+  return result;
+}
 
 } // namespace duet::detail
