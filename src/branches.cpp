@@ -2,6 +2,8 @@
 
 // All solutions of six and seven joints.
 
+#define DUET_DEFINES_COMPILED
+
 #include <duet/planning/branches/branch_solver.hpp>
 #include <duet/planning/branches/chain_loop_units.hpp>
 #include <duet/planning/branches/curve_tracer.hpp>

@@ -4,6 +4,7 @@
 
 #include <duet/core/compiled.hpp>
 
+#define DUET_DEFINES_COMPILED
 #undef DUET_COMPILED_TEMPLATE
 #define DUET_COMPILED_TEMPLATE template
 

@@ -12,10 +12,11 @@
 /// A list keeps compilers from functions that are neither inline, as are those defined within a
 /// class, nor return `auto`. Functions that are no templates are declared with
 /// `DUET_COMPILED_FUNCTION` and defined in a header of their own, which comes in only where there
-/// is no library.
+/// is no library, between `#ifdef DUET_DEFINES_COMPILED`, which the library's sources define.
 
 #ifndef DUET_COMPILED
 #define DUET_COMPILED_FUNCTION inline
+#define DUET_DEFINES_COMPILED
 #else
 #define DUET_COMPILED_FUNCTION
 #define DUET_COMPILED_TEMPLATE extern template

@@ -24,6 +24,7 @@
 
 namespace duet::detail {
 
+#ifdef DUET_DEFINES_COMPILED
 /// The point in which the axes of three joints meet, if there is one.
 [[nodiscard]] inline std::optional<vector3d> common_point(const loop_joint& a, const loop_joint& b,
                                                           const loop_joint& c) {
@@ -115,5 +116,6 @@ DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
   }
   answer_ = eliminated(loop);
 }
+#endif
 
 } // namespace duet::detail

@@ -16,6 +16,7 @@
 
 namespace duet::detail {
 
+#ifdef DUET_DEFINES_COMPILED
 DUET_COMPILED_FUNCTION void chain_axes::choose_units() {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -39,5 +40,6 @@ DUET_COMPILED_FUNCTION void chain_axes::choose_units() {
     j.point = 1 / size * j.point;
   }
 }
+#endif
 
 } // namespace duet::detail

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
+#include <duet/planning/branches/branch_search.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 
 #include <Eigen/LU>
@@ -14,10 +15,8 @@
 
 namespace duet::detail {
 
-/// Newton's method from θ to a solution, to the level of rounding.
-/// \return did it get there?
-[[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop,
-                                                     six_coordinates& theta) {
+#ifdef DUET_DEFINES_COMPILED
+DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& theta) {
   constexpr double rounding = 2e-15, good = 1e-13;
   double before = HUGE_VAL;
   for (int k = 0; k < 40; ++k) {
@@ -36,5 +35,6 @@ namespace duet::detail {
   }
   return false;
 }
+#endif
 
 } // namespace duet::detail

@@ -189,6 +189,7 @@ inline void add_held(const seven_joints& arm, int held, double value,
   }
 }
 
+#ifdef DUET_DEFINES_COMPILED
 DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& arm,
                                                             double resolution) {
   const curve_tracer tracer(arm, resolution);
@@ -209,5 +210,6 @@ DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& 
   }
   return result;
 }
+#endif
 
 } // namespace duet::detail

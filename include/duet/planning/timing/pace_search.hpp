@@ -283,6 +283,7 @@ private:
   std::vector<double> pace_;
 };
 
+#ifdef DUET_DEFINES_COMPILED
 DUET_COMPILED_FUNCTION found_pace quickest_pace(const pace_bounds& bounds,
                                                 const std::array<double, 2>& ends,
                                                 double accuracy) {
@@ -293,5 +294,6 @@ DUET_COMPILED_FUNCTION found_pace quickest_pace(const pace_bounds& bounds,
   result.coefficients = search.quickest(accuracy);
   return result;
 }
+#endif
 
 } // namespace duet::detail
