@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/planning/branches/angle_pairs.hpp>
+#include <duet/planning/tip_place.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <algorithm>
