@@ -68,9 +68,10 @@ struct complex_eigenvectors {
         const std::complex<double> gap = t(i, i) - values[k];
         x(i, k) = sum / (std::abs(gap) > tiny ? gap : std::complex<double>(tiny));
       }
+      x.col(k)
+          .stableNormalize(); // where eigenvalues are equal entries are up to 1e15 times as large
     }
     vectors = schur.matrixU().lazyProduct(x);
-    vectors.colwise().normalize();
   }
 };
 

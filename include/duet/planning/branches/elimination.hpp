@@ -68,8 +68,8 @@ public:
     factors_.setThreshold(1e-10);
     factors_.compute(goal_);
     Eigen::Matrix<double, 14, 27> rest = arm_;
-    Eigen::Matrix<double, 27, 1>
-        workspace; // (by blocks, as Eigen applies them, compilers take longer)
+    // One by one: by blocks, as Eigen applies them by itself, compilers take longer.
+    Eigen::Matrix<double, 27, 1> workspace;
     for (Eigen::Index k = 0; k < 8; ++k) {
       rest.bottomRows(14 - k).applyHouseholderOnTheLeft(factors_.matrixQR().col(k).tail(13 - k),
                                                         factors_.hCoeffs()[k], workspace.data());

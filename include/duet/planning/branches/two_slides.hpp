@@ -190,7 +190,8 @@ private:
     const auto way = [&](std::size_t k) {
       return rows(left.jacobian.col(Eigen::Index(sliding_[k])));
     };
-    // Along both ways, and across what they span.
+    // What of the gap is in the plane of both ways. Where these are parallel nothing is finite,
+    // which `close_loop` does not take for a start.
     const Eigen::Vector3d first = way(0), second = way(1), gap = rows(left.twist);
     const Eigen::Vector3d across = first.cross(second);
     const double square = across.squaredNorm();
