@@ -4,8 +4,7 @@
 #include <duet/core/compiled.hpp>
 #include <duet/planning/branches/branch_search.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
-
-#include <Eigen/LU>
+#include <duet/planning/branches/orthonormalise.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +25,7 @@ DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& 
       return true;
     }
     before = left;
-    six_coordinates step = Eigen::PartialPivLU<six_columns>(gap.jacobian).solve(gap.twist);
+    const six_coordinates step = least_solution(gap.jacobian, gap.twist);
     const double length = step.norm();
     if (!(length < 1e6)) {
       return false;

@@ -213,9 +213,9 @@ public:
                             for (int k = 0; k < 3; ++k) {
                               ways.col(k) = gap.jacobian.col(sliding[std::size_t(k)]).head<3>();
                             }
-                            const Eigen::FullPivLU<Eigen::Matrix3d> lu(ways);
-                            is_determined = is_determined && lu.isInvertible();
-                            const Eigen::Vector3d d = lu.solve(gap.twist.head<3>());
+                            const Eigen::Matrix3d inverse = ways.inverse();
+                            is_determined = is_determined && inverse.norm() < 1e15 / ways.norm();
+                            const Eigen::Vector3d d = inverse * gap.twist.head<3>();
                             for (int k = 0; k < 3; ++k) {
                               theta[sliding[std::size_t(k)]] = d[k];
                             }

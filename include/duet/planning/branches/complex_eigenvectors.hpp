@@ -19,21 +19,6 @@ namespace duet::detail {
 using small_square =
     Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 12, 12>;
 
-/// Makes columns orthonormal, one after the other; of others the same sums are made.
-template <class M, class... Others>
-void orthonormalise(M& m, Others&... others) {
-  for (Eigen::Index j = 0; j < m.cols(); ++j) {
-    for (Eigen::Index k = 0; k < j; ++k) {
-      const auto part = m.col(k).dot(m.col(j));
-      m.col(j) -= part * m.col(k);
-      ((others.col(j) -= part * others.col(k)), ...);
-    }
-    const double size = m.col(j).norm();
-    m.col(j) /= size;
-    ((others.col(j) /= size), ...);
-  }
-}
-
 /// Eigenvalues and unit eigenvectors, by Eigen's Schur decomposition. (Its ComplexEigenSolver took
 /// g++ twelve seconds to compile: it makes the matrix one of Hessenberg's by blocks of reflections,
 /// this by Givens rotations.)

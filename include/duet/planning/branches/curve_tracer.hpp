@@ -6,11 +6,10 @@
 #include <duet/planning/branches/chain_loop.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/orthonormalise.hpp>
 #include <duet/planning/branches/seven_joints.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -88,8 +87,7 @@ private:
       if (e.norm() < rounding) {
         return x;
       }
-      const six_columns square = j * j.transpose();
-      const seven_coordinates step = j.transpose() * square.ldlt().solve(e);
+      const seven_coordinates step = least_solution(j, e);
       if (!(step.norm() < step_)) {
         return {};
       }
@@ -103,12 +101,20 @@ private:
     constexpr double singular = 1e-9;
     seven_columns j;
     static_cast<void>(arm_.gap(x, j));
-    const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 7, 6>> qr(j.transpose());
-    const auto pivots = qr.matrixQR().diagonal().cwiseAbs();
-    if (!(pivots.minCoeff() > singular * pivots.maxCoeff())) {
+    Eigen::Matrix<double, 7, 6> rows = j.transpose();
+    orthonormalise(rows);
+    const six_coordinates sizes = rows.cwiseProduct(j.transpose()).colwise().sum();
+    if (!(sizes.minCoeff() > singular * sizes.maxCoeff())) {
       return {};
     }
-    return seven_coordinates(qr.householderQ() * seven_coordinates::Unit(6));
+    Eigen::Index least = 0; // the joint that is in the rows least
+    rows.rowwise().squaredNorm().minCoeff(&least);
+    seven_coordinates result = seven_coordinates::Unit(least);
+    for (int k = 0; k < 2; ++k) { // once more for what was rounded
+      result -= rows * (rows.transpose() * result);
+      result.normalize();
+    }
+    return result;
   }
 
   /// Newton's method, with x kept where it is along the curve, from a point beside x.

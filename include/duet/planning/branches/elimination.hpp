@@ -5,6 +5,7 @@
 #include <duet/planning/branches/complex_eigenvectors.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/line_coordinates.hpp>
+#include <duet/planning/branches/orthonormalise.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
@@ -64,24 +65,32 @@ public:
       }
     }
     arm_.col(0) -= goal.col(0);
-    goal_ = goal.rightCols<8>();
-    factors_.setThreshold(1e-10);
-    factors_.compute(goal_);
-    Eigen::Matrix<double, 14, 27> rest = arm_;
+    Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 14, 8>> factors;
+    factors.setThreshold(1e-10);
+    factors.compute(goal.rightCols<8>());
+    const auto& r = factors.matrixQR();
     // One by one: by blocks, as Eigen applies them by itself, compilers take longer.
     Eigen::Matrix<double, 27, 1> workspace;
     for (Eigen::Index k = 0; k < 8; ++k) {
-      rest.bottomRows(14 - k).applyHouseholderOnTheLeft(factors_.matrixQR().col(k).tail(13 - k),
-                                                        factors_.hCoeffs()[k], workspace.data());
+      arm_.bottomRows(14 - k).applyHouseholderOnTheLeft(r.col(k).tail(13 - k), factors.hCoeffs()[k],
+                                                        workspace.data());
     }
-    const Eigen::Index rank = factors_.rank();
-    if (rank == 8) {
-      left_ = rest.bottomRows<6>();
+    const auto& order = factors.colsPermutation().indices();
+    rank_ = factors.rank();
+    for (Eigen::Index k = rank_; k-- > 0;) {
+      auto row = eliminated_.row(order[k]) = arm_.row(k);
+      for (Eigen::Index j = k + 1; j < rank_; ++j) {
+        row -= r(k, j) * eliminated_.row(order[j]);
+      }
+      row /= r(k, k);
+    }
+    if (rank_ == 8) {
+      left_ = arm_.bottomRows<6>();
     } else { // more equations than needed: six sums of them
       left_.setZero();
-      for (Eigen::Index i = rank; i < 14; ++i) {
+      for (Eigen::Index i = rank_; i < 14; ++i) {
         for (Eigen::Index k = 0; k < 6; ++k) {
-          left_.row(k) += std::cos(double((i + 1) * (i + 1) * (k + 1))) * rest.row(i);
+          left_.row(k) += std::cos(double((i + 1) * (i + 1) * (k + 1))) * arm_.row(i);
         }
       }
     }
@@ -266,8 +275,7 @@ private:
         all.segment<3>(9 * a + 3 * b) = by3[a] * by4[b] * by5;
       }
     }
-    const Eigen::Matrix<double, 14, 1> right = arm_ * all;
-    const Eigen::Matrix<double, 8, 1> x = factors_.solve(right);
+    const Eigen::Matrix<double, 8, 1> x = eliminated_ * all;
     theta[1] = loop_.joints[1].turns ? std::atan2(x[1], x[0]) : x[0];
     theta[0] = loop_.joints[0].turns ? std::atan2(x[5], x[2]) : x[2];
     const tip_place rest = inverse_place(product_of_joints(loop_, theta, 0, 5)) * loop_.closing;
@@ -278,14 +286,15 @@ private:
       return false;
     }
     visit(theta);
-    return (goal_ * x - right).norm() < 1e-3 * (1 + right.norm());
+    const Eigen::Matrix<double, 14, 1> right = arm_ * all;
+    return right.tail(14 - rank_).norm() < 1e-3 * (1 + right.norm());
   }
 
   joint_loop loop_;
-  Eigen::Matrix<double, 14, 27> arm_;
+  Eigen::Index rank_;                 // of the products that are eliminated
+  Eigen::Matrix<double, 14, 27> arm_; // all equations, the first `rank_` with those products
+  Eigen::Matrix<double, 8, 27> eliminated_ = Eigen::Matrix<double, 8, 27>::Zero(); // the products
   Eigen::Matrix<double, 6, 27> left_;
-  Eigen::Matrix<double, 14, 8> goal_;
-  Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 14, 8>> factors_;
 };
 
 } // namespace duet::detail

@@ -4,9 +4,9 @@
 #include <duet/planning/branches/close_loop.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/orthonormalise.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -83,13 +83,15 @@ private:
     constexpr double close_by = .05, h = 1e-3, nudge = 1e-9; // which leaves no pivot zero
     const six_coordinates theta = all_[at].theta;
     const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
-    const Eigen::PartialPivLU<six_columns> lu(loop_gap(loop_, nearby).jacobian);
+    six_columns rows = loop_gap(loop_, nearby).jacobian.transpose(); // J = L Q, then Qᵀ
+    six_columns inverse = six_columns::Identity();                   // then L⁻ᵀ
+    orthonormalise(rows, inverse);
     six_coordinates v, u;
     v << 1, .7, -.4, .9, -.6, .5;
     double sigma = 0;
     for (int k = 0; k < 3; ++k) {
-      u = lu.transpose().solve(v).normalized();
-      v = lu.solve(u);
+      u = (inverse * (rows.transpose() * v)).normalized();
+      v = rows * (inverse.transpose() * u);
       sigma = 1 / v.norm();
       v *= sigma;
     }
