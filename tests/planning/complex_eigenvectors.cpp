@@ -3,6 +3,7 @@
 #include "support/random.hpp"
 
 #include <duet/planning/branches/complex_eigenvectors.hpp>
+#include <duet/planning/branches/orthonormalise.hpp>
 
 #include <doctest/doctest.h>
 
@@ -70,18 +71,6 @@ TEST_CASE("eigenvalues that are equal: as many vectors, or one of a Jordan block
     block.diagonal(1).setOnes();
     CHECK(residual(block, complex_eigenvectors(block)) < 1e-13);
     CHECK(residual(0 * block, complex_eigenvectors(0 * block)) < 1e-15);
-  }
-}
-
-TEST_CASE("columns become orthonormal, and the same sums of other columns are made") {
-  duet_test::random_source random(3);
-  for (Eigen::Index n = 1; n <= 6; ++n) {
-    CAPTURE(n);
-    const small_square factor = random_matrix(random, n);
-    small_square m = random_matrix(random, n), other = factor * m;
-    duet::detail::orthonormalise(m, other);
-    CHECK((m.adjoint() * m - small_square::Identity(n, n)).norm() < 1e-10);
-    CHECK((other - factor * m).norm() < 1e-10);
   }
 }
 
