@@ -5,8 +5,8 @@
 #include <duet/planning/branches/chain_loop.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,14 @@ DUET_COMPILED_FUNCTION void chain_axes::choose_units() {
     squares += across;
     sum += across * p;
   }
-  middle = components(Eigen::Vector3d(squares.ldlt().solve(sum)));
+  // Where all axes are parallel `squares` is singular: damped, and as often as the damping is to be
+  // forgotten where they are not. (Eigen's decompositions take g++ two seconds to compile.)
+  const Eigen::Matrix3d damped = (squares + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
+  Eigen::Vector3d least = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 6; ++k) {
+    least += damped * (sum - squares * least);
+  }
+  middle = components(least);
   double largest = 0, reach = length_of(middle);
   for (loop_joint& j : joints) {
     reach = std::max(reach, length_of(j.point));
