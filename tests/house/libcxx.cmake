@@ -1,29 +1,12 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# With libc++ all headers compile (each alone is the business of headers.cmake), and what tests of every kind of
-# number and curve expect holds.
+# With libc++, what tests of every kind of number and curve expect holds.
 #
 # cmake "-Dcompile=<clang and flags>" -Dproject=<folder> -Dfolder=<for files> -P libcxx.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
-list(APPEND compile -stdlib=libc++)
 file(MAKE_DIRECTORY ${folder})
-file(WRITE ${folder}/installed.cpp "#include <charconv>\n#include <string>\nint main() { return int(std::string().size()); }\n")
-execute_process(COMMAND ${compile} ${folder}/installed.cpp -o ${folder}/installed
-  RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
-if(NOT result EQUAL 0)
-  message("SKIPPED: libc++ is not installed for this compiler")
-  return()
-endif()
-
-file(GLOB_RECURSE headers RELATIVE ${project}/include ${project}/include/duet/*.hpp)
-list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>")
-list(JOIN headers "\n" lines)
-file(WRITE ${folder}/everything.cpp "${lines}\n")
-execute_process(COMMAND ${compile} -fsyntax-only -Wno-ignored-attributes ${folder}/everything.cpp
-  COMMAND_ERROR_IS_FATAL ANY)
-
 set(lines "#include \"support/main.cpp\"\n")
 foreach(test IN ITEMS
     core/chars core/number_text core/parallel_for core/text_rows
