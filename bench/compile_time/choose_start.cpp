@@ -1,0 +1,12 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+// From which solution an arm can follow a path.
+
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/choose_start.hpp>
+
+#include <cstddef>
+
+std::size_t poses_reached(duet::dual_quaternion<double> (*path)(double)) {
+  return duet::choose_start(duet::robots::panda(), path, 0, 1).plan.joints.size();
+}
