@@ -37,10 +37,12 @@ std::vector<std::string> seeds() {
   const std::string corners = "# a square\nmtllib a.mtl\no it\nv 0 0 0\nv 1 0 0 1\n"
                               "v 1 1e-3 0 .1 .2 .3\nv 0 -1 0\nvt .5 .5\nvn 0 0 1\n";
   const unsigned no_number = 0x7fc00000;
-  return {binary(0x3f800000), binary(no_number),
+  return {binary(0x3f800000),
+          binary(no_number),
           "solid one\n" + facet + facet + "endsolid one\r\n\nsolid\n" + facet + "endsolid",
           corners + "s off\nf 1//1 2//1 3/1/1 4\nf -1 -2 -3\n",
-          corners + "g a\nusemtl red\nf 1 2 3\nv 1 2 3\nf 3 4 5 1 2\nl 1 2\n"};
+          corners + "g a\nusemtl red\nf 1 2 3\nv 1 2 3\nf 3 4 5 1 2\nl 1 2\n",
+          "# C:\\\n" + corners + "f 1 2\\\n3 \\\r\n  4 \\\n"};
 }
 
 void target(const std::string& input) {

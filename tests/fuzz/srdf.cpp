@@ -31,9 +31,13 @@ void target(const std::string& input) {
   const std::string path = "fuzz_srdf.srdf";
   std::ofstream(path, std::ios::binary) << input;
   try {
-    // `<disable_collisions link1="" link2=""/>` is the least that a pair takes.
-    duet_fuzz::require(duet::read_disabled_collisions(path).size() * 39 <= input.size(),
-                       "pairs of the file");
+    const auto pairs = duet::read_disabled_collisions(path);
+    // `<disable_collisions link1="a" link2="b"/>` is the least that a pair takes.
+    duet_fuzz::require(pairs.size() * 41 <= input.size(), "pairs of the file");
+    for (const duet::link_pair& each : pairs) {
+      duet_fuzz::require(!each.first.empty() && !each.second.empty() && each.first != each.second,
+                         "pairs of two links");
+    }
   } catch (const duet::file_error& error) {
     duet_fuzz::require_message(error.what(), "duet: " + path + ":");
   }

@@ -3,6 +3,7 @@
 #include "support/message.hpp"
 
 #include <duet/core/compiler/bit_cast.hpp>
+#include <duet/core/text/printable.hpp>
 #include <duet/mechanism/mesh_file.hpp>
 
 #include <doctest/doctest.h>
@@ -92,16 +93,40 @@ TEST_CASE("STL as text: several solids, blank lines, and each line that is anoth
     std::string result = "solid x\n" + facet + "endsolid x\n";
     return fault(".stl", result.replace(result.find(text), text.size(), other));
   };
-  CHECK(without("facet normal 0 0 1", "facet 0 0 1") ==
-        "2: \"facet normal x y z\" or \"endsolid\" expected");
-  CHECK(without("outer loop", "loop") == "3: \"outer loop\" expected");
-  CHECK(without("vertex 0 0 0\n", "") == "6: \"vertex x y z\" expected");
-  CHECK(without("vertex 0 0 0", "vertex 0 0 0 0") == "4: \"vertex x y z\" expected");
+  const auto expected = [](const std::string& line, const char* form, const char* text) {
+    return line + ": \"" + form + "\" expected, not \"" + text + "\"";
+  };
+  const char* const normal = "facet normal x y z";
+  for (const char* bad : {"facet 0 0 1", "facet normal 0 0", "facet normal 0 0 1 2",
+                          "facet nrmal 0 0 1", "fact normal 0 0 1", "facet\tnormal 0\f0 1"}) {
+    CHECK(without("facet normal 0 0 1", bad) ==
+          expected("2", normal, duet::printable(bad).c_str()));
+  }
+  for (const char* bad : {"loop", "outer", "outer lop", "outr loop", "outer loop loop"}) {
+    CHECK(without("outer loop", bad) == expected("3", "outer loop", bad));
+  }
+  CHECK(without("vertex 0 0 0\n", "") == expected("6", "vertex x y z", "endloop"));
+  CHECK(without("vertex 0 0 0", "vertex 0 0 0 0") ==
+        expected("4", "vertex x y z", "vertex 0 0 0 0"));
   CHECK(without("vertex 0 0 0", "vertex 0 O 0") == "4: \"O\" is no number");
-  CHECK(without("vertex 0 0 0", "vertex 0 nan 0") == "4: \"nan\" is no number");
-  CHECK(without("    endloop\n", "") == "7: \"endloop\" expected");
+  CHECK(without("vertex 0 0 0", "vertex 0 nan 0") == "4: \"nan\" is not finite");
+  CHECK(without("facet normal 0 0 1", "facet normal 0 O 1") == "2: \"O\" is no number");
+  CHECK(without("    endloop\n", "") == expected("7", "endloop", "endfacet"));
+  CHECK(without("endloop", "endloop 7") == expected("7", "endloop", "endloop 7"));
+  CHECK(without("endfacet\n", "endfacet x\n") == expected("8", "endfacet", "endfacet x"));
+  CHECK(without("  endfacet\nendsolid x\n", "\n\n") == "7: the file ends before \"endfacet\"");
+  CHECK(without("    outer loop\n      vertex 0 0 0\n      vertex 1e-1 0 0\n"
+                "      vertex 0 +2 -3\n    endloop\n  endfacet\nendsolid x\n",
+                "") == "2: the file ends before \"outer loop\"");
   CHECK(without("endsolid x\n", "") == "8: the file ends before \"endsolid\"");
-  CHECK(without("endsolid x\n", "endsolid x\nfacet") == "10: \"solid\" expected");
+  CHECK(without("endsolid x\n", "edsolid x\n") == expected("9", normal, "edsolid x"));
+  CHECK(without("endsolid x\n", "endsolid x\nfacet") == expected("10", "solid", "facet"));
+  // Triangles without area have no normal: some programs write what they get then.
+  for (const char* none : {"nan", "-nan", "-nan(ind)", "inf"}) {
+    CHECK(read_mesh(write(".stl", "solid\nfacet normal 0 1 " + std::string(none) +
+                                      facet.substr(20) + "endsolid"))
+              .corners.size() == 3);
+  }
 }
 
 TEST_CASE("OBJ: triangles, faces of more corners, numbers from the end back") {
@@ -115,15 +140,46 @@ TEST_CASE("OBJ: triangles, faces of more corners, numbers from the end back") {
   CHECK(m.corners[8] == std::array<double, 3>{1, 0, 0});
   CHECK(read_mesh(write(".obj", "\xef\xbb\xbf" + corners + "f 1 2 3")).corners.size() == 3);
   CHECK(fault(".obj", corners) == " has no triangles");
-  CHECK(fault(".obj", corners + "f 1 2\n") == "7: a face has three corners or more");
+  CHECK(fault(".obj", corners + "f 1 2\n") == "7: a face has three corners or more, not \"f 1 2\"");
   for (const char* bad : {"0", "5", "-5", "1.5", "x", "", "nan", "1e99"}) {
     const std::string text(bad);
     CHECK(fault(".obj", corners + "f 1 2 " + text + "/7\n") ==
           "7: \"" + text + "/7\" is no corner of the 4 vertices before");
   }
-  CHECK(fault(".obj", "v 1 2\n") == "1: \"v x y z\" expected");
-  CHECK(fault(".obj", "v 1 2 inf\n") == "1: \"inf\" is no number");
+  for (const char* bad : {"1/x/2", "1/2/y", "1/1/1/1", "1/0", "1/1.5", "1//nan", "1///"}) {
+    const std::string text(bad);
+    CHECK(fault(".obj", corners + "f 1 2\t" + text + "\n") ==
+          "7: \"" + text + "\" is none of k, k/t, k//n and k/t/n");
+  }
+  CHECK(read_mesh(write(".obj", corners + "f 1/ 2// -2/-7/+1")).corners.size() == 3);
+  CHECK(fault(".obj", "v 1 2\n") == "1: \"v x y z\" expected, not \"v 1 2\"");
+  CHECK(fault(".obj", "v 1 2 inf\n") == "1: \"inf\" is not finite");
+  CHECK(fault(".obj", "v 1 2 3 O\n") == "1: \"O\" is no number");
+  CHECK(fault(".obj", "v 1 2 3 .1 .2 red\n") == "1: \"red\" is no number");
   CHECK(fault(".obj", corners + "face 1 2 3\n") == "7: unknown statement \"face\"");
+}
+
+TEST_CASE("OBJ: lines that a backslash joins, and the numbers of lines then") {
+  const std::string corners = "v 0 0 \\\n0\nv \\\r\n1 \\\r\n0 0\nv 1 1 0\n"; // 6 lines
+  const auto m =
+      read_mesh(write(".obj", corners + "f 1\\\n 2 \\  \n\\\n3\ng a \\\n b\nf 3 2 1 \\"));
+  REQUIRE(m.corners.size() == 6);
+  CHECK(m.corners[1] == std::array<double, 3>{1, 0, 0});
+  CHECK(m.corners[2] == std::array<double, 3>{1, 1, 0});
+  CHECK(m.corners[5] == std::array<double, 3>{0, 0, 0});
+  CHECK(fault(".obj", corners + "f 1 2 \\\n 3 \\\n 9 \\\n 1\n") ==
+        "9: \"9\" is no corner of the 3 vertices before");
+  CHECK(fault(".obj", corners + "\nv 1 \\\n\n2 3\n") ==
+        "8: \"v x y z\" expected, not \"v 1\""); // an empty line ends it
+  CHECK(fault(".obj", corners + "f 1\\\n2\nx\n") ==
+        "7: a face has three corners or more, not \"f 1\\\\n2\"");
+  CHECK(fault(".obj", corners + "f 1 \\ 2 3\n") ==
+        "7: \"\\\" is no corner of the 3 vertices before");
+  // A comment ends with its line, so that one with a folder's name takes nothing with it.
+  CHECK(read_mesh(write(".obj", "# of C:\\models\\\n" + corners + "f 1 2 3")).corners.size() == 3);
+  CHECK(fault(".obj", "\\") == " has no triangles");
+  // Nor has STL such lines.
+  CHECK(fault(".stl", "solid a\nfacet normal 0 0 \\\n1\n") == "2: \"\\\" is no number");
 }
 
 TEST_CASE("other files, and none") {

@@ -135,6 +135,12 @@ TEST_CASE("disabled collisions") {
   CHECK(fault_of_srdf("\n<disable_collisions link1=\"a\" linc2=\"b\"/>") ==
         "4: <disable_collisions>: unknown attribute \"linc2\": there are \"link1\", \"link2\" and "
         "\"reason\"");
+  CHECK(fault_of_srdf("<disable_collisions link1=\"\" link2=\"b\"/>") ==
+        "3: <disable_collisions>: link1=\"\" names no link");
+  CHECK(fault_of_srdf("<disable_collisions link1=\"a\" link2=\"\"/>") ==
+        "3: <disable_collisions>: link2=\"\" names no link");
+  CHECK(fault_of_srdf("\n<disable_collisions link1=\"a\" link2=\"a\" reason=\"Never\"/>") ==
+        "4: <disable_collisions>: link1 and link2 are both \"a\"");
   CHECK(fault_of_srdf("<enable_collisions link1=\"a\" link2=\"b\"/>") ==
         "3: <enable_collisions> is not supported");
   std::ofstream(path) << "<sdf/>";

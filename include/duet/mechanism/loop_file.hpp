@@ -8,7 +8,6 @@
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/tree_loop.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -28,12 +27,7 @@ class loop_line {
 public:
   loop_line(const std::string& path, std::size_t line, std::string_view text)
       : path_(path), line_(line) {
-    constexpr std::string_view blanks = " \t\r";
-    for (std::size_t first = 0; (first = text.find_first_not_of(blanks, first)) != text.npos;) {
-      const std::size_t end = std::min(text.find_first_of(blanks, first), text.size());
-      words_.push_back(text.substr(first, end - first));
-      first = end;
-    }
+    for_each_word(text, [&](std::string_view word) { words_.push_back(word); });
   }
 
   [[nodiscard]] tree_loop read() {

@@ -20,8 +20,8 @@ namespace duet {
 /// `pairs_apart` leaves out. All else in the file is passed over.
 ///
 /// \throws file_error with the line for XML that is not well formed, another root than `<robot>`,
-/// names that are missing, attributes but these and `reason`, and for `<enable_collisions>` and
-/// `<disable_default_collisions>`, which turn the meaning round
+/// names that are missing or empty, a link paired with itself, attributes but these and `reason`,
+/// and for `<enable_collisions>` and `<disable_default_collisions>`, which turn the meaning round
 [[nodiscard]] inline std::vector<link_pair> read_disabled_collisions(const std::string& path) {
   return detail::read_disabled_collisions_in_srdf<detail::xml_library>(path);
 }

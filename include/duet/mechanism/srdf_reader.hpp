@@ -39,6 +39,13 @@ namespace duet::detail {
       if (each.attribute(key) == nullptr) {
         fail(each, std::string("<disable_collisions>: no attribute \"") + key + "\"");
       }
+      if (each.attribute(key)->empty()) {
+        fail(each, std::string("<disable_collisions>: ") + key + "=\"\" names no link");
+      }
+    }
+    if (*each.attribute("link1") == *each.attribute("link2")) {
+      fail(each,
+           "<disable_collisions>: link1 and link2 are both \"" + *each.attribute("link1") + "\"");
     }
     result.push_back({*each.attribute("link1"), *each.attribute("link2")});
   }

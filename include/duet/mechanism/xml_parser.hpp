@@ -12,9 +12,7 @@
 #endif
 #include <expat.h>
 
-#include <array>
 #include <cstddef>
-#include <fstream>
 #include <new>
 #include <string>
 #include <utility>
@@ -28,7 +26,7 @@ namespace duet::detail {
 /// Reads one file.
 class xml_parser {
 public:
-  static constexpr std::size_t most_bytes = std::size_t(1) << 24U;
+  static constexpr std::size_t most_megabytes = 16;
   static constexpr std::size_t most_depth = 100;
 
   explicit xml_parser(const std::string& path)
@@ -48,7 +46,7 @@ public:
   /// \throws file_error for what is not well formed, has a document type (and with it entities), is
   /// nested too deep or too large
   [[nodiscard]] xml_element root() {
-    const std::string text = content();
+    const std::string text = whole_content(path_, most_megabytes);
     const bool is_good =
         XML_Parse(parser_, text.data(), int(text.size()), XML_TRUE) == XML_STATUS_OK;
     if (is_out_of_memory_) {
@@ -63,24 +61,6 @@ public:
   }
 
 private:
-  [[nodiscard]] std::string content() const {
-    std::ifstream in;
-    if (const std::string fault = open_input(path_, in); !fault.empty()) {
-      raise(file_error(path_, fault));
-    }
-    std::string text;
-    for (std::array<char, 4096> part{}; in.read(part.data(), part.size()), in.gcount() > 0;) {
-      text.append(part.data(), std::size_t(in.gcount()));
-      if (text.size() > most_bytes) {
-        raise(file_error(path_, "has more than 16 MB"));
-      }
-    }
-    if (in.bad()) {
-      raise(file_error(path_, "cannot be read"));
-    }
-    return text;
-  }
-
   [[nodiscard]] std::size_t line() const { return XML_GetCurrentLineNumber(parser_); }
 
   /// In which element the parser is.

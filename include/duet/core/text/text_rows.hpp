@@ -5,6 +5,7 @@
 #include <duet/core/text/number_text.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -28,6 +29,37 @@ namespace duet::detail {
   }
   in.open(path, std::ios::binary);
   return in ? "" : "cannot be read";
+}
+
+/// All of a file, byte by byte as it is.
+/// \throws file_error for what cannot be read and for more than that many megabytes
+[[nodiscard]] inline std::string whole_content(const std::string& path, std::size_t megabytes) {
+  std::ifstream in;
+  if (const std::string fault = open_input(path, in); !fault.empty()) {
+    raise(file_error(path, fault));
+  }
+  std::string text;
+  for (std::array<char, 65536> part{}; in.read(part.data(), part.size()), in.gcount() > 0;) {
+    text.append(part.data(), std::size_t(in.gcount()));
+    if (text.size() > megabytes << 20U) {
+      raise(file_error(path, "has more than " + std::to_string(megabytes) + " MB"));
+    }
+  }
+  if (in.bad()) {
+    raise(file_error(path, "cannot be read"));
+  }
+  return text;
+}
+
+/// Calls f(word) for every word of a line, between blanks.
+template <class F>
+void for_each_word(std::string_view line, const F& f) {
+  constexpr std::string_view blanks = " \t\r";
+  for (std::size_t end = 0, first;
+       (first = line.find_first_not_of(blanks, end)) != std::string_view::npos;) {
+    end = std::min(line.find_first_of(blanks, first), line.size());
+    f(line.substr(first, end - first));
+  }
 }
 
 /// Calls f(number, text) for every line, counted from 1, without its end and without a byte order
