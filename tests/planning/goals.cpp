@@ -340,13 +340,14 @@ TEST_CASE("regions that hold no pose") {
         "duet: inverse_kinematics: the region goes from 0 to -1 along axis 1 of its frame");
   bad = good;
   bad.axis = {0, 1, 1};
-  CHECK(text(bad) == "duet: inverse_kinematics: the region's axis (0, 1, 1) is no unit vector");
+  CHECK(text(bad) ==
+        "duet: inverse_kinematics: the axis of the region (0, 1, 1) is no unit vector");
   bad = good;
   bad.tilt = -.1;
-  CHECK(text(bad) == "duet: inverse_kinematics: the region's tilt is -0.1");
+  CHECK(text(bad) == "duet: inverse_kinematics: the tilt of the region is -0.1");
   bad = good;
   bad.turn_lower = 4;
-  CHECK(text(bad).find("the region's turns go from 4 to 3.14") != std::string::npos);
+  CHECK(text(bad).find("the turns of the region go from 4 to 3.14") != std::string::npos);
   bad = good;
   bad.frame = 2 * bad.frame;
   CHECK(text(bad).find("the frame of the region is no unit dual quaternion") != std::string::npos);

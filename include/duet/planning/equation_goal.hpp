@@ -24,8 +24,8 @@ namespace duet {
 /// \tparam F  A ↦ six numbers, an Eigen vector or an array: three lengths, then three angles in
 ///            radians; where there are less equations, zeros. Generic over the scalars of A
 ///
-/// Example: a tip a metre from the origin, `equation_goal{[](const auto& a) { using S =
-/// scalar_of<decltype(a)>; return std::array<S, 6>{translation(a).norm() - 1, S(0), …}; }}`
+/// Example: a tip a metre from the origin, `equation_goal{[]<class S>(const dual_quaternion<S>& a)
+/// { return std::array<S, 6>{translation(a).norm() - 1}; }}`
 template <class F>
 struct equation_goal {
   F equations; ///< f

@@ -3,6 +3,7 @@
 
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/parallel_for.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/serial_chain.hpp>
@@ -18,6 +19,10 @@
 #include <duet/quaternion/norm.hpp>
 
 #include <concepts>
+#include <cstddef>
+#include <ranges>
+#include <span>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -81,23 +86,71 @@ private:
   const Objective& objective_;
 };
 
-template <class C, TipGoal G, class Start, class Objective, class Scene>
-[[nodiscard]] inverse_kinematics_result<C::joints>
-wanted_solution(const C& chain, const G& goal, const Start& start,
-                const inverse_kinematics_options& options, const Objective& objective,
-                const Scene& around) {
-  constexpr int room = joint_room(C::joints);
-  require_size(chain, start);
-  require_objective(objective, chain.size());
-  using model_of_chain =
-      std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>;
-  const model_of_chain model(chain, around);
-  const wishes_of<C, model_of_chain, Objective> wishes(model, objective);
-  const solution_search<room> search(model, model.joints(start), options);
-  constexpr bool has_wishes = !std::same_as<Objective, no_objective> || std::same_as<Scene, scene>;
-  const auto x = search(tip_goal_of<G>(goal, model.length), has_wishes ? &wishes : nullptr);
-  return {own_joints(chain, model.given_joints_within_limits(x.joints)),
-          model.given_deviation(x.left), x.iterations, x.restarts, x.reason};
+/// The search for the solutions that are wanted, of one goal after the other.
+template <class C, class Start, class Objective, class Scene>
+class wanted_solutions {
+  static constexpr int room = joint_room(C::joints);
+  static constexpr bool is_among_obstacles = std::same_as<Scene, scene>;
+  using model = std::conditional_t<is_among_obstacles, chain_among_obstacles<C>, chain_model<C>>;
+  using result = inverse_kinematics_result<C::joints>;
+
+public:
+  /// \throws invalid_input for a start or a wish of another size, a scene that is none
+  wanted_solutions(const C& chain, const Start& start, const inverse_kinematics_options& options,
+                   const Objective& objective, const Scene& around)
+      : start_(start), options_(options), model_((require_size(chain, start), chain), around),
+        wishes_(model_, objective), search_(model_, model_.joints(start), options) {
+    require_objective(objective, chain.size());
+  }
+  wanted_solutions(const wanted_solutions&) = delete;
+
+  template <TipGoal G>
+  [[nodiscard]] result operator()(const G& goal) const {
+    constexpr bool has_wishes = !std::same_as<Objective, no_objective> || is_among_obstacles;
+    const auto x = search_(tip_goal_of<G>(goal, model_.length), has_wishes ? &wishes_ : nullptr);
+    return {own_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
+            model_.given_deviation(x.left), x.iterations, x.restarts, x.reason};
+  }
+  [[nodiscard]] result operator()(const dual_quaternion<double>& goal) const {
+    if (model_.reach.is_beyond(model_.place(goal), model_.tolerance(options_.tolerance))) {
+      return inverse_kinematics(model_.chain(), goal, start_, options_);
+    }
+    return (*this)(whole_pose{place_of(normalized(goal))});
+  }
+
+private:
+  const Start& start_;
+  const inverse_kinematics_options& options_;
+  model model_;
+  wishes_of<C, model, Objective> wishes_;
+  solution_search<room> search_;
+};
+
+/// \throws invalid_input for a region that holds no pose, and for what is no pose
+template <class G>
+void check_goal(const G& goal, const std::string& name) {
+  if constexpr (std::same_as<G, dual_quaternion<double>>) {
+    require_pose(goal, "inverse_kinematics", name);
+  } else if constexpr (std::convertible_to<const G&, const pose_region&>) {
+    require_goal(goal, name);
+  }
+}
+
+/// out[i] is what is wanted for goals[i].
+template <class G, class C, class Start, class Objective, class Scene>
+void find_wanted_solutions(const C& chain, std::span<const G> goals, const Start& start,
+                           std::span<inverse_kinematics_result<C::joints>> out,
+                           const inverse_kinematics_options& options, const execution& how,
+                           const Objective& objective, const Scene& around) {
+  require(goals.size() == out.size(), "duet: inverse_kinematics: ", goals.size(),
+          " goals, but room for ", out.size(), " results");
+  const wanted_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
+                                                           around);
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    check_goal(goals[i], "goal " + std::to_string(i));
+  }
+  parallel_for(
+      goals.size(), [&](std::size_t i) { out[i] = solve(goals[i]); }, how);
 }
 
 } // namespace detail
@@ -123,10 +176,10 @@ template <SerialChain C, TipGoal G, VectorLike Start, class Objective = no_objec
 inverse_kinematics(const C& chain, const G& goal, const Start& start,
                    const inverse_kinematics_options& options = {}, const Objective& objective = {},
                    const Scene& around = {}) {
-  if constexpr (requires { detail::require_goal(goal); }) {
-    detail::require_goal(goal);
-  }
-  return detail::wanted_solution(chain, goal, start, options, objective, around);
+  const detail::wanted_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
+                                                                   around);
+  detail::check_goal(goal, "the region");
+  return solve(goal);
 }
 
 /// Joint coordinates that take the tip of a chain to a pose, with an objective or among obstacles
@@ -136,15 +189,42 @@ template <SerialChain C, VectorLike Start, class Objective, class Scene = no_sce
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options, const Objective& objective,
                    const Scene& around = {}) {
-  detail::require_pose(goal, "inverse_kinematics", "the goal");
-  detail::require_size(chain, start);
-  detail::require_objective(objective, chain.size());
-  const detail::whole_pose whole{detail::place_of(normalized(goal))};
-  const detail::chain_model<C> model(chain);
-  if (model.reach.is_beyond(model.place(goal), model.tolerance(options.tolerance))) {
-    return inverse_kinematics(chain, goal, start, options);
-  }
-  return detail::wanted_solution(chain, whole, start, options, objective, around);
+  const detail::wanted_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
+                                                                   around);
+  detail::check_goal(goal, "the goal");
+  return solve(goal);
+}
+
+/// out[i] = inverse_kinematics(chain, goals[i], start, options, objective, around) of goals in
+/// part, with the same results on any number of cores.
+///
+/// \param goals      all of one type, in a vector, an array or a span
+/// \param objective  as of one goal; on several cores it, and `wanted` of a goal of one's own, is
+///                   called by several threads at once
+/// \throws invalid_input where the sizes differ, for the first goal that holds no pose, and as
+/// above
+/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
+template <SerialChain C, std::ranges::contiguous_range Goals, VectorLike Start,
+          class Objective = no_objective, class Scene = no_scene>
+  requires TipGoal<std::ranges::range_value_t<Goals>>
+void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
+                        std::span<inverse_kinematics_result<C::joints>> out,
+                        const inverse_kinematics_options& options = {}, execution how = one_core,
+                        const Objective& objective = {}, const Scene& around = {}) {
+  using goal = std::ranges::range_value_t<Goals>;
+  detail::find_wanted_solutions<goal>(chain, goals, start, out, options, how, objective, around);
+}
+
+/// out[i] = inverse_kinematics(chain, goals[i], start, options, objective, around) of poses, with
+/// the same results on any number of cores.
+///
+/// \throws invalid_input, cancelled: as of goals in part
+template <SerialChain C, VectorLike Start, class Objective, class Scene = no_scene>
+void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
+                        const Start& start, std::span<inverse_kinematics_result<C::joints>> out,
+                        const inverse_kinematics_options& options, execution how,
+                        const Objective& objective, const Scene& around = {}) {
+  detail::find_wanted_solutions(chain, goals, start, out, options, how, objective, around);
 }
 
 template <SerialChain C, TipGoal G>

@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <string>
 
 /// \file
 /// Goals in part: positions, directions, regions of poses.
@@ -129,18 +130,18 @@ namespace detail {
 namespace detail {
 
 /// \throws invalid_input for a region that holds no pose
-inline void require_goal(const pose_region& r) {
-  require_pose(r.frame, "inverse_kinematics", "the frame of the region");
+inline void require_goal(const pose_region& r, const std::string& name) {
+  require_pose(r.frame, "inverse_kinematics", "the frame of " + name);
   for (std::size_t i = 0; i < 3; ++i) {
-    require(r.lower[i] <= r.upper[i], "duet: inverse_kinematics: the region goes from ", r.lower[i],
+    require(r.lower[i] <= r.upper[i], "duet: inverse_kinematics: ", name, " goes from ", r.lower[i],
             " to ", r.upper[i], " along axis ", i, " of its frame");
   }
   const auto n = components(r.axis);
-  require(std::abs(dot(n, n) - 1) <= 1e-6, "duet: inverse_kinematics: the region's axis (", n.x,
-          ", ", n.y, ", ", n.z, ") is no unit vector");
-  require(r.tilt >= 0, "duet: inverse_kinematics: the region's tilt is ", r.tilt);
-  require(r.turn_lower <= r.turn_upper, "duet: inverse_kinematics: the region's turns go from ",
-          r.turn_lower, " to ", r.turn_upper);
+  require(std::abs(dot(n, n) - 1) <= 1e-6, "duet: inverse_kinematics: the axis of ", name, " (",
+          n.x, ", ", n.y, ", ", n.z, ") is no unit vector");
+  require(r.tilt >= 0, "duet: inverse_kinematics: the tilt of ", name, " is ", r.tilt);
+  require(r.turn_lower <= r.turn_upper, "duet: inverse_kinematics: the turns of ", name,
+          " go from ", r.turn_lower, " to ", r.turn_upper);
 }
 
 /// A row of `wanted_twist`: least ≤ n·ω ≤ most.
