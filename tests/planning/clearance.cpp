@@ -83,9 +83,36 @@ TEST_CASE("nothing to touch; what is no scene") {
   CHECK_THROWS_WITH_AS(require_scene(arm, s),
                        "duet: the radius of obstacle 0 is nan, not a number from 0 up",
                        invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(clearance(arm, theta, s)),
+                       "duet: the radius of obstacle 0 is nan, not a number from 0 up",
+                       invalid_input);
+  scene slanted = cage();
+  slanted.obstacles.push_back(half_space<>{{0, 0, 2}, -1});
+  CHECK_THROWS_WITH_AS(static_cast<void>(clearance(arm, theta, slanted)),
+                       "duet: the normal of obstacle 3 is no unit vector", invalid_input);
   s.bodies[4].link = 8;
   CHECK_THROWS_WITH_AS(require_scene(arm, s),
                        "duet: serial_chain: no link 8 in a chain of 7 joints", invalid_input);
+}
+
+TEST_CASE("where a coordinate is nan no distance is told, whichever obstacle comes first") {
+  const auto arm = robots::panda().table();
+  duet_test::coordinates<7> theta = duet_test::coordinates<7>::Zero();
+  theta[6] = std::nan(""); // only link 7 is nowhere
+  const link_body upper{3, sphere<>{{0, 0, 0}, .1}}, hand{7, sphere<>{{0, 0, .1}, .1}};
+  const std::vector<obstacle> obstacles = {
+      sphere<>{{1, 0, 0}, .1}, capsule<>({1, 0, 0}, {1, 1, 0}, .1), half_space<>{{0, 0, 1}, -1},
+      box<>{pose(quaternion<double>(1), vector3<double>(1, 0, 0)), {.1, .1, .1}}};
+  for (const auto& bodies : {std::vector{upper, hand}, std::vector{hand, upper}}) {
+    for (const obstacle& each : obstacles) {
+      CHECK(std::isnan(clearance(arm, theta, scene{bodies, {each}}).distance));
+    }
+    CHECK(std::isnan(clearance(arm, theta, scene{bodies, obstacles}).distance));
+    scene apart{bodies, {}};
+    apart.pairs = {{0, 1}};
+    CHECK(std::isnan(clearance(arm, theta, apart).distance));
+  }
+  CHECK(clearance(arm, theta, scene{{upper}, obstacles}).distance < 1);
 }
 
 } // namespace test_planning_clearance

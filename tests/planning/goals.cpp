@@ -354,6 +354,34 @@ TEST_CASE("regions that hold no pose") {
   bad = good;
   bad.lower[2] = std::nan("");
   CHECK(text(bad).find("the region goes from nan") != std::string::npos);
+  const double infinity = std::numeric_limits<double>::infinity();
+  bad = good;
+  bad.lower[0] = bad.upper[0] = infinity;
+  CHECK(text(bad) ==
+        "duet: inverse_kinematics: the region goes from inf to inf along axis 0 of its frame");
+  bad = good;
+  bad.turn_lower = bad.turn_upper = -infinity;
+  CHECK(text(bad) == "duet: inverse_kinematics: the turns of the region go from -inf to -inf");
+  bad.turn_upper = infinity; // that is any
+  CHECK(text(bad) == "");
+}
+
+TEST_CASE("directions that are none") {
+  const vector3<double> z(0, 0, 1), p(.5, 0, .5);
+  for (const vector3<double>& none :
+       {vector3<double>(0, 0, 0), vector3<double>(0, .3, .4), vector3<double>(0, 0, -2),
+        vector3<double>(0, std::nan(""), 1)}) {
+    CHECK_THROWS_AS(static_cast<void>(pointing_goal(z, none)), invalid_input);
+    CHECK_THROWS_AS(static_cast<void>(pointing_goal(none, z)), invalid_input);
+    CHECK_THROWS_AS(static_cast<void>(position_and_pointing_goal(p, z, none)), invalid_input);
+    CHECK_THROWS_AS(static_cast<void>(position_and_pointing_goal(p, none, z)), invalid_input);
+  }
+  CHECK_THROWS_WITH_AS(static_cast<void>(pointing_goal(z, {0, .3, .4})),
+                       "duet: pointing_goal: the direction (0, 0.3, 0.4) is no unit vector",
+                       invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(position_and_pointing_goal(p, {0, 0, 2}, z)),
+                       "duet: position_and_pointing_goal: the axis (0, 0, 2) is no unit vector",
+                       invalid_input);
 }
 
 } // namespace test_planning_goals

@@ -99,6 +99,10 @@ TEST_CASE("regions, some beyond reach, with and without wishes") {
     check(arm, regions, start, options, small_first, around);
     check(arm, poses, start, options, small_first, no_scene{});
     check(arm, poses, start, options, no_objective{}, around);
+    const auto plain = inverse_kinematics(arm, poses[1], start, options, {}, around);
+    std::vector<result> out(poses.size());
+    inverse_kinematics(arm, poses, start, out, options, one_core, {}, around);
+    CHECK(are_identical(out[1], plain));
   }
 }
 

@@ -67,11 +67,10 @@ template <LinkedMechanism C>
 void require_scene(const C& chain, const scene& s) {
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {
     static_cast<void>(chain.link(s.bodies[i].link));
-    require_shape(s.bodies[i].shape, "body " + std::to_string(i));
+    require_shape(s.bodies[i].shape, "body ", i);
   }
   for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
-    std::visit([&](const auto& o) { require_shape(o, "obstacle " + std::to_string(i)); },
-               s.obstacles[i]);
+    std::visit([&](const auto& o) { require_shape(o, "obstacle ", i); }, s.obstacles[i]);
   }
   for (std::size_t i = 0; i < s.pairs.size(); ++i) {
     const auto [first, second] = s.pairs[i];
@@ -79,8 +78,8 @@ void require_scene(const C& chain, const scene& s) {
                     " of a scene is of bodies ", first, " and ", second, ", not of two of ",
                     s.bodies.size());
   }
-  detail::require_extent("the margin of a scene", s.margin);
-  detail::require_extent("the horizon of a scene", s.horizon);
+  detail::require_extent(s.margin, "the margin of a scene");
+  detail::require_extent(s.horizon, "the horizon of a scene");
 }
 
 /// Where a body of a chain is nearest to an obstacle, over the scalar of the coordinates θ.
@@ -162,23 +161,31 @@ void for_each_proximity(const C& chain, const X& theta, const scene& s, const Vi
   }
 }
 
-} // namespace detail
-
-/// How far the chain is from all obstacles at coordinates θ of any scalar, and the bodies of all
-/// pairs from each other, in units of length; negative where they overlap, infinite where there are
-/// none.
-/// \return `chain_clearance<S>`
-/// \throws invalid_input as `chain.pose`
-template <LinkedMechanism C, VectorLike X>
-[[nodiscard]] auto clearance(const C& chain, const X& theta, const scene& s) {
+/// `duet::clearance` of a scene that has been looked at.
+template <class C, class X>
+[[nodiscard]] auto least_clearance(const C& chain, const X& theta, const scene& s) {
   using S = std::decay_t<decltype(translation(chain.pose(theta, 0))[0])>;
   chain_clearance<S> result;
-  detail::for_each_proximity(chain, theta, s, [&](const chain_clearance<S>& each) {
-    if (innermost(each.distance) < innermost(result.distance)) {
+  for_each_proximity(chain, theta, s, [&](const chain_clearance<S>& each) {
+    const auto least = innermost(result.distance);
+    if (least == least && !(innermost(each.distance) >= least)) { // one that is nan stays
       result = each;
     }
   });
   return result;
+}
+
+} // namespace detail
+
+/// How far the chain is from all obstacles at coordinates θ of any scalar, and the bodies of all
+/// pairs from each other, in units of length; negative where they overlap, infinite where there are
+/// none, nan where any distance is.
+/// \return `chain_clearance<S>`
+/// \throws invalid_input as `require_scene` and `chain.pose`
+template <LinkedMechanism C, VectorLike X>
+[[nodiscard]] auto clearance(const C& chain, const X& theta, const scene& s) {
+  require_scene(chain, s);
+  return detail::least_clearance(chain, theta, s);
 }
 
 } // namespace duet

@@ -184,7 +184,7 @@ inverse_kinematics(const C& chain, const G& goal, const Start& start,
 
 /// Joint coordinates that take the tip of a chain to a pose, with an objective or among obstacles
 /// as for goals in part.
-template <SerialChain C, VectorLike Start, class Objective, class Scene = no_scene>
+template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options, const Objective& objective,
@@ -219,7 +219,7 @@ void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
 /// the same results on any number of cores.
 ///
 /// \throws invalid_input, cancelled: as of goals in part
-template <SerialChain C, VectorLike Start, class Objective, class Scene = no_scene>
+template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
                         const Start& start, std::span<inverse_kinematics_result<C::joints>> out,
                         const inverse_kinematics_options& options, execution how,

@@ -122,7 +122,7 @@ public:
 
 private:
   [[nodiscard]] chain_clearance<double> nearest(const vector& theta) const {
-    return duet::clearance(this->chain(), own_joints(this->chain(), this->given_joints(theta)),
+    return least_clearance(this->chain(), own_joints(this->chain(), this->given_joints(theta)),
                            around_);
   }
 

@@ -87,6 +87,12 @@ struct pose_region {
 
 namespace detail {
 
+/// \throws invalid_input for what is no unit vector
+inline void require_unit(const vector3<double>& n, const char* function, const char* name) {
+  require(std::abs(n.squaredNorm() - 1) <= 1e-6, "duet: ", function, ": the ", name, " (", n[0],
+          ", ", n[1], ", ", n[2], ") is no unit vector");
+}
+
 /// A rotation that takes one unit vector to another: a half turn about the vector in their middle.
 [[nodiscard]] inline quaternion<double> turn_between(const vector3<double>& from,
                                                      const vector3<double>& to) {
@@ -105,9 +111,12 @@ namespace detail {
 /// An axis of the tip, a unit vector in its frame, pointing along a unit vector in the base's
 /// frame, wherever the tip is.
 /// \param tilt  how far the axis may be from there, radians
+/// \throws invalid_input for what are no unit vectors
 [[nodiscard]] inline pose_region pointing_goal(const vector3<double>& axis,
                                                const vector3<double>& direction, double tilt = 0) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  detail::require_unit(axis, "pointing_goal", "axis");
+  detail::require_unit(direction, "pointing_goal", "direction");
   auto result = free_axis_goal(
       pose(detail::turn_between(axis, direction), vector3<double>(vector3<double>::Zero())), axis);
   result.lower = {-infinity, -infinity, -infinity};
@@ -118,10 +127,13 @@ namespace detail {
 
 /// The origin of the tip at a position, and an axis of it pointing along a direction.
 /// \param tilt  how far the axis may be from there, radians
+/// \throws invalid_input for what are no unit vectors
 [[nodiscard]] inline pose_region position_and_pointing_goal(const vector3<double>& position,
                                                             const vector3<double>& axis,
                                                             const vector3<double>& direction,
                                                             double tilt = 0) {
+  detail::require_unit(axis, "position_and_pointing_goal", "axis");
+  detail::require_unit(direction, "position_and_pointing_goal", "direction");
   auto result = free_axis_goal(pose(detail::turn_between(axis, direction), position), axis);
   result.tilt = tilt;
   return result;
@@ -133,14 +145,14 @@ namespace detail {
 inline void require_goal(const pose_region& r, const std::string& name) {
   require_pose(r.frame, "inverse_kinematics", "the frame of " + name);
   for (std::size_t i = 0; i < 3; ++i) {
-    require(r.lower[i] <= r.upper[i], "duet: inverse_kinematics: ", name, " goes from ", r.lower[i],
-            " to ", r.upper[i], " along axis ", i, " of its frame");
+    require(r.upper[i] - r.lower[i] >= 0, "duet: inverse_kinematics: ", name, " goes from ",
+            r.lower[i], " to ", r.upper[i], " along axis ", i, " of its frame");
   }
   const auto n = components(r.axis);
   require(std::abs(dot(n, n) - 1) <= 1e-6, "duet: inverse_kinematics: the axis of ", name, " (",
           n.x, ", ", n.y, ", ", n.z, ") is no unit vector");
   require(r.tilt >= 0, "duet: inverse_kinematics: the tilt of ", name, " is ", r.tilt);
-  require(r.turn_lower <= r.turn_upper, "duet: inverse_kinematics: the turns of ", name,
+  require(r.turn_upper - r.turn_lower >= 0, "duet: inverse_kinematics: the turns of ", name,
           " go from ", r.turn_lower, " to ", r.turn_upper);
 }
 

@@ -9,8 +9,6 @@
 
 #include <Eigen/Core>
 
-#include <string>
-
 /// \file
 /// The shapes that arms and obstacles are made of.
 
@@ -64,9 +62,9 @@ template <class T>
 }
 
 /// \throws invalid_input unless 0 ≤ x < ∞
-template <class T>
-void require_extent(const std::string& of, const T& x) {
-  require(innermost(x) >= 0 && innermost(x - x) == 0, "duet: ", of, " is ", innermost(x),
+template <class T, class... Name>
+void require_extent(const T& x, const Name&... name) {
+  require(innermost(x) >= 0 && innermost(x - x) == 0, "duet: ", name..., " is ", innermost(x),
           ", not a number from 0 up");
 }
 
@@ -74,33 +72,33 @@ void require_extent(const std::string& of, const T& x) {
 
 /// Looks whether a shape is one: finite, of no negative size, with unit quaternions and normals.
 /// For those who extend duet.
-/// \param name  for the message
+/// \param name  for the message, in parts
 /// \throws invalid_input
-template <class T>
-void require_shape(const sphere<T>& s, const std::string& name) {
-  detail::require(detail::all_finite(s.centre), "duet: the centre of ", name, " is not finite");
-  detail::require_extent("the radius of " + name, s.radius);
+template <class T, class... Name>
+void require_shape(const sphere<T>& s, const Name&... name) {
+  detail::require(detail::all_finite(s.centre), "duet: the centre of ", name..., " is not finite");
+  detail::require_extent(s.radius, "the radius of ", name...);
 }
-template <class T>
-void require_shape(const capsule<T>& c, const std::string& name) {
-  detail::require(detail::all_finite(c.from) && detail::all_finite(c.to), "duet: an end of ", name,
-                  " is not finite");
-  detail::require_extent("the radius of " + name, c.radius);
+template <class T, class... Name>
+void require_shape(const capsule<T>& c, const Name&... name) {
+  detail::require(detail::all_finite(c.from) && detail::all_finite(c.to), "duet: an end of ",
+                  name..., " is not finite");
+  detail::require_extent(c.radius, "the radius of ", name...);
 }
-template <class T>
-void require_shape(const box<T>& b, const std::string& name) {
-  detail::require(is_unit(b.placed, 1e-6), "duet: the pose of ", name,
+template <class T, class... Name>
+void require_shape(const box<T>& b, const Name&... name) {
+  detail::require(is_unit(b.placed, 1e-6), "duet: the pose of ", name...,
                   " is no unit dual quaternion");
   for (Eigen::Index i = 0; i < 3; ++i) {
-    detail::require_extent("half size " + std::to_string(i) + " of " + name, b.half_sizes[i]);
+    detail::require_extent(b.half_sizes[i], "half size ", i, " of ", name...);
   }
 }
-template <class T>
-void require_shape(const half_space<T>& h, const std::string& name) {
-  detail::require(innermost(h.offset - h.offset) == 0, "duet: the offset of ", name,
+template <class T, class... Name>
+void require_shape(const half_space<T>& h, const Name&... name) {
+  detail::require(innermost(h.offset - h.offset) == 0, "duet: the offset of ", name...,
                   " is not finite");
   const auto square = innermost(h.normal.squaredNorm());
-  detail::require(square - 1 <= 1e-6 && 1 - square <= 1e-6, "duet: the normal of ", name,
+  detail::require(square - 1 <= 1e-6 && 1 - square <= 1e-6, "duet: the normal of ", name...,
                   " is no unit vector");
 }
 
