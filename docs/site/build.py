@@ -161,6 +161,7 @@ def write_document(page, links, live):
     if page.source.startswith("docs/live/"): # what was not built is not asked for
         body = re.sub(r'<script src="([\w.]+)"></script>\s*',
                       lambda script: script[0] * any((folder / script[1]).is_file() for folder in live), body)
+    body = text.with_breaks(body)
     body = figures.with_figures(body, TOP / page.source)
     page.body, page.contents, page.found_as = text.fragment(body)
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Light or dark, the menu, and the search. Pages are complete without it.
+// Light or dark, the menu, pictures to be enlarged, and the search. Pages are complete without it.
 
 "use strict";
 {
@@ -78,6 +78,12 @@
       root.dataset.theme = is_dark() ? "light" : "dark";
       kept.write(root.dataset.theme);
     });
+
+    for (const picture of document.querySelectorAll(".picture")) {
+      const turn = () => picture.classList.toggle("large");
+      picture.addEventListener("click", turn);
+      picture.addEventListener("keydown", (event) => event.key === "Enter" && turn());
+    }
 
     const wide = matchMedia("(min-width: 62rem)");
     const menu = document.querySelector(".menu");

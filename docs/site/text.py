@@ -104,6 +104,14 @@ def boxed_table(table):
     return f'<div class="table{" broad" if columns > 6 else ""}" tabindex="0">{table}</div>'
 
 
+def with_breaks(body):
+    """Names in tables may be broken behind their words; style.css lets them on phones."""
+    def broken(code):
+        return code[1] + re.sub(r"(/|_|::)(?=\w)", r'\1<wbr class="narrow">', code[2]) + "</code>"
+    return re.sub(r"<table.*?</table>", lambda table: re.sub(r"(<code[^>]*>)(.*?)</code>", broken, table[0], flags=re.S),
+                  body, flags=re.S)
+
+
 def plain(part):
     """What is read of HTML."""
     part = re.sub(r"<[^>]*>", "", re.sub(r"</(?:p|li|t[dh]|d[dt]|pre)>", " ", part.replace("<sup>", "^")))

@@ -22,7 +22,8 @@ from browser import Browser, Tab
 WIDTHS = (390, 1280)
 SHOWN = ("index", "quaternions", "wheel_carrier", "formulas", "reference/dual_quaternion/screw")
 
-# What of a page is wrong: mathematics that is an error or was not converted, what is wider than the screen.
+# What of a page is wrong: mathematics that is an error or was not converted, what is wider than the screen, a picture that has to be
+# scrolled, and on a wide screen a program.
 FAULTS = r"""
 ((screen) => {
   const faults = [];
@@ -31,6 +32,11 @@ FAULTS = r"""
     const widest = [...document.body.querySelectorAll("*")].filter((e) => e.getBoundingClientRect().right > screen + 1 &&
       !e.parentElement.closest(".table, .picture, pre, .formula, #found")).pop();
     faults.push(`is ${wide} wide on a screen of ${screen}: ${widest ? widest.outerHTML.slice(0, 120) : ""}`);
+  }
+  for (const box of document.querySelectorAll(screen < 1280 ? ".picture" : ".picture, pre.cpp")) {
+    if (box.scrollWidth > box.clientWidth + 1) {
+      faults.push(`has what is ${box.scrollWidth} wide in ${box.clientWidth} on a screen of ${screen}: ${box.textContent.trim().slice(0, 60)}`);
+    }
   }
   for (const error of document.querySelectorAll("merror, .math.inline, .math.display")) {
     faults.push(`has mathematics that is none: ${error.textContent.slice(0, 60)}`);
