@@ -5,15 +5,19 @@
 #include "../support/command_line.hpp"
 #include "../support/numbers.hpp"
 
+#include <duet/core/random_source.hpp>
 #include <duet/duet.hpp>
 #include <duet/mechanism/srdf.hpp>
 #include <duet/mechanism/urdf.hpp>
 #include <duet/planning/capsules_of.hpp>
 #include <duet/planning/pairs_apart.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -84,6 +88,31 @@ inline std::vector<duet::link_body> bodies(const example::arm_chain& arm, double
   return result;
 }
 
+/// Pairs of bodies that are too close whatever the joints do cannot be kept apart: those that are
+/// in a hundred random configurations are left out, and told.
+inline void leave_out_what_always_touches(duet::scene& around, const example::arm_chain& arm) {
+  using std::numbers::pi;
+  std::vector<duet::body_pair> touching = around.pairs;
+  duet::random_source random(1);
+  for (int k = 0; k < 100; ++k) {
+    Eigen::VectorXd theta(arm.size());
+    for (int i = 0; i < arm.size(); ++i) {
+      const auto& limits = arm.limits(i);
+      theta[i] = random.uniform(std::max(limits.lower, -pi), std::min(limits.upper, pi));
+    }
+    std::erase_if(touching, [&](const duet::body_pair& each) {
+      return closest_points(arm, theta, around.bodies[each.first], around.bodies[each.second])
+                 .distance >= around.margin;
+    });
+  }
+  for (const duet::body_pair& each : touching) {
+    std::printf("bodies %zu and %zu always touch: left out of --self\n", each.first, each.second);
+    std::erase_if(around.pairs, [&](const duet::body_pair& other) {
+      return other.first == each.first && other.second == each.second;
+    });
+  }
+}
+
 /// Capsules around the shapes that a robot description has for collisions, if it has some, with
 /// files of meshes beside it; else along its links. With --self those that can run into each other.
 inline void add_bodies(duet::scene& around, const example::arm_chain& arm,
@@ -104,6 +133,7 @@ inline void add_bodies(duet::scene& around, const example::arm_chain& arm,
     around.pairs = duet::pairs_apart(arm, around.bodies,
                                      srdf ? duet::read_disabled_collisions(*srdf)
                                           : std::vector<duet::link_pair>{});
+    leave_out_what_always_touches(around, arm);
   } else if (srdf) {
     throw std::runtime_error("--srdf is for --self");
   }
