@@ -25,6 +25,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 /// \file
@@ -124,13 +125,14 @@ public:
   [[nodiscard]] const joint_loop& loop() const { return loop_; }
 
   /// But for its singular value.
-  [[nodiscard]] branch operator()(const loop_solution& x) const {
+  [[nodiscard]] branch operator()(const loop_solution& x,
+                                  const std::optional<slides_in_place>& in_place = {}) const {
     constexpr double rounding = 2e-13; // closed forms have more near singularities
-    branch result = described(x);
-    if (result.residual > rounding) {
+    branch result = described(x, in_place);
+    if (!in_place && result.residual > rounding) {
       loop_solution refined = x;
       static_cast<void>(close_loop(loop_, refined.theta));
-      const branch other = described(refined);
+      const branch other = described(refined, in_place);
       result = other.residual < result.residual ? other : result; // it may run away
     }
     return result;
@@ -146,6 +148,25 @@ public:
 private:
   static constexpr double as_good_as_none = 1e-8;
 
+  /// To the middle of what the limits of both allow, or as little as they need, if they can.
+  void slide_within_limits(joint_vector<double, C::joints>& theta,
+                           const slides_in_place& slides) const {
+    double &first = theta[slides.first], &second = theta[slides.second];
+    const auto &near = chain_.limits(slides.first), &far = chain_.limits(slides.second);
+    const double way = slides.second_way;
+    // How far the first may go by its own limits, and by those of the second.
+    const auto [least, most] =
+        std::minmax({way * (far.lower - second), way * (far.upper - second)});
+    const double lower = std::max(near.lower - first, least),
+                 upper = std::min(near.upper - first, most);
+    if (lower <= upper) {
+      const double middle = (lower + upper) / 2,
+                   by = std::isfinite(middle) ? middle : std::clamp(0., lower, upper);
+      first = std::clamp(first + by, near.lower, near.upper);
+      second = std::clamp(second + way * by, far.lower, far.upper);
+    }
+  }
+
   /// But for whole turns.
   [[nodiscard]] bool is_same(const branch& a, const branch& b) const {
     bool result = true;
@@ -157,15 +178,22 @@ private:
     return result;
   }
 
-  [[nodiscard]] branch described(const loop_solution& x) const {
+  [[nodiscard]] branch described(const loop_solution& x,
+                                 const std::optional<slides_in_place>& in_place) const {
     branch result;
     result.joints.resize(chain_.size());
     result.multiplicity = x.multiplicity;
     for (int i = 0; i < 6; ++i) {
-      const auto& limits = chain_.limits(i);
       const bool turns = loop_.joints[std::size_t(i)].turns;
-      double& theta = result.joints[i];
-      theta = turns ? turned_within(turned_back(x.theta[i]), limits) : axes_.size * x.theta[i];
+      result.joints[i] = turns ? turned_within(turned_back(x.theta[i]), chain_.limits(i))
+                               : axes_.size * x.theta[i];
+    }
+    if (in_place) {
+      slide_within_limits(result.joints, *in_place);
+    }
+    for (int i = 0; i < 6; ++i) {
+      const auto& limits = chain_.limits(i);
+      const double theta = result.joints[i];
       result.within_limits = result.within_limits && theta >= limits.lower && theta <= limits.upper;
     }
     const tip_place tip =
@@ -208,7 +236,9 @@ void fill_singular_values(const C& chain, std::vector<inverse_kinematics_branch<
 /// polynomial of degree 8. Any other arm: elimination
 /// after Raghavan and Roth, the determinant's zeros on the unit circle, Newton's method from there
 /// (docs/all_inverse_kinematics.md). Joints beyond their limits are told by `within_limits`. Where
-/// joints can move with the tip in place, some of these configurations are returned.
+/// joints can move with the tip in place, some of these configurations are returned: of two that
+/// slide along each other wherever the others are, one for each way in which these make it, in the
+/// middle of what the limits of both allow.
 ///
 /// \param chain  six joints that turn or slide, at most three of them sliding
 /// \throws invalid_input for other chains, and for a goal that is no pose
@@ -225,7 +255,7 @@ all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {
   result.is_complete = search.answer().is_complete;
   result.solutions.reserve(search.answer().solutions.size());
   for (const detail::loop_solution& x : search.answer().solutions) {
-    const auto found = branches(x);
+    const auto found = branches(x, search.answer().in_place);
     if (branches.is_new(found, result.solutions)) {
       result.solutions.push_back(found);
     } else {

@@ -8,6 +8,7 @@
 #include <duet/planning/branches/general_loop.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/parallel_slides.hpp>
 #include <duet/planning/branches/turns.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -89,7 +90,8 @@ DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
     return;
   }
   if (sliding == 2) {
-    answer_ = solve_general_loop<two_slides>(loop);
+    const auto in_place = parallel_slides_of(loop);
+    answer_ = in_place ? solve_parallel_slides(*in_place) : solve_general_loop<two_slides>(loop);
     method_ = branch_method::two_slides;
     return;
   }

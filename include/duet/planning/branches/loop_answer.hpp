@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 /// \file
@@ -18,11 +19,19 @@ struct loop_solution {
   int multiplicity = 1;
 };
 
+/// Two joints that slide along each other wherever the others are: the first by x and the second by
+/// `second_way` x leave the loop closed.
+struct slides_in_place {
+  int first = 0, second = 0;
+  double second_way = -1;
+};
+
 /// What is known of the solutions of a loop.
 struct loop_answer {
   std::vector<loop_solution> solutions;
   int complex_solutions = 0;
   bool is_complete = false;
+  std::optional<slides_in_place> in_place = {}; ///< then a solution stands for all that these make
 };
 
 /// The angle between −π and π, π included.
