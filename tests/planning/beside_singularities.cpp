@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace test_planning_beside_singularities {
 namespace {
@@ -55,6 +56,18 @@ chain with_parallel_axes(duet_test::random_source& random, bool is_apart) {
                                {.d = length(), .alpha = pi / 2},
                                {.a = is_apart ? length() : 0., .d = length(), .alpha = -pi / 2},
                                {.d = length()}}});
+}
+
+/// A shoulder whose axes meet, and a forearm as long as the upper arm: folded by a quarter turn of
+/// the third joint, the wrist is in the shoulder, whatever the first two do.
+chain with_folding_elbow(duet_test::random_source& random, double shoulder, double wrist) {
+  const double length = random.uniform(.2, 1);
+  return from_dh(std::array<dh_row<>, 6>{{{.d = random.uniform(.1, 1), .alpha = shoulder},
+                                          {.a = length},
+                                          {.alpha = pi / 2},
+                                          {.d = length, .alpha = -wrist},
+                                          {.alpha = wrist},
+                                          {.d = random.uniform(.1, 1)}}});
 }
 
 int count_of(const result& found) {
@@ -101,12 +114,13 @@ wide_joints exact_solution(const chain& arm, const dual_quaternion<real_50>& goa
 }
 
 /// \param joint  whose coordinate is how far θ is from a singularity
-void check_beside(const chain& arm, joints theta, int joint, branch_method method) {
+void check_beside(const chain& arm, joints theta, int joint, branch_method method,
+                  std::span<const double> how_far = distances) {
   const double singular = theta[joint];
   for (const double side : {1., -1.}) {
     theta[joint] = singular + side * 2e-3;
     const int count = count_of(all_inverse_kinematics(arm, arm.pose(theta)));
-    for (const double away : distances) {
+    for (const double away : how_far) {
       CAPTURE(side);
       CAPTURE(away);
       theta[joint] = singular + side * away;
@@ -145,17 +159,18 @@ double smallest_singular_value(const chain& arm, const joints& theta) {
   return detail::smallest_singular_value(jacobian(arm, theta, frame::hybrid));
 }
 
-/// With one coordinate 0, beside which nothing else is singular.
-joints configuration(const chain& arm, duet_test::random_source& random, int joint) {
+/// With one coordinate singular, beside which nothing else is.
+joints configuration(const chain& arm, duet_test::random_source& random, int joint,
+                     double singular = 0) {
   constexpr double beside = 2e-3;
   joints theta;
   do {
     for (double& x : theta) {
       x = random.uniform(-pi, pi);
     }
-    theta[joint] = beside;
+    theta[joint] = singular + beside;
   } while (smallest_singular_value(arm, theta) < .02 * beside);
-  theta[joint] = 0;
+  theta[joint] = singular;
   return theta;
 }
 
@@ -174,6 +189,28 @@ TEST_CASE("beside the singularity of a wrist after three parallel axes") {
     CAPTURE(k);
     const chain arm = with_parallel_axes(random, k >= 3);
     check_beside(arm, configuration(arm, random, 4), 4, branch_method::parallel_axes);
+  }
+}
+
+TEST_CASE("beside an elbow that is folded onto the shoulder") {
+  duet_test::random_source random(4);
+  const std::span<const double> down_to_1e_10 = std::span(distances).first(10);
+  for (int k = 0; k < 10; ++k) {
+    CAPTURE(k);
+    const auto angle = [&] { return k % 2 == 0 ? pi / 2 : random.uniform(.6, 1.5); };
+    const chain arm = with_folding_elbow(random, angle(), angle());
+    joints theta = configuration(arm, random, 2, -pi / 2);
+    check_beside(arm, theta, 2, branch_method::spherical_wrist, down_to_1e_10);
+    for (const double away : {1e-13, 1e-14, 1e-16, 0.}) { // the joints move with the tip in place
+      theta[2] = -pi / 2 + away;
+      const result found = all_inverse_kinematics(arm, arm.pose(theta));
+      CHECK_FALSE(found.is_complete);
+      for (const auto& s : found.solutions) {
+        CHECK(s.residual <= 1e-12);
+      }
+      // Wrists at right angles make every turn, and so that which is left by any of the first two.
+      CHECK((k % 2 != 0 || !found.solutions.empty()));
+    }
   }
 }
 

@@ -63,6 +63,10 @@ struct angle_pairs {
   bool operator()(const Visit& visit) const {
     const double by_theta = regularity(f), by_phi = regularity(g);
     const auto swapped = [&](double x, double y, int m) { visit(y, x, m); };
+    if (is_still(f) || is_still(g)) {
+      is_still(f) ? by_rest(f, g, visit) : by_rest(g, f, swapped);
+      return false;
+    }
     constexpr double singular = 1e-9;
     if (std::min(by_theta, by_phi) > singular) {
       if (by_theta >= by_phi) {
@@ -85,6 +89,19 @@ private:
   [[nodiscard]] static double regularity(const two_values& f) {
     const double size = f[0].b * f[0].b + f[0].c * f[0].c + f[1].b * f[1].b + f[1].c * f[1].c;
     return size > 1e-18 ? std::abs(determinant(f)) / size : 0;
+  }
+
+  /// Does it not depend on its angle, but for rounding?
+  [[nodiscard]] static bool is_still(const two_values& f) {
+    constexpr double rounding = 1e-12;
+    return std::max(f[0].square(), f[1].square()) <= rounding * rounding;
+  }
+  /// θ may be any: φ by the equation that says most of it.
+  template <class Visit>
+  static void by_rest(const two_values& f, const two_values& g, const Visit& visit) {
+    const std::size_t k = g[0].square() >= g[1].square() ? 0 : 1;
+    static_cast<void>(visit_zeros({g[k].a - f[k].a, g[k].b, g[k].c},
+                                  [&](double phi, int m) { visit(0., phi, m); }));
   }
 
   /// A sum of both equations has no θ.

@@ -130,9 +130,12 @@ private:
       const ways w(turn, at);
       const vector3d by_start = cross(turn.axis_, turn.start_.rate(at.theta)),
                      by_end = cross(turn.axis_, turn.end_.rate(at.phi));
-      if (!is_fold) { // of f − g, by as much as at best
-        error = std::max({rounding, 1e-14 * std::abs(by_theta) * length_of(by_start) / slope,
-                          1e-14 * std::abs(by_phi) * length_of(by_end) / slope});
+      // An error of f − g, of as much as at best, moves the line; along it |U| = |V| makes up for
+      // what it can.
+      const double start = length_of(by_start), end = length_of(by_end),
+                   along = std::hypot(start * by_phi, end * by_theta);
+      if (!is_fold && along > 0) {
+        error = std::max(rounding, 1e-14 * start * end / along);
       }
       const vector3d from_rate = way.theta * by_start, to_rate = way.phi * by_end;
       const double from = std::sqrt(w.square), to = length_of(w.to);
