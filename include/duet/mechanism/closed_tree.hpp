@@ -1,29 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
-#include <duet/core/text/number_text.hpp>
+#include <duet/core/compiled.hpp>
 #include <duet/derivative/argument.hpp>
-#include <duet/dual_quaternion/displacement.hpp>
-#include <duet/mechanism/closed_loop.hpp>
-#include <duet/mechanism/joint.hpp>
-#include <duet/mechanism/joint_checks.hpp>
 #include <duet/mechanism/kinematic_tree.hpp>
-#include <duet/mechanism/loop_closing.hpp>
-#include <duet/mechanism/loop_equations.hpp>
+#include <duet/mechanism/loops/equations.hpp>
 #include <duet/mechanism/tree_jacobian.hpp>
 #include <duet/mechanism/tree_loop.hpp>
 #include <duet/mechanism/tree_walk.hpp>
-#include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <string>
-#include <utility>
 #include <vector>
 
 /// \file
@@ -46,21 +34,7 @@ public:
 
   /// \throws invalid_input (`file_error` with the line if it is from a file) for frames on links
   /// that are not there or on one link, numbers that are not finite, rods without length
-  closed_tree(kinematic_tree tree, loop_description given)
-      : tree_(std::move(tree)), given_(std::move(given)) {
-    measure();
-    for (std::size_t i = 0; i < given_.loops.size(); ++i) {
-      const tree_loop& loop = given_.loops[i];
-      equations_.push_back({loop.kind, {frame(i, loop.second), frame(i, loop.first)}, loop.length});
-      if (equations_.back().frames.frame.link == equations_.back().frames.observer.link) {
-        detail::bad_loop(given_, i, "both frames are on the link \"" + loop.first.link + "\"");
-      }
-      if (loop.kind == loop_kind::rod && !(loop.length > 0 && std::isfinite(loop.length))) {
-        detail::bad_loop(given_, i, "its length is " + to_text(loop.length));
-      }
-      rows_ += equations_.back().size();
-    }
-  }
+  closed_tree(kinematic_tree tree, loop_description given);
 
   /// The tree that is left where joints are cut.
   [[nodiscard]] const kinematic_tree& tree() const { return tree_; }
@@ -79,30 +53,17 @@ public:
   /// \throws invalid_input for another number of coordinates than `size()`
   template <VectorLike X>
   [[nodiscard]] auto residuals(const X& q) const {
-    using S = detail::tree_scalar<X>;
-    Eigen::Matrix<S, Eigen::Dynamic, 1> result(rows_);
-    Eigen::Index row = 0;
-    for (const detail::loop_equations& each : equations_) {
-      each.residuals(tree_.pose(q, each.frames), length_, result.segment(row, each.size()));
-      row += each.size();
-    }
-    return result;
+    return residuals_at(q);
   }
+  [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& q) const;
 
   /// ∂F/∂q in closed form, over any scalar. Arguments and errors as `residuals`.
   /// \return a matrix of a row for each equation and a column for each coordinate
   template <VectorLike X>
   [[nodiscard]] auto constraint_jacobian(const X& q) const {
-    using S = detail::tree_scalar<X>;
-    Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> result(rows_, size());
-    Eigen::Index row = 0;
-    for (const detail::loop_equations& each : equations_) {
-      const auto both = pose_and_jacobian(tree_, q, frame::hybrid, each.frames);
-      each.jacobian(both.value, both.jacobian, length_, result.middleRows(row, each.size()));
-      row += each.size();
-    }
-    return result;
+    return jacobian_at(q);
   }
+  [[nodiscard]] Eigen::MatrixXd constraint_jacobian(const Eigen::VectorXd& q) const;
 
   /// The position near a guess, by Levenberg and Marquardt's method, whose steps are the shortest.
   /// Some coordinates may be held where the guess has them.
@@ -114,33 +75,14 @@ public:
   /// \throws cannot_close where no position is near; invalid_input for another number of
   /// coordinates than `size()`, and for numbers that are not finite
   [[nodiscard]] Eigen::VectorXd closed(const Eigen::VectorXd& guess,
-                                       const std::vector<int>& held = {}) const {
-    detail::require(guess.allFinite(), "duet: closed_tree: the guess is not finite");
-    const detail::closing found(*this, guess, detail::all_but(size(), held));
-    if (!found.has_closed()) {
-      detail::raise(cannot_close("duet: closed_tree: no position near the guess: residual " +
-                                     to_text(found.residual()),
-                                 {guess.begin(), guess.end()}));
-    }
-    return found.coordinates();
-  }
+                                       const std::vector<int>& held = {}) const;
 
   /// Coordinates that all others follow from, to first order, chosen so that these move as little
   /// as possible per unit of the former: by pivots of a QR factorisation of the rates that the
   /// loops allow. Lengths count in parts of `length()`.
   /// \param q  a position
   /// \return their numbers in ascending order, as many as there are independent rates
-  [[nodiscard]] std::vector<int> independent_coordinates(const Eigen::VectorXd& q) const {
-    const Eigen::MatrixXd rates = detail::linearised(*this, q).kernel();
-    if (rates.cols() == 0) {
-      return {};
-    }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rates.transpose());
-    const auto& order = qr.colsPermutation().indices();
-    std::vector<int> result(order.data(), order.data() + rates.cols());
-    std::sort(result.begin(), result.end());
-    return result;
-  }
+  [[nodiscard]] std::vector<int> independent_coordinates(const Eigen::VectorXd& q) const;
 
   // For those who extend duet.
 
@@ -148,53 +90,31 @@ public:
   [[nodiscard]] const Eigen::VectorXd& units() const { return units_; }
 
 private:
-  [[nodiscard]] attached_frame<double> frame(std::size_t i, const loop_frame& at) const {
-    const auto& links = tree_.table().link_numbers;
-    const auto found = links.find(at.link);
-    if (found == links.end()) {
-      std::vector<std::string> names;
-      for (const tree_link& each : tree_.links()) {
-        names.push_back(each.name);
-      }
-      detail::bad_loop(given_, i,
-                       "no link \"" + at.link + "\": " + detail::nearest_names(at.link, names));
+  template <class X>
+  [[nodiscard]] auto residuals_at(const X& q) const {
+    using S = detail::tree_scalar<X>;
+    Eigen::Matrix<S, Eigen::Dynamic, 1> result(rows_);
+    Eigen::Index row = 0;
+    for (const detail::loop_equations& each : equations_) {
+      each.residuals(tree_.pose(q, each.frames), length_, result.segment(row, each.size()));
+      row += each.size();
     }
-    const auto& [r, t] = at.offset;
-    if (!std::isfinite(t[0] + t[1] + t[2]) || !std::isfinite(norm2(r))) {
-      detail::bad_loop(given_, i, "its frame on \"" + at.link + "\" is not finite");
-    }
-    return {found->second, at.offset};
+    return result;
   }
-
-  void measure() {
-    const auto longest = [&](const placement<double>& at) {
-      const auto& t = at.translation;
-      length_ = std::max(length_, std::hypot(t[0], t[1], t[2]));
-    };
-    for (const tree_loop& loop : given_.loops) {
-      longest(loop.first.offset);
-      longest(loop.second.offset);
-      length_ = std::max(length_, loop.length);
+  template <class X>
+  [[nodiscard]] auto jacobian_at(const X& q) const {
+    using S = detail::tree_scalar<X>;
+    Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> result(rows_, size());
+    Eigen::Index row = 0;
+    for (const detail::loop_equations& each : equations_) {
+      const auto both = pose_and_jacobian(tree_, q, frame::hybrid, each.frames);
+      each.jacobian(both.value, both.jacobian, length_, result.middleRows(row, each.size()));
+      row += each.size();
     }
-    units_ = Eigen::VectorXd::Ones(size());
-    Eigen::Index i = 0;
-    for (const tree_joint& each : tree_.joints()) {
-      longest(each.motion.origin);
-    }
-    length_ = length_ > 0 && std::isfinite(length_) ? length_ : 1;
-    for (const tree_joint& each : tree_.joints()) {
-      if (each.mimic) {
-        continue;
-      }
-      const joint_kind kind = each.motion.kind;
-      const int lengths = kind == joint_kind::prismatic  ? 1
-                          : kind == joint_kind::planar   ? 2
-                          : kind == joint_kind::floating ? 3
-                                                         : 0;
-      units_.segment(i, lengths).setConstant(length_);
-      i += each.motion.coordinates();
-    }
+    return result;
   }
+  [[nodiscard]] attached_frame<double> frame(std::size_t i, const loop_frame& at) const;
+  void measure();
 
   kinematic_tree tree_;
   loop_description given_;
@@ -205,3 +125,7 @@ private:
 };
 
 } // namespace duet
+
+#ifndef DUET_COMPILED
+#include <duet/mechanism/loops/tree_closing.hpp>
+#endif

@@ -1,24 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
-#include <duet/core/random_source.hpp>
-#include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/dual_quaternion/pose.hpp>
+#include <duet/core/compiled.hpp>
 #include <duet/mechanism/closed_tree.hpp>
-#include <duet/mechanism/coordinate_turns.hpp>
-#include <duet/mechanism/joint.hpp>
-#include <duet/mechanism/loop_closing.hpp>
-#include <duet/quaternion/quaternion.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 /// \file
@@ -56,122 +45,6 @@ struct loop_search_options {
   std::uint64_t seed = 1; ///< of the random numbers
 };
 
-namespace detail {
-
-class position_search {
-public:
-  position_search(const closed_tree& of, const Eigen::VectorXd& at, const std::vector<int>& held)
-      : of_(of), at_(at), free_(all_but(of.size(), held)), turns_(of) {}
-
-  [[nodiscard]] loop_positions run(const loop_search_options& options) {
-    loop_positions result;
-    random_source random(options.seed);
-    for (result.starts = 0; result.starts < options.starts; ++result.starts) {
-      const closing found(of_, guess(random), free_, 100);
-      if (found.has_closed()) {
-        ++result.closed;
-        add(result, wrapped(found.coordinates()));
-      }
-    }
-    std::sort(result.positions.begin(), result.positions.end(), &comes_first);
-    return result;
-  }
-
-private:
-  [[nodiscard]] Eigen::VectorXd guess(random_source& random) const {
-    Eigen::VectorXd q = at_;
-    for (const int i : free_) {
-      const joint_limits<double>& limits = of_.tree().limits(i);
-      const double reach = std::numbers::pi * of_.units()[i];
-      const bool has_limits = std::isfinite(limits.lower) && std::isfinite(limits.upper);
-      q[i] =
-          has_limits ? random.uniform(limits.lower, limits.upper) : random.uniform(-reach, reach);
-    }
-    return q;
-  }
-
-  /// Without whole turns.
-  [[nodiscard]] Eigen::VectorXd wrapped(Eigen::VectorXd q) const {
-    constexpr double turn = 2 * std::numbers::pi;
-    for (const int i : free_) {
-      if (turns_.angles[std::size_t(i)]) {
-        const double x = std::remainder(q[i], turn);
-        q[i] = x <= -std::numbers::pi ? std::numbers::pi : x;
-      }
-    }
-    for (const int i : turns_.vectors) {
-      if (std::find(free_.begin(), free_.end(), i) != free_.end()) {
-        const double angle = q.segment<3>(i).norm();
-        if (angle > std::numbers::pi) {
-          q.segment<3>(i) *= std::remainder(angle, turn) / angle;
-        }
-      }
-    }
-    return q;
-  }
-
-  /// Where every link is: two positions are one where all links stand at the same places.
-  [[nodiscard]] std::vector<Eigen::Matrix<double, 7, 1>> places(const Eigen::VectorXd& q) const {
-    std::vector<Eigen::Matrix<double, 7, 1>> result;
-    for (const dual_quaternion<double>& a : of_.tree().poses(q)) {
-      const quaternion<double> r = rotation(a);
-      const vector3<double> t = translation(a) / of_.length();
-      result.push_back({r.w(), r.x(), r.y(), r.z(), t[0], t[1], t[2]});
-    }
-    return result;
-  }
-  [[nodiscard]] static bool are_same(const std::vector<Eigen::Matrix<double, 7, 1>>& a,
-                                     const std::vector<Eigen::Matrix<double, 7, 1>>& b) {
-    constexpr double rounding = 1e-6; // singular positions are known to half the digits
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const double turned = std::min((a[i].head<4>() - b[i].head<4>()).norm(),
-                                     (a[i].head<4>() + b[i].head<4>()).norm());
-      if (turned > rounding || (a[i].tail<3>() - b[i].tail<3>()).norm() > rounding) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  void add(loop_positions& result, const Eigen::VectorXd& q) {
-    const auto where = places(q);
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      if (are_same(where, places_[i])) {
-        ++result.positions[i].found;
-        return;
-      }
-    }
-    places_.push_back(where);
-    loop_position found{q, 0, 1, true};
-    const Eigen::MatrixXd all = of_.constraint_jacobian(q) * of_.units().asDiagonal();
-    const Eigen::MatrixXd j = all(Eigen::indexing::all, free_);
-    const Eigen::VectorXd s = ranked_matrix(j).singular_values();
-    found.smallest_singular_value = s.size() == 0 || s.size() < j.cols() ? 0 : s[s.size() - 1];
-    for (int i = 0; i < of_.size(); ++i) {
-      const joint_limits<double>& limits = of_.tree().limits(i);
-      found.within_limits &= limits.lower <= q[i] && q[i] <= limits.upper;
-    }
-    result.positions.push_back(found);
-  }
-
-  [[nodiscard]] static bool comes_first(const loop_position& a, const loop_position& b) {
-    for (Eigen::Index i = 0; i < a.coordinates.size(); ++i) {
-      if (std::abs(a.coordinates[i] - b.coordinates[i]) > 1e-6) {
-        return a.coordinates[i] < b.coordinates[i];
-      }
-    }
-    return false;
-  }
-
-  const closed_tree& of_;
-  Eigen::VectorXd at_;
-  std::vector<int> free_;
-  coordinate_turns turns_;
-  std::vector<std::vector<Eigen::Matrix<double, 7, 1>>> places_;
-};
-
-} // namespace detail
-
 /// The ways in which loops close while some coordinates are held: from random guesses, within the
 /// limits of joints that have some, else of angles within (−π, π), of lengths within
 /// ±π `length()`. Each is known to rounding; whether all were found is not known.
@@ -180,19 +53,12 @@ private:
 ///              are single
 /// \param at    where these are held, one after the other
 /// \throws invalid_input for coordinates that there are none of, and where both are not as many
-[[nodiscard]] inline loop_positions all_positions(const closed_tree& mechanism,
-                                                  const std::vector<int>& held,
-                                                  const Eigen::VectorXd& at,
-                                                  const loop_search_options& options = {}) {
-  detail::require(Eigen::Index(held.size()) == at.size(), "duet: all_positions: ", held.size(),
-                  " coordinates are held, but ", at.size(), " numbers given");
-  detail::require(at.allFinite(), "duet: all_positions: coordinates are not finite");
-  Eigen::VectorXd q = Eigen::VectorXd::Zero(mechanism.size());
-  static_cast<void>(detail::all_but(mechanism.size(), held));
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    q[held[i]] = at[Eigen::Index(i)];
-  }
-  return detail::position_search(mechanism, q, held).run(options);
-}
+[[nodiscard]] DUET_COMPILED_FUNCTION loop_positions
+all_positions(const closed_tree& mechanism, const std::vector<int>& held, const Eigen::VectorXd& at,
+              const loop_search_options& options = {});
 
 } // namespace duet
+
+#ifndef DUET_COMPILED
+#include <duet/mechanism/loops/position_search.hpp>
+#endif

@@ -3,6 +3,9 @@
 // Every bit of what the library's functions return.
 
 #include <duet/comparison/compare.hpp>
+#include <duet/mechanism/loop_positions.hpp>
+#include <duet/mechanism/loop_trace.hpp>
+#include <duet/mechanism/mobility.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/urdf.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
@@ -19,7 +22,7 @@ namespace {
 void print(const char* what, const auto& numbers, std::ptrdiff_t count) {
   std::printf("%s", what);
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    std::printf(" %a", numbers[i]);
+    std::printf(" %a", double(numbers[i]));
   }
   std::printf("\n");
 }
@@ -53,6 +56,30 @@ void read_an_arm() {
   const auto arm = duet::read_urdf("arm.urdf", "a", "c");
   const Eigen::Vector2d joints(.7, .3);
   print(arm.joint_names()[1].c_str(), rotation(arm.pose(joints)));
+}
+
+void move_a_mechanism() {
+  const auto at = [](double x) { return duet::along_axis({x, 0, 0}, {0, 0, 1}); };
+  const duet::kinematic_tree tree(
+      {.links = {{"ground"}, {"crank"}, {"coupler"}, {"rocker"}},
+       .joints = {{"crank", "ground", "crank", {duet::joint_kind::continuous}},
+                  {"coupler", "crank", "coupler", {duet::joint_kind::continuous, at(.3)}},
+                  {"rocker", "ground", "rocker", {duet::joint_kind::continuous, at(.8)}}}});
+  // A parallelogram.
+  const duet::closed_tree mechanism(
+      tree, {{{duet::loop_kind::hinge, {"coupler", at(.8)}, {"rocker", at(.3)}}}});
+  const auto ways = duet::all_positions(mechanism, {0}, Eigen::VectorXd::Constant(1, 1));
+  for (const duet::loop_position& each : ways.positions) {
+    std::printf("found %d times, mobility %d\n", each.found,
+                duet::mobility(mechanism, each.coordinates).mobility);
+    print("position", each.coordinates, 3);
+    const duet::loop_motion motion(mechanism, each.coordinates, {0});
+    print("on", motion(1.3), 3);
+    const auto whole = duet::trace(motion);
+    print("traced", whole.positions.back(), 3);
+    std::printf("%d dead points\n", int(whole.dead_points.size()));
+  }
+  print("independent", mechanism.independent_coordinates(ways.positions[0].coordinates), 1);
 }
 
 void draw_curves() {
@@ -90,5 +117,6 @@ int main() {
   judge_a_formula();
   move_an_arm();
   read_an_arm();
+  move_a_mechanism();
   draw_curves();
 }

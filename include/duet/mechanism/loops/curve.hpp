@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/mechanism/closed_tree.hpp>
-#include <duet/mechanism/loop_closing.hpp>
+#include <duet/mechanism/loops/closing.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -44,22 +44,22 @@ public:
   /// Where it begins; nothing where it has no direction there.
   [[nodiscard]] std::optional<curve_point> start(double direction) const {
     Eigen::VectorXd x(Eigen::Index(dependent_.size()) + 1);
-    x << (q0_.cwiseQuotient(of_.units()))(dependent_), 0;
+    x << entries(q0_.cwiseQuotient(of_.units()), dependent_), 0;
     return point(x, Eigen::VectorXd::Unit(x.size(), x.size() - 1) * direction);
   }
 
   /// All coordinates of the tree.
   [[nodiscard]] Eigen::VectorXd coordinates(const Eigen::VectorXd& x) const {
     Eigen::VectorXd q = q0_.cwiseQuotient(of_.units());
-    q(dependent_) = x.head(x.size() - 1);
-    q(drives_) += x[x.size() - 1] * way_;
+    put(x.head(x.size() - 1), dependent_, q);
+    put(entries(q, drives_) + x[x.size() - 1] * way_, drives_, q);
     return q.cwiseProduct(of_.units());
   }
   /// Their rates along a tangent.
   [[nodiscard]] Eigen::VectorXd rates(const Eigen::VectorXd& tangent) const {
     Eigen::VectorXd v(of_.size());
-    v(dependent_) = tangent.head(tangent.size() - 1);
-    v(drives_) = tangent[tangent.size() - 1] * way_;
+    put(tangent.head(tangent.size() - 1), dependent_, v);
+    put(tangent[tangent.size() - 1] * way_, drives_, v);
     return v.cwiseProduct(of_.units());
   }
 
@@ -122,9 +122,9 @@ public:
 
 private:
   [[nodiscard]] Eigen::MatrixXd matrix(const Eigen::VectorXd& x) const {
-    const Eigen::MatrixXd j = of_.constraint_jacobian(coordinates(x)) * of_.units().asDiagonal();
+    const Eigen::MatrixXd j = unit_jacobian(of_, coordinates(x));
     Eigen::MatrixXd a(j.rows(), x.size());
-    a << j(Eigen::indexing::all, dependent_), j(Eigen::indexing::all, drives_) * way_;
+    a << columns(j, dependent_), columns(j, drives_) * way_;
     return a;
   }
 
@@ -143,8 +143,8 @@ private:
 
   [[nodiscard]] static double volume(const curve_point& at, const Eigen::MatrixXd& image) {
     Eigen::MatrixXd m(at.x.size(), at.x.size());
-    m << image.transpose() * at.matrix, at.tangent.transpose();
-    return m.determinant();
+    m << image.transpose().lazyProduct(at.matrix), at.tangent.transpose();
+    return m.fullPivLu().determinant();
   }
 
   /// Newton's method with the shortest steps, of which the first must not be longer than `most`.

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/mechanism/loops/ranked_matrix.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -30,59 +30,41 @@ namespace duet::detail {
   return result;
 }
 
-/// A matrix whose singular values tell which rows and columns depend on others.
-class ranked_matrix {
-public:
-  explicit ranked_matrix(const Eigen::MatrixXd& a)
-      : u_(Eigen::MatrixXd::Identity(a.rows(), a.rows())),
-        v_(Eigen::MatrixXd::Identity(a.cols(), a.cols())) {
-    if (a.size() > 0) { // Eigen has no singular values of nothing
-      const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      u_ = svd.matrixU();
-      v_ = svd.matrixV();
-      s_ = svd.singularValues();
-    }
-    while (rank_ < s_.size() && s_[rank_] > least * s_[0]) {
-      ++rank_;
-    }
-  }
-
-  /// Singular values below this part of the largest one count as zero: near a singular position
-  /// they are as far from it as q, and q where equations are singular is known to half the digits.
-  static constexpr double least = 1e-6;
-
-  [[nodiscard]] Eigen::Index rank() const { return rank_; }
-  [[nodiscard]] const Eigen::VectorXd& singular_values() const { return s_; }
-  /// Orthonormal columns that span the image.
-  [[nodiscard]] Eigen::MatrixXd image() const { return u_.leftCols(rank_); }
-  /// Orthonormal columns across the image.
-  [[nodiscard]] Eigen::MatrixXd cokernel() const { return u_.rightCols(u_.cols() - rank_); }
-  /// Orthonormal columns that it takes to zero.
-  [[nodiscard]] Eigen::MatrixXd kernel() const { return v_.rightCols(v_.cols() - rank_); }
-  /// The shortest of the x with A x nearest to b, where A is taken to have a rank.
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const {
-    const Eigen::VectorXd y = u_.leftCols(rank).transpose() * b;
-    return v_.leftCols(rank) * y.cwiseQuotient(s_.head(rank));
-  }
-  /// V (σ / (σ² + λ)) Uᵀ b
-  [[nodiscard]] Eigen::VectorXd damped_solve(const Eigen::VectorXd& b, double lambda) const {
-    const Eigen::VectorXd y = u_.leftCols(s_.size()).transpose() * b;
-    const auto damped = [&](double sigma, double x) {
-      return sigma * x / (sigma * sigma + lambda);
-    };
-    return v_.leftCols(s_.size()) * s_.binaryExpr(y, damped);
-  }
-
-private:
-  Eigen::MatrixXd u_, v_;
-  Eigen::VectorXd s_;
-  Eigen::Index rank_ = 0;
-};
-
 /// ∂F/∂q, each column per unit of its coordinate.
 template <class Mechanism>
+[[nodiscard]] Eigen::MatrixXd unit_jacobian(const Mechanism& of, const Eigen::VectorXd& q) {
+  return of.constraint_jacobian(q) * of.units().asDiagonal();
+}
+template <class Mechanism>
 [[nodiscard]] ranked_matrix linearised(const Mechanism& of, const Eigen::VectorXd& q) {
-  return ranked_matrix(of.constraint_jacobian(q) * of.units().asDiagonal());
+  return ranked_matrix(unit_jacobian(of, q));
+}
+
+/// These columns of a matrix.
+[[nodiscard]] inline Eigen::MatrixXd columns(const Eigen::MatrixXd& of,
+                                             const std::vector<int>& these) {
+  Eigen::MatrixXd result(of.rows(), Eigen::Index(these.size()));
+  for (std::size_t i = 0; i < these.size(); ++i) {
+    result.col(Eigen::Index(i)) = of.col(these[i]);
+  }
+  return result;
+}
+/// These numbers of a vector.
+[[nodiscard]] inline Eigen::VectorXd entries(const Eigen::VectorXd& of,
+                                             const std::vector<int>& these) {
+  Eigen::VectorXd result(Eigen::Index(these.size()));
+  for (std::size_t i = 0; i < these.size(); ++i) {
+    result[Eigen::Index(i)] = of[these[i]];
+  }
+  return result;
+}
+
+/// Puts numbers in place of these of a vector.
+inline void put(const Eigen::VectorXd& numbers, const std::vector<int>& these,
+                Eigen::VectorXd& into) {
+  for (std::size_t i = 0; i < these.size(); ++i) {
+    into[these[i]] = numbers[Eigen::Index(i)];
+  }
 }
 
 /// Levenberg's and Marquardt's method for F(q) = 0.
@@ -106,8 +88,7 @@ public:
 private:
   /// One that reduces the residual; false where there is none.
   [[nodiscard]] bool step() {
-    const Eigen::MatrixXd all = of_.constraint_jacobian(q_) * of_.units().asDiagonal();
-    const Eigen::MatrixXd j = all(Eigen::indexing::all, free_);
+    const Eigen::MatrixXd j = columns(unit_jacobian(of_, q_), free_);
     const ranked_matrix svd(j);
     for (int i = 0; i < 25; ++i) {
       Eigen::VectorXd dx = -svd.damped_solve(f_, damping_ * norm_);

@@ -1,0 +1,148 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/core/random_source.hpp>
+#include <duet/mechanism/closed_tree.hpp>
+#include <duet/mechanism/loops/closing.hpp>
+#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/second_derivatives.hpp>
+#include <duet/mechanism/mobility.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+/// \file
+/// What is around a position, which the library duet::compiled holds. For those who extend duet.
+
+namespace duet {
+
+namespace detail {
+
+/// Looks around a position. Lengths are in parts of the mechanism's.
+class surroundings {
+public:
+  explicit surroundings(const closed_tree& of) : of_(of) {}
+
+  /// Is there, among the rates that fulfil the equations, one with an acceleration: a v in the
+  /// kernel K of ∂F/∂q for which wᵀ ∂²F(v, v) = 0 for all w across its image? Newton's method on
+  /// the unit sphere, from many starts.
+  [[nodiscard]] bool has_acceleration(const Eigen::VectorXd& q, const ranked_matrix& a) {
+    const Eigen::MatrixXd kernel = a.kernel();
+    const Eigen::MatrixXd across = a.cokernel();
+    const std::vector<Eigen::MatrixXd> forms = quadratic_forms(of_, q, across, kernel);
+    const Eigen::Index n = kernel.cols();
+    for (int start = 0; start < 20; ++start) {
+      Eigen::VectorXd v = direction(n);
+      Eigen::VectorXd f(across.cols() + 1);
+      for (int i = 0; i < 40; ++i) {
+        Eigen::MatrixXd j(across.cols() + 1, n);
+        for (Eigen::Index k = 0; k < across.cols(); ++k) {
+          j.row(k) = (forms[std::size_t(k)] * v).transpose();
+        }
+        f.head(across.cols()) = j.topRows(across.cols()) * v;
+        f[across.cols()] = (v.squaredNorm() - 1) / 2;
+        j.topRows(across.cols()) *= 2;
+        j.row(across.cols()) = v.transpose();
+        if (f.norm() < 1e-7) {
+          return true;
+        }
+        const ranked_matrix svd(j);
+        v -= svd.solve(f, svd.rank());
+      }
+    }
+    return false;
+  }
+
+  /// A position about so far away, along the kernel.
+  [[nodiscard]] std::optional<Eigen::VectorXd>
+  position(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel, double far_away) {
+    const Eigen::VectorXd way = kernel * direction(kernel.cols());
+    const closing found(of_, q + far_away * way.cwiseProduct(of_.units()), all_but(of_.size(), {}));
+    const double moved = (found.coordinates() - q).cwiseQuotient(of_.units()).norm();
+    if (found.has_closed() && moved > far_away / 3 && moved < 3 * far_away) {
+      return found.coordinates();
+    }
+    return std::nullopt;
+  }
+
+  /// The dimension that positions around q span: shaky directions lead back.
+  [[nodiscard]] int dimension(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel) {
+    constexpr double step = .02;
+    const Eigen::Index count = 2 * kernel.cols() + 2;
+    Eigen::MatrixXd ways(q.size(), count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Eigen::VectorXd way = kernel * direction(kernel.cols());
+      const closing found(of_, q + step * way.cwiseProduct(of_.units()), all_but(of_.size(), {}));
+      ways.col(k) = (found.coordinates() - q).cwiseQuotient(of_.units()) / step;
+      if (!found.has_closed()) {
+        ways.col(k).setZero();
+      }
+    }
+    const Eigen::VectorXd spans =
+        ranked_matrix(kernel.transpose().lazyProduct(ways)).singular_values();
+    return int((spans.array() > .1).count());
+  }
+
+private:
+  [[nodiscard]] Eigen::VectorXd direction(Eigen::Index n) {
+    Eigen::VectorXd result(n);
+    do {
+      for (double& x : result) {
+        x = random_.normal();
+      }
+    } while (result.norm() < 1e-3);
+    return result.normalized();
+  }
+
+  const closed_tree& of_;
+  random_source random_{1};
+};
+
+} // namespace detail
+
+#ifdef DUET_DEFINES_COMPILED
+DUET_COMPILED_FUNCTION mobility_result mobility(const closed_tree& mechanism,
+                                                const Eigen::VectorXd& q) {
+  const double residual = mechanism.residuals(q).norm();
+  detail::require(residual <= 1e-9, "duet: mobility: the loops are not closed: residual ",
+                  residual);
+  const detail::ranked_matrix here = detail::linearised(mechanism, q);
+  const int n = mechanism.size();
+  mobility_result result;
+  result.counted = n - mechanism.equations();
+  result.first_order = n - int(here.rank());
+  result.mobility = result.nearby = result.first_order;
+  if (here.rank() == mechanism.equations()) {
+    return result;
+  }
+  if (result.first_order == 0) {
+    result.evidence = mobility_evidence::no_rates;
+    return result;
+  }
+  detail::surroundings around(mechanism);
+  result.mobility = 0;
+  if (!around.has_acceleration(q, here)) {
+    result.evidence = mobility_evidence::no_acceleration;
+    return result;
+  }
+  result.evidence = mobility_evidence::nearby_positions;
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    if (const auto other = around.position(q, here.kernel(), .05)) {
+      const detail::ranked_matrix there = detail::linearised(mechanism, *other);
+      const int dimension = around.dimension(*other, there.kernel());
+      if (dimension > result.mobility) {
+        result.mobility = dimension;
+        result.nearby = n - int(there.rank());
+      }
+    }
+  }
+  return result;
+}
+#endif
+
+} // namespace duet

@@ -1,0 +1,136 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
+#include <duet/mechanism/closed_loop.hpp>
+#include <duet/mechanism/closed_tree.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/kinematic_tree.hpp>
+#include <duet/mechanism/loops/closing.hpp>
+#include <duet/mechanism/tree_loop.hpp>
+#include <duet/quaternion/quaternion.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// How a mechanism with loops is made and closed, which the library duet::compiled holds. For those
+/// who extend duet.
+
+namespace duet {
+
+#ifdef DUET_DEFINES_COMPILED
+DUET_COMPILED_FUNCTION closed_tree::closed_tree(kinematic_tree tree, loop_description given)
+    : tree_(std::move(tree)), given_(std::move(given)) {
+  measure();
+  for (std::size_t i = 0; i < given_.loops.size(); ++i) {
+    const tree_loop& loop = given_.loops[i];
+    equations_.push_back({loop.kind, {frame(i, loop.second), frame(i, loop.first)}, loop.length});
+    if (equations_.back().frames.frame.link == equations_.back().frames.observer.link) {
+      detail::bad_loop(given_, i, "both frames are on the link \"" + loop.first.link + "\"");
+    }
+    if (loop.kind == loop_kind::rod && !(loop.length > 0 && std::isfinite(loop.length))) {
+      detail::bad_loop(given_, i, "its length is " + to_text(loop.length));
+    }
+    rows_ += equations_.back().size();
+  }
+}
+
+DUET_COMPILED_FUNCTION Eigen::VectorXd closed_tree::residuals(const Eigen::VectorXd& q) const {
+  return residuals_at(q);
+}
+DUET_COMPILED_FUNCTION Eigen::MatrixXd
+closed_tree::constraint_jacobian(const Eigen::VectorXd& q) const {
+  return jacobian_at(q);
+}
+
+DUET_COMPILED_FUNCTION Eigen::VectorXd closed_tree::closed(const Eigen::VectorXd& guess,
+                                                           const std::vector<int>& held) const {
+  detail::require(guess.allFinite(), "duet: closed_tree: the guess is not finite");
+  const detail::closing found(*this, guess, detail::all_but(size(), held));
+  if (!found.has_closed()) {
+    detail::raise(cannot_close("duet: closed_tree: no position near the guess: residual " +
+                                   to_text(found.residual()),
+                               {guess.begin(), guess.end()}));
+  }
+  return found.coordinates();
+}
+
+DUET_COMPILED_FUNCTION std::vector<int>
+closed_tree::independent_coordinates(const Eigen::VectorXd& q) const {
+  Eigen::MatrixXd rates = detail::linearised(*this, q).kernel();
+  std::vector<int> result;
+  while (Eigen::Index(result.size()) < rates.cols()) { // the pivots alone: less to compile
+    Eigen::Index next = 0;
+    rates.rowwise().squaredNorm().maxCoeff(&next);
+    result.push_back(int(next));
+    const Eigen::VectorXd along = rates.row(next).normalized();
+    for (Eigen::Index i = 0; i < rates.rows(); ++i) {
+      rates.row(i) -= rates.row(i).dot(along) * along;
+    }
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+DUET_COMPILED_FUNCTION attached_frame<double> closed_tree::frame(std::size_t i,
+                                                                 const loop_frame& at) const {
+  const auto& links = tree_.table().link_numbers;
+  const auto found = links.find(at.link);
+  if (found == links.end()) {
+    std::vector<std::string> names;
+    for (const tree_link& each : tree_.links()) {
+      names.push_back(each.name);
+    }
+    detail::bad_loop(given_, i,
+                     "no link \"" + at.link + "\": " + detail::nearest_names(at.link, names));
+  }
+  const auto& [r, t] = at.offset;
+  if (!std::isfinite(t[0] + t[1] + t[2]) || !std::isfinite(norm2(r))) {
+    detail::bad_loop(given_, i, "its frame on \"" + at.link + "\" is not finite");
+  }
+  return {found->second, at.offset};
+}
+
+DUET_COMPILED_FUNCTION void closed_tree::measure() {
+  const auto longest = [&](const placement<double>& at) {
+    const auto& t = at.translation;
+    length_ = std::max(length_, std::hypot(t[0], t[1], t[2]));
+  };
+  for (const tree_loop& loop : given_.loops) {
+    longest(loop.first.offset);
+    longest(loop.second.offset);
+    length_ = std::max(length_, loop.length);
+  }
+  units_ = Eigen::VectorXd::Ones(size());
+  Eigen::Index i = 0;
+  for (const tree_joint& each : tree_.joints()) {
+    longest(each.motion.origin);
+  }
+  length_ = length_ > 0 && std::isfinite(length_) ? length_ : 1;
+  for (const tree_joint& each : tree_.joints()) {
+    if (each.mimic) {
+      continue;
+    }
+    const joint_kind kind = each.motion.kind;
+    const int lengths = kind == joint_kind::prismatic  ? 1
+                        : kind == joint_kind::planar   ? 2
+                        : kind == joint_kind::floating ? 3
+                                                       : 0;
+    units_.segment(i, lengths).setConstant(length_);
+    i += each.motion.coordinates();
+  }
+}
+#endif
+
+} // namespace duet
