@@ -267,14 +267,22 @@ TEST_CASE("of 200 random four-bars each motion ends where its coupler and rocker
   CHECK(arrived > 20);
 }
 
-TEST_CASE("branches that meet, drives that do not drive, and other mistakes") {
+TEST_CASE("coordinates that are singular, drives that do not drive, and other mistakes") {
   using duet_test::message_of;
-  // A parallelogram is flat at 0, where another motion begins.
-  const loop_motion flat(four_bar(.3, .8, .3, .8), vector({1, -1, 1}), {0});
-  CHECK(std::abs(flat(.01)[2] - .01) < 1e-12);
-  const std::string text = message_of<cannot_close>([&] { (void)flat(-.5); });
-  CHECK(text.ends_with(": no step leads on, branches meet or coordinates are singular"));
-  CHECK(trace(flat).meets_branches);
+  // A body that turns about z by a rotation vector, which is singular after a whole turn.
+  robot_description robot;
+  robot.links = {{"base"}, {"body"}};
+  robot.joints = {{"ball", "base", "body", {joint_kind::spherical}}};
+  const loop_motion turn(
+      closed_tree(kinematic_tree(robot), {{{loop_kind::hinge, {"base", {}}, {"body", {}}}}}),
+      vector({0, 0, 1}), {2});
+  CHECK(gap(turn(6.), vector({0, 0, 6})) < 1e-12);
+  const std::string text = message_of<cannot_close>([&] { (void)turn(7.); });
+  CHECK(text.starts_with("duet: loop_motion: cannot close beyond ball.rz = 6.2831"));
+  CHECK(text.ends_with(": no step leads on, branches touch or coordinates are singular"));
+  const loop_trace_result whole = trace(turn);
+  CHECK(whole.meets_branches);
+  CHECK(whole.branch_points.empty());
 
   const closed_tree mechanism = four_bar(.2, .5, .4, .55);
   const VectorXd q = mechanism.closed(vector({2, -1, 1.7}), {0});

@@ -31,7 +31,8 @@ struct loop_motion_options {
 /// As a function it is differentiated by all drivers, by the implicit function theorem, and a
 /// coupling of a `coupled_tree`: that has poses, Jacobians and Hessians of all links by u.
 /// Which of several positions is meant is said by the one at the start; from there the curve of
-/// positions along the straight line to any u is followed by tangents and Newton's method.
+/// positions along the straight line to any u is followed by tangents and Newton's method, straight
+/// on where branches cross.
 ///
 /// Example: `const loop_motion by_crank(four_bar, q0, {four_bar.tree().coordinate("crank")});`
 /// `const coupled_tree driven(four_bar.tree(), by_crank);`
@@ -56,7 +57,7 @@ public:
   /// precision.
   /// \param u  a number for one drive, or as many as there are
   /// \throws cannot_close where the loops do not close on the straight way to u, with what happens
-  /// there: a dead point of the drives, or no step that leads on, as where branches meet;
+  /// there: a dead point of the drives, or no step that leads on, as where branches touch;
   /// invalid_input for another number of drives, and for what is not finite
   template <class U>
   [[nodiscard]] auto operator()(const U& u) const {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -22,18 +23,32 @@ struct dead_point {
   std::string moving;          ///< the names of those that move
 };
 
+/// A position in which branches of a motion meet.
+struct branch_point {
+  Eigen::VectorXd coordinates; ///< of the tree
+  /// Rates of all coordinates along the branches, per unit of their length: first straight on, then
+  /// those of others in pairs of opposites, last back to where it came from.
+  std::vector<Eigen::VectorXd> ways;
+  std::size_t taken = 0; ///< by which of them it goes on
+};
+
 /// The whole motion of a mechanism by one drive.
 struct loop_trace_result {
-  std::vector<Eigen::VectorXd> positions; ///< one after the other, from where the motion starts
-  std::vector<dead_point> dead_points;    ///< of all coordinates, in the order they are met
-  bool is_closed = false;                 ///< does it come back to where it starts?
-  bool meets_branches = false; ///< does it end where branches meet, or where it cannot be followed?
+  std::vector<Eigen::VectorXd> positions;  ///< one after the other, from where the motion starts
+  std::vector<dead_point> dead_points;     ///< of all coordinates, in the order they are met
+  std::vector<branch_point> branch_points; ///< in the order they are met
+  bool is_closed = false; ///< does it come back to where it starts, or turned off last?
+  bool meets_branches =
+      false; ///< does it end where branches touch, or where it cannot be followed?
 };
 
 /// How a motion is traced.
 struct loop_trace_options {
   double largest_step = .1; ///< of all coordinates together: radians, or parts of `length()`
   double longest = 200;     ///< the whole way in these, after which to stop
+  /// By which of `branch_point::ways` to go on from the first one that is met, the second …;
+  /// straight on from all others.
+  std::vector<std::size_t> ways = {};
 };
 
 /// The positions of a motion along one of its drives, the others held: from its start on, through

@@ -3,6 +3,8 @@
 
 #include <duet/mechanism/closed_tree.hpp>
 #include <duet/mechanism/loops/closing.hpp>
+#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/second_derivatives.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -25,6 +27,7 @@ struct curve_point {
   Eigen::VectorXd tangent; ///< dx per unit of length
   Eigen::MatrixXd matrix;  ///< A
   Eigen::MatrixXd image;   ///< orthonormal columns that span the image of A
+  double least;            ///< of the singular values of A that are not zero
 
   [[nodiscard]] double s() const { return x[x.size() - 1]; }
   [[nodiscard]] double s_rate() const { return tangent[tangent.size() - 1]; }
@@ -66,17 +69,20 @@ public:
   /// The next point on it, so far on along the tangent; nothing where that is too far for all to
   /// change little: the tangent's direction, the way back to the curve, and the volume that the
   /// equations and the tangent span, which keeps its sign unless another branch meets the curve.
+  /// (Where two more meet it, it may keep its sign: near such points half the way is looked at.)
   [[nodiscard]] std::optional<curve_point> advance(const curve_point& from, double step) const {
-    Eigen::VectorXd x = from.x + step * from.tangent;
-    if (!correct(x, false, step / 4)) {
+    const auto to = reached(from, step);
+    if (to && from.least + to->least < 2 * step && !reached(from, step / 2)) {
       return std::nullopt;
     }
-    const auto to = point(x, from.tangent);
-    if (!to || to->tangent.dot(from.tangent) < .95) {
-      return std::nullopt;
-    }
-    const double change = volume(*to, from.image) / volume(from, from.image);
-    return change > .25 && change < 4 ? to : std::nullopt;
+    return to;
+  }
+
+  /// The point near x that is reached by the shortest steps, of which the first is not longer than
+  /// `most`. \param before  its tangent goes along
+  [[nodiscard]] std::optional<curve_point> near(Eigen::VectorXd x, const Eigen::VectorXd& before,
+                                                double most) const {
+    return correct(x, false, most) ? point(x, before) : std::nullopt;
   }
 
   /// The point at s, where one near it is known.
@@ -101,7 +107,7 @@ public:
     stretch result{to, step};
     for (int i = 0, side = 0; i < 60 && at_a != at_b; ++i) {
       const double c = (a * at_b - b * at_a) / (at_b - at_a);
-      const auto next = advance(from, c);
+      const auto next = reached(from, c);
       if (!next) {
         break;
       }
@@ -120,7 +126,11 @@ public:
     return result;
   }
 
-private:
+  /// F at x.
+  [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& x) const {
+    return of_.residuals(coordinates(x));
+  }
+  /// A.
   [[nodiscard]] Eigen::MatrixXd matrix(const Eigen::VectorXd& x) const {
     const Eigen::MatrixXd j = unit_jacobian(of_, coordinates(x));
     Eigen::MatrixXd a(j.rows(), x.size());
@@ -128,9 +138,29 @@ private:
     return a;
   }
 
+  /// The forms wᵀ ∂²F(K v, K v) of v, for each column w.
+  [[nodiscard]] std::vector<Eigen::MatrixXd>
+  forms(const Eigen::VectorXd& x, const Eigen::MatrixXd& w, const Eigen::MatrixXd& k) const {
+    Eigen::MatrixXd ways(of_.size(), k.cols());
+    for (Eigen::Index i = 0; i < k.cols(); ++i) {
+      ways.col(i) = rates(k.col(i)).cwiseQuotient(of_.units());
+    }
+    return quadratic_forms(of_, coordinates(x), w, ways);
+  }
+
+private:
+  [[nodiscard]] std::optional<curve_point> reached(const curve_point& from, double step) const {
+    const auto to = near(from.x + step * from.tangent, from.tangent, step / 4);
+    if (!to || to->tangent.dot(from.tangent) < .95) {
+      return std::nullopt;
+    }
+    const double change = volume(*to, from.image) / volume(from, from.image);
+    return change > .25 && change < 4 ? to : std::nullopt;
+  }
+
   [[nodiscard]] std::optional<curve_point> point(const Eigen::VectorXd& x,
                                                  const Eigen::VectorXd& before) const {
-    curve_point result{x, {}, matrix(x), {}};
+    curve_point result{x, {}, matrix(x), {}, 0};
     const ranked_matrix svd(result.matrix);
     if (svd.rank() != x.size() - 1) {
       return std::nullopt;
@@ -138,6 +168,7 @@ private:
     result.tangent = svd.kernel();
     result.tangent *= result.tangent.dot(before) < 0 ? -1 : 1;
     result.image = svd.image();
+    result.least = svd.rank() > 0 ? svd.singular_values()[svd.rank() - 1] : 1;
     return result;
   }
 
@@ -152,7 +183,7 @@ private:
     const Eigen::Index n = x.size() - (s_is_held ? 1 : 0);
     double before = most;
     for (int i = 0; i < 12; ++i) {
-      const Eigen::VectorXd f = of_.residuals(coordinates(x));
+      const Eigen::VectorXd f = residuals(x);
       const ranked_matrix svd(matrix(x).leftCols(n));
       if (svd.rank() < x.size() - 1) {
         return false;
@@ -165,7 +196,7 @@ private:
       const double rounding = 1e-14 * std::max(1.0, x.norm());
       x.head(n) += dx;
       if (length <= rounding || (length < 1e-10 && length > before / 4)) {
-        return of_.residuals(coordinates(x)).norm() <= 1e-11 * std::max(1.0, x.norm());
+        return residuals(x).norm() <= 1e-11 * std::max(1.0, x.norm());
       }
       if (i > 0 && length > before / 2) {
         return false;

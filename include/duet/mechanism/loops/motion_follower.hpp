@@ -8,6 +8,7 @@
 #include <duet/mechanism/closed_loop.hpp>
 #include <duet/mechanism/closed_tree.hpp>
 #include <duet/mechanism/loop_motion.hpp>
+#include <duet/mechanism/loops/branch_finder.hpp>
 #include <duet/mechanism/loops/closing.hpp>
 #include <duet/mechanism/loops/curve.hpp>
 #include <duet/mechanism/loops/ranked_matrix.hpp>
@@ -141,8 +142,28 @@ DUET_COMPILED_FUNCTION Eigen::VectorXd loop_motion::followed(const Eigen::Vector
     const auto next = curve.advance(here, step);
     if (!next) {
       step /= 2;
+      if (const auto met = detail::branch_finder(curve).ahead(here, step)) {
+        const Eigen::VectorXd& along = met->ways[0];
+        const double s = met->x[met->x.size() - 1], rate = along[along.size() - 1];
+        here = met->beside[0];
+        step = (here.x - met->x).norm();
+        if (here.s() >= length) {
+          detail::curve_point near_by = here;
+          near_by.x = met->x + (length - s) / rate * along;
+          const auto there = curve.at(length, near_by, step);
+          if (there || curve.residuals(near_by.x).norm() <= 1e-12) {
+            Eigen::VectorXd q = curve.coordinates(there ? there->x : near_by.x);
+            detail::put(target, drives_, q);
+            return q;
+          }
+        }
+        if (here.s() >= length || here.s_rate() <= 0) {
+          fail("a dead point where branches meet", curve.coordinates(met->x), target);
+        }
+        continue;
+      }
       if (step < least) {
-        fail("no step leads on, branches meet or coordinates are singular",
+        fail("no step leads on, branches touch or coordinates are singular",
              curve.coordinates(here.x), target);
       }
       continue;
@@ -168,7 +189,7 @@ DUET_COMPILED_FUNCTION Eigen::VectorXd loop_motion::followed(const Eigen::Vector
     if (to.end.s() >= length) {
       step /= 2;
       if (step < least) {
-        fail("no step leads on, branches meet or coordinates are singular",
+        fail("no step leads on, branches touch or coordinates are singular",
              curve.coordinates(here.x), target);
       }
       continue;

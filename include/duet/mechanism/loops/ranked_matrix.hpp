@@ -36,6 +36,9 @@ public:
 
   [[nodiscard]] Eigen::Index rank() const { return rank_; }
   [[nodiscard]] const Eigen::VectorXd& singular_values() const { return s_; }
+  /// U and V of U S Vᵀ.
+  [[nodiscard]] const Eigen::MatrixXd& left() const { return u_; }
+  [[nodiscard]] const Eigen::MatrixXd& right() const { return v_; }
   /// Orthonormal columns that span the image.
   [[nodiscard]] Eigen::MatrixXd image() const { return u_.leftCols(rank_); }
   /// Orthonormal columns across the image.

@@ -1,12 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/random_source.hpp>
 #include <duet/dual/taylor.hpp>
 #include <duet/mechanism/closed_tree.hpp>
+#include <duet/mechanism/loops/ranked_matrix.hpp>
 
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 /// \file
@@ -57,6 +60,46 @@ using along_line = taylor<double, 2, derivative_tag<closed_tree>>;
     }
   }
   return result;
+}
+
+/// A unit vector, none more probable than others.
+[[nodiscard]] inline Eigen::VectorXd random_direction(random_source& random, Eigen::Index n) {
+  Eigen::VectorXd result(n);
+  do {
+    for (double& x : result) {
+      x = random.normal();
+    }
+  } while (result.norm() < 1e-3);
+  return result.normalized();
+}
+
+/// The derivatives of all forms by v, in rows.
+[[nodiscard]] inline Eigen::MatrixXd slopes(const std::vector<Eigen::MatrixXd>& forms,
+                                            const Eigen::VectorXd& v) {
+  Eigen::MatrixXd result(Eigen::Index(forms.size()), v.size());
+  for (std::size_t k = 0; k < forms.size(); ++k) {
+    result.row(Eigen::Index(k)) = 2 * (forms[k] * v).transpose();
+  }
+  return result;
+}
+
+/// A unit v for which all forms vanish, by Newton's method from a start; nothing where it leads to
+/// none.
+[[nodiscard]] inline std::optional<Eigen::VectorXd>
+common_zero(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd v, double rounding) {
+  const auto count = Eigen::Index(forms.size());
+  Eigen::VectorXd f(count + 1);
+  Eigen::MatrixXd j(count + 1, v.size());
+  for (int i = 0; i < 40; ++i) {
+    j << slopes(forms, v), v.transpose();
+    f << j.topRows(count) * v / 2, (v.squaredNorm() - 1) / 2;
+    if (f.norm() < rounding) {
+      return v;
+    }
+    const ranked_matrix svd(j);
+    v -= svd.solve(f, svd.rank());
+  }
+  return std::nullopt;
 }
 
 } // namespace duet::detail

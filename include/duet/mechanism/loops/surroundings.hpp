@@ -35,24 +35,9 @@ public:
     const Eigen::MatrixXd kernel = a.kernel();
     const Eigen::MatrixXd across = a.cokernel();
     const std::vector<Eigen::MatrixXd> forms = quadratic_forms(of_, q, across, kernel);
-    const Eigen::Index n = kernel.cols();
     for (int start = 0; start < 20; ++start) {
-      Eigen::VectorXd v = direction(n);
-      Eigen::VectorXd f(across.cols() + 1);
-      for (int i = 0; i < 40; ++i) {
-        Eigen::MatrixXd j(across.cols() + 1, n);
-        for (Eigen::Index k = 0; k < across.cols(); ++k) {
-          j.row(k) = (forms[std::size_t(k)] * v).transpose();
-        }
-        f.head(across.cols()) = j.topRows(across.cols()) * v;
-        f[across.cols()] = (v.squaredNorm() - 1) / 2;
-        j.topRows(across.cols()) *= 2;
-        j.row(across.cols()) = v.transpose();
-        if (f.norm() < 1e-7) {
-          return true;
-        }
-        const ranked_matrix svd(j);
-        v -= svd.solve(f, svd.rank());
+      if (common_zero(forms, direction(kernel.cols()), 1e-7)) {
+        return true;
       }
     }
     return false;
@@ -89,15 +74,7 @@ public:
   }
 
 private:
-  [[nodiscard]] Eigen::VectorXd direction(Eigen::Index n) {
-    Eigen::VectorXd result(n);
-    do {
-      for (double& x : result) {
-        x = random_.normal();
-      }
-    } while (result.norm() < 1e-3);
-    return result.normalized();
-  }
+  [[nodiscard]] Eigen::VectorXd direction(Eigen::Index n) { return random_direction(random_, n); }
 
   const closed_tree& of_;
   random_source random_{1};

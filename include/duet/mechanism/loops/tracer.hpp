@@ -7,6 +7,7 @@
 #include <duet/mechanism/coordinate_turns.hpp>
 #include <duet/mechanism/loop_motion.hpp>
 #include <duet/mechanism/loop_trace.hpp>
+#include <duet/mechanism/loops/branch_finder.hpp>
 #include <duet/mechanism/loops/curve.hpp>
 #include <duet/mechanism/loops/motion_follower.hpp>
 
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 /// \file
@@ -34,8 +36,9 @@ public:
 
   /// Does the start lie between both points?
   [[nodiscard]] bool is_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
-    const Eigen::VectorXd before = apart(from), after = apart(to);
-    const double step = (after - before).norm();
+    const Eigen::VectorXd way = (to - from).cwiseQuotient(units_);
+    const Eigen::VectorXd before = apart(from), after = before + way;
+    const double step = way.norm();
     return before.norm() < 2 * step && after.norm() < 2 * step && before.dot(rates_) < 0 &&
            after.dot(rates_) >= 0;
   }
@@ -52,9 +55,116 @@ private:
     return result;
   }
 
-  const Eigen::VectorXd& units_;
+  Eigen::VectorXd units_;
   std::vector<bool> angles_;
   Eigen::VectorXd q_, rates_;
+};
+
+/// Follows a motion along one of its drives.
+class tracer {
+public:
+  tracer(const loop_motion& motion, int drive, const loop_trace_options& options)
+      : of_(motion.mechanism()), options_(options),
+        curve_(of_, motion.start(), motion.drives(),
+               Eigen::VectorXd::Unit(Eigen::Index(motion.drives().size()), drive)) {}
+
+  [[nodiscard]] loop_trace_result run() {
+    result_.positions = follow(1);
+    result_.positions.insert(result_.positions.begin(), curve_.coordinates(curve_.start(1)->x));
+    if (!result_.is_closed) {
+      std::vector<Eigen::VectorXd> other_way = follow(-1);
+      std::reverse(other_way.begin(), other_way.end());
+      result_.positions.insert(result_.positions.begin(), other_way.begin(), other_way.end());
+    }
+    return result_;
+  }
+
+private:
+  [[nodiscard]] std::vector<Eigen::VectorXd> follow(double direction) {
+    std::vector<Eigen::VectorXd> positions;
+    curve_point here = *curve_.start(direction);
+    way_back back(of_, curve_, here);
+    double done = 0;
+    for (double step = options_.largest_step; step > 1e-7 && done < options_.longest;) {
+      auto next = curve_.advance(here, step);
+      bool turns_off = false;
+      if (next) {
+        add_dead_points(here, *next, step);
+      } else {
+        step /= 2;
+        next = past_branch_point(here, step);
+        if (!next) {
+          continue;
+        }
+        step = (next->x - here.x).norm();
+        turns_off = result_.branch_points.back().taken != 0;
+      }
+      const Eigen::VectorXd to = curve_.coordinates(next->x);
+      if (turns_off) {
+        back = way_back(of_, curve_, *next);
+      } else if (done > 0 && back.is_between(curve_.coordinates(here.x), to)) {
+        result_.is_closed = true;
+        return positions;
+      }
+      positions.push_back(to);
+      here = *next;
+      done += step;
+      step = std::min(options_.largest_step, 2 * step);
+    }
+    result_.meets_branches |= done < options_.longest;
+    return positions;
+  }
+
+  void add_dead_points(const curve_point& from, const curve_point& to, double step) {
+    const Eigen::VectorXd before = curve_.rates(from.tangent), after = curve_.rates(to.tangent);
+    for (int i = 0; i < of_.size(); ++i) {
+      if (turns(before[i], after[i], i)) {
+        const auto dead = curve_.zero(from, to, step, [&](const curve_point& at) {
+          return curve_.rates(at.tangent)[i] / of_.units()[i];
+        });
+        add_dead_point(i, dead.end.x, dead.end.tangent);
+      }
+    }
+  }
+  [[nodiscard]] bool turns(double before, double after, int i) const {
+    return (before < 0) != (after < 0) && std::abs(after - before) > 1e-9 * of_.units()[i];
+  }
+  void add_dead_point(int i, const Eigen::VectorXd& x, const Eigen::VectorXd& tangent) {
+    const Eigen::VectorXd rates = curve_.rates(tangent);
+    result_.dead_points.push_back(
+        {i, curve_.coordinates(x), rates, moving_coordinates(of_, rates)});
+  }
+
+  /// A point behind one in which branches meet, if steps became so small that it may be near.
+  [[nodiscard]] std::optional<curve_point> past_branch_point(const curve_point& from, double step) {
+    const auto found = branch_finder(curve_).ahead(from, step);
+    if (!found) {
+      return std::nullopt;
+    }
+    branch_point at{curve_.coordinates(found->x), {}, 0};
+    for (const Eigen::VectorXd& way : found->ways) {
+      at.ways.push_back(curve_.rates(way));
+    }
+    const std::size_t met = result_.branch_points.size();
+    at.taken = met < options_.ways.size() ? options_.ways[met] : 0;
+    require(at.taken < at.ways.size(), "duet: trace: no way ", at.taken, " of ", at.ways.size(),
+            " from branch point ", met);
+    result_.branch_points.push_back(at);
+    const curve_point& to = found->beside[at.taken];
+    const Eigen::VectorXd before = curve_.rates(from.tangent), after = curve_.rates(to.tangent);
+    for (int i = 0; i < of_.size(); ++i) {
+      const bool rests = std::abs(at.ways[0][i]) < 1e-9 * of_.units()[i];
+      if (at.taken == 0 && rests && turns(before[i], after[i], i)) {
+        add_dead_point(i, found->x, found->ways[0]);
+      }
+    }
+    return to;
+  }
+
+  const closed_tree& of_;
+  loop_trace_options options_;
+  loop_curve curve_;
+  loop_trace_result result_;
 };
 
 } // namespace detail
@@ -62,57 +172,9 @@ private:
 #ifdef DUET_DEFINES_COMPILED
 DUET_COMPILED_FUNCTION loop_trace_result trace(const loop_motion& motion, int drive,
                                                const loop_trace_options& options) {
-  const closed_tree& of = motion.mechanism();
   const auto count = int(motion.drives().size());
   detail::require(0 <= drive && drive < count, "duet: trace: no drive ", drive, " of ", count);
-  const detail::loop_curve curve(of, motion.start(), motion.drives(),
-                                 Eigen::VectorXd::Unit(count, drive));
-  loop_trace_result result;
-  const auto follow = [&](double direction) {
-    std::vector<Eigen::VectorXd> positions;
-    auto here = *curve.start(direction);
-    const detail::way_back back(of, curve, here);
-    double done = 0;
-    for (double step = options.largest_step; step > 1e-7 && done < options.longest;) {
-      const auto next = curve.advance(here, step);
-      if (!next) {
-        step /= 2;
-        continue;
-      }
-      const Eigen::VectorXd q = curve.coordinates(here.x), to = curve.coordinates(next->x);
-      result.is_closed = done > 0 && back.is_between(q, to);
-      const Eigen::VectorXd before = curve.rates(here.tangent), after = curve.rates(next->tangent);
-      for (int i = 0; i < of.size(); ++i) {
-        const bool turns = (before[i] < 0) != (after[i] < 0) &&
-                           std::abs(after[i] - before[i]) > 1e-9 * of.units()[i];
-        if (turns) {
-          const auto dead = curve.zero(here, *next, step, [&](const detail::curve_point& at) {
-            return curve.rates(at.tangent)[i] / of.units()[i];
-          });
-          const Eigen::VectorXd rates = curve.rates(dead.end.tangent);
-          result.dead_points.push_back(
-              {i, curve.coordinates(dead.end.x), rates, detail::moving_coordinates(of, rates)});
-        }
-      }
-      if (result.is_closed) {
-        return positions;
-      }
-      positions.push_back(to);
-      here = *next;
-      done += step;
-      step = std::min(options.largest_step, 2 * step);
-    }
-    result.meets_branches |= done < options.longest;
-    return positions;
-  };
-  result.positions = follow(1);
-  result.positions.insert(result.positions.begin(), motion.start());
-  if (!result.is_closed) {
-    std::vector<Eigen::VectorXd> other_way = follow(-1);
-    std::reverse(other_way.begin(), other_way.end());
-    result.positions.insert(result.positions.begin(), other_way.begin(), other_way.end());
-  }
-  return result;
+  return detail::tracer(motion, drive, options).run();
 }
 #endif
 

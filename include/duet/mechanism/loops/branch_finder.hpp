@@ -1,0 +1,217 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/random_source.hpp>
+#include <duet/mechanism/loops/curve.hpp>
+#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/second_derivatives.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+/// \file
+/// Where branches of a curve of positions meet, and the ways that leave from there. For those who
+/// extend duet.
+
+namespace duet::detail {
+
+/// A point in which branches meet.
+struct branching {
+  Eigen::VectorXd x; ///< as of `curve_point`
+  /// Unit tangents: the way on, those of other branches in pairs of opposites, the way back.
+  std::vector<Eigen::VectorXd> ways;
+  std::vector<curve_point> beside; ///< a point of the curve on each way
+};
+
+class branch_finder {
+public:
+  explicit branch_finder(const loop_curve& curve) : curve_(curve) {}
+
+  /// The point before the end of a curve where branches meet, to rounding; nothing where there is
+  /// none, or they touch each other, so that second derivatives do not tell them apart.
+  /// \param step  the last one that led nowhere, halved: branches are near if it is small
+  [[nodiscard]] std::optional<branching> ahead(const curve_point& from, double step) const {
+    const auto x = step < 1e-3 ? singular_point(from, 4 * step) : std::nullopt;
+    if (!x || from.tangent.dot(*x - from.x) <= 0) {
+      return std::nullopt;
+    }
+    branching result{*x, {}, {}};
+    for (const Eigen::VectorXd& line : tangents(*x)) {
+      for (const double sign : {1., -1.}) {
+        if (const auto point = beside(*x, sign * line)) {
+          result.ways.push_back(sign * line);
+          result.beside.push_back(*point);
+        }
+      }
+    }
+    return arrange(result, from.x) ? std::optional(result) : std::nullopt;
+  }
+
+private:
+  /// Where A loses some of its rank and F vanishes: Newton's method for x, W and μ with
+  ///
+  ///   UᵀF + W μ = 0,   AᵀU W = 0,   W₀ᵀW = 1,
+  ///
+  /// where U spans the image of A beside that point, so that equations which depend on others are
+  /// left out; W spans what is lost of it. Of two branches that nearly meet this is where they
+  /// would, and μ is what loops miss to be closed there.
+  ///
+  /// Source: A. Griewank and G. W. Reddien, Characterization and computation of generalized turning
+  /// points, 1984, for W of one column.
+  [[nodiscard]] std::optional<Eigen::VectorXd> singular_point(const curve_point& from,
+                                                              double within) const {
+    const Eigen::MatrixXd& u = from.image;
+    const Eigen::Index n = from.x.size(), r = u.cols();
+    const ranked_matrix reduced(Eigen::MatrixXd(u.transpose().lazyProduct(from.matrix)));
+    const Eigen::VectorXd& s = reduced.singular_values();
+    Eigen::Index lost = 0; // of the rank, as far as can be seen from here
+    while (lost < r && s[r - 1 - lost] < 10 * within * s[0]) {
+      ++lost;
+    }
+    if (lost == 0) {
+      return std::nullopt;
+    }
+    const Eigen::Index all = n + r * lost + lost;
+    const Eigen::MatrixXd w0 = reduced.left().rightCols(lost);
+    Eigen::VectorXd x = from.x, mu = Eigen::VectorXd::Zero(lost);
+    Eigen::MatrixXd w = w0;
+    for (int i = 0; i < 12; ++i) {
+      const Eigen::MatrixXd a = u.transpose().lazyProduct(curve_.matrix(x));
+      const auto forms = curve_.forms(x, u.lazyProduct(w), Eigen::MatrixXd::Identity(n, n));
+      Eigen::VectorXd f(r + n * lost + lost * lost);
+      Eigen::MatrixXd j = Eigen::MatrixXd::Zero(f.size(), all);
+      f.head(r) = u.transpose() * curve_.residuals(x) + w * mu;
+      j.topLeftCorner(r, n) = a;
+      j.topRightCorner(r, lost) = w;
+      for (Eigen::Index k = 0; k < lost; ++k) {
+        const Eigen::Index column = n + r * k, row = r + n * k, last = r + n * lost + lost * k;
+        f.segment(row, n) = a.transpose() * w.col(k);
+        f.segment(last, lost) = w0.transpose() * w.col(k) - Eigen::VectorXd::Unit(lost, k);
+        j.block(0, column, r, r).diagonal().setConstant(mu[k]);
+        j.block(row, 0, n, n) = forms[std::size_t(k)];
+        j.block(row, column, n, r) = a.transpose();
+        j.block(last, column, lost, r) = w0.transpose();
+      }
+      const ranked_matrix svd(j);
+      if (svd.rank() < all) {
+        return std::nullopt; // branches touch
+      }
+      const Eigen::VectorXd step = -svd.solve(f, all);
+      x += step.head(n);
+      for (Eigen::Index k = 0; k < lost; ++k) {
+        w.col(k) += step.segment(n + r * k, r);
+      }
+      mu += step.tail(lost);
+      if (!((x - from.x).norm() < within)) {
+        return std::nullopt;
+      }
+      if (step.norm() < 1e-13) {
+        const bool closes = curve_.residuals(x).norm() <= 1e-12 * std::max(1.0, x.norm());
+        return closes ? std::optional(x) : std::nullopt;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// The lines along which rates have accelerations: v in the kernel K of A with wᵀ ∂²F(v, v) = 0
+  /// for all w across its image. For a kernel of two columns these are the zeros of a form in the
+  /// plane, else they are looked for from random starts.
+  [[nodiscard]] std::vector<Eigen::VectorXd> tangents(const Eigen::VectorXd& x) const {
+    const ranked_matrix a(curve_.matrix(x));
+    const Eigen::MatrixXd kernel = a.kernel();
+    const std::vector<Eigen::MatrixXd> forms = curve_.forms(x, a.cokernel(), kernel);
+    std::vector<Eigen::VectorXd> result;
+    if (kernel.cols() == 2) {
+      for (const double angle : zeros_in_plane(forms)) {
+        result.push_back(std::cos(angle) * kernel.col(0) + std::sin(angle) * kernel.col(1));
+      }
+      return result;
+    }
+    random_source random(1);
+    std::vector<Eigen::VectorXd> found;
+    for (int start = 0; start < 100 * kernel.cols(); ++start) {
+      const auto v = common_zero(forms, random_direction(random, kernel.cols()), 1e-12);
+      const bool is_new = v && std::none_of(found.begin(), found.end(), [&](const auto& other) {
+                            return std::abs(other.dot(*v)) > 1 - 1e-9;
+                          });
+      if (is_new && ranked_matrix(slopes(forms, *v)).rank() == kernel.cols() - 1) {
+        found.push_back(*v);
+        result.push_back(kernel * *v);
+      }
+    }
+    return result;
+  }
+
+  /// The angles θ within a half turn for which all forms vanish at (cos θ, sin θ), from the one
+  /// that they are nearest to multiples of, a cos² θ + 2 b cos θ sin θ + c sin² θ, as
+  /// (a + c) / 2 + (a − c) / 2 cos 2θ + b sin 2θ.
+  [[nodiscard]] static std::vector<double>
+  zeros_in_plane(const std::vector<Eigen::MatrixXd>& forms) {
+    Eigen::MatrixXd parts(Eigen::Index(forms.size()), 3);
+    for (std::size_t k = 0; k < forms.size(); ++k) {
+      const Eigen::MatrixXd& form = forms[k];
+      parts.row(Eigen::Index(k)) << (form(0, 0) + form(1, 1)) / 2, (form(0, 0) - form(1, 1)) / 2,
+          form(0, 1);
+    }
+    const ranked_matrix svd(parts);
+    const Eigen::VectorXd form = svd.right().col(0);
+    const double cosine = -form[0] / std::hypot(form[1], form[2]);
+    if (!(std::abs(cosine) < 1)) {
+      return {};
+    }
+    const double middle = std::atan2(form[2], form[1]), apart = std::acos(cosine);
+    std::vector<double> result;
+    for (const double twice : {middle + apart, middle - apart}) {
+      const Eigen::VectorXd rest = parts * Eigen::Vector3d(1, std::cos(twice), std::sin(twice));
+      if (rest.norm() < ranked_matrix::least * svd.singular_values()[0]) {
+        result.push_back(twice / 2);
+      }
+    }
+    return result;
+  }
+
+  /// A point of the curve that is left for from x along a tangent.
+  [[nodiscard]] std::optional<curve_point> beside(const Eigen::VectorXd& x,
+                                                  const Eigen::VectorXd& tangent) const {
+    for (double step = 1e-3; step > 1e-5; step /= 2) {
+      const auto point = curve_.near(x + step * tangent, tangent, step / 4);
+      if (point && point->tangent.dot(tangent) > .99) {
+        return point;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// \return is one of the ways the one that it came on?
+  [[nodiscard]] static bool arrange(branching& at, const Eigen::VectorXd& from) {
+    const Eigen::VectorXd back = (from - at.x).normalized();
+    const auto move = [&](double sign, std::size_t to) {
+      std::size_t nearest = 0;
+      for (std::size_t i = 0; i < at.ways.size(); ++i) {
+        nearest = sign * at.ways[i].dot(back) > sign * at.ways[nearest].dot(back) ? i : nearest;
+      }
+      const auto place = [&](auto& list) {
+        const auto one = list[nearest];
+        list.erase(list.begin() + std::ptrdiff_t(nearest));
+        list.insert(list.begin() + std::ptrdiff_t(to), one);
+      };
+      place(at.ways);
+      place(at.beside);
+    };
+    if (at.ways.size() < 2) {
+      return false;
+    }
+    move(-1, 0);
+    move(1, at.ways.size() - 1);
+    return at.ways.front().dot(back) < -.95 && at.ways.back().dot(back) > .95;
+  }
+
+  const loop_curve& curve_;
+};
+
+} // namespace duet::detail

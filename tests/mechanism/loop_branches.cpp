@@ -1,0 +1,347 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "mechanism/loops.hpp"
+#include "support/message.hpp"
+#include "support/multiprecision.hpp"
+
+#include <duet/core/random_source.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/mechanism/loop_motion.hpp>
+#include <duet/mechanism/loop_positions.hpp>
+#include <duet/mechanism/loop_trace.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace test_mechanism_loop_branches {
+namespace {
+
+using namespace duet;
+using duet_test::at_point;
+using duet_test::four_bar;
+using duet_test::message_of;
+using duet_test::real_100;
+using duet_test::turning_joint;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double pi = std::numbers::pi;
+
+/// Of a four-bar with all joints on a line, where i-th order terms of
+/// a exp(iθ) + b exp(i(θ + β)) − c exp(iψ) = d vanish for rates (θ, β, ψ) along a motion.
+double first_order(const std::array<double, 4>& bar, const VectorXd& q, const VectorXd& v) {
+  const double a = bar[0] * std::cos(q[0]), b = bar[1] * std::cos(q[0] + q[1]),
+               c = bar[2] * std::cos(q[2]);
+  return a * v[0] + b * (v[0] + v[1]) - c * v[2];
+}
+double second_order(const std::array<double, 4>& bar, const VectorXd& q, const VectorXd& v) {
+  const double a = bar[0] * std::cos(q[0]), b = bar[1] * std::cos(q[0] + q[1]),
+               c = bar[2] * std::cos(q[2]);
+  return a * v[0] * v[0] + b * (v[0] + v[1]) * (v[0] + v[1]) - c * v[2] * v[2];
+}
+
+closed_tree bars(const std::array<double, 4>& bar) {
+  return four_bar(bar[0], bar[1], bar[2], bar[3]);
+}
+
+/// Two lines, each both ways, straight on first and back last.
+void check_crossing(const std::array<double, 4>& bar, const branch_point& at) {
+  for (int i = 0; i < 3; ++i) { // all joints on a line
+    CHECK(std::abs(std::sin(at.coordinates[i])) < 1e-13);
+  }
+  REQUIRE(at.ways.size() == 4);
+  CHECK((at.ways[0] + at.ways[3]).norm() < 1e-14);
+  CHECK((at.ways[1] + at.ways[2]).norm() < 1e-14);
+  CHECK(std::abs(at.ways[0].dot(at.ways[1])) < .999);
+  for (const VectorXd& way : at.ways) {
+    CHECK(std::abs(way.norm() - 1) < 1e-14);
+    CHECK(std::abs(first_order(bar, at.coordinates, way)) < 1e-13);
+    CHECK(std::abs(second_order(bar, at.coordinates, way)) < 1e-13);
+  }
+}
+
+/// Lengths with the sum of two bars that of the others, or their difference.
+std::array<double, 4> change_point(duet::random_source& random) {
+  for (;;) {
+    const double a = random.uniform(.2, 1), c = random.uniform(.2, 1), d = random.uniform(.2, 1);
+    const std::array b{a + d - c, c + d - a, a + c - d};
+    const double length = b[std::size_t(random.uniform(0, 3))];
+    if (length > .1) {
+      return {a, length, c, d};
+    }
+  }
+}
+
+/// One of the positions with the crank at an angle that allows some.
+VectorXd some_position(const closed_tree& mechanism, duet::random_source& random) {
+  for (;;) {
+    const auto found =
+        all_positions(mechanism, {0}, VectorXd::Constant(1, random.uniform(-3, 3)), {.starts = 20});
+    for (const loop_position& each : found.positions) {
+      if (each.smallest_singular_value > .05) {
+        return each.coordinates;
+      }
+    }
+  }
+}
+
+} // namespace
+
+TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram") {
+  const std::array bar{.3, .8, .3, .8};
+  const loop_motion motion(bars(bar), Vector3d(1, -1, 1), {0});
+  const loop_trace_result straight = trace(motion);
+  CHECK(straight.is_closed);
+  CHECK(!straight.meets_branches);
+  CHECK(straight.dead_points.empty());
+  REQUIRE(straight.branch_points.size() == 2);
+  for (const VectorXd& q : straight.positions) {
+    CHECK(std::abs(q[0] - q[2]) < 1e-12);
+  }
+  for (const branch_point& at : straight.branch_points) {
+    check_crossing(bar, at);
+    CHECK(at.taken == 0);
+    CHECK(std::abs(at.ways[0][0] - at.ways[0][2]) < 1e-14);
+    // tan(θ/2) / tan(ψ/2) = (a − d) / (a + d), at θ = ψ = 0 or π
+    const double ratio = (.3 - .8) / (.3 + .8);
+    const double cosine = std::cos(at.coordinates[0]);
+    CHECK(std::abs(at.ways[1][0] / at.ways[1][2] - (cosine > 0 ? ratio : 1 / ratio)) < 1e-13);
+  }
+
+  for (const std::size_t way : {1, 2}) {
+    const loop_trace_result other = trace(motion, 0, {.ways = {way}});
+    CHECK(other.is_closed);
+    REQUIRE(other.branch_points.size() == 3); // back through the first one
+    CHECK(other.branch_points[0].taken == way);
+    CHECK(other.branch_points[1].taken == 0);
+    int crossed = 0;
+    for (const VectorXd& q : other.positions) {
+      if (std::abs(q[0] - q[2]) > 1e-9) {
+        ++crossed;
+        CHECK(std::abs(std::sin(q[0] / 2) * std::cos(q[2] / 2) * 1.1 +
+                       std::cos(q[0] / 2) * std::sin(q[2] / 2) * .5) < 1e-12);
+      }
+    }
+    CHECK(crossed > 40);
+  }
+  // Back where it came from.
+  const loop_trace_result back = trace(motion, 0, {.ways = {3}});
+  CHECK(back.branch_points[0].taken == 3);
+  CHECK(std::abs(back.positions.back()[0] - back.positions.back()[2]) < 1e-12);
+  CHECK(message_of([&] { (void)trace(motion, 0, {.ways = {4}}); }) ==
+        "duet: trace: no way 4 of 4 from branch point 0");
+}
+
+TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways against 100 digits") {
+  duet::random_source random(7);
+  for (int k = 0; k < 10; ++k) {
+    CAPTURE(k);
+    const std::array<double, 4> bar = change_point(random);
+    closed_tree mechanism = bars(bar);
+    robot_description robot = mechanism.tree().description();
+    const auto base = duet_test::place(random.uniform(-3, 3), random.uniform(-1, 1),
+                                       random.uniform(-3, 3), random.uniform(-1, 1), .3, -.2);
+    for (tree_joint& joint : robot.joints) {
+      if (joint.parent == "ground") {
+        joint.motion.origin = base * joint.motion.origin;
+      }
+    }
+    mechanism = closed_tree(kinematic_tree(robot), {mechanism.loops()});
+    const loop_motion motion(mechanism, some_position(mechanism, random), {0});
+    const loop_trace_result whole = trace(motion);
+    CHECK(whole.is_closed);
+    CHECK(!whole.meets_branches);
+    REQUIRE(whole.branch_points.size() == 2); // once on each branch
+    for (const branch_point& at : whole.branch_points) {
+      check_crossing(bar, at);
+    }
+    for (const std::size_t way : {1, 2, 3}) {
+      const loop_trace_result other = trace(motion, 0, {.ways = {way}});
+      CHECK(other.is_closed);
+      CHECK(!other.meets_branches);
+      for (const VectorXd& q : other.positions) {
+        CHECK(mechanism.residuals(q).norm() < 1e-11);
+      }
+    }
+    // Newton's method with 100 digits so near to the crossing that chords are tangents.
+    const branch_point& at = whole.branch_points[0];
+    for (const VectorXd& way : at.ways) {
+      const real_100 step("1e-25");
+      std::vector<real_100> flat, q;
+      for (int i = 0; i < 3; ++i) {
+        flat.push_back(boost::math::constants::pi<real_100>() *
+                       std::lround(at.coordinates[i] / pi));
+        q.push_back(flat.back() + step * way[i]);
+      }
+      const int held = std::abs(way[0]) > .5 ? 0 : std::abs(way[1]) > .5 ? 1 : 2;
+      const int i = held == 0 ? 1 : 0, j = held == 2 ? 1 : 2;
+      const real_100 a = bar[0], b = bar[1], c = bar[2], d = bar[3];
+      // b as the crossing has it in exact arithmetic: lengths of bars are rounded
+      const auto sign = [&](int n) { return cos(flat[std::size_t(n)]); };
+      const real_100 exact_b = (d - a * sign(0) + c * sign(2)) / cos(flat[0] + flat[1]);
+      CHECK(abs(exact_b - b) < 1e-15);
+      for (int n = 0; n < 8; ++n) {
+        const real_100 phi = q[0] + q[1];
+        const real_100 x = a * cos(q[0]) + exact_b * cos(phi) - c * cos(q[2]) - d;
+        const real_100 y = a * sin(q[0]) + exact_b * sin(phi) - c * sin(q[2]);
+        const std::array<real_100, 3> by_x{-a * sin(q[0]) - exact_b * sin(phi), -exact_b * sin(phi),
+                                           c * sin(q[2])};
+        const std::array<real_100, 3> by_y{a * cos(q[0]) + exact_b * cos(phi), exact_b * cos(phi),
+                                           -c * cos(q[2])};
+        const auto m = std::size_t(i), l = std::size_t(j);
+        const real_100 det = by_x[m] * by_y[l] - by_x[l] * by_y[m];
+        q[m] -= (x * by_y[l] - by_x[l] * y) / det;
+        q[l] -= (by_x[m] * y - x * by_y[m]) / det;
+      }
+      for (std::size_t n = 0; n < 3; ++n) {
+        CHECK(std::abs(double((q[n] - flat[n]) / step) - way[Eigen::Index(n)]) < 2e-13);
+      }
+    }
+  }
+}
+
+TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
+  const std::array bar{.8, .5, .5, .8};
+  const loop_motion motion(bars(bar), Vector3d(1, 2, 2), {0});
+  const loop_trace_result whole = trace(motion);
+  CHECK(whole.is_closed);
+  REQUIRE(whole.branch_points.size() == 2);
+  for (const branch_point& at : whole.branch_points) {
+    check_crossing(bar, at);
+    CHECK(std::abs(at.ways[1][0]) < 1e-14); // coupler and rocker turn as one
+  }
+  const loop_trace_result folded = trace(motion, 0, {.ways = {1}});
+  CHECK(folded.is_closed);
+  CHECK(std::abs(folded.positions.back()[0]) < 1e-12);
+
+  // A five-bar whose right crank is held where its end is a crank's length from the left foot.
+  robot_description robot;
+  robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
+  robot.joints = {turning_joint("left", "ground", at_point(-.3, 0)),
+                  turning_joint("left_coupler", "left", at_point(.5, 0)),
+                  turning_joint("right", "ground", at_point(.3, 0)),
+                  turning_joint("right_coupler", "right", at_point(.5, 0))};
+  const closed_tree five_bar(kinematic_tree(robot), {{{loop_kind::hinge,
+                                                       {"left_coupler", at_point(.7, 0)},
+                                                       {"right_coupler", at_point(.7, 0)}}}});
+  const double held = std::acos(-.6); // from (.3, 0) by .5 to the point above (0, 0)
+  VectorXd guess(4);
+  guess << 2, -1, held, 1;
+  const loop_trace_result five = trace(loop_motion(five_bar, guess, {0, 2}));
+  CHECK(five.is_closed);
+  REQUIRE(!five.branch_points.empty());
+  int cranks_meet = 0;
+  for (const branch_point& at : five.branch_points) {
+    CHECK(at.coordinates[2] == doctest::Approx(held).epsilon(1e-14));
+    CHECK(at.ways.size() == 4);
+    const double x = -.3 + .5 * std::cos(at.coordinates[0]), y = .5 * std::sin(at.coordinates[0]);
+    cranks_meet += std::hypot(x, y - .4) < 1e-12 ? 1 : 0; // both cranks end at (0, .4)
+  }
+  CHECK(cranks_meet == int(five.branch_points.size()));
+}
+
+TEST_CASE("four-bars that are nearly flat have one branch, and are told from those that are") {
+  duet::random_source random(11);
+  for (int k = 0; k < 12; ++k) {
+    const std::array<double, 4> flat = change_point(random);
+    for (const double miss : {1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9}) {
+      CAPTURE(k);
+      CAPTURE(miss);
+      const double a = flat[0], b = flat[1], c = flat[2], d = flat[3];
+      const closed_tree mechanism = four_bar(a, b + miss, c, d);
+      const loop_trace_result whole =
+          trace(loop_motion(mechanism, some_position(mechanism, random), {0}));
+      CHECK(whole.branch_points.empty());
+      CHECK(whole.is_closed);
+      CHECK(!whole.meets_branches);
+      for (const dead_point& each : whole.dead_points) {
+        if (each.coordinate == 0) { // coupler and rocker in a row
+          const double theta = std::abs(std::remainder(each.coordinates[0], 2 * pi));
+          const auto distance =
+              [&](double reach) { // of squares: angles are known to half the digits
+                return std::abs(a * a + d * d - 2 * a * d * std::cos(theta) - reach * reach);
+              };
+          CHECK(std::min(distance(b + miss + c), distance(b + miss - c)) < 1e-13);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("two parallelograms that are flat together: four lines in a kernel of three") {
+  robot_description robot;
+  robot.links = {{"ground"}, {"crank"}, {"c1"}, {"r1"}, {"c2"}, {"r2"}};
+  robot.joints = {
+      turning_joint("crank", "ground", {}), turning_joint("c1", "crank", at_point(.3, 0)),
+      turning_joint("r1", "ground", at_point(.8, 0)), turning_joint("c2", "crank", at_point(.3, 0)),
+      turning_joint("r2", "ground", at_point(-.6, 0))};
+  const closed_tree both(kinematic_tree(robot),
+                         {{{loop_kind::hinge, {"c1", at_point(.8, 0)}, {"r1", at_point(.3, 0)}},
+                           {loop_kind::hinge, {"c2", at_point(-.6, 0)}, {"r2", at_point(.3, 0)}}}});
+  for (const double start : {.8, 1., 1.234, 1.7}) {
+    VectorXd q(5);
+    q << start, -start, start, -start, start;
+    const loop_trace_result whole = trace(loop_motion(both, q, {0}));
+    CHECK(whole.is_closed);
+    REQUIRE(whole.branch_points.size() == 2);
+    for (const branch_point& at : whole.branch_points) {
+      REQUIRE(at.ways.size() == 8);
+      for (const VectorXd& way : at.ways) {
+        CHECK(std::abs(first_order({.3, .8, .3, .8}, at.coordinates, way)) < 1e-11);
+        CHECK(std::abs(second_order({.3, .8, .3, .8}, at.coordinates, way)) < 1e-11);
+        VectorXd second = at.coordinates, v = way;
+        second.segment(1, 2) = at.coordinates.tail(2);
+        v.segment(1, 2) = way.tail(2);
+        CHECK(std::abs(first_order({.3, -.6, .3, -.6}, second, v)) < 1e-11);
+        CHECK(std::abs(second_order({.3, -.6, .3, -.6}, second, v)) < 1e-11);
+        for (const VectorXd& other : at.ways) {
+          CHECK((&way == &other || way.dot(other) < .999));
+        }
+      }
+    }
+  }
+
+  // A parallelogram with a third crank stays one: where it is flat it is shaky, but has one branch.
+  robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"rocker"}, {"third"}};
+  robot.joints = {turning_joint("crank", "ground", {}),
+                  turning_joint("coupler", "crank", at_point(.3, 0)),
+                  turning_joint("rocker", "ground", at_point(.8, 0)),
+                  turning_joint("third", "ground", at_point(.5, 0))};
+  const closed_tree three(
+      kinematic_tree(robot),
+      {{{loop_kind::hinge, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
+        {loop_kind::hinge, {"coupler", at_point(.5, 0)}, {"third", at_point(.3, 0)}}}});
+  const loop_trace_result whole = trace(loop_motion(three, Eigen::Vector4d(1, -1, 1, 1), {0}));
+  CHECK(whole.is_closed);
+  REQUIRE(whole.branch_points.size() == 2);
+  for (const branch_point& at : whole.branch_points) {
+    REQUIRE(at.ways.size() == 2);
+    CHECK((at.ways[0] - Eigen::Vector4d(.5, -.5, .5, .5)).norm() < 1e-13);
+  }
+}
+
+TEST_CASE("a motion by drives goes straight on where branches meet") {
+  const loop_motion flat(bars({.3, .8, .3, .8}), Vector3d(1, -1, 1), {0});
+  for (const double u : {.5, 1e-3, 1e-5, 1e-7, 1e-10, 0., -1e-12, -1e-9, -1e-7, -1e-4, -1., -4.}) {
+    CHECK((flat(u) - u * Vector3d(1, -1, 1)).norm() < 1e-12);
+  }
+  const auto q = derivatives<2>(flat, -.5);
+  CHECK((q[1] - Vector3d(1, -1, 1)).norm() < 1e-12);
+  CHECK(q[2].norm() < 1e-11);
+  CHECK(message_of([&] { (void)derivatives<1>(flat, 0.); }) ==
+        "duet: loop_motion: crank does not determine the rates of the other coordinates: a dead "
+        "point");
+  // An antiparallelogram, too.
+  const Vector3d crossed(1, 0, -2 * std::atan(std::tan(.5) * 1.1 / .5));
+  const closed_tree mechanism = bars({.3, .8, .3, .8});
+  const loop_motion anti(mechanism, mechanism.closed(crossed, {0}), {0});
+  for (const double u : {.3, -.3, -2.}) {
+    CHECK(std::abs(std::tan(anti(u)[2] / 2) * .5 + std::tan(u / 2) * 1.1) < 1e-12);
+  }
+}
+
+} // namespace test_mechanism_loop_branches
