@@ -253,4 +253,24 @@ TEST_CASE("an axis in any direction") {
   }
 }
 
+TEST_CASE("positions are looked for until another one is improbable, or guesses run out") {
+  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+  const auto found = [&](const std::vector<int>& held, const loop_search_options& options) {
+    return all_positions(mechanism, held, VectorXd::Constant(Eigen::Index(held.size()), 2),
+                         options);
+  };
+  CHECK(found({0}, {}).starts == 200);
+  const loop_positions until = found({0}, {.starts = 1, .chance_of_more = .02});
+  CHECK(until.positions.size() == 2);
+  CHECK(until.closed == 50); // 1 / 50 is no more than the chance
+  CHECK(until.chance_of_more() == 0);
+  CHECK(found({0}, {.starts = 70, .chance_of_more = .02}).starts == 70);
+  CHECK(found({0}, {.starts = 1, .chance_of_more = 0, .most_starts = 60}).starts == 60);
+  CHECK(found({0}, {.starts = 80, .chance_of_more = 0, .most_starts = 60}).starts == 80);
+  // Nothing is held: each guess finds another one.
+  const loop_positions curve = found({}, {.starts = 1, .chance_of_more = .5, .most_starts = 90});
+  CHECK(curve.starts == 90);
+  CHECK(int(curve.positions.size()) == curve.closed);
+}
+
 } // namespace test_mechanism_closed_tree

@@ -43,11 +43,16 @@ struct loop_positions {
 struct loop_search_options {
   int starts = 200;       ///< how many random guesses
   std::uint64_t seed = 1; ///< of the random numbers
+  /// Go on after these until `loop_positions::chance_of_more()` is below this, and would be if one
+  /// more position had been found once, as fewer guesses than 1 / chance cannot tell.
+  double chance_of_more = 2;
+  int most_starts = 20000; ///< but not after so many
 };
 
 /// The ways in which loops close while some coordinates are held: from random guesses, within the
 /// limits of joints that have some, else of angles within (−π, π), of lengths within
-/// ±π `length()`. Each is known to rounding; whether all were found is not known.
+/// ±π `length()`. Each is known to rounding; whether all were found is not known, but
+/// how probable it is that one more guess finds another: `loop_search_options::chance_of_more`.
 ///
 /// \param held  numbers of coordinates, as many as the mechanism moves in ways, so that positions
 ///              are single

@@ -37,7 +37,12 @@ public:
   [[nodiscard]] loop_positions run(const loop_search_options& options) {
     loop_positions result;
     random_source random(options.seed);
-    for (result.starts = 0; result.starts < options.starts; ++result.starts) {
+    const auto is_enough = [&] {
+      const double chance = result.chance_of_more() + 1. / std::max(1, result.closed);
+      return result.starts >= options.starts &&
+             (result.starts >= options.most_starts || chance <= options.chance_of_more);
+    };
+    for (; !is_enough(); ++result.starts) {
       const closing found(of_, guess(random), free_, 100);
       if (found.has_closed()) {
         ++result.closed;
