@@ -135,8 +135,15 @@ void follow(const options& given, const mechanism& known, duet::loop_motion moti
 void print(const duet::closed_tree& mechanism, const duet::loop_trace_result& whole) {
   std::printf("the whole motion: %zu positions, %s\n", whole.positions.size(),
               whole.is_closed        ? "comes back"
-              : whole.meets_branches ? "ends where branches meet"
+              : whole.meets_branches ? "ends where branches touch"
                                      : "goes on");
+  for (const duet::branch_point& each : whole.branch_points) {
+    std::printf("  %zu ways leave from", each.ways.size());
+    for (const double x : each.coordinates) {
+      std::printf(" %.10f", std::abs(x) < 5e-11 ? 0 : x);
+    }
+    std::printf("\n");
+  }
   const auto& joints = mechanism.tree().joints();
   for (const duet::dead_point& each : whole.dead_points) {
     const std::string& name = mechanism.tree().coordinate_names()[std::size_t(each.coordinate)];

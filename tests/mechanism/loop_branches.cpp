@@ -57,6 +57,8 @@ void check_crossing(const std::array<double, 4>& bar, const branch_point& at) {
   CHECK((at.ways[0] + at.ways[3]).norm() < 1e-14);
   CHECK((at.ways[1] + at.ways[2]).norm() < 1e-14);
   CHECK(std::abs(at.ways[0].dot(at.ways[1])) < .999);
+  const double first = at.ways[1][0]; // increases on the first way of a pair
+  CHECK((std::abs(first) < 1e-13 ? at.ways[1][1] : first) > 0);
   for (const VectorXd& way : at.ways) {
     CHECK(std::abs(way.norm() - 1) < 1e-14);
     CHECK(std::abs(first_order(bar, at.coordinates, way)) < 1e-13);

@@ -26,8 +26,10 @@ struct dead_point {
 /// A position in which branches of a motion meet.
 struct branch_point {
   Eigen::VectorXd coordinates; ///< of the tree
-  /// Rates of all coordinates along the branches, per unit of their length: first straight on, then
-  /// those of others in pairs of opposites, last back to where it came from.
+  /// Rates of all coordinates along the branches, per unit of their length: first straight on, last
+  /// back to where it came from; between them those of other branches in pairs of opposites, on the
+  /// first of which the first coordinate that moves increases. Two alone: no branch is met, but
+  /// there are rates that do not move it.
   std::vector<Eigen::VectorXd> ways;
   std::size_t taken = 0; ///< by which of them it goes on
 };

@@ -40,16 +40,32 @@ public:
     if (!x || from.tangent.dot(*x - from.x) <= 0) {
       return std::nullopt;
     }
-    branching result{*x, {}, {}};
-    for (const Eigen::VectorXd& line : tangents(*x)) {
-      for (const double sign : {1., -1.}) {
-        if (const auto point = beside(*x, sign * line)) {
-          result.ways.push_back(sign * line);
-          result.beside.push_back(*point);
-        }
+    const std::vector<Eigen::VectorXd> lines = tangents(*x);
+    const Eigen::VectorXd came = (from.x - *x).normalized();
+    const auto nearest = std::max_element(lines.begin(), lines.end(), [&](auto& p, auto& q) {
+      return std::abs(p.dot(came)) < std::abs(q.dot(came));
+    });
+    if (nearest == lines.end() || std::abs(nearest->dot(came)) < .95) {
+      return std::nullopt;
+    }
+    const Eigen::VectorXd back = nearest->dot(came) < 0 ? -*nearest : *nearest;
+    std::vector<Eigen::VectorXd> ways = {-back};
+    for (auto line = lines.begin(); line != lines.end(); ++line) {
+      if (line != nearest) {
+        ways.insert(ways.end(), {*line, -*line});
       }
     }
-    return arrange(result, from.x) ? std::optional(result) : std::nullopt;
+    ways.push_back(back);
+    branching result{*x, {}, {}};
+    for (const Eigen::VectorXd& way : ways) {
+      if (const auto point = beside(*x, way)) {
+        result.ways.push_back(way);
+        result.beside.push_back(*point);
+      } else if (&way == &ways.front() || &way == &ways.back()) {
+        return std::nullopt;
+      }
+    }
+    return result;
   }
 
 private:
@@ -125,26 +141,38 @@ private:
     const ranked_matrix a(curve_.matrix(x));
     const Eigen::MatrixXd kernel = a.kernel();
     const std::vector<Eigen::MatrixXd> forms = curve_.forms(x, a.cokernel(), kernel);
-    std::vector<Eigen::VectorXd> result;
+    std::vector<Eigen::VectorXd> found;
     if (kernel.cols() == 2) {
       for (const double angle : zeros_in_plane(forms)) {
-        result.push_back(std::cos(angle) * kernel.col(0) + std::sin(angle) * kernel.col(1));
+        found.push_back(Eigen::Vector2d(std::cos(angle), std::sin(angle)));
       }
-      return result;
     }
     random_source random(1);
-    std::vector<Eigen::VectorXd> found;
-    for (int start = 0; start < 100 * kernel.cols(); ++start) {
+    for (int start = 0; kernel.cols() > 2 && start < 100 * kernel.cols(); ++start) {
       const auto v = common_zero(forms, random_direction(random, kernel.cols()), 1e-12);
       const bool is_new = v && std::none_of(found.begin(), found.end(), [&](const auto& other) {
                             return std::abs(other.dot(*v)) > 1 - 1e-9;
                           });
       if (is_new && ranked_matrix(slopes(forms, *v)).rank() == kernel.cols() - 1) {
         found.push_back(*v);
-        result.push_back(kernel * *v);
       }
     }
+    std::vector<Eigen::VectorXd> result;
+    for (const Eigen::VectorXd& v : found) {
+      const Eigen::VectorXd line = kernel * v;
+      result.push_back(first_that_moves(curve_.rates(line)) < 0 ? -line : line);
+    }
+    std::sort(result.begin(), result.end(), [&](const auto& p, const auto& q) {
+      return first_that_moves(curve_.rates(p) - curve_.rates(q)) > 0;
+    });
     return result;
+  }
+
+  /// The first of these rates that is none of rounding.
+  [[nodiscard]] static double first_that_moves(const Eigen::VectorXd& rates) {
+    const auto moves = [](double x) { return std::abs(x) > 1e-9; };
+    const auto found = std::find_if(rates.begin(), rates.end(), moves);
+    return found == rates.end() ? 0 : *found;
   }
 
   /// The angles θ within a half turn for which all forms vanish at (cos θ, sin θ), from the one
@@ -185,30 +213,6 @@ private:
       }
     }
     return std::nullopt;
-  }
-
-  /// \return is one of the ways the one that it came on?
-  [[nodiscard]] static bool arrange(branching& at, const Eigen::VectorXd& from) {
-    const Eigen::VectorXd back = (from - at.x).normalized();
-    const auto move = [&](double sign, std::size_t to) {
-      std::size_t nearest = 0;
-      for (std::size_t i = 0; i < at.ways.size(); ++i) {
-        nearest = sign * at.ways[i].dot(back) > sign * at.ways[nearest].dot(back) ? i : nearest;
-      }
-      const auto place = [&](auto& list) {
-        const auto one = list[nearest];
-        list.erase(list.begin() + std::ptrdiff_t(nearest));
-        list.insert(list.begin() + std::ptrdiff_t(to), one);
-      };
-      place(at.ways);
-      place(at.beside);
-    };
-    if (at.ways.size() < 2) {
-      return false;
-    }
-    move(-1, 0);
-    move(1, at.ways.size() - 1);
-    return at.ways.front().dot(back) < -.95 && at.ways.back().dot(back) > .95;
   }
 
   const loop_curve& curve_;
