@@ -326,6 +326,104 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
   }
 }
 
+TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere") {
+  for (const double mm : {1., 1000.}) {
+    // Crank and coupler of one length: x = 2 r cos θ, β = −2 θ, or folded with the slide at rest.
+    const double r = .3 * mm;
+    robot_description robot;
+    robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"slide"}};
+    robot.joints = {turning_joint("crank", "ground", {}),
+                    turning_joint("coupler", "crank", at_point(r, 0)),
+                    {"slide", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}}};
+    const closed_tree mechanism(kinematic_tree(robot),
+                                {{{loop_kind::hinge, {"coupler", at_point(r, 0)}, {"slide", {}}}}});
+    const loop_trace_result whole =
+        trace(loop_motion(mechanism, Vector3d(1, -2, 2 * r * std::cos(1)), {0}));
+    CHECK(whole.is_closed);
+    REQUIRE(whole.branch_points.size() == 2);
+    for (const branch_point& at : whole.branch_points) {
+      const double sine = std::sin(at.coordinates[0]);
+      CHECK(std::abs(std::abs(sine) - 1) < 1e-15);
+      CHECK(std::abs(at.coordinates[2]) < 1e-14 * mm);
+      REQUIRE(at.ways.size() == 4);
+      Vector3d along(1, -2, -2 * sine), folded(1, 0, 0);
+      along /= 3; // unit length in radians and parts of r
+      CHECK((at.ways[0].cwiseQuotient(mechanism.units()) - along).norm() < 1e-13);
+      CHECK((at.ways[1].cwiseQuotient(mechanism.units()) - folded).norm() < 1e-13);
+    }
+  }
+  // All axes in a point, opposite sides alike: tan(θ₁/2) tan(θ₂/2) is one of two constants.
+  const double a = .4, b = .9;
+  const closed_tree sphere = duet_test::ring({{0, a}, {0, b}, {0, a}, {0, b}});
+  const std::array constants{std::cos((a + b) / 2) / std::cos((b - a) / 2),
+                             std::sin((a + b) / 2) / std::sin((b - a) / 2)};
+  const loop_positions found =
+      all_positions(sphere, {0}, VectorXd::Constant(1, .8), {.starts = 60});
+  REQUIRE(found.positions.size() == 2);
+  for (const loop_position& each : found.positions) {
+    const loop_trace_result whole = trace(loop_motion(sphere, each.coordinates, {0}));
+    CHECK(whole.is_closed);
+    REQUIRE(whole.branch_points.size() == 2);
+    for (const branch_point& at : whole.branch_points) {
+      REQUIRE(at.ways.size() == 4);
+      const bool first_is_straight = std::cos(at.coordinates[0]) > 0;
+      std::array<double, 2> ratios{};
+      for (std::size_t k = 0; k < 2; ++k) { // θ₂' = −K θ₁' at θ₁ = π, θ₂ = 0, and vice versa
+        const double ratio = -at.ways[k][1] / at.ways[k][0];
+        ratios[k] = first_is_straight ? 1 / ratio : ratio;
+      }
+      std::sort(ratios.begin(), ratios.end());
+      CHECK(std::abs(ratios[0] - constants[0]) < 1e-12);
+      CHECK(std::abs(ratios[1] - constants[1]) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("of ways that fill a plane none is returned") {
+  // Two cranks with couplers of their length move one slide. With that at rest both turn freely.
+  robot_description robot;
+  robot.links = {{"ground"}, {"a"}, {"b"}, {"c"}, {"d"}, {"slide"}};
+  robot.joints = {turning_joint("a", "ground", {}),
+                  turning_joint("b", "a", at_point(.3, 0)),
+                  turning_joint("c", "ground", {}),
+                  turning_joint("d", "c", at_point(.3, 0)),
+                  {"slide", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}}};
+  const closed_tree mechanism(kinematic_tree(robot),
+                              {{{loop_kind::hinge, {"b", at_point(.3, 0)}, {"slide", {}}},
+                                {loop_kind::hinge, {"d", at_point(.3, 0)}, {"slide", {}}}}});
+  VectorXd start(5);
+  start << 1, -2, -1, 2, .6 * std::cos(1);
+  const loop_trace_result whole = trace(loop_motion(mechanism, start, {0}));
+  CHECK(whole.is_closed);
+  REQUIRE(whole.branch_points.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const branch_point& at = whole.branch_points[i];
+    if (i % 2 == 0) { // both are folded
+      CHECK(std::abs(at.coordinates[4]) < 1e-14);
+      CHECK(at.ways.size() == 2);
+    } else { // both are stretched: cranks go on the same way, or opposite ones
+      CHECK(std::abs(std::abs(at.coordinates[4]) - .6) < 1e-14);
+      CHECK(at.ways.size() == 4);
+    }
+  }
+}
+
+TEST_CASE("traces that start beside a crossing, and with large steps") {
+  const closed_tree mechanism = bars({.3, .8, .3, .8});
+  for (const double start : {1e-2, 2e-3, 1e-3, 5e-4, 1e-4, 1e-5}) {
+    const loop_trace_result whole =
+        trace(loop_motion(mechanism, Vector3d(start, -start, start), {0}));
+    CHECK(whole.is_closed);
+    CHECK(whole.branch_points.size() == 2);
+  }
+  for (const double step : {.03, .5, 1.5}) {
+    const loop_trace_result whole =
+        trace(loop_motion(mechanism, Vector3d(1, -1, 1), {0}), 0, {.largest_step = step});
+    CHECK(whole.is_closed);
+    CHECK(whole.branch_points.size() == 2);
+  }
+}
+
 TEST_CASE("a motion by drives goes straight on where branches meet") {
   const loop_motion flat(bars({.3, .8, .3, .8}), Vector3d(1, -1, 1), {0});
   for (const double u : {.5, 1e-3, 1e-5, 1e-7, 1e-10, 0., -1e-12, -1e-9, -1e-7, -1e-4, -1., -4.}) {
