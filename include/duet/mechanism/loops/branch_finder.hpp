@@ -69,16 +69,15 @@ public:
   }
 
 private:
-  /// Where A loses some of its rank and F vanishes: Newton's method for x, W and μ with
+  /// Where A loses some of its rank and F vanishes: Gauss' and Newton's method for x and W with
   ///
-  ///   UᵀF + W μ = 0,   AᵀU W = 0,   W₀ᵀW = 1,
+  ///   UᵀF = 0,   AᵀU W = 0,   W₀ᵀW = 1,
   ///
   /// where U spans the image of A beside that point, so that equations which depend on others are
-  /// left out; W spans what is lost of it. Of two branches that nearly meet this is where they
-  /// would, and μ is what loops miss to be closed there.
-  ///
-  /// Source: A. Griewank and G. W. Reddien, Characterization and computation of generalized turning
-  /// points, 1984, for W of one column.
+  /// left out; W spans what is lost of it. These are more equations than unknowns, but where
+  /// branches cross all are fulfilled, and their matrix is regular: it takes no direction to zero,
+  /// but for a v ≠ 0 in the kernel of A with wᵀ ∂²F(v, ·) = 0 on that, as where branches touch.
+  /// Where they only nearly meet some are not fulfilled.
   [[nodiscard]] std::optional<Eigen::VectorXd> singular_point(const curve_point& from,
                                                               double within) const {
     const Eigen::MatrixXd& u = from.image;
@@ -92,23 +91,21 @@ private:
     if (lost == 0) {
       return std::nullopt;
     }
-    const Eigen::Index all = n + r * lost + lost;
+    const Eigen::Index all = n + r * lost;
     const Eigen::MatrixXd w0 = reduced.left().rightCols(lost);
-    Eigen::VectorXd x = from.x, mu = Eigen::VectorXd::Zero(lost);
+    Eigen::VectorXd x = from.x;
     Eigen::MatrixXd w = w0;
     for (int i = 0; i < 12; ++i) {
       const Eigen::MatrixXd a = u.transpose().lazyProduct(curve_.matrix(x));
       const auto forms = curve_.forms(x, u.lazyProduct(w), Eigen::MatrixXd::Identity(n, n));
       Eigen::VectorXd f(r + n * lost + lost * lost);
       Eigen::MatrixXd j = Eigen::MatrixXd::Zero(f.size(), all);
-      f.head(r) = u.transpose() * curve_.residuals(x) + w * mu;
+      f.head(r) = u.transpose() * curve_.residuals(x);
       j.topLeftCorner(r, n) = a;
-      j.topRightCorner(r, lost) = w;
       for (Eigen::Index k = 0; k < lost; ++k) {
         const Eigen::Index column = n + r * k, row = r + n * k, last = r + n * lost + lost * k;
         f.segment(row, n) = a.transpose() * w.col(k);
         f.segment(last, lost) = w0.transpose() * w.col(k) - Eigen::VectorXd::Unit(lost, k);
-        j.block(0, column, r, r).diagonal().setConstant(mu[k]);
         j.block(row, 0, n, n) = forms[std::size_t(k)];
         j.block(row, column, n, r) = a.transpose();
         j.block(last, column, lost, r) = w0.transpose();
@@ -122,7 +119,6 @@ private:
       for (Eigen::Index k = 0; k < lost; ++k) {
         w.col(k) += step.segment(n + r * k, r);
       }
-      mu += step.tail(lost);
       if (!((x - from.x).norm() < within)) {
         return std::nullopt;
       }
@@ -153,7 +149,7 @@ private:
       const bool is_new = v && std::none_of(found.begin(), found.end(), [&](const auto& other) {
                             return std::abs(other.dot(*v)) > 1 - 1e-9;
                           });
-      if (is_new && ranked_matrix(slopes(forms, *v)).rank() == kernel.cols() - 1) {
+      if (is_new) {
         found.push_back(*v);
       }
     }
