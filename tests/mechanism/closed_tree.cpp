@@ -12,6 +12,10 @@
 #include <duet/mechanism/loop_positions.hpp>
 #include <duet/quaternion/rotation.hpp>
 
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -105,8 +109,20 @@ TEST_CASE("what loops of every kind leave: equations, and frames that they hold"
       if (kind == loop_kind::rod) {
         CHECK(std::abs(t.norm() - .8) < 1e-12);
       }
-      CHECK(mechanism.independent_coordinates(q).size() ==
-            std::size_t(6 - equations[std::size_t(k)]));
+      // Those that Eigen's QR of the rates has its pivots at.
+      const MatrixXd j = mechanism.constraint_jacobian(q) * mechanism.units().asDiagonal();
+      const MatrixXd rates = Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner>(
+                                 j, Eigen::ComputeFullU | Eigen::ComputeFullV)
+                                 .matrixV()
+                                 .rightCols(6 - equations[std::size_t(k)]);
+      std::vector<int> pivots;
+      if (rates.cols() > 0) {
+        const Eigen::ColPivHouseholderQR<MatrixXd> qr(rates.transpose());
+        const auto& order = qr.colsPermutation().indices();
+        pivots.assign(order.data(), order.data() + rates.cols());
+        std::sort(pivots.begin(), pivots.end());
+      }
+      CHECK(mechanism.independent_coordinates(q) == pivots);
     }
   }
 }
