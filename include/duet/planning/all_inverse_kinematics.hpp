@@ -12,6 +12,7 @@
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/branches/branch_search.hpp>
 #include <duet/planning/branches/chain_loop.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/singular_value.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/planning_model.hpp>

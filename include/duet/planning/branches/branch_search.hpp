@@ -51,11 +51,6 @@ private:
 /// All solutions of a loop by elimination, as of arms of no special geometry.
 [[nodiscard]] DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop);
 
-/// Newton's method from θ to a solution, to the level of rounding.
-/// \return did it get there?
-[[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop,
-                                                     six_coordinates& theta);
-
 } // namespace detail
 } // namespace duet
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
-#include <duet/planning/branches/branch_search.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/orthonormalise.hpp>
 

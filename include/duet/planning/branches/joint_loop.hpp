@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/batch/vector_sine_cosine.hpp>
+#include <duet/core/compiled.hpp>
 #include <duet/core/config.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/planning/planning_model.hpp>
@@ -122,4 +123,13 @@ struct loop_gap {
   }
 };
 
+/// Newton's method from θ to a solution, to the level of rounding.
+/// \return did it get there?
+[[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop,
+                                                     six_coordinates& theta);
+
 } // namespace duet::detail
+
+#ifndef DUET_COMPILED
+#include <duet/planning/branches/close_loop.hpp>
+#endif
