@@ -10,6 +10,7 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/closed_tree.hpp>
 #include <duet/mechanism/loop_positions.hpp>
+#include <duet/mechanism/loops/closing.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/QR>
