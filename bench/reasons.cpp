@@ -2,19 +2,21 @@
 
 /// \file
 /// Are the reasons true that plans give which do not reach their goals? A complete search by all
-/// solutions of six joints says of each whether there was a way, how far one leads, and what ends
-/// it. Arguments: the number of problems of each of five families (100), the seed (1), and anything
-/// to list what is not as it should be.
+/// solutions of six joints, or by all curves of self-motion of seven, says of each whether there
+/// was a way, how far one leads, and what ends it. Arguments: the number of problems of each of
+/// five families (100), the seed (1), and anything to list what is not as it should be.
 /// build/bench/bench/duet_reasons_bench
 
 #include "planning/complete_search.hpp"
-#include "singular_problems.hpp"
+#include "planning/layered_search.hpp"
+#include "planning/singular_problems.hpp"
 
 #include <duet/planning/plan_screw_motion.hpp>
 
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <vector>
 
 namespace {
 
@@ -28,7 +30,8 @@ struct score {
   int unknown = 0;      ///< the search could not tell
 };
 
-score check(const arm<6>& a, family kind, int count, unsigned seed, bool is_listed) {
+template <int N>
+score check(const arm<N>& a, family kind, int count, unsigned seed, bool is_listed) {
   random_source random(seed);
   score result;
   for (int k = 0; k < count; ++k) {
@@ -39,7 +42,7 @@ score check(const arm<6>& a, family kind, int count, unsigned seed, bool is_list
       continue;
     }
     ++result.failed;
-    const auto way = duet_test::complete_search(a.chain, path)(p.start);
+    const auto way = duet_test::complete_way(a.chain, path, plan);
     const bool is_open = way.why == stop_reason::reached;
     const bool is_short = !is_open && way.end > plan.tau.back() + 1e-4;
     const bool is_unknown = way.why == stop_reason::no_progress;
@@ -58,6 +61,18 @@ score check(const arm<6>& a, family kind, int count, unsigned seed, bool is_list
   return result;
 }
 
+template <int N>
+void table_of(const std::vector<arm<N>>& arms, int count, unsigned seed, bool is_listed) {
+  for (const arm<N>& a : arms) {
+    for (std::size_t k = 0; k < families.size(); ++k) {
+      const score s = check(a, family(k), count, seed, is_listed);
+      std::printf("%-14s %-22s %6d %4d %6d %6d %7d\n", a.name, families[k], s.failed, s.given_up,
+                  s.before_end, s.other_reason, s.unknown);
+      std::fflush(stdout);
+    }
+  }
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -65,12 +80,6 @@ int main(int argc, char** argv) {
   const unsigned seed = argc > 2 ? unsigned(std::atoi(argv[2])) : 1;
   std::printf("%-14s %-22s %6s %4s %6s %6s %7s\n", "arm", "from", "failed", "way", "before",
               "false", "unknown");
-  for (const arm<6>& a : six_joints()) {
-    for (std::size_t k = 0; k < families.size(); ++k) {
-      const score s = check(a, family(k), count, seed, argc > 3);
-      std::printf("%-14s %-22s %6d %4d %6d %6d %7d\n", a.name, families[k], s.failed, s.given_up,
-                  s.before_end, s.other_reason, s.unknown);
-      std::fflush(stdout);
-    }
-  }
+  table_of(six_joints(), count, seed, argc > 3);
+  table_of(seven_joints(), count, seed, argc > 3);
 }

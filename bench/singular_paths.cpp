@@ -8,7 +8,7 @@
 /// number of problems of each of five families (100), the seed (1).
 /// build/bench/bench/duet_singular_paths_bench
 
-#include "singular_problems.hpp"
+#include "planning/singular_problems.hpp"
 
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/planning/plan_screw_motion.hpp>

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,15 @@ public:
     return verdict_;
   }
 
+  /// The configuration next to one that is nearly at u, where there is one within limits.
+  [[nodiscard]] std::optional<joints> exact(double u, const joints& x) const {
+    const joints y = at(u, x);
+    const auto left = duet::deviation_between(arm_.pose(y), path_(u));
+    return std::max(left.length, left.angle) < 1e-12 && (y - x).norm() < .01 && is_within_limits(y)
+               ? std::optional(y)
+               : std::nullopt;
+  }
+
 private:
   static constexpr double beside = 1e-4, fibre_step = .02;
 
@@ -67,6 +77,18 @@ private:
       }
     }
     return true;
+  }
+
+  /// By Newton's method.
+  [[nodiscard]] joints at(double u, joints x) const {
+    const auto here = duet::detail::place_of(path_(u));
+    for (int round = 0; round < 5; ++round) {
+      const auto e = duet::detail::error_twist(duet::detail::place_of(arm_.pose(x)), here);
+      const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
+          duet::jacobian(arm_, x, duet::frame::hybrid), Eigen::ComputeFullU | Eigen::ComputeFullV);
+      x += svd.solve(Eigen::Map<const joints>(&e.values[0]));
+    }
+    return x;
   }
 
   /// All solutions at u, each turned next to x, and what Newton's method finds from there: of some
@@ -86,15 +108,7 @@ private:
         each[i] += turn * std::round((x[i] - each[i]) / turn);
       }
     }
-    joints nearby = x;
-    const auto here = duet::detail::place_of(path_(u));
-    for (int round = 0; round < 5; ++round) {
-      const auto e = duet::detail::error_twist(duet::detail::place_of(arm_.pose(nearby)), here);
-      const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
-          duet::jacobian(arm_, nearby, duet::frame::hybrid),
-          Eigen::ComputeFullU | Eigen::ComputeFullV);
-      nearby += svd.solve(Eigen::Map<const joints>(&e.values[0]));
-    }
+    const joints nearby = at(u, x);
     const auto left = duet::deviation_between(arm_.pose(nearby), path_(u));
     if (std::max(left.length, left.angle) < 1e-12) {
       add(result, nearby);
@@ -282,5 +296,26 @@ private:
   double known_at_ = -1;
   std::vector<joints> known_;
 };
+
+/// How far a way leads from the start of a plan or from a waypoint: a tolerance may have let the
+/// plan pass where no pose of the path is exactly within reach.
+template <class Plan>
+[[nodiscard]] path_verdict complete_way(const duet::serial_chain<6>& arm,
+                                        const complete_search::path_function& path,
+                                        const Plan& plan) {
+  path_verdict result = complete_search(arm, path)(plan.joints.front());
+  for (std::size_t k = 1; k < plan.tau.size(); ++k) {
+    const double begin = plan.tau[k];
+    if (begin == 1 || begin < result.end + 1e-4) {
+      continue;
+    }
+    complete_search rest(arm, [&](double u) { return path(begin + (1 - begin) * u); });
+    if (const auto x = rest.exact(0, plan.joints[k])) {
+      const path_verdict way = rest(*x);
+      result = {begin + (1 - begin) * way.end, way.why};
+    }
+  }
+  return result;
+}
 
 } // namespace duet_test

@@ -15,8 +15,10 @@ namespace duet::detail {
 
 /// Below this singular value steps are damped.
 inline constexpr double damping_threshold = 1e-3;
-/// Below this one rounding would make them.
+/// Below this one they are in vain, but for those of joints that swing.
 inline constexpr double undamped_threshold = 1e-6;
+/// Below this one rounding of J Jᵀ would make them.
+inline constexpr double swing_threshold = 1e-7;
 
 /// A twist [v; ω].
 using small_twist = small_vector<6>;

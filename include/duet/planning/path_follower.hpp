@@ -22,32 +22,41 @@ namespace duet::detail {
 
 /// Plans along a path, first without stopping; where that comes to an end, with motions in place.
 template <int Room>
-class path_follower : public path_traveller<Room> {
-  using base = path_traveller<Room>;
-
+class path_follower {
 public:
-  using base::base;
-  using base::stay;
-  using typename base::route;
-  using typename base::vector;
-  using typename base::waypoint;
+  using traveller = path_traveller<Room>;
+  using vector = typename traveller::vector;
+  using waypoint = typename traveller::waypoint;
+  using route = typename traveller::route;
+
+  /// As of `path_traveller`.
+  path_follower(const planning_model<Room>& model, const place_function& target,
+                std::vector<double> stops, const plan_options& options,
+                const typename traveller::slope_function& slope)
+      : steps_(model, target, std::move(stops), options, slope) {}
 
   [[nodiscard]] route plan(const vector& start);
+  /// Nothing but the start.
+  [[nodiscard]] route stay(const vector& start) const { return steps_.stay(start); }
+  [[nodiscard]] int iterations() const {
+    return steps_.options.iterations - steps_.iterations_left;
+  }
 
   /// Why it ends: what is in the way of the first step that fails, of some that grow.
   [[nodiscard]] stop_reason reason(const route& x) const {
-    if (is_at_end(x) || iterations_left_ <= 0) {
-      return is_at_end(x) ? stop_reason::reached : stop_reason::iteration_limit;
+    if (steps_.is_at_end(x) || steps_.iterations_left <= 0) {
+      return steps_.is_at_end(x) ? stop_reason::reached : stop_reason::iteration_limit;
     }
     const waypoint& here = x.back();
-    for (double step = options_.smallest_step; step < 1; step *= 2) {
-      const double u = std::min(here.u + step * length_, stops_.back());
-      const auto there = solver_.approach(here.state, target_(u), {});
-      if (there.is_within(solver_.tolerance)) {
+    for (double step = steps_.options.smallest_step; step < 1; step *= 2) {
+      const double u = std::min(here.u + step * steps_.length, steps_.stops.back());
+      const auto there = steps_.solver.approach(here.state, steps_.target(u), {});
+      if (there.is_within(steps_.solver.tolerance)) {
         continue;
       }
       const bool is_near_singularity = there.smallest_singular_value < 10 * damping_threshold;
-      return there.is_blocked || there.shortfall > solver_.tolerance.length ? stop_reason::obstacle
+      return there.is_blocked || there.shortfall > steps_.solver.tolerance.length
+                 ? stop_reason::obstacle
              : (there.is_bounded || is_near_singularity) && is_stopped_by_limits(x, u)
                  ? stop_reason::joint_limit
              : is_near_singularity ? stop_reason::singular
@@ -57,39 +66,30 @@ public:
   }
 
 private:
-  using base::before_singularity;
-  using base::continued;
-  using base::excess_between;
-  using base::is_at_end;
-  using base::iterations_left_;
-  using base::keep_better;
-  using base::length_;
-  using base::options_;
-  using base::solver_;
-  using base::stops_;
-  using base::target_;
-  using base::travel;
-  using base::undamped;
-
-  /// Does the way lead beyond a parameter without limits?
+  /// Do limits end the way? Without them it leads beyond a parameter, from the end or from before
+  /// the singularity there, if need be by a motion in place; or it leaves them on its way through
+  /// that, where no joint is to spare.
   [[nodiscard]] bool is_stopped_by_limits(const route& x, double u) const {
     constexpr int enough = 100000;
-    path_follower free = *this;
-    free.iterations_left_ = enough;
-    free.solver_.without_limits();
-    const double beyond = std::min(u + 4 * (u - x.back().u), stops_.back());
-    free.stops_ = {stops_.front(), beyond};
-    if (free.is_at_end(free.undamped(route(x.back())))) {
-      return true;
+    traveller free = steps_;
+    free.iterations_left = enough;
+    free.solver.without_limits();
+    const double beyond = std::min(u + 4 * (u - x.back().u), steps_.stops.back());
+    free.stops = {steps_.stops.front(), beyond};
+    route end = free.undamped(route(x.back()));
+    if (!free.is_at_end(end) && x.back().smallest_singular_value < damping_threshold) {
+      end = free.undamped(steps_.before_singularity(x));
     }
-    route before = x;
-    while (before.waypoints.size() > 1) {
-      before = before_singularity(before);
-      if (free.is_at_end(free.undamped(before))) {
-        return true;
-      }
-    }
-    return false;
+    return free.is_at_end(end) || leads_on_in_place(free, end.back(), beyond) ||
+           (steps_.solver.model.size <= 6 &&
+            !steps_.solver.is_within_limits(end.back().state.theta));
+  }
+  [[nodiscard]] static bool leads_on_in_place(traveller free, const waypoint& from, double to) {
+    free.solver.without_damping();
+    self_motion_search search(free.solver, free.target, free.options.self_motion_step,
+                              damping_threshold, free.iterations_left);
+    return free.options.search_step > 0 &&
+           search.run(from.state, {from.u, to}).front().back().u == to;
   }
   [[nodiscard]] static bool is_singular(const waypoint& x) {
     return smallest_singular_value_of(x.state.jacobian) < damping_threshold;
@@ -103,13 +103,13 @@ private:
     route best = before;
     // Ways beside a singularity may lead over it where the tip cannot go: then those that do not.
     for (const double singular : {damping_threshold, no_singular_value}) {
-      self_motion_search search(solver_, target_, options_.self_motion_step, singular,
-                                iterations_left_);
+      self_motion_search search(steps_.solver, steps_.target, steps_.options.self_motion_step,
+                                singular, steps_.iterations_left);
       const auto ways = search.run(begin.back().state, search_parameters(begin.back()));
-      iterations_left_ = search.iterations_left();
+      steps_.iterations_left = search.iterations_left();
       for (const auto& way : ways) {
-        if (!is_at_end(best)) {
-          keep_better(best, along(begin, way));
+        if (!steps_.is_at_end(best)) {
+          steps_.keep_better(best, along(begin, way));
         }
       }
       if (best.back().u >= ways.front().back().u) {
@@ -124,9 +124,10 @@ private:
     for (std::size_t i = 1; i < way.size(); ++i) {
       const std::size_t kept = x.waypoints.size();
       const auto go = [&](bool is_back) {
-        x.step = options_.search_step;
-        return is_back ? travel_back(x, way[i])
-                       : travel(x, way[i].u, options_.search_step, {&way[i].state.theta});
+        x.step = steps_.options.search_step;
+        return is_back
+                   ? travel_back(x, way[i])
+                   : steps_.travel(x, way[i].u, steps_.options.search_step, {&way[i].state.theta});
       };
       if (!go(way[i].is_way_out)) {
         x.waypoints.erase(x.waypoints.begin() + std::ptrdiff_t(kept), x.waypoints.end());
@@ -135,7 +136,7 @@ private:
         }
       }
     }
-    return continued(std::move(x));
+    return steps_.continued(std::move(x));
   }
 
   /// From a waypoint on, where the search looks: nearer to it where it is singular, as ways out may
@@ -144,13 +145,15 @@ private:
     std::vector<double> result = {from.u};
     if (is_singular(from)) {
       for (const double part : {1. / 256, 1. / 16}) {
-        result.push_back(std::min(from.u + part * options_.search_step * length_, stops_.back()));
+        result.push_back(std::min(from.u + part * steps_.options.search_step * steps_.length,
+                                  steps_.stops.back()));
       }
     }
-    for (const double stop : stops_) {
+    for (const double stop : steps_.stops) {
       const double begin = result.back();
       if (stop > begin) {
-        const int count = int(std::ceil((stop - begin) / (options_.search_step * length_)));
+        const int count =
+            int(std::ceil((stop - begin) / (steps_.options.search_step * steps_.length)));
         for (int i = 1; i < count; ++i) {
           result.push_back(begin + (stop - begin) * i / count);
         }
@@ -163,21 +166,21 @@ private:
   /// On to a configuration from the singular one before it: the way back from there leads to it,
   /// and the joints get to where that ends in place.
   [[nodiscard]] bool travel_back(route& x, const reachable<Room>& to) {
-    route back({to.state, to.u});
-    back.step = options_.search_step;
+    route back({to.state, to.u, {}, smallest_singular_value_of(to.state.jacobian)});
+    back.step = steps_.options.search_step;
     const double u = x.back().u;
-    if (!travel(back, u, options_.search_step, {})) {
+    if (!steps_.travel(back, u, steps_.options.search_step, {})) {
       return false;
     }
-    for (int round = 0; round < 5 && excess_between(x.back(), back.back()) > 1; ++round) {
+    for (int round = 0; round < 5 && steps_.excess_between(x.back(), back.back()) > 1; ++round) {
       arrive(x, back.back().state.theta);
       arrive(back, x.back().state.theta);
     }
-    if (excess_between(x.back(), back.back()) > 1) {
+    if (steps_.excess_between(x.back(), back.back()) > 1) {
       return false;
     }
     x.waypoints.insert(x.waypoints.end(), back.waypoints.rbegin(), back.waypoints.rend());
-    x.step = options_.search_step;
+    x.step = steps_.options.search_step;
     return true;
   }
 
@@ -186,20 +189,22 @@ private:
     for (double before = std::numeric_limits<double>::infinity();;) {
       const double left = norm(aim - x.back().state.theta);
       if (left < 1e-9 || !(left < .9 * before) ||
-          !travel(x, x.back().u, options_.search_step, {&aim})) {
+          !steps_.travel(x, x.back().u, steps_.options.search_step, {&aim})) {
         return;
       }
       before = left;
     }
   }
+
+  traveller steps_;
 };
 
 template <int Room>
 typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
-  route best = continued(stay(start));
+  route best = steps_.continued(stay(start));
   // From where it got stuck, or else from the beginning.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
-    if (is_at_end(best) || options_.search_step == 0) {
+    if (steps_.is_at_end(best) || steps_.options.search_step == 0) {
       break;
     }
     best = with_search(best, first);

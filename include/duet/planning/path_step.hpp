@@ -8,9 +8,11 @@
 #include <duet/planning/small_vector.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 /// \file
 /// Steps of a chain that bring its tip to a pose nearby, within the limits of the joints.
@@ -73,13 +75,43 @@ struct pose_solver {
     }
   }
 
+  [[nodiscard]] bool is_endless(std::ptrdiff_t joint) const {
+    return model.turns[std::size_t(joint)] && std::isinf(upper[joint] - lower[joint]);
+  }
+  /// How far configurations are apart but for whole turns of joints without limits.
+  [[nodiscard]] vector without_turns(vector apart) const {
+    for (std::ptrdiff_t i = 0; i < model.size; ++i) {
+      if (is_endless(i)) {
+        apart[i] = std::remainder(apart[i], 2 * std::numbers::pi);
+      }
+    }
+    return apart;
+  }
+
+  /// Steps without damping and nearer to targets: beside singularities joints that are to swing
+  /// would lag behind.
+  void without_damping() {
+    damped_below = swing_threshold;
+    tolerance = {1e-3 * tolerance.length, 1e-3 * tolerance.angle};
+  }
+
+  [[nodiscard]] bool is_within_limits(const vector& theta) const {
+    for (std::ptrdiff_t i = 0; i < model.size; ++i) {
+      if (theta[i] < lower[i] || theta[i] > upper[i]) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   /// From a state nearby, the step nearest to `wish` that takes the tip to the target to first
   /// order, and then Newton's method by least steps, without damping where that is in the way. None
   /// leaves the limits.
   [[nodiscard]] attempt<Room> approach(const chain_state<Room>& from, const tip_place& target,
                                        const vector& wish) const {
     auto result = approach(from, target, wish, damped_below);
-    if (result.smallest_singular_value < damped_below && !result.is_within(tolerance)) {
+    if (damped_below > undamped_threshold && result.smallest_singular_value < damped_below &&
+        !result.is_within(tolerance)) {
       const int before = result.iterations;
       result = approach(from, target, wish, undamped_threshold);
       result.iterations += before;
@@ -90,7 +122,7 @@ struct pose_solver {
   /// How far do joints go to a target beside a state, to first order, without damping?
   [[nodiscard]] double way_to(const chain_state<Room>& from, const tip_place& target) const {
     const auto step = bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
-                                   upper - from.theta, {undamped_threshold});
+                                   upper - from.theta, {swing_threshold});
     return norm(step.step);
   }
 

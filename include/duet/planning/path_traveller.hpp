@@ -49,42 +49,23 @@ public:
   path_traveller(const planning_model<Room>& model, const place_function& target,
                  std::vector<double> stops, const plan_options& options,
                  const slope_function& slope)
-      : solver_{model, model.tolerance(options.tolerance)},
-        deviation_(model.tolerance(options.deviation)), target_(target), stops_(std::move(stops)),
-        options_(options), slope_(slope), length_(stops_.back() - stops_.front()),
-        iterations_left_(options.iterations) {}
+      : solver{model, model.tolerance(options.tolerance)}, target(target), stops(std::move(stops)),
+        options(options), length(this->stops.back() - this->stops.front()),
+        iterations_left(options.iterations), deviation_(model.tolerance(options.deviation)),
+        slope_(slope) {}
+
+  pose_solver<Room> solver;
+  const place_function& target;
+  std::vector<double> stops;
+  plan_options options;
+  double length; ///< of the path, by its parameter
+  int iterations_left;
 
   /// Nothing but the start.
   [[nodiscard]] route stay(const vector& start) const {
-    return route({solver_.model.at(start), stops_.front()});
+    return route({solver.model.at(start), stops.front()});
   }
-
-  [[nodiscard]] int iterations() const { return options_.iterations - iterations_left_; }
-
-protected:
-  [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops_.back(); }
-
-  /// What joints do with the freedom that the tip leaves them.
-  struct wishes {
-    const vector* aim = nullptr; ///< where they should be at the end
-    bool lowers = false;         ///< do they lower the objectives?
-  };
-
-  /// As far as possible without stopping.
-  void go_on(route& x) {
-    for (const double stop : stops_) {
-      if (stop > x.back().u && !travel(x, stop, (stop - x.back().u) / length_, {.lowers = true})) {
-        return;
-      }
-    }
-  }
-
-  /// What lowers the objectives.
-  [[nodiscard]] vector downhill(const vector& theta, double step) const {
-    const vector centre =
-        towards_middle(theta, solver_.model.lower, solver_.model.upper, options_.centring * step);
-    return slope_ ? centre - step * slope_(theta) : centre;
-  }
+  [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops.back(); }
 
   /// As far as possible without motions in place.
   [[nodiscard]] route continued(route best) {
@@ -102,20 +83,12 @@ protected:
   }
 
   /// How many times the deviation is the tip off the path half way between two waypoints?
-  [[nodiscard]] double excess_between(const waypoint& a, const waypoint& b) const {
-    const vector middle = .5 * (a.state.theta + b.state.theta);
-    const pose_deviation half_way =
-        deviation_between(solver_.model.at(middle).tip, target_((a.u + b.u) / 2));
-    return std::max(deviation_.times(half_way),
-                    solver_.model.shortfall(middle) / deviation_.length);
-  }
-
-  /// Do the joints move far in a step along the path that is as short as that?
-  [[nodiscard]] bool is_swinging(const waypoint& at, double step) const {
-    constexpr double least = 1e-12;
-    return solver_.damped_below == undamped_threshold && step > least &&
-           solver_.way_to(at.state, target_(std::min(at.u + step * length_, stops_.back()))) >
-               least_swing;
+  [[nodiscard]] double excess_between(const waypoint& a, const waypoint& b,
+                                      double part = .5) const {
+    const vector between = (1 - part) * a.state.theta + part * b.state.theta;
+    const pose_deviation off =
+        deviation_between(solver.model.at(between).tip, target((1 - part) * a.u + part * b.u));
+    return std::max(deviation_.times(off), solver.model.shortfall(between) / deviation_.length);
   }
 
   /// As far as where a route last came near a singularity, if it did.
@@ -131,73 +104,102 @@ protected:
     return x;
   }
 
-  /// On without damping and nearer to the path: beside singularities joints that are to swing would
-  /// lag behind.
+  /// On without damping.
   [[nodiscard]] route undamped(route x) {
-    const pose_solver<Room> damped = solver_;
-    solver_.damped_below = undamped_threshold;
-    solver_.tolerance = {1e-3 * damped.tolerance.length, 1e-3 * damped.tolerance.angle};
-    x.step = options_.smallest_step;
+    const pose_solver<Room> damped = solver;
+    solver.without_damping();
+    x.step = options.smallest_step;
     go_on(x);
-    solver_.damped_below = damped.damped_below;
-    solver_.tolerance = damped.tolerance;
+    solver.damped_below = damped.damped_below;
+    solver.tolerance = damped.tolerance;
     return x;
   }
+
+  /// What joints do with the freedom that the tip leaves them.
+  struct wishes {
+    const vector* aim = nullptr; ///< where they should be at the end
+    bool lowers = false;         ///< do they lower the objectives?
+  };
 
   /// On to the parameter `end`, in steps that keep the tip near the path between waypoints too.
   ///
   /// \param part  how much of the path that counts for
   /// \return false where there is no going on
-  [[nodiscard]] bool travel(route& x, double end, double part, const wishes& have) {
-    const double begin = x.back().u;
-    double way = 0; // 1 at the end
-    while (way < 1) {
-      const waypoint& here = x.back();
-      const double next = way + x.step / part > 1 - 1e-9 ? 1 : way + x.step / part;
-      const double u = next == 1 ? end : begin + (end - begin) * next;
-      const vector& theta = here.state.theta;
-      const vector wish = have.aim != nullptr ? (next - way) / (1 - way) * (*have.aim - theta)
-                          : have.lowers       ? downhill(theta, (next - way) * part)
-                                              : vector{};
-      auto there = solver_.approach(here.state, target_(u), wish);
-      iterations_left_ -= there.iterations;
-      if (have.lowers && there.smallest_singular_value < damping_threshold) {
-        // A wish takes the joints to where the path leads no further.
-        there = solver_.approach(here.state, target_(u), {});
-        iterations_left_ -= there.iterations;
-      }
-      double change = .25;
-      if (there.is_within(solver_.tolerance)) {
-        const waypoint on{there.state, u, there.left, there.smallest_singular_value};
-        const double excess = excess_between(here, on);
-        // Between waypoints the deviation grows with the square of the step.
-        change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
-        if (x.step < options_.smallest_step && norm(there.state.theta - theta) < least_swing) {
-          change = .25;             // within tolerance of two parameters, but no way on
-        } else if (excess <= .95) { // half way is not quite where it is largest
-          way = next;
-          x.waypoints.push_back(on);
-        }
-      }
-      x.step = std::min(options_.largest_step, x.step * change);
-      if (way < 1 && (iterations_left_ <= 0 ||
-                      (x.step < options_.smallest_step && !is_swinging(x.back(), x.step)))) {
-        return false;
+  [[nodiscard]] bool travel(route& x, double end, double part, const wishes& have);
+
+private:
+  /// As far as possible without stopping.
+  void go_on(route& x) {
+    for (const double stop : stops) {
+      if (stop > x.back().u && !travel(x, stop, (stop - x.back().u) / length, {.lowers = true})) {
+        return;
       }
     }
-    return true;
+  }
+
+  /// What lowers the objectives.
+  [[nodiscard]] vector downhill(const vector& theta, double step) const {
+    const vector centre =
+        towards_middle(theta, solver.model.lower, solver.model.upper, options.centring * step);
+    return slope_ ? centre - step * slope_(theta) : centre;
+  }
+
+  /// Do the joints move far in a step along the path that is as short as that?
+  [[nodiscard]] bool is_swinging(const waypoint& at, double step) const {
+    constexpr double least = 1e-12;
+    return solver.damped_below == swing_threshold && step > least &&
+           solver.way_to(at.state, target(std::min(at.u + step * length, stops.back()))) >
+               least_swing;
   }
 
   static constexpr double least_swing = 1e-3;
-  pose_solver<Room> solver_;
   pose_tolerance deviation_;
-  const place_function& target_;
-  std::vector<double> stops_;
-  plan_options options_;
   const slope_function& slope_;
-  double length_;
-  int iterations_left_;
 };
+
+template <int Room>
+bool path_traveller<Room>::travel(route& x, double end, double part, const wishes& have) {
+  const double begin = x.back().u;
+  double way = 0; // 1 at the end
+  while (way < 1) {
+    const waypoint& here = x.back();
+    const double next = way + x.step / part > 1 - 1e-9 ? 1 : way + x.step / part;
+    const double u = next == 1 ? end : begin + (end - begin) * next;
+    const vector& theta = here.state.theta;
+    const vector wish = have.aim != nullptr ? (next - way) / (1 - way) * (*have.aim - theta)
+                        : have.lowers       ? downhill(theta, (next - way) * part)
+                                            : vector{};
+    auto there = solver.approach(here.state, target(u), wish);
+    iterations_left -= there.iterations;
+    if (have.lowers && there.smallest_singular_value < damping_threshold) {
+      // A wish takes the joints to where the path leads no further.
+      there = solver.approach(here.state, target(u), {});
+      iterations_left -= there.iterations;
+    }
+    double change = .25;
+    if (there.is_within(solver.tolerance)) {
+      const waypoint on{there.state, u, there.left, there.smallest_singular_value};
+      const double excess = excess_between(here, on);
+      // Between waypoints the deviation grows with the square of the step.
+      change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
+      if (x.step < options.smallest_step && norm(there.state.theta - theta) < least_swing) {
+        change = .25;             // within tolerance of two parameters, but no way on
+      } else if (excess <= .95 || // half way is not quite where it is largest
+                 (excess <= 1 && there.smallest_singular_value < 3 * damping_threshold &&
+                  excess_between(here, on, .25) <= 1 && excess_between(here, on, .75) <= 1)) {
+        // Beside a singularity steps that are just allowed may lead straight on, shorter ones not.
+        way = next;
+        x.waypoints.push_back(on);
+      }
+    }
+    x.step = std::min(options.largest_step, x.step * change);
+    if (way < 1 && (iterations_left <= 0 ||
+                    (x.step < options.smallest_step && !is_swinging(x.back(), x.step)))) {
+      return false;
+    }
+  }
+  return true;
+}
 
 #ifdef DUET_COMPILED
 DUET_COMPILED_TEMPLATE class path_traveller<8>;

@@ -46,7 +46,11 @@ public:
   self_motion_search(const pose_solver<Room>& solver, const place_function& target, double spacing,
                      double singular, int iterations)
       : solver_(solver), target_(target), spacing_(spacing), singular_(singular),
-        left_(iterations) {}
+        left_(iterations) {
+    for (std::ptrdiff_t i = 0; i < solver.model.size; ++i) {
+      is_endless_ = is_endless_ || solver.is_endless(i);
+    }
+  }
 
   /// Each configuration a step from the one before.
   using configurations = std::vector<reachable<Room>>;
@@ -76,6 +80,10 @@ public:
         add(go(here, found_[i].u, u[k], 6));
         if (is_singular) {
           leave(here, target, add);
+          const std::ptrdiff_t before = found_[i].from;
+          if (before >= 0 && found_[std::size_t(before)].u == found_[i].u) {
+            leave_between(found_[std::size_t(before)].state, here, target, add);
+          }
         }
       }
       if (found_.size() == end) {
@@ -133,22 +141,53 @@ private:
   void leave(const chain_state<Room>& singular, const tip_place& target, const Add& add) {
     const singular_point<Room> here(singular.jacobian);
     const small_twist e = error_twist(singular.tip, target);
-    const vector out = here.way_out(), step = here.step_for(e);
+    const vector out = here.way_out();
+    const auto [step, other] = here.steps_for(e);
     const double way = norm(e);
     for (const vector& offset :
-         {step, -1 * step, way * out, -way * out, std::sqrt(way) * out, -std::sqrt(way) * out}) {
+         {step, other, way * out, -way * out, std::sqrt(way) * out, -std::sqrt(way) * out}) {
       if (!(norm(offset) > 0)) {
         continue;
       }
       vector beside = singular.theta + offset;
       for (std::ptrdiff_t i = 0; i < beside.size(); ++i) {
-        beside[i] = std::clamp(beside[i], solver_.model.lower[i], solver_.model.upper[i]);
+        beside[i] = std::clamp(beside[i], solver_.lower[i], solver_.upper[i]);
       }
       const auto next = tried(solver_.model.at(beside), target, {});
       if (norm(next.state.theta - singular.theta) < .5) {
         add(next);
       }
     }
+  }
+
+  /// Between two neighbours on a piece of singular configurations: from where the twist to the
+  /// target is one that joint rates make. Beside that Newton's method does not get there.
+  template <class Add>
+  void leave_between(chain_state<Room> a, chain_state<Room> b, const tip_place& target,
+                     const Add& add) {
+    const tip_place here = a.tip;
+    small_twist w = left_out_twist(a.jacobian);
+    const auto missing = [&](const chain_state<Room>& x) {
+      const small_twist next = left_out_twist(x.jacobian);
+      w = dot(next, w) < 0 ? -1 * next : next;
+      return dot(w, error_twist(x.tip, target));
+    };
+    double at_a = missing(a), at_b = missing(b);
+    if (!(at_a * at_b < 0)) {
+      return;
+    }
+    for (int round = 0; round < 4; ++round) {
+      const vector between = a.theta + at_a / (at_a - at_b) * (b.theta - a.theta);
+      const auto there = tried(solver_.model.at(between), here, {});
+      if (!there.is_within(solver_.tolerance)) {
+        return;
+      }
+      const double at_there = missing(there.state);
+      const bool is_beyond = at_a * at_there < 0;
+      (is_beyond ? b : a) = there.state;
+      (is_beyond ? at_b : at_a) = at_there;
+    }
+    add(tried(std::abs(at_a) < std::abs(at_b) ? a : b, target, {}));
   }
 
   /// Does the way back lead to where a configuration is?
@@ -158,11 +197,18 @@ private:
     return end.is_within(solver_.tolerance) && norm(end.state.theta - to.theta) < spacing_;
   }
 
+  /// Whole turns of joints without limits do not count.
+  [[nodiscard]] bool is_near(const vector& a, const vector& b, double square) const {
+    const vector apart = a - b;
+    const auto square_of = [](const vector& x) { return dot(x, x); };
+    return square_of(apart) < square ||
+           (is_endless_ && square_of(solver_.without_turns(apart)) < square);
+  }
+
   [[nodiscard]] bool is_known(const vector& theta, std::size_t first) const {
     return std::any_of(found_.begin() + std::ptrdiff_t(first), found_.end(), [&](const auto& x) {
-      const vector apart = x.state.theta - theta;
       // Two that part at a singularity are near each other at first.
-      return dot(apart, apart) < (x.is_alone ? 1e-4 : .5) * spacing_ * spacing_;
+      return is_near(x.state.theta, theta, (x.is_alone ? 1e-4 : .5) * spacing_ * spacing_);
     });
   }
 
@@ -182,7 +228,7 @@ private:
   /// Adds what is on a curve with found_[start], in both directions by turns, so that what is near
   /// comes first.
   void extend(std::size_t start, const tip_place& target) {
-    const vector along = any_self_motion_direction(found_[start].state.jacobian);
+    const vector along = motion_in_place(found_[start].state.jacobian).any_direction();
     front ends[2] = {{start, along, spacing_}, {start, -1 * along, spacing_}};
     bool is_open[2] = {norm(along) > 0, norm(along) > 0};
     for (int count = 0; (is_open[0] || is_open[1]) && left_ > 0; ++count) {
@@ -190,8 +236,8 @@ private:
       if (is_open[side]) {
         is_open[side] = slide(ends[side], target);
         // A closed curve: the ends meet.
-        if (count > 6 &&
-            norm(found_[ends[0].at].state.theta - found_[ends[1].at].state.theta) < .8 * spacing_) {
+        if (count > 6 && is_near(found_[ends[0].at].state.theta, found_[ends[1].at].state.theta,
+                                 .64 * spacing_ * spacing_)) {
           return;
         }
       }
@@ -212,7 +258,7 @@ private:
     for (std::ptrdiff_t i = 0; i < here.theta.size(); ++i) {
       const double d = end.direction[i];
       if (std::abs(d) > 1e-9) {
-        const double bound = d > 0 ? solver_.model.upper[i] : solver_.model.lower[i];
+        const double bound = d > 0 ? solver_.upper[i] : solver_.lower[i];
         reach = std::min(reach, (bound - here.theta[i]) / d);
       }
     }
@@ -221,7 +267,7 @@ private:
       const vector moved = next.state.theta - here.theta;
       if (next.is_within(solver_.tolerance) && norm(moved) < 2 * reach &&
           dot(moved, end.direction) > .7 * reach) {
-        const vector direction = self_motion_direction(next.state.jacobian, end.direction);
+        const vector direction = motion_in_place(next.state.jacobian).direction(end.direction);
         const bool is_turned = orientation(next.state.jacobian, direction) *
                                    orientation(here.jacobian, end.direction) <
                                0;
@@ -239,6 +285,7 @@ private:
   const place_function& target_;
   double spacing_, singular_;
   int left_;
+  bool is_endless_ = false; ///< has any joint no limits?
   struct {
     double u = 0;
     std::size_t from = 0, now = 0;

@@ -5,6 +5,7 @@
 #include <duet/planning/small_vector.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -17,34 +18,57 @@ namespace duet::detail {
 /// A singular value that counts as none.
 inline constexpr double no_singular_value = 1e-5;
 
-/// What of a step of the joints leaves the tip in place: λ (JᵀJ + λ)⁻¹ of it, with λ the square of
-/// `no_singular_value`.
+/// How the joints move without the tip; it refers to the Jacobian.
 template <int Room>
-[[nodiscard]] small_vector<Room> in_place(const small_matrix<6, Room>& jacobian,
-                                          small_vector<Room> step) {
-  const damped_gram gram(gram_of(jacobian), {0, no_singular_value * no_singular_value});
-  const small_twist force = gram.solve(what_is_left({}, jacobian, step));
-  for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
-    step[i] += column_dot(jacobian, i, force);
-  }
-  return step;
-}
+class motion_in_place {
+public:
+  using vector = small_vector<Room>;
 
-/// The direction next to `wish`, of unit length, in which the joints move without the tip; zero
-/// where none is near it.
-template <int Room>
-[[nodiscard]] small_vector<Room> self_motion_direction(const small_matrix<6, Room>& jacobian,
-                                                       small_vector<Room> wish) {
-  for (int round = 0; round < 2; ++round) { // the second time for rounding
-    wish = in_place(jacobian, wish);
-    const double length = norm(wish);
-    if (!(length > .3)) {
-      return {};
+  /// \param none  a singular value that counts as none
+  explicit motion_in_place(const small_matrix<6, Room>& jacobian, double none = no_singular_value)
+      : jacobian_(jacobian), gram_(gram_of(jacobian), {0, none * none}) {}
+
+  /// What of a step leaves the tip in place: λ (JᵀJ + λ)⁻¹ of it, with λ the square of what counts
+  /// as none.
+  [[nodiscard]] vector part_of(vector step) const {
+    const small_twist force = gram_.solve(what_is_left({}, jacobian_, step));
+    for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
+      step[i] += column_dot(jacobian_, i, force);
     }
-    wish = 1 / length * wish;
+    return step;
   }
-  return wish;
-}
+  /// The direction next to `wish`, of unit length; zero where none is near it.
+  [[nodiscard]] vector direction(vector wish) const {
+    for (int round = 0; round < 2; ++round) { // the second time for rounding
+      wish = part_of(wish);
+      const double length = norm(wish);
+      if (!(length > .3)) {
+        return {};
+      }
+      wish = 1 / length * wish;
+    }
+    return wish;
+  }
+  /// Any direction, of unit length; zero where there is none.
+  [[nodiscard]] vector any_direction() const {
+    vector best;
+    double largest = 0;
+    for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
+      vector unit;
+      unit[i] = 1;
+      const auto d = direction(unit);
+      if (std::abs(d[i]) > largest) { // d[i] is how much of the unit vector is in d
+        largest = std::abs(d[i]);
+        best = d;
+      }
+    }
+    return best;
+  }
+
+private:
+  const small_matrix<6, Room>& jacobian_;
+  damped_gram gram_;
+};
 
 /// The sign of the determinant of J with a direction of self-motion below it, where one joint is to
 /// spare, else 1. Along a curve of self-motion it stays as it is; it is another beyond where curves
@@ -78,37 +102,28 @@ template <int Room>
   return sign;
 }
 
-/// Any direction of unit length in which the joints move without the tip; zero where there is none.
+/// The twist w of unit length that joint rates make least, wᵀJ = 0 in a singular configuration.
 template <int Room>
-[[nodiscard]] small_vector<Room> any_self_motion_direction(const small_matrix<6, Room>& jacobian) {
-  small_vector<Room> best;
-  double largest = 0;
-  for (std::ptrdiff_t i = 0; i < jacobian.cols(); ++i) {
-    small_vector<Room> unit;
-    unit[i] = 1;
-    const auto d = self_motion_direction(jacobian, unit);
-    if (std::abs(d[i]) > largest) { // d[i] is how much of the unit vector is in d
-      largest = std::abs(d[i]);
-      best = d;
-    }
+[[nodiscard]] small_twist left_out_twist(const small_matrix<6, Room>& jacobian) {
+  constexpr double none = 1e-6;
+  const damped_gram gram(gram_of(jacobian), {0, none * none});
+  small_twist w{{1, .7, -.4, .9, -.6, .5}};
+  for (int k = 0; k < 3; ++k) {
+    w = gram.solve(w);
+    w = 1 / norm(w) * w;
   }
-  return best;
+  return w;
 }
 
-/// A singular configuration to second order: w, the twist that no joint rates make, wᵀJ = 0, and H,
-/// the second derivatives of the tip's way along w,
+/// A singular configuration to second order: w, `left_out_twist`, and H, the second derivatives of
+/// the tip's way along w,
 ///
 /// H_jk = w · [ω_j × v_k; ½ ω_j × ω_k], j ≤ k, of the columns [v; ω] of J in `frame::hybrid`.
 template <int Room>
 class singular_point {
 public:
-  explicit singular_point(const small_matrix<6, Room>& jacobian) : jacobian_(jacobian) {
-    constexpr double none = 1e-6;
-    const damped_gram gram(gram_of(jacobian), {0, none * none});
-    for (int k = 0; k < 3; ++k) {
-      w_ = gram.solve(w_);
-      w_ = 1 / norm(w_) * w_;
-    }
+  explicit singular_point(const small_matrix<6, Room>& jacobian)
+      : jacobian_(jacobian), w_(left_out_twist(jacobian)) {
     const three_vector<double> force{w_[0], w_[1], w_[2]}, moment{w_[3], w_[4], w_[5]};
     for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
       const auto& column = jacobian.columns[std::size_t(k)];
@@ -131,8 +146,9 @@ public:
     for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
       d[i] = 1 + .1 * double(i);
     }
+    const motion_in_place still(jacobian_);
     for (int k = 0; k < 8; ++k) {
-      d = times_h(in_place(jacobian_, times_h(d)));
+      d = times_h(still.part_of(times_h(d)));
       const double length = norm(d);
       if (!(length > 1e-12)) {
         return {};
@@ -142,12 +158,20 @@ public:
     return d;
   }
 
-  /// The step s n, J n = 0, that moves the tip by a small twist along w, ½ s² nᵀHn = w·e; its
-  /// opposite is as good. Zero where there is none.
-  [[nodiscard]] small_vector<Room> step_for(const small_twist& e) const {
-    const auto n = any_self_motion_direction(jacobian_);
-    const double square = 2 * dot(w_, e) / dot(n, times_h(n));
-    return square > 0 && square < 1 ? std::sqrt(square) * n : small_vector<Room>{};
+  /// The two steps s n, n the direction of least motion of the tip, that move it along w as a small
+  /// twist does: wᵀJn s + ½ s² nᵀHn = w·e. Zero where there are none.
+  [[nodiscard]] std::array<small_vector<Room>, 2> steps_for(const small_twist& e) const {
+    const auto n = motion_in_place(jacobian_, damping_threshold).any_direction();
+    const double slope = -dot(w_, what_is_left({}, jacobian_, n)), bend = dot(n, times_h(n));
+    const double root = std::sqrt(slope * slope + 2 * bend * dot(w_, e));
+    std::array<small_vector<Room>, 2> result;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double s = ((k == 0 ? root : -root) - slope) / bend;
+      if (std::abs(s) < 1) { // not NaN either
+        result[k] = s * n;
+      }
+    }
+    return result;
   }
 
 private:
@@ -160,7 +184,7 @@ private:
   }
 
   const small_matrix<6, Room>& jacobian_;
-  small_twist w_{{1, .7, -.4, .9, -.6, .5}};
+  small_twist w_;
   small_matrix<Room, Room> h_;
 };
 

@@ -141,6 +141,17 @@ problem<N> make(const arm<N>& a, family kind, random_source& random) {
   return p;
 }
 
+/// The problem of that number of a family with that seed.
+template <int N>
+problem<N> make(const arm<N>& a, family kind, unsigned seed, int number) {
+  random_source random(seed);
+  problem<N> p;
+  for (int k = 0; k <= number; ++k) {
+    p = make(a, kind, random);
+  }
+  return p;
+}
+
 /// The shorter screw from pose to pose.
 struct screw {
   goal_pose first, last;

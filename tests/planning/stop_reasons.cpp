@@ -1,0 +1,149 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "planning/complete_search.hpp"
+#include "planning/layered_search.hpp"
+#include "planning/paths.hpp"
+#include "planning/singular_problems.hpp"
+
+#include <duet/mechanism/limits.hpp>
+#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/planning/self_motion_curves.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace test_planning_stop_reasons {
+namespace {
+
+using namespace duet;
+using namespace singular_problems;
+
+/// One of `bench/reasons.cpp`.
+struct case_of_bench {
+  std::size_t arm;
+  family kind;
+  unsigned seed;
+  int number;
+};
+constexpr std::size_t ur5e = 0, puma = 1, kr = 3, mate = 4;
+
+struct planned {
+  motion_plan<6> plan;
+  duet_test::path_verdict way;
+};
+
+/// The plan, which keeps to its screw, and what a complete search says.
+planned solve(const case_of_bench& which) {
+  const arm<6> a = six_joints()[which.arm];
+  const auto p = make(a, which.kind, which.seed, which.number);
+  const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
+  auto plan = plan_screw_motion(a.chain, p.start, path.last);
+  CHECK(duet_test::largest_deviation(a.chain, plan, path) < 1.01e-5);
+  const auto way = duet_test::complete_way(a.chain, path, plan);
+  return {std::move(plan), way};
+}
+
+void check_ends_at_limit(const std::vector<case_of_bench>& all) {
+  for (const auto& each : all) {
+    CAPTURE(each.arm);
+    CAPTURE(each.number);
+    const auto [plan, way] = solve(each);
+    CHECK(way.why == stop_reason::joint_limit);
+    CHECK(plan.reason == way.why);
+    CHECK(plan.tau.back() > way.end - 1e-4);
+  }
+}
+
+} // namespace
+
+/// Their smallest singular values are 2e-7 to 4e-7.
+TEST_CASE("a limit ends a swing that passes a singularity by less than a micrometre") {
+  check_ends_at_limit({{puma, family::past, 1, 27}, {kr, family::beside, 3, 11}});
+}
+
+/// Without that limit the joints would go on by 3e-7 of the path.
+TEST_CASE("a limit ends the way just before a singularity does") {
+  check_ends_at_limit({{mate, family::beside, 3, 53}});
+}
+
+/// Joints 2, 3, 4 and 6 turn in place, their limits end that before the way on begins.
+TEST_CASE("limits end the motion in place at the UR5e's singular wrist") {
+  check_ends_at_limit({{ur5e, family::from_wrist, 1, 94},
+                       {ur5e, family::from_wrist, 2, 9},
+                       {ur5e, family::from_wrist, 2, 42},
+                       {ur5e, family::from_wrist, 3, 48},
+                       {ur5e, family::from_wrist, 3, 72}});
+}
+
+/// Through poses that are out of reach by less than its tolerance, to a limit farther on.
+TEST_CASE("a plan that gets farther than the exact way stops for the reason that is there") {
+  check_ends_at_limit({{kr, family::from_elbow, 3, 33}});
+}
+
+/// The elbow, 1.5 milliradians from where it is stretched, may bend to either side.
+TEST_CASE("beside a stretched elbow both ways on are looked at") {
+  const auto [plan, way] = solve({kr, family::beside, 2, 86});
+  CHECK(way.why == stop_reason::reached);
+  CHECK(plan.reason == stop_reason::reached);
+}
+
+/// A limit is in the way of the swing, but the tip passes the singularity straight on 9.6e-6 off.
+TEST_CASE("past a singularity as near as the deviation allows") {
+  CHECK(solve({ur5e, family::past, 4, 32}).plan.reason == stop_reason::reached);
+}
+
+using seven = Eigen::Matrix<double, 7, 1>;
+
+/// By all curves of self-motion, from the start alone.
+duet_test::path_verdict layered(const serial_chain<7>& arm,
+                                const duet_test::layered_search::path_function& path,
+                                const seven& start) {
+  const auto nothing = [](double) { return std::optional<seven>(); };
+  return duet_test::layered_search(arm, path, nothing)(start);
+}
+
+/// It would tell of a way where there is none, or of none where there is one.
+TEST_CASE("the layered search itself, where the answer is known") {
+  const auto panda = robots::panda().table();
+  const seven start = (seven() << .3, -.8, .2, -2.1, .1, 1.6, .8).finished();
+  // The base turns by 2u, the others have next to no room.
+  const auto turning = [&](double u) {
+    return pose(exp(vector3<double>(0, 0, u)), vector3<double>(0, 0, 0)) * panda.pose(start);
+  };
+  const seven room = (seven() << .1, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3).finished();
+  const auto stopped =
+      layered(with_limits(panda, seven(start - room), seven(start + room)), turning, start);
+  CHECK(stopped.why == stop_reason::joint_limit);
+  CHECK(std::abs(stopped.end - .05) < .005);
+  // Outwards, without limits to speak of: as far as the arm reaches.
+  const seven turn = seven::Constant(3.1);
+  const auto far = with_limits(panda, seven(-turn), turn);
+  const auto out = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(4 * u, 0, 0)) * panda.pose(start);
+  };
+  const auto ended = layered(far, out, start);
+  CHECK(ended.why == stop_reason::singular);
+  CHECK(!self_motion_curves(panda, out(ended.end)).empty());
+  CHECK(self_motion_curves(panda, out(ended.end + 1e-5)).empty());
+}
+
+/// Without limits another way, which parts from it long before, would lead on.
+TEST_CASE("a way of the Baxter ends where no motion in place leads on, limits or not") {
+  const auto a = seven_joints()[2];
+  const auto p = make(a, family::from_elbow, 3, 84);
+  const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
+  const auto plan = plan_screw_motion(a.chain, p.start, path.last);
+  const auto way = duet_test::complete_way(a.chain, path, plan);
+  CHECK(way.why == stop_reason::singular);
+  CHECK(plan.reason == way.why);
+  CHECK(plan.tau.back() > way.end - 2e-4);
+}
+
+} // namespace test_planning_stop_reasons
