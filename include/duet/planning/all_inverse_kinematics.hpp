@@ -153,18 +153,18 @@ private:
   void slide_within_limits(joint_vector<double, C::joints>& theta,
                            const slides_in_place& slides) const {
     double &first = theta[slides.first], &second = theta[slides.second];
-    const auto &near = chain_.limits(slides.first), &far = chain_.limits(slides.second);
+    const auto &one = chain_.limits(slides.first), &other = chain_.limits(slides.second);
     const double way = slides.second_way;
     // How far the first may go by its own limits, and by those of the second.
     const auto [least, most] =
-        std::minmax({way * (far.lower - second), way * (far.upper - second)});
-    const double lower = std::max(near.lower - first, least),
-                 upper = std::min(near.upper - first, most);
+        std::minmax({way * (other.lower - second), way * (other.upper - second)});
+    const double lower = std::max(one.lower - first, least),
+                 upper = std::min(one.upper - first, most);
     if (lower <= upper) {
       const double middle = (lower + upper) / 2,
                    by = std::isfinite(middle) ? middle : std::clamp(0., lower, upper);
-      first = std::clamp(first + by, near.lower, near.upper);
-      second = std::clamp(second + way * by, far.lower, far.upper);
+      first = std::clamp(first + by, one.lower, one.upper);
+      second = std::clamp(second + way * by, other.lower, other.upper);
     }
   }
 

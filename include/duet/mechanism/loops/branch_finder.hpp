@@ -203,7 +203,7 @@ private:
   [[nodiscard]] std::optional<curve_point> beside(const Eigen::VectorXd& x,
                                                   const Eigen::VectorXd& tangent) const {
     for (double step = 1e-3; step > 1e-5; step /= 2) {
-      const auto point = curve_.near(x + step * tangent, tangent, step / 4);
+      const auto point = curve_.beside(x + step * tangent, tangent, step / 4);
       if (point && point->tangent.dot(tangent) > .99) {
         return point;
       }

@@ -80,8 +80,8 @@ public:
 
   /// The point near x that is reached by the shortest steps, of which the first is not longer than
   /// `most`. \param before  its tangent goes along
-  [[nodiscard]] std::optional<curve_point> near(Eigen::VectorXd x, const Eigen::VectorXd& before,
-                                                double most) const {
+  [[nodiscard]] std::optional<curve_point> beside(Eigen::VectorXd x, const Eigen::VectorXd& before,
+                                                  double most) const {
     return correct(x, false, most) ? point(x, before) : std::nullopt;
   }
 
@@ -150,7 +150,7 @@ public:
 
 private:
   [[nodiscard]] std::optional<curve_point> reached(const curve_point& from, double step) const {
-    const auto to = near(from.x + step * from.tangent, from.tangent, step / 4);
+    const auto to = beside(from.x + step * from.tangent, from.tangent, step / 4);
     if (!to || to->tangent.dot(from.tangent) < .95) {
       return std::nullopt;
     }
