@@ -10,6 +10,7 @@
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual/dual.hpp>
+#include <duet/mechanism/cannot_close.hpp>
 
 #include <Eigen/Core>
 
@@ -26,19 +27,6 @@
 /// Mechanisms whose links form loops: positions x(u) by the constraints F(x, u) = 0.
 
 namespace duet {
-
-/// A closed loop that has no position where one was asked for.
-class cannot_close : public no_convergence {
-public:
-  cannot_close(const std::string& message, std::vector<double> parameter)
-      : no_convergence(message), parameter_(std::move(parameter)) {}
-
-  /// The driving parameters at which it closed last, or was to close first.
-  [[nodiscard]] const std::vector<double>& parameter() const { return parameter_; }
-
-private:
-  std::vector<double> parameter_;
-};
 
 /// How a loop is followed.
 struct closed_loop_options {

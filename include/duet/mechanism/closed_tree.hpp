@@ -3,6 +3,7 @@
 
 #include <duet/core/compiled.hpp>
 #include <duet/derivative/argument.hpp>
+#include <duet/mechanism/cannot_close.hpp>
 #include <duet/mechanism/kinematic_tree.hpp>
 #include <duet/mechanism/loops/equations.hpp>
 #include <duet/mechanism/tree_jacobian.hpp>

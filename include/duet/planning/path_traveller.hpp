@@ -42,17 +42,16 @@ public:
     [[nodiscard]] const waypoint& back() const { return waypoints.back(); }
   };
 
-  /// \param target  the tip's pose
-  /// \param stops   parameters that become waypoints, increasing; the first and the last are the
-  ///                ends of the path
-  /// \param slope   or nothing
-  path_traveller(const planning_model<Room>& model, const place_function& target,
-                 std::vector<double> stops, const plan_options& options,
+  /// \param path        the tip's pose
+  /// \param parameters  those that become waypoints, increasing; the first and the last are the
+  ///                    ends of the path
+  /// \param slope       or nothing
+  path_traveller(const planning_model<Room>& model, const place_function& path,
+                 std::vector<double> parameters, const plan_options& how,
                  const slope_function& slope)
-      : solver{model, model.tolerance(options.tolerance)}, target(target), stops(std::move(stops)),
-        options(options), length(this->stops.back() - this->stops.front()),
-        iterations_left(options.iterations), deviation_(model.tolerance(options.deviation)),
-        slope_(slope) {}
+      : solver{model, model.tolerance(how.tolerance)}, target(path), stops(std::move(parameters)),
+        options(how), length(stops.back() - stops.front()), iterations_left(how.iterations),
+        deviation_(model.tolerance(how.deviation)), slope_(slope) {}
 
   pose_solver<Room> solver;
   const place_function& target;
