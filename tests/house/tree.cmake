@@ -193,6 +193,30 @@ foreach(header IN LISTS headers)
   endif()
 endforeach()
 
+# A header may end with the definitions of what it declares, for where they are not compiled. They come to it by no
+# other header: who began with that one would have it before what it needs.
+foreach(header IN LISTS headers)
+  file(READ include/${header} text)
+  if(NOT text MATCHES "\n#ifndef DUET_COMPILED\n#include <(duet/[^>]*)>\n#endif\n$")
+    continue()
+  endif()
+  set(definitions ${CMAKE_MATCH_1})
+  set(reached ${header} ${definitions})
+  set(open ${includes_of_${definitions}})
+  while(open)
+    list(POP_FRONT open include)
+    string(REGEX REPLACE "[<>]" "" include "${include}")
+    if(NOT include MATCHES "^duet/" OR include IN_LIST reached)
+      continue()
+    endif()
+    list(APPEND reached ${include})
+    list(APPEND open ${includes_of_${include}})
+    if("<${header}>" IN_LIST includes_of_${include})
+      problem("${definitions} comes to ${include}, which includes ${header}, which ends with the former")
+    endif()
+  endwhile()
+endforeach()
+
 # Every page begins with the headers it is about, below its title: `duet/a.hpp`, `duet/b.hpp`. Then it says
 # what its reader can do after it.
 file(GLOB pages RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} docs/*.md)

@@ -176,18 +176,18 @@ private:
     if (!(at_a * at_b < 0)) {
       return;
     }
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0; round < 4 && at_a != at_b; ++round) { // the secant method
       const vector between = a.theta + at_a / (at_a - at_b) * (b.theta - a.theta);
       const auto there = tried(solver_.model.at(between), here, {});
       if (!there.is_within(solver_.tolerance)) {
         return;
       }
-      const double at_there = missing(there.state);
-      const bool is_beyond = at_a * at_there < 0;
-      (is_beyond ? b : a) = there.state;
-      (is_beyond ? at_b : at_a) = at_there;
+      a = b;
+      at_a = at_b;
+      b = there.state;
+      at_b = missing(b);
     }
-    add(tried(std::abs(at_a) < std::abs(at_b) ? a : b, target, {}));
+    add(tried(b, target, {}));
   }
 
   /// Does the way back lead to where a configuration is?

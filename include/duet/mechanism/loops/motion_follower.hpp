@@ -138,6 +138,12 @@ DUET_COMPILED_FUNCTION Eigen::VectorXd loop_motion::followed(const Eigen::Vector
   const detail::loop_curve curve(mechanism_, start_, drives_, way);
   constexpr double least = 1e-7; // of steps
   auto here = *curve.start(1);   // its direction is known: drives determine all rates
+  const auto require_step = [&](double step) {
+    if (step < least) {
+      fail("no step leads on, branches touch or coordinates are singular",
+           curve.coordinates(here.x), target);
+    }
+  };
   for (double step = options_.largest_step;;) {
     const auto next = curve.advance(here, step);
     if (!next) {
@@ -162,10 +168,7 @@ DUET_COMPILED_FUNCTION Eigen::VectorXd loop_motion::followed(const Eigen::Vector
         }
         continue;
       }
-      if (step < least) {
-        fail("no step leads on, branches touch or coordinates are singular",
-             curve.coordinates(here.x), target);
-      }
+      require_step(step);
       continue;
     }
     detail::loop_curve::stretch to{*next, step};
@@ -188,10 +191,7 @@ DUET_COMPILED_FUNCTION Eigen::VectorXd loop_motion::followed(const Eigen::Vector
     }
     if (to.end.s() >= length) {
       step /= 2;
-      if (step < least) {
-        fail("no step leads on, branches touch or coordinates are singular",
-             curve.coordinates(here.x), target);
-      }
+      require_step(step);
       continue;
     }
     here = to.end;

@@ -5,13 +5,13 @@
 #include <duet/planning/branches/general_loop.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/orthonormalise.hpp>
 #include <duet/planning/branches/turns.hpp>
 #include <duet/planning/branches/two_slides.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include <cmath>
 #include <cstddef>
@@ -62,8 +62,9 @@ struct parallel_slides {
     const loop_gap gap(loop, theta);
     Eigen::Matrix<double, 6, 5> moving;
     moving << gap.jacobian.leftCols(held), gap.jacobian.rightCols(5 - held);
-    const Eigen::Matrix<double, 5, 1> step =
-        Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 6, 5>>(moving).solve(gap.twist);
+    Eigen::Matrix<double, 5, 5> inverse = Eigen::Matrix<double, 5, 5>::Identity(); // R⁻¹ of Q R
+    orthonormalise(moving, inverse);
+    const Eigen::Matrix<double, 5, 1> step = inverse * (moving.transpose() * gap.twist);
     theta.head(held) += step.head(held);
     theta.tail(5 - held) += step.tail(5 - held);
   }
