@@ -1,0 +1,76 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/random.hpp"
+
+#include <duet/planning/branches/elimination.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace test_planning_elimination {
+namespace {
+
+using duet::detail::joint_loop;
+using duet::detail::six_coordinates;
+
+duet::detail::three_vector<double> random_vector(duet_test::random_source& random) {
+  return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+}
+
+/// A loop of axes in random places that is closed at θ.
+joint_loop closed_at(const six_coordinates& theta, const std::vector<std::size_t>& sliding,
+                     duet_test::random_source& random) {
+  joint_loop loop;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto n = random.direction<3>();
+    loop.joints[i] = {true, {n[0], n[1], n[2]}, random_vector(random)};
+  }
+  for (const std::size_t i : sliding) {
+    loop.joints[i].turns = false;
+  }
+  loop.closing = duet::detail::product_of_joints(loop, theta, 0, 6);
+  return loop;
+}
+
+double difference(const joint_loop& loop, const six_coordinates& a, const six_coordinates& b) {
+  double largest = 0;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const double d = a[i] - b[i];
+    const bool turns = loop.joints[std::size_t(i)].turns;
+    largest = std::max(largest, std::abs(turns ? std::remainder(d, 2 * std::numbers::pi) : d));
+  }
+  return largest;
+}
+
+} // namespace
+
+/// Newton's method would make up for a start that is none, in another order of the joints too.
+TEST_CASE("at the angle of a solution all its coordinates come out") {
+  duet_test::random_source random(1);
+  for (const std::vector<std::size_t>& sliding : {std::vector<std::size_t>{}, {0}, {1}, {3}, {4}}) {
+    CAPTURE(sliding.empty() ? -1 : int(sliding[0]));
+    for (int k = 0; k < 20; ++k) {
+      six_coordinates theta;
+      for (double& x : theta) {
+        x = random.uniform(-1.5, 1.5);
+      }
+      const joint_loop loop = closed_at(theta, sliding, random);
+      double nearest = std::numeric_limits<double>::infinity();
+      const int real =
+          duet::detail::elimination(loop).solutions_at(theta[2], 1, [&](const six_coordinates& x) {
+            nearest = std::min(nearest, difference(loop, x, theta));
+          });
+      CHECK(real == 1);
+      CHECK(nearest < 1e-5);
+    }
+  }
+}
+
+} // namespace test_planning_elimination
