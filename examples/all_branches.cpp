@@ -103,13 +103,11 @@ void show(const std::string& folder, const std::string& file, const std::string&
 
 int main(int argc, char** argv) {
   return example::run_program("all_branches", [&] {
-    namespace po = example::po;
-    po::options_description description(
+    example::option_list description(
         "All ways in which two robot arms of six joints reach a pose. Options");
-    auto add = description.add_options();
-    add("out", po::value<std::string>()->value_name("FOLDER"),
-        "for tables and pictures (default: all_branches_out)");
-    add("help", "print this and stop");
+    description.value<std::string>("out", "FOLDER",
+                                   "for tables and pictures (default: all_branches_out)");
+    description.flag("help", "print this and stop");
     if (const auto line = example::command_line::parse(argc, argv, description)) {
       const std::string folder = line->text("out").value_or("all_branches_out");
       example::require_folder(folder);

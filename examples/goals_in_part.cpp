@@ -122,13 +122,11 @@ void run(const std::string& folder) {
 
 int main(int argc, char** argv) {
   return example::run_program("goals_in_part", [&] {
-    namespace po = example::po;
-    po::options_description description(
+    example::option_list description(
         "Ways in which a Panda holds a tool at a place, pointing down. Options");
-    auto add = description.add_options();
-    add("out", po::value<std::string>()->value_name("FOLDER"),
-        "for tables and pictures (default: goals_in_part_out)");
-    add("help", "print this and stop");
+    description.value<std::string>("out", "FOLDER",
+                                   "for tables and pictures (default: goals_in_part_out)");
+    description.flag("help", "print this and stop");
     if (const auto line = example::command_line::parse(argc, argv, description)) {
       const std::string folder = line->text("out").value_or("goals_in_part_out");
       example::require_folder(folder);

@@ -24,7 +24,6 @@
 namespace {
 
 using namespace duet;
-namespace po = example::po;
 using solution = inverse_kinematics_result<example::arm_chain::joints>;
 
 struct goal {
@@ -140,23 +139,22 @@ void solve(const example::command_line& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("inverse_kinematics", [&] {
-    po::options_description description(
+    example::option_list description(
         "Joint coordinates for a pose of a robot arm's tip, within the arm's limits.\nA pose is "
         "x,y,z,qw,qx,qy,qz (scalar first), or a matrix [R t; 0 1] row by row, 12 or 16 numbers.\n"
         "Metres and radians. Options");
     example::add_arm_options(description);
-    auto add = description.add_options();
-    const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
-    add("goal", text("POSE"), "comma-separated (default: a third of the way along all limits)");
-    add("goals", text("FILE"), "poses instead, each on a line of a CSV file");
-    add("start", text("X,X,..."), "joints to begin from (default: the middle of the limits)");
-    add("tolerance", po::value<double>()->value_name("X"),
-        "how close, in metres and radians (default: 1e-6)");
-    add("restarts", po::value<int>()->value_name("N"),
-        "random joints to begin anew from, at most (default: 100)");
-    add("seed", po::value<std::uint64_t>()->value_name("N"), "of those (default: 1)");
-    add("out", text("FILE"), "a CSV file for the joints of each goal");
-    add("help", "print this and stop");
+    description.value<std::string>(
+        "goal", "POSE", "comma-separated (default: a third of the way along all limits)");
+    description.value<std::string>("goals", "FILE", "poses instead, each on a line of a CSV file");
+    description.value<std::string>("start", "X,X,...",
+                                   "joints to begin from (default: the middle of the limits)");
+    description.value<double>("tolerance", "X", "how close, in metres and radians (default: 1e-6)");
+    description.value<int>("restarts", "N",
+                           "random joints to begin anew from, at most (default: 100)");
+    description.value<std::uint64_t>("seed", "N", "of those (default: 1)");
+    description.value<std::string>("out", "FILE", "a CSV file for the joints of each goal");
+    description.flag("help", "print this and stop");
     const auto line = example::command_line::parse(argc, argv, description);
     if (line) {
       solve(*line);

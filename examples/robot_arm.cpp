@@ -16,7 +16,6 @@
 namespace {
 
 using namespace duet;
-namespace po = example::po;
 
 void report(const example::arm_chain& arm, const Eigen::VectorXd& theta) {
   const auto [tip, J] = pose_and_jacobian(arm, theta, frame::hybrid);
@@ -50,12 +49,12 @@ void report(const example::arm_chain& arm, const Eigen::VectorXd& theta) {
 
 int main(int argc, char** argv) {
   return example::run_program("robot_arm", [&] {
-    po::options_description description("A robot arm at given joint coordinates. Options");
+    example::option_list description("A robot arm at given joint coordinates. Options");
     example::add_arm_options(description);
-    auto add = description.add_options();
-    add("joints", po::value<std::string>()->value_name("X,X,..."),
+    description.value<std::string>(
+        "joints", "X,X,...",
         "coordinates, as 0,0.5,-1: radians or metres (default: the middle of the limits)");
-    add("help", "print this and stop");
+    description.flag("help", "print this and stop");
     const auto line = example::command_line::parse(argc, argv, description);
     if (!line) {
       return 0;

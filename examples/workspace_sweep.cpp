@@ -36,7 +36,6 @@
 namespace {
 
 using namespace duet;
-namespace po = example::po;
 
 using chain = example::arm_chain;
 using coordinates = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 16, 1>;
@@ -195,13 +194,10 @@ void run(const chain& arm, std::size_t wanted, const std::string& folder) {
 
 int main(int argc, char** argv) {
   return example::run_program("workspace_sweep", [&] {
-    po::options_description description("Where a robot arm moves well. Options");
-    auto add = description.add_options();
-    add("help", "print this and stop");
-    add("samples", po::value<int>()->value_name("N"),
-        "random configurations, 1 to 10000000 (default: 20000)");
-    add("out", po::value<std::string>()->value_name("FOLDER"),
-        "folder for tables and picture (default: .)");
+    example::option_list description("Where a robot arm moves well. Options");
+    description.flag("help", "print this and stop");
+    description.value<int>("samples", "N", "random configurations, 1 to 10000000 (default: 20000)");
+    description.value<std::string>("out", "FOLDER", "folder for tables and picture (default: .)");
     example::add_arm_options(description);
     const auto line = example::command_line::parse(argc, argv, description);
     if (!line) {

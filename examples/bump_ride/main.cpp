@@ -36,17 +36,16 @@ struct options {
 };
 
 std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = example::po;
-  po::options_description description(
+  example::option_list description(
       "A wheel carrier with one degree of freedom runs over a bump: constraints solved in every "
       "step\nagainst a look-up table of poses (ride.csv, pictures). Options");
-  description.add_options()("help", "print this and stop")(
-      "rows", po::value<int>()->value_name("N"), "rows of the table (default: 105)")(
-      "duration", po::value<double>()->value_name("S"), "of the ride (default: 0.6)")(
-      "step", po::value<double>()->value_name("S"), "of the integration (default: 0.0002)")(
-      "bump", po::value<double>()->value_name("M"), "height of the bump (default: 0.05)")(
-      "out", po::value<std::string>()->value_name("DIR"),
-      "folder for the table and the pictures (default: bump_ride_out)");
+  description.flag("help", "print this and stop")
+      .value<int>("rows", "N", "rows of the table (default: 105)")
+      .value<double>("duration", "S", "of the ride (default: 0.6)")
+      .value<double>("step", "S", "of the integration (default: 0.0002)")
+      .value<double>("bump", "M", "height of the bump (default: 0.05)")
+      .value<std::string>("out", "DIR",
+                          "folder for the table and the pictures (default: bump_ride_out)");
   const auto given = example::command_line::parse(argc, argv, description);
   if (!given) {
     return std::nullopt;

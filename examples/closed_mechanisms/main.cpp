@@ -40,20 +40,19 @@ struct options {
 };
 
 std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = example::po;
-  po::options_description description(
+  example::option_list description(
       "Mechanisms with loops out of files: how they close and move. Metres and radians. Options");
-  auto add = description.add_options();
-  add("help", "print this and stop");
-  add("mechanism", po::value<std::string>()->value_name("NAME"),
+  description.flag("help", "print this and stop");
+  description.value<std::string>(
+      "mechanism", "NAME",
       "four_bar, five_bar, delta, stewart or wheel_carrier (default: four_bar)");
-  add("files", po::value<std::string>()->value_name("DIR"),
-      "folder of NAME.urdf and NAME.loops (default: of this example)");
-  add("starts", po::value<int>()->value_name("N"),
-      "guesses from which positions are looked for (default: 100)");
-  add("samples", po::value<int>()->value_name("N"), "positions along the way (default: 101)");
-  add("out", po::value<std::string>()->value_name("DIR"),
-      "folder for the table and the picture (default: closed_mechanisms_out)");
+  description.value<std::string>("files", "DIR",
+                                 "folder of NAME.urdf and NAME.loops (default: of this example)");
+  description.value<int>("starts", "N",
+                         "guesses from which positions are looked for (default: 100)");
+  description.value<int>("samples", "N", "positions along the way (default: 101)");
+  description.value<std::string>(
+      "out", "DIR", "folder for the table and the picture (default: closed_mechanisms_out)");
   const auto given = example::command_line::parse(argc, argv, description, "mechanism");
   if (!given) {
     return std::nullopt;

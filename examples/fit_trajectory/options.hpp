@@ -26,8 +26,7 @@ struct options {
 /// Nothing where only help was asked for.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = example::po;
-  po::options_description description(
+  example::option_list description(
       "A smooth curve near recorded motion, by least squares over a cumulative cubic B-spline of\n"
       "poses, with velocities and accelerations (trajectory.csv), residuals (rows.csv) and "
       "pictures.\n\n  fit_trajectory [FILE] [options]\n\n"
@@ -37,20 +36,24 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       "are no poses or repeat a timestamp are\nnamed and left out. Velocities and accelerations "
       "are in fixed "
       "axes, those of the origin and angular ones.\nOptions");
-  description.add_options()("help", "print this and stop")(
-      "file", po::value<std::string>()->value_name("FILE"),
-      "the recording")("times", po::value<std::string>()->value_name("FILE"),
-                       "times of a recording of KITTI, in seconds (default: a row a second)")(
-      "rows-per-knot", po::value<int>()->value_name("N"),
-      "rows from one knot to the next; more are smoother (default: 10)")(
-      "rate", po::value<double>()->value_name("HZ"),
-      "poses per second of trajectory.csv (default: 100, fewer where that made more than a "
-      "million)")("length", po::value<double>()->value_name("M"),
-                  "metres that count as much as a turn by one radian (default: 1)")(
-      "outlier", po::value<double>()->value_name("R"),
-      "residual beyond which a row counts less (default: three times the median of a plain "
-      "fit)")("out", po::value<std::string>()->value_name("DIR"),
-              "folder for tables and pictures (default: fit_trajectory_out)");
+  description.flag("help", "print this and stop")
+      .value<std::string>("file", "FILE", "the recording")
+      .value<std::string>("times", "FILE",
+                          "times of a recording of KITTI, in seconds (default: a row a second)")
+      .value<int>("rows-per-knot", "N",
+                  "rows from one knot to the next; more are smoother (default: 10)")
+      .value<double>(
+          "rate", "HZ",
+          "poses per second of trajectory.csv (default: 100, fewer where that made more than a "
+          "million)")
+      .value<double>("length", "M",
+                     "metres that count as much as a turn by one radian (default: 1)")
+      .value<double>(
+          "outlier", "R",
+          "residual beyond which a row counts less (default: three times the median of a plain "
+          "fit)")
+      .value<std::string>("out", "DIR",
+                          "folder for tables and pictures (default: fit_trajectory_out)");
   const auto given = example::command_line::parse(argc, argv, description, "file");
   if (!given) {
     return std::nullopt;

@@ -43,24 +43,26 @@ struct options {
 };
 
 std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = example::po;
-  po::options_description description(
+  example::option_list description(
       "A four-bar linkage as a closed loop: angles of coupler and rocker, angular velocity and\n"
       "acceleration of the rocker, and the curve of a coupler point, over the crank's angle.\n"
       "Lengths in metres, angles in degrees. Options");
-  const auto number = [] { return po::value<double>()->value_name("X"); };
-  description.add_options()("help", "print this and stop")(
-      "crank", number(), "length (default: 0.2)")("coupler", number(), "length (default: 0.5)")(
-      "rocker", number(), "length (default: 0.4)")("ground", number(), "length (default: 0.55)")(
-      "along", number(), "of the coupler point, from the crank along the coupler (default: 0.3)")(
-      "beside", number(), "of the coupler point, to the left of the coupler (default: 0.25)")(
-      "from", number(), "first angle of the crank (default: 0)")(
-      "to", number(), "last angle of the crank (default: 360)")("speed", number(),
-                                                                "of the crank, rad/s (default: 1)")(
-      "crossed", "assemble it with crossed links instead of open")(
-      "samples", po::value<int>()->value_name("N"),
-      "positions (default: 361)")("out", po::value<std::string>()->value_name("DIR"),
-                                  "folder for the table and the picture (default: four_bar_out)");
+  description.flag("help", "print this and stop")
+      .value<double>("crank", "X", "length (default: 0.2)")
+      .value<double>("coupler", "X", "length (default: 0.5)")
+      .value<double>("rocker", "X", "length (default: 0.4)")
+      .value<double>("ground", "X", "length (default: 0.55)")
+      .value<double>("along", "X",
+                     "of the coupler point, from the crank along the coupler (default: 0.3)")
+      .value<double>("beside", "X",
+                     "of the coupler point, to the left of the coupler (default: 0.25)")
+      .value<double>("from", "X", "first angle of the crank (default: 0)")
+      .value<double>("to", "X", "last angle of the crank (default: 360)")
+      .value<double>("speed", "X", "of the crank, rad/s (default: 1)")
+      .flag("crossed", "assemble it with crossed links instead of open")
+      .value<int>("samples", "N", "positions (default: 361)")
+      .value<std::string>("out", "DIR",
+                          "folder for the table and the picture (default: four_bar_out)");
   const auto given = example::command_line::parse(argc, argv, description);
   if (!given) {
     return std::nullopt;

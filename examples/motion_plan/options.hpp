@@ -168,37 +168,36 @@ inline pose_type usual_goal(const pose_type& start) {
                     point(duet::rotate(turn, duet::translation(start)) + point(0, 0, .1)));
 }
 
-inline example::po::options_description description() {
-  namespace po = example::po;
-  po::options_description result(
+inline example::option_list description() {
+  example::option_list result(
       "Moves the tip of an arm along the screw motion to a goal, around obstacles, and says when "
       "it is where.\nA pose is x,y,z,qw,qx,qy,qz (scalar first); metres, radians, seconds, axes of "
       "the base. Options");
-  const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
-  const auto texts = [](const char* what) {
-    return po::value<std::vector<std::string>>()->value_name(what);
-  };
-  result.add_options()("help", "print this and stop");
+  result.flag("help", "print this and stop");
   example::add_arm_options(result);
-  auto add = result.add_options();
-  add("start", text("X,X,..."), "joint coordinates (default: hand down, or the middle of limits)");
-  add("goal", text("POSE"), "of the tip (default: to the side)");
-  add("goal-joints", text("X,X,..."), "the tip's pose at these coordinates instead");
-  add("sphere", texts("X,Y,Z,R"), "an obstacle; this and the next may be repeated");
-  add("capsule", texts("X,Y,Z,X,Y,Z,R"), "an obstacle by the ends of its axis and its radius");
-  add("box", texts("X,Y,Z,A,B,C"), "an obstacle by its centre and half sizes");
-  add("floor", po::value<double>()->value_name("Z"), "everything below is an obstacle");
-  add("self", "keep links apart from each other, too");
-  add("srdf", text("FILE"), "which pairs of links --self leaves out: <disable_collisions>");
-  add("radius", po::value<double>()->value_name("R"),
-      "of links without shapes for collisions (default: 0.05)");
-  add("margin", po::value<double>()->value_name("D"), "to what is not touched (default: 0.02)");
-  add("velocity", po::value<double>()->value_name("V"),
-      "limit of all joints, besides their own (default: 1)");
-  add("acceleration", po::value<double>()->value_name("A"), "limit of all joints (default: 2)");
-  add("jerk", po::value<double>()->value_name("J"),
-      "limit of all joints (default: none); makes a picture of what that changes");
-  add("out", text("DIR"), "folder for tables and pictures (default: motion_plan_out)");
+  result.value<std::string>("start", "X,X,...",
+                            "joint coordinates (default: hand down, or the middle of limits)");
+  result.value<std::string>("goal", "POSE", "of the tip (default: to the side)");
+  result.value<std::string>("goal-joints", "X,X,...",
+                            "the tip's pose at these coordinates instead");
+  result.value<std::vector<std::string>>("sphere", "X,Y,Z,R",
+                                         "an obstacle; this and the next may be repeated");
+  result.value<std::vector<std::string>>("capsule", "X,Y,Z,X,Y,Z,R",
+                                         "an obstacle by the ends of its axis and its radius");
+  result.value<std::vector<std::string>>("box", "X,Y,Z,A,B,C",
+                                         "an obstacle by its centre and half sizes");
+  result.value<double>("floor", "Z", "everything below is an obstacle");
+  result.flag("self", "keep links apart from each other, too");
+  result.value<std::string>("srdf", "FILE",
+                            "which pairs of links --self leaves out: <disable_collisions>");
+  result.value<double>("radius", "R", "of links without shapes for collisions (default: 0.05)");
+  result.value<double>("margin", "D", "to what is not touched (default: 0.02)");
+  result.value<double>("velocity", "V", "limit of all joints, besides their own (default: 1)");
+  result.value<double>("acceleration", "A", "limit of all joints (default: 2)");
+  result.value<double>("jerk", "J",
+                       "limit of all joints (default: none); makes a picture of what that changes");
+  result.value<std::string>("out", "DIR",
+                            "folder for tables and pictures (default: motion_plan_out)");
   return result;
 }
 

@@ -41,20 +41,19 @@ inline std::string usual_start(const example::command_line& line) {
 /// Nothing where only help was asked for.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = example::po;
-  po::options_description description(
+  example::option_list description(
       "The tip of an arm draws a helix about a vertical axis, without turning.\nWrites the joint "
       "path (path.csv) and a picture of it. Metres and radians. Options");
-  const auto number = [](const char* what) { return po::value<double>()->value_name(what); };
-  const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
-  auto add = description.add_options();
-  add("help", "print this and stop");
+  description.flag("help", "print this and stop");
   example::add_arm_options(description);
-  add("joints", text("X,X,..."), "where to start (default: bent, for arms by name)");
-  add("radius", number("R"), "of the helix (default: 0.08)");
-  add("pitch", number("P"), "how far it rises per turn, down if negative (default: 0.06)");
-  add("turns", number("N"), "how many (default: 2)");
-  add("out", text("DIR"), "folder for the table and the picture (default: path_following_out)");
+  description.value<std::string>("joints", "X,X,...",
+                                 "where to start (default: bent, for arms by name)");
+  description.value<double>("radius", "R", "of the helix (default: 0.08)");
+  description.value<double>("pitch", "P",
+                            "how far it rises per turn, down if negative (default: 0.06)");
+  description.value<double>("turns", "N", "how many (default: 2)");
+  description.value<std::string>(
+      "out", "DIR", "folder for the table and the picture (default: path_following_out)");
   const auto line = example::command_line::parse(argc, argv, description);
   if (!line) {
     return std::nullopt;

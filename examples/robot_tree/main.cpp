@@ -129,16 +129,16 @@ void run(const example::command_line& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("robot_tree", [&] {
-    namespace po = example::po;
-    po::options_description description("A whole robot from its description. Options");
-    auto add = description.add_options();
-    const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
-    add("urdf", text("FILE"), "a robot description (default: one with two arms on a base)");
-    add("joints", text("X,X,..."),
+    example::option_list description("A whole robot from its description. Options");
+    description.value<std::string>("urdf", "FILE",
+                                   "a robot description (default: one with two arms on a base)");
+    description.value<std::string>(
+        "joints", "X,X,...",
         "all coordinates, as in coordinates.csv: radians or metres (default: the middle of the "
         "limits)");
-    add("out", text("FOLDER"), "for tables and the picture (default: robot_tree_out)");
-    add("help", "print this and stop");
+    description.value<std::string>("out", "FOLDER",
+                                   "for tables and the picture (default: robot_tree_out)");
+    description.flag("help", "print this and stop");
     if (const auto line = example::command_line::parse(argc, argv, description)) {
       run(*line);
     }

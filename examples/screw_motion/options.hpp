@@ -52,21 +52,19 @@ inline std::pair<pose_type, pose_type> poses(const options& given) {
 /// Nothing where only help was asked for.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = example::po;
-  po::options_description description(
+  example::option_list description(
       "The screw motion from one pose to another, with its axis, angle and pitch in words, poses "
       "and\nvelocities along it (path.csv) and a picture of frames on the way.\n"
       "A pose is x,y,z,qw,qx,qy,qz (scalar first), or a matrix [R t; 0 1] row by row, 12 or 16 "
       "numbers.\nAngles in radians, axes fixed. Options");
-  description.add_options()("help", "print this and stop")(
-      "from", po::value<std::string>()->value_name("POSE"), "the first pose, comma-separated")(
-      "to", po::value<std::string>()->value_name("POSE"),
-      "the second one")("file", po::value<std::string>()->value_name("FILE"),
-                        "both poses instead, each on a line of a CSV file")(
-      "steps", po::value<int>()->value_name("N"),
-      "rows of the table less one (default: 60)")("long-way", "turn the long way round")(
-      "out", po::value<std::string>()->value_name("DIR"),
-      "folder for the table and the picture (default: screw_motion_out)");
+  description.flag("help", "print this and stop")
+      .value<std::string>("from", "POSE", "the first pose, comma-separated")
+      .value<std::string>("to", "POSE", "the second one")
+      .value<std::string>("file", "FILE", "both poses instead, each on a line of a CSV file")
+      .value<int>("steps", "N", "rows of the table less one (default: 60)")
+      .flag("long-way", "turn the long way round")
+      .value<std::string>("out", "DIR",
+                          "folder for the table and the picture (default: screw_motion_out)");
   const auto given = example::command_line::parse(argc, argv, description);
   if (!given) {
     return std::nullopt;

@@ -24,13 +24,13 @@ namespace example {
 using arm_chain = duet::serial_chain<-16>;
 
 /// The options --robot, --urdf, --base and --tip.
-inline void add_arm_options(po::options_description& description) {
-  auto add = description.add_options();
-  const auto text = [](const char* what) { return po::value<std::string>()->value_name(what); };
-  add("robot", text("NAME"), "panda, iiwa14, ur5e or baxter_left (default: panda)");
-  add("urdf", text("FILE"), "a robot description instead, with --base and --tip");
-  add("base", text("LINK"), "its link to start from");
-  add("tip", text("LINK"), "its link to end with");
+inline void add_arm_options(example::option_list& description) {
+  description.value<std::string>("robot", "NAME",
+                                 "panda, iiwa14, ur5e or baxter_left (default: panda)");
+  description.value<std::string>("urdf", "FILE",
+                                 "a robot description instead, with --base and --tip");
+  description.value<std::string>("base", "LINK", "its link to start from");
+  description.value<std::string>("tip", "LINK", "its link to end with");
 }
 
 /// The arm that these options name.

@@ -29,29 +29,30 @@ struct options {
 /// Nothing where only help was asked for.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = example::po;
-  po::options_description description(
+  example::option_list description(
       "How errors of a wheel carrier's ten hardpoints move toe-in and camber: to first order by "
       "exact\nsensitivities, and by samples that are solved anew. Samples are kept in blocks of "
       "256; what was\ncomputed before, by any number of processes (mpirun) or threads, is not "
       "computed again.\nOptions");
-  description.add_options()("help", "print this and stop")(
-      "samples", po::value<int>()->value_name("N"), "how many (default: 10000)")(
-      "tolerance", po::value<double>()->value_name("M"),
-      "standard deviation of every coordinate of every hardpoint, metres, normally distributed "
-      "and independent (default: 0.0005)")(
-      "travel", po::value<std::string>()->value_name("LOW,HIGH"),
-      "lowest and highest wheel height, metres (default: -0.1,0.1)")(
-      "rows", po::value<int>()->value_name("N"), "heights from LOW to HIGH (default: 9)")(
-      "hardpoints", po::value<std::string>()->value_name("FILE"),
-      "another carrier: five lines `name, ax, ay, az, px, py, pz` (chassis and carrier end of a "
-      "rod) and one `wheel centre, x, y, z`")("seed", po::value<long long>()->value_name("N"),
-                                              "of the random numbers (default: 1)")(
-      "threads", po::value<int>()->value_name("N"),
-      "in every process; 0: one per core (default: 0, under mpirun 1)")(
-      "summary", "compute no samples: say which are missing, or summarise them")(
-      "out", po::value<std::string>()->value_name("DIR"),
-      "folder for samples, tables and the picture (default: tolerance_study_out)");
+  description.flag("help", "print this and stop")
+      .value<int>("samples", "N", "how many (default: 10000)")
+      .value<double>(
+          "tolerance", "M",
+          "standard deviation of every coordinate of every hardpoint, metres, normally distributed "
+          "and independent (default: 0.0005)")
+      .value<std::string>("travel", "LOW,HIGH",
+                          "lowest and highest wheel height, metres (default: -0.1,0.1)")
+      .value<int>("rows", "N", "heights from LOW to HIGH (default: 9)")
+      .value<std::string>("hardpoints", "FILE",
+                          "another carrier: five lines `name, ax, ay, az, px, py, pz` (chassis and "
+                          "carrier end of a "
+                          "rod) and one `wheel centre, x, y, z`")
+      .value<long long>("seed", "N", "of the random numbers (default: 1)")
+      .value<int>("threads", "N", "in every process; 0: one per core (default: 0, under mpirun 1)")
+      .flag("summary", "compute no samples: say which are missing, or summarise them")
+      .value<std::string>(
+          "out", "DIR",
+          "folder for samples, tables and the picture (default: tolerance_study_out)");
   const auto given = example::command_line::parse(argc, argv, description);
   if (!given) {
     return std::nullopt;

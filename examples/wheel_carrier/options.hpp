@@ -57,32 +57,37 @@ inline end_rates parse_end_rates(const std::string& text) {
 /// Nothing where only help was asked for.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
-  namespace po = example::po;
-  po::options_description description(
+  example::option_list description(
       "Interpolates the orientations of a car's wheel carrier by a cumulative B-spline and "
       "compares its\n"
       "angular velocity and acceleration per unit of wheel height u with the mechanism's.\n"
       "Metres, radians; quaternions scalar first; rates in fixed axes. Options");
-  description.add_options()("help", "print this and stop")(
-      "hardpoints", po::value<std::string>()->value_name("FILE"),
-      "another carrier: five lines `name, ax, ay, az, px, py, pz` (chassis and carrier end of a "
-      "rod) "
-      "and one `wheel centre, x, y, z`")("table", po::value<std::string>()->value_name("FILE"),
-                                         "a look-up table of your own: a CSV file under the header "
-                                         "`u,qw,qx,qy,qz`, u increasing. Compared with the "
-                                         "carrier only where --hardpoints is given too")(
-      "rows", po::value<int>()->value_name("N"),
-      "rows of the table made from the carrier, at equal arcs (default: 0.003 rad apart)")(
-      "spline", po::value<std::string>()->value_name("cumulative|rotation-vector|quintic"),
-      "the curve: the paper's, or one of piecewise polynomial rotation vectors (default: "
-      "cumulative)")(
-      "ends", po::value<std::string>()->value_name("natural|clamped|acceleration|not-a-knot|both"),
-      "end conditions (default: clamped where end rates are known, else natural); both velocity "
-      "and acceleration are for the quintic")(
-      "end-rates", po::value<std::string>()->value_name("X,Y,Z,X,Y,Z"),
-      "angular velocity per unit of u at the first and the last row (default: the carrier's)")(
-      "out", po::value<std::string>()->value_name("DIR"),
-      "folder for tables and pictures (default: wheel_carrier_out)");
+  description.flag("help", "print this and stop")
+      .value<std::string>("hardpoints", "FILE",
+                          "another carrier: five lines `name, ax, ay, az, px, py, pz` (chassis and "
+                          "carrier end of a "
+                          "rod) "
+                          "and one `wheel centre, x, y, z`")
+      .value<std::string>("table", "FILE",
+                          "a look-up table of your own: a CSV file under the header "
+                          "`u,qw,qx,qy,qz`, u increasing. Compared with the "
+                          "carrier only where --hardpoints is given too")
+      .value<int>(
+          "rows", "N",
+          "rows of the table made from the carrier, at equal arcs (default: 0.003 rad apart)")
+      .value<std::string>(
+          "spline", "cumulative|rotation-vector|quintic",
+          "the curve: the paper's, or one of piecewise polynomial rotation vectors (default: "
+          "cumulative)")
+      .value<std::string>("ends", "natural|clamped|acceleration|not-a-knot|both",
+                          "end conditions (default: clamped where end rates are known, else "
+                          "natural); both velocity "
+                          "and acceleration are for the quintic")
+      .value<std::string>(
+          "end-rates", "X,Y,Z,X,Y,Z",
+          "angular velocity per unit of u at the first and the last row (default: the carrier's)")
+      .value<std::string>("out", "DIR",
+                          "folder for tables and pictures (default: wheel_carrier_out)");
   const auto given = example::command_line::parse(argc, argv, description);
   if (!given) {
     return std::nullopt;
