@@ -4,12 +4,12 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/derivative.hpp>
+#include <duet/derivative/equilibrated_matrix.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/seed.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -21,52 +21,6 @@
 
 /// \file
 /// Functions defined by equations: x(p) with F(x, p) = 0.
-
-namespace duet::detail {
-
-/// LU with full pivoting of R J C, where the diagonal matrices R and C bring the largest entry of
-/// every row, then of every column to 1: whether J counts as singular does not depend on units.
-template <int N>
-class equilibrated_lu {
-public:
-  using vector = Eigen::Matrix<double, N, 1>;
-  using matrix = Eigen::Matrix<double, N, N>;
-
-  void compute(const matrix& jacobian) {
-    row_scale_ = jacobian.cwiseAbs().rowwise().maxCoeff().unaryExpr(&inverse_of_size);
-    matrix scaled = row_scale_.asDiagonal() * jacobian;
-    column_scale_ = scaled.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(&inverse_of_size);
-    scaled = scaled * column_scale_.asDiagonal();
-    lu_.compute(scaled);
-  }
-
-  [[nodiscard]] bool is_invertible() const { return lu_.isInvertible(); }
-
-  [[nodiscard]] double determinant() const {
-    return lu_.determinant() / (row_scale_.prod() * column_scale_.prod());
-  }
-
-  /// x with J x = right
-  [[nodiscard]] vector solve(const vector& right) const {
-    return column_scale_.cwiseProduct(lu_.solve(row_scale_.cwiseProduct(right)));
-  }
-
-  [[nodiscard]] matrix inverse() const {
-    return column_scale_.asDiagonal() * lu_.inverse() * row_scale_.asDiagonal();
-  }
-
-private:
-  /// 1/x, and 1 for what cannot be scaled: zero, infinite or not a number.
-  static double inverse_of_size(double x) {
-    const bool is_usable = x >= std::numeric_limits<double>::min() && x - x == 0;
-    return is_usable ? 1 / x : 1.0;
-  }
-
-  vector row_scale_, column_scale_;
-  Eigen::FullPivLU<matrix> lu_;
-};
-
-} // namespace duet::detail
 
 namespace duet {
 
@@ -100,7 +54,7 @@ template <int N, class R>
 }
 
 /// Damped Newton's method with AD Jacobian on the innermost real values: the solution and the
-/// factorised Jacobian there.
+/// inverse of the Jacobian there.
 ///
 /// Progress is measured by how far the old Jacobian would still move x, ‖J⁻¹F(x_new)‖, which
 /// depends neither on the units nor on the mixture of the residuals.
@@ -133,7 +87,7 @@ public:
   }
 
   X x;
-  equilibrated_lu<n> lu;
+  equilibrated_matrix<n> jacobian;
 
   /// The largest number in x.
   [[nodiscard]] double magnitude() const {
@@ -156,19 +110,19 @@ private:
   /// One step, halved while it does not bring x nearer to the solution. True where x is as accurate
   /// as it gets, and on failure.
   [[nodiscard]] bool advance(const F& f, const P& p) {
-    const vector step = lu.solve(-residual);
-    if (!lu.is_invertible() || !step.allFinite()) {
+    const vector step = jacobian.solve(-residual);
+    if (!jacobian.is_invertible() || !step.allFinite()) {
       failure_ = "met a singular Jacobian";
       return true;
     }
     const X previous = x;
-    const equilibrated_lu<n> previous_lu = lu;
+    const equilibrated_matrix<n> previous_jacobian = jacobian;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     for (double fraction = 1; fraction > 1e-6; fraction /= 2) {
       x = manifold<X>::plus(previous, vector(fraction * step));
       linearise(f, p);
-      const vector remaining = previous_lu.solve(-residual);
-      if (remaining.norm() <= epsilon / 4 * magnitude() && lu.is_invertible()) {
+      const vector remaining = previous_jacobian.solve(-residual);
+      if (remaining.norm() <= epsilon / 4 * magnitude() && jacobian.is_invertible()) {
         return true;
       }
       if (remaining.norm() <= (1 - fraction / 4) * step.norm()) {
@@ -176,9 +130,9 @@ private:
       }
       // Small steps over which the Jacobian does not change, and yet no gain: what is left of the
       // residual is rounding.
-      const vector next = lu.solve(-residual);
+      const vector next = jacobian.solve(-residual);
       if (fraction == 1 && step.norm() <= std::sqrt(epsilon) * std::max(1.0, magnitude()) &&
-          (next - remaining).norm() <= next.norm() / 2 && lu.is_invertible()) {
+          (next - remaining).norm() <= next.norm() / 2 && jacobian.is_invertible()) {
         return true;
       }
     }
@@ -193,14 +147,14 @@ private:
       delta[i] = D::variable(0, i);
     }
     const auto r = residuals<n>(f(manifold<X>::plus(x, delta), p));
-    matrix jacobian;
+    matrix entries;
     for (int i = 0; i < n; ++i) {
       residual[i] = innermost(part<tag>(component(r, i), 0));
       for (int j = 0; j < n; ++j) {
-        jacobian(i, j) = innermost(part<tag>(component(r, i), j + 1));
+        entries(i, j) = innermost(part<tag>(component(r, i), j + 1));
       }
     }
-    lu.compute(jacobian);
+    jacobian.compute(entries);
   }
 };
 
@@ -213,7 +167,7 @@ template <class F, class Newton, class P>
   using S = std::decay_t<decltype(residuals<n>(f(solved.x, p))[0])>;
   auto x = map_scalars([](const auto& s) { return S(s); }, solved.x);
   if constexpr (scalar_traits<S>::order > 0) {
-    const Eigen::Matrix<double, n, n> inverse = solved.lu.inverse();
+    const Eigen::Matrix<double, n, n>& inverse = solved.jacobian.inverse();
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
       const auto r = residuals<n>(f(x, p));
       Eigen::Matrix<S, n, 1> step;

@@ -134,7 +134,7 @@ private:
     for (int i = 0; i < size; ++i) {
       delta[i] = D(0, du[i]);
     }
-    return at.lu.solve(-residual(at.x, manifold<P>::plus(u, delta), 1));
+    return at.jacobian.solve(-residual(at.x, manifold<P>::plus(u, delta), 1));
   }
 
   template <class U>
@@ -153,7 +153,7 @@ private:
     const coordinates du = numbers(next) - numbers(u);
     const tangent before = rate(from, u, du);
     const solution to(constraints_, manifold<X>::plus(from.x, before), next, {10});
-    const double change = to.lu.determinant() / from.lu.determinant();
+    const double change = to.jacobian.determinant() / from.jacobian.determinant();
     if (!to.has_converged() || !(change > .25 && change < 4)) {
       return std::nullopt;
     }
@@ -162,7 +162,7 @@ private:
     const tangent after = rate(to, next, du);
     const double fastest = std::max(before.norm(), after.norm());
     const X explained = manifold<X>::plus(from.x, tangent((before + after) / 2));
-    const double missing = to.lu.solve(residual(explained, next, 0)).norm();
+    const double missing = to.jacobian.solve(residual(explained, next, 0)).norm();
     const double rounding = 1e-12 * std::max(1.0, to.magnitude());
     if (missing <= fastest / 16 + rounding &&
         (after - before).norm() <= 1.25 * fastest + rounding) {
