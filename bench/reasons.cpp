@@ -27,6 +27,7 @@ struct score {
   int given_up = 0;     ///< though there is a way
   int before_end = 0;   ///< though a way leads on by more than 1e-4 of the path
   int other_reason = 0; ///< than what ends the way there
+  int both = 0;         ///< singular, limits being in the way within 1e-4 of the path before that
   int unknown = 0;      ///< the search could not tell
 };
 
@@ -46,12 +47,14 @@ score check(const arm<N>& a, family kind, int count, unsigned seed, bool is_list
     const bool is_open = way.why == stop_reason::reached;
     const bool is_short = !is_open && way.end > plan.tau.back() + 1e-4;
     const bool is_unknown = way.why == stop_reason::no_progress;
+    const bool is_both = way.is_both && plan.reason == stop_reason::singular;
     const bool is_false = !is_open && !is_short && !is_unknown && plan.reason != way.why &&
-                          plan.reason != stop_reason::out_of_reach;
+                          !is_both && plan.reason != stop_reason::out_of_reach;
     result.given_up += is_open;
     result.before_end += is_short;
     result.unknown += is_unknown;
     result.other_reason += is_false;
+    result.both += !is_open && !is_short && is_both;
     if (is_listed &&
         (is_open || is_short || is_unknown || is_false || plan.tau.back() > way.end + 1e-4)) {
       std::printf("  %d: %s at %.9g, sigma %.2g; there is %s at %.9g\n", k, to_text(plan.reason),
@@ -66,8 +69,8 @@ void table_of(const std::vector<arm<N>>& arms, int count, unsigned seed, bool is
   for (const arm<N>& a : arms) {
     for (std::size_t k = 0; k < families.size(); ++k) {
       const score s = check(a, family(k), count, seed, is_listed);
-      std::printf("%-14s %-22s %6d %4d %6d %6d %7d\n", a.name, families[k], s.failed, s.given_up,
-                  s.before_end, s.other_reason, s.unknown);
+      std::printf("%-14s %-22s %6d %4d %6d %6d %4d %7d\n", a.name, families[k], s.failed,
+                  s.given_up, s.before_end, s.other_reason, s.both, s.unknown);
       std::fflush(stdout);
     }
   }
@@ -78,8 +81,8 @@ void table_of(const std::vector<arm<N>>& arms, int count, unsigned seed, bool is
 int main(int argc, char** argv) {
   const int count = argc > 1 ? std::atoi(argv[1]) : 100;
   const unsigned seed = argc > 2 ? unsigned(std::atoi(argv[2])) : 1;
-  std::printf("%-14s %-22s %6s %4s %6s %6s %7s\n", "arm", "from", "failed", "way", "before",
-              "false", "unknown");
+  std::printf("%-14s %-22s %6s %4s %6s %6s %4s %7s\n", "arm", "from", "failed", "way", "before",
+              "false", "both", "unknown");
   table_of(six_joints(), count, seed, argc > 3);
   table_of(seven_joints(), count, seed, argc > 3);
 }

@@ -30,6 +30,9 @@ namespace duet_test {
 struct path_verdict {
   double end = 0;
   duet::stop_reason why = duet::stop_reason::no_progress;
+  /// Do limits end it where without them it would end within 1e-4 of the path as well? Then both
+  /// reasons are true. Of six joints it is not looked for.
+  bool is_both = false;
 };
 
 /// Follows all solutions of an arm along a path from one of them, by what `all_inverse_kinematics`

@@ -54,8 +54,10 @@ public:
         if (next.reached.empty()) {
           step /= 4;
           if (step < least) {
-            return {here.u, goes_on_without_limits(here) ? duet::stop_reason::joint_limit
-                                                         : duet::stop_reason::singular};
+            const bool is_beyond = goes_on_without_limits(here, 4 * least);
+            return {here.u,
+                    is_beyond ? duet::stop_reason::joint_limit : duet::stop_reason::singular,
+                    is_beyond && !goes_on_without_limits(here, 1e-4)};
           }
         } else {
           here = std::move(next);
@@ -66,7 +68,7 @@ public:
   }
 
 private:
-  static constexpr double least = 1e-6, resolution = .4;
+  static constexpr double least = 1e-6, resolution = .2;
   static constexpr int none = -1;
 
   struct point {
@@ -238,7 +240,7 @@ private:
     }
   }
 
-  [[nodiscard]] bool goes_on_without_limits(const layer& here) const {
+  [[nodiscard]] bool goes_on_without_limits(const layer& here, double by) const {
     std::set<int> curves;
     for (const point& p : here.points) {
       if (here.reached.count(p.piece) > 0) {
@@ -246,7 +248,7 @@ private:
       }
     }
     const auto goes_on = [&](const joints& x) {
-      return bool(follow(x, here.u, std::min(1., here.u + 4 * least), false));
+      return bool(follow(x, here.u, std::min(1., here.u + by), false));
     };
     return std::any_of(here.points.begin(), here.points.end(),
                        [&](const point& p) { return curves.count(p.curve) > 0 && goes_on(p.x); }) ||

@@ -6,6 +6,7 @@
 #include "planning/singular_problems.hpp"
 
 #include <duet/mechanism/limits.hpp>
+#include <duet/planning/follow_path.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
 #include <duet/planning/self_motion_curves.hpp>
 
@@ -132,6 +133,100 @@ TEST_CASE("the layered search itself, where the answer is known") {
   CHECK(ended.why == stop_reason::singular);
   CHECK(!self_motion_curves(panda, out(ended.end)).empty());
   CHECK(self_motion_curves(panda, out(ended.end + 1e-5)).empty());
+}
+
+struct planned_seven {
+  motion_plan<7> plan;
+  duet_test::path_verdict way;
+};
+
+/// As of six joints.
+planned_seven solve_seven(const case_of_bench& which) {
+  const arm<7> a = seven_joints()[which.arm];
+  const auto p = make(a, which.kind, which.seed, which.number);
+  const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
+  auto plan = plan_screw_motion(a.chain, p.start, path.last);
+  CHECK(duet_test::largest_deviation(a.chain, plan, path) < 1.01e-5);
+  const auto way = duet_test::complete_way(a.chain, path, plan);
+  return {std::move(plan), way};
+}
+constexpr std::size_t panda = 0, iiwa = 1, baxter = 2;
+
+/// Pieces get small there: whole steps of the search end 2e-5 to 2e-4 of the path before.
+TEST_CASE("ways of seven joints are followed to where they end") {
+  for (const case_of_bench& each : {case_of_bench{baxter, family::from_elbow, 1, 59},
+                                    {baxter, family::from_wrist, 2, 91},
+                                    {panda, family::from_wrist, 3, 99},
+                                    {baxter, family::beside, 3, 91},
+                                    {baxter, family::from_wrist, 3, 58},
+                                    {baxter, family::from_wrist, 3, 66},
+                                    {baxter, family::beside, 4, 41},
+                                    {baxter, family::from_wrist, 4, 32}}) {
+    CAPTURE(each.arm);
+    CAPTURE(each.number);
+    const auto [plan, way] = solve_seven(each);
+    CHECK(way.why == stop_reason::singular);
+    CHECK(plan.reason == way.why);
+    CHECK(plan.tau.back() > way.end - 2e-5);
+  }
+}
+
+/// Whole steps of the search end 5e-4 and 4e-3 of the path before.
+TEST_CASE("ways of six joints are followed to where they end") {
+  for (const case_of_bench& each :
+       {case_of_bench{mate, family::from_wrist, 3, 30}, {kr, family::from_elbow, 4, 74}}) {
+    CAPTURE(each.arm);
+    const auto [plan, way] = solve(each);
+    CHECK(plan.reason == way.why);
+    CHECK(plan.tau.back() > way.end - 1e-5);
+  }
+}
+
+/// Whole steps of the search pass the singularity of the wrist or of the shoulder so near that the
+/// joints are led to another side of it.
+TEST_CASE("a way that the search finds and steps do not follow is looked for by shorter ones") {
+  for (const case_of_bench& each :
+       {case_of_bench{iiwa, family::across, 4, 98}, {iiwa, family::beside, 4, 74}}) {
+    CAPTURE(each.number);
+    const auto [plan, way] = solve_seven(each);
+    CHECK(way.why == stop_reason::reached);
+    CHECK(plan.reason == stop_reason::reached);
+  }
+}
+
+/// A piece leaves the limits between points 0.4 apart. By closed forms at 20000 angles of the elbow
+/// and 5000 places of the path no way leads beyond 0.6044.
+TEST_CASE("the layered search sees where limits cut a piece") {
+  const auto [plan, way] = solve_seven({iiwa, family::past, 2, 77});
+  CHECK(way.why == stop_reason::joint_limit);
+  CHECK(std::abs(way.end - .6043) < 1e-4);
+  CHECK(plan.reason == way.why);
+}
+
+/// Without limits the way would lead on by 4e-5 and 2e-5 of the path.
+TEST_CASE("limits end a way less than 1e-4 of the path before a singularity would") {
+  for (const case_of_bench& each :
+       {case_of_bench{baxter, family::from_wrist, 3, 42}, {panda, family::from_elbow, 3, 88}}) {
+    CAPTURE(each.number);
+    const auto [plan, way] = solve_seven(each);
+    CHECK(way.why == stop_reason::joint_limit);
+    CHECK(way.is_both);
+    CHECK((plan.reason == stop_reason::singular || plan.reason == stop_reason::joint_limit));
+    CHECK(plan.tau.back() > way.end - 1e-5);
+  }
+}
+
+/// Where none of the steps of a search led to its next parameter, what they had reached on the way
+/// counted at positive parameters alone: this plan ended 5e-3 too early.
+TEST_CASE("where a plan ends does not depend on where its parameter begins") {
+  const auto a = seven_joints()[panda];
+  const auto p = make(a, family::from_wrist, 1, 42);
+  const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
+  const auto plan = follow_path(a.chain, p.start, path, 0, 1);
+  const auto shifted = follow_path(
+      a.chain, p.start, [&](double u) { return path(u + 5); }, -5, -4);
+  CHECK(shifted.reason == plan.reason);
+  CHECK(std::abs(shifted.tau.back() + 5 - plan.tau.back()) < 1e-5);
 }
 
 /// Without limits another way, which parts from it long before, would lead on.

@@ -72,7 +72,9 @@ struct plan_options {
   int iterations = 1000000;
 };
 
-/// Why a planner stopped.
+/// Why a planner stopped. Ways are followed to within 100 `smallest_step` of where they end, 1e-4
+/// of the path: where limits end one nearer than that before a singularity does, both are in the
+/// way, and it is either of the two.
 enum class stop_reason {
   reached,         ///< the tip is at the goal
   joint_limit,     ///< the way on leads beyond the limits of a joint

@@ -87,7 +87,7 @@ private:
   [[nodiscard]] static bool leads_on_in_place(traveller free, const waypoint& from, double to) {
     free.solver.without_damping();
     self_motion_search search(free.solver, free.target, free.options.self_motion_step,
-                              damping_threshold, free.iterations_left);
+                              damping_threshold, to - from.u, free.iterations_left);
     return free.options.search_step > 0 &&
            search.run(from.state, {from.u, to}).front().back().u == to;
   }
@@ -101,22 +101,30 @@ private:
     begin.waypoints.assign(before.waypoints.begin(),
                            before.waypoints.begin() + std::ptrdiff_t(first) + 1);
     route best = before;
+    const double whole = steps_.options.search_step, enough = end_resolution();
     // Ways beside a singularity may lead over it where the tip cannot go: then those that do not.
-    for (const double singular : {damping_threshold, no_singular_value}) {
+    // Or they pass it so near that joints are led to its other side: then shorter steps.
+    for (const auto& [singular, step] :
+         {std::pair(damping_threshold, whole), std::pair(no_singular_value, whole),
+          std::pair(damping_threshold, whole / 4), std::pair(damping_threshold, whole / 16)}) {
       self_motion_search search(steps_.solver, steps_.target, steps_.options.self_motion_step,
-                                singular, steps_.iterations_left);
-      const auto ways = search.run(begin.back().state, search_parameters(begin.back()));
+                                singular, enough, steps_.iterations_left);
+      const auto ways = search.run(begin.back().state, search_parameters(begin.back(), step));
       steps_.iterations_left = search.iterations_left();
       for (const auto& way : ways) {
         if (!steps_.is_at_end(best)) {
           steps_.keep_better(best, along(begin, way));
         }
       }
-      if (best.back().u >= ways.front().back().u) {
+      if (best.back().u + enough >= ways.front().back().u) {
         break;
       }
     }
     return best;
+  }
+  /// How near to its end a way is followed, by the parameter.
+  [[nodiscard]] double end_resolution() const {
+    return 100 * steps_.options.smallest_step * steps_.length;
   }
 
   /// On along a way that a search has found, and beyond.
@@ -139,21 +147,19 @@ private:
     return steps_.continued(std::move(x));
   }
 
-  /// From a waypoint on, where the search looks: nearer to it where it is singular, as ways out may
-  /// be short.
-  [[nodiscard]] std::vector<double> search_parameters(const waypoint& from) const {
+  /// From a waypoint on, a step apart, where the search looks: nearer to it where it is singular,
+  /// as ways out may be short.
+  [[nodiscard]] std::vector<double> search_parameters(const waypoint& from, double step) const {
     std::vector<double> result = {from.u};
     if (is_singular(from)) {
       for (const double part : {1. / 256, 1. / 16}) {
-        result.push_back(std::min(from.u + part * steps_.options.search_step * steps_.length,
-                                  steps_.stops.back()));
+        result.push_back(std::min(from.u + part * step * steps_.length, steps_.stops.back()));
       }
     }
     for (const double stop : steps_.stops) {
       const double begin = result.back();
       if (stop > begin) {
-        const int count =
-            int(std::ceil((stop - begin) / (steps_.options.search_step * steps_.length)));
+        const int count = int(std::ceil((stop - begin) / (step * steps_.length)));
         for (int i = 1; i < count; ++i) {
           result.push_back(begin + (stop - begin) * i / count);
         }
@@ -202,7 +208,7 @@ private:
 template <int Room>
 typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
   route best = steps_.continued(stay(start));
-  // From where it got stuck, or else from the beginning.
+  // From where it got stuck, or else from the beginning, and there as far as ways lead.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
     if (steps_.is_at_end(best) || steps_.options.search_step == 0) {
       break;

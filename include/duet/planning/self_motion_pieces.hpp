@@ -1,0 +1,147 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/bounded_step.hpp>
+#include <duet/planning/path_step.hpp>
+#include <duet/planning/planning_model.hpp>
+#include <duet/planning/singularity.hpp>
+#include <duet/planning/small_vector.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// The configurations that a chain can move among with its tip in place.
+
+namespace duet::detail {
+
+/// A configuration that can be reached, and from which: one at the same parameter, in place, or one
+/// before.
+template <int Room>
+struct reachable {
+  chain_state<Room> state;
+  double u;
+  std::ptrdiff_t from;     ///< its number, −1 for none
+  bool is_way_out = false; ///< is that one singular, and this one beside it?
+  bool is_alone = false;   ///< is it a piece of its own?
+};
+
+/// Collects configurations, and with each the piece that it is on.
+template <int Room>
+class self_motion_pieces {
+public:
+  using vector = small_vector<Room>;
+
+  /// \param spacing     how far the joints move from one configuration of a piece to the next
+  /// \param iterations  of Newton's method, at most
+  self_motion_pieces(const pose_solver<Room>& solver, double spacing, int iterations)
+      : solver_(solver), spacing_(spacing), left_(iterations) {
+    for (std::ptrdiff_t i = 0; i < solver.model.size; ++i) {
+      is_endless_ = is_endless_ || solver.is_endless(i);
+    }
+  }
+
+protected:
+  [[nodiscard]] attempt<Room> tried(const chain_state<Room>& from, const tip_place& target,
+                                    const vector& wish) {
+    auto result = solver_.approach(from, target, wish);
+    left_ -= result.iterations;
+    return result;
+  }
+
+  [[nodiscard]] bool is_known(const vector& theta, std::size_t first) const {
+    return std::any_of(found_.begin() + std::ptrdiff_t(first), found_.end(), [&](const auto& x) {
+      // Two that part at a singularity are near each other at first.
+      return is_near(x.state.theta, theta, (x.is_alone ? 1e-4 : .5) * spacing_ * spacing_);
+    });
+  }
+
+  /// Adds the piece that found_[start] is on, unless no more than `tolerance` makes it one.
+  void follow(std::size_t start, const tip_place& target) {
+    extend(start, target);
+    const bool is_alone =
+        std::all_of(found_.begin() + std::ptrdiff_t(start), found_.end(), [&](const auto& x) {
+          return norm(x.state.theta - found_[start].state.theta) < .1 * spacing_;
+        });
+    if (is_alone) {
+      found_.erase(found_.begin() + std::ptrdiff_t(start) + 1, found_.end());
+      found_[start].is_alone = true;
+    }
+  }
+
+  const pose_solver<Room>& solver_;
+  double spacing_;
+  int left_;
+  std::vector<reachable<Room>> found_;
+
+private:
+  /// Whole turns of joints without limits do not count.
+  [[nodiscard]] bool is_near(const vector& a, const vector& b, double square) const {
+    const vector apart = a - b;
+    const auto square_of = [](const vector& x) { return dot(x, x); };
+    return square_of(apart) < square ||
+           (is_endless_ && square_of(solver_.without_turns(apart)) < square);
+  }
+
+  /// Adds what is on a curve with found_[start], in both directions by turns, so that what is near
+  /// comes first.
+  void extend(std::size_t start, const tip_place& target) {
+    const vector along = motion_in_place(found_[start].state.jacobian).any_direction();
+    front ends[2] = {{start, along, spacing_}, {start, -1 * along, spacing_}};
+    bool is_open[2] = {norm(along) > 0, norm(along) > 0};
+    for (int count = 0; (is_open[0] || is_open[1]) && left_ > 0; ++count) {
+      const int side = count % 2;
+      if (is_open[side]) {
+        is_open[side] = slide(ends[side], target);
+        // A closed curve: the ends meet.
+        if (count > 6 && is_near(found_[ends[0].at].state.theta, found_[ends[1].at].state.theta,
+                                 .64 * spacing_ * spacing_)) {
+          return;
+        }
+      }
+    }
+  }
+
+  struct front {
+    std::size_t at;
+    vector direction;
+    double step;
+  };
+
+  /// One step on; false at the end of the piece.
+  bool slide(front& end, const tip_place& target) {
+    const chain_state<Room>& here = found_[end.at].state;
+    // As far as the limits allow.
+    double reach = end.step;
+    for (std::ptrdiff_t i = 0; i < here.theta.size(); ++i) {
+      const double d = end.direction[i];
+      if (std::abs(d) > 1e-9) {
+        const double bound = d > 0 ? solver_.upper[i] : solver_.lower[i];
+        reach = std::min(reach, (bound - here.theta[i]) / d);
+      }
+    }
+    for (; reach > spacing_ / 100; reach /= 2) {
+      const auto next = tried(here, target, reach * end.direction);
+      const vector moved = next.state.theta - here.theta;
+      if (next.is_within(solver_.tolerance) && norm(moved) < 2 * reach &&
+          dot(moved, end.direction) > .7 * reach) {
+        const vector direction = motion_in_place(next.state.jacobian).direction(end.direction);
+        const bool is_turned = orientation(next.state.jacobian, direction) *
+                                   orientation(here.jacobian, end.direction) <
+                               0;
+        if (dot(direction, end.direction) > .7 && (!is_turned || reach < spacing_ / 50)) {
+          found_.push_back({next.state, found_[end.at].u, std::ptrdiff_t(end.at)});
+          end = {found_.size() - 1, direction, std::min(spacing_, 2 * reach)};
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  bool is_endless_ = false; ///< has any joint no limits?
+};
+
+} // namespace duet::detail
