@@ -33,7 +33,7 @@ struct case_of_bench {
   unsigned seed;
   int number;
 };
-constexpr std::size_t ur5e = 0, puma = 1, kr = 3, mate = 4;
+constexpr std::size_t ur5e = 0, puma = 1, irb = 2, kr = 3, mate = 4;
 
 struct planned {
   motion_plan<6> plan;
@@ -179,6 +179,20 @@ TEST_CASE("ways of six joints are followed to where they end") {
     const auto [plan, way] = solve(each);
     CHECK(plan.reason == way.why);
     CHECK(plan.tau.back() > way.end - 1e-5);
+  }
+}
+
+/// Where the exact way ends at a limit, within the deviation one leads on past the singularity:
+/// from where whole steps of the search end, no longer from as near to it as shorter ones get.
+TEST_CASE("following a way to its end loses no plan that passes beside it") {
+  for (const case_of_bench& each : {case_of_bench{puma, family::past, 2, 59},
+                                    {irb, family::past, 2, 1},
+                                    {kr, family::past, 2, 62},
+                                    {kr, family::past, 2, 72},
+                                    {mate, family::past, 3, 56}}) {
+    CAPTURE(each.arm);
+    CAPTURE(each.number);
+    CHECK(solve(each).plan.reason == stop_reason::reached);
   }
 }
 
