@@ -208,8 +208,8 @@ TEST_CASE("a way that the search finds and steps do not follow is looked for by 
   }
 }
 
-/// A piece leaves the limits between points 0.4 apart. By closed forms at 20000 angles of the elbow
-/// and 5000 places of the path no way leads beyond 0.6044.
+/// A piece leaves the limits between points 0.4 apart. Nor does a way lead beyond 0.605 by closed
+/// forms at 4000 angles of the elbow, each followed from one 200th of the path to the next.
 TEST_CASE("the layered search sees where limits cut a piece") {
   const auto [plan, way] = solve_seven({iiwa, family::past, 2, 77});
   CHECK(way.why == stop_reason::joint_limit);
