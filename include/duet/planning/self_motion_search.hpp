@@ -100,7 +100,9 @@ public:
   [[nodiscard]] int iterations_left() const { return left_; }
 
 private:
-  static constexpr int halvings = 6, most_rounds = 12;
+  static constexpr int halvings = 6; ///< of a step from parameter to parameter
+  /// From one to the next: where poses are singular throughout no search ends by itself.
+  static constexpr int most_rounds = 12;
 
   /// What is reached at one parameter from the configurations found_[first] to found_[end − 1] at
   /// another.
