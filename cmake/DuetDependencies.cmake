@@ -12,5 +12,5 @@ if(Eigen3_VERSION VERSION_LESS 3.4)
 endif()
 find_dependency(Boost 1.74)
 find_dependency(Threads)
-# For read_urdf alone, and for the library, which has it.
+# For read_urdf and read_mesh alone, and for the library, which has them.
 find_package(EXPAT QUIET)

@@ -1,7 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Chains from URDF.
+// Chains from URDF, pairs of links from SRDF, surfaces.
 
+#define DUET_DEFINES_COMPILED
+
+#include <duet/mechanism/meshes/mesh_reading.hpp>
 #include <duet/mechanism/urdf_library.hpp>
 
 #undef DUET_COMPILED_TEMPLATE

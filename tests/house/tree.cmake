@@ -129,7 +129,7 @@ foreach(header IN LISTS headers)
         problem("${header} includes ${include}, but ${layer}/ does without that library")
       endif()
     elseif(NOT include MATCHES "^<([a-z_]+|(e|i)mmintrin\\.h|arm_neon\\.h|math\\.h|unistd\\.h)>$"
-           AND NOT include MATCHES "^\"duet: [^\"]*needs [^\"]*: compile with[^\"]*\"$")
+           AND NOT include MATCHES "^\"duet: [^\"]*needs? [^\"]*: compile with[^\"]*\"$")
       problem("${header} includes ${include}, which is neither <duet/…>, nor Eigen, Boost, expat or std")
     endif()
   endforeach()

@@ -1,6 +1,6 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# Where there is no expat one line says so of read_urdf, and nothing else needs it.
+# Where there is no expat one line says so of read_urdf and of read_mesh, and nothing else needs it.
 #
 # cmake "-Dcompile=<compiler and flags>" -Dinclude=<folder> -Dfolder=<for files> -P without_expat.cmake
 
@@ -18,14 +18,16 @@ file(COPY ${include}/duet DESTINATION ${folder})
 file(WRITE ${folder}/${header} "${changed}")
 list(TRANSFORM compile REPLACE "^${include}$" ${folder})
 
-file(WRITE ${folder}/urdf.cpp "#include <duet/mechanism/urdf.hpp>\n")
-execute_process(COMMAND ${compile} -fsyntax-only ${folder}/urdf.cpp RESULT_VARIABLE result ERROR_VARIABLE message)
-string(REGEX MATCHALL "error: " errors "${message}")
-list(LENGTH errors count)
-if(result EQUAL 0 OR NOT count EQUAL 1
-   OR NOT message MATCHES "duet: read_urdf needs expat [^\n]*: compile with its headers, link with -lexpat")
-  message(FATAL_ERROR "urdf.hpp without expat: ${message}")
-endif()
+foreach(header IN ITEMS urdf mesh_file)
+  file(WRITE ${folder}/${header}.cpp "#include <duet/mechanism/${header}.hpp>\n")
+  execute_process(COMMAND ${compile} -fsyntax-only ${folder}/${header}.cpp RESULT_VARIABLE result ERROR_VARIABLE message)
+  string(REGEX MATCHALL "error: " errors "${message}")
+  list(LENGTH errors count)
+  if(result EQUAL 0 OR NOT count EQUAL 1
+     OR NOT message MATCHES "duet: read_urdf and read_mesh need expat [^\n]*: compile with its headers, link with -lexpat")
+    message(FATAL_ERROR "${header}.hpp without expat: ${message}")
+  endif()
+endforeach()
 
 file(WRITE ${folder}/others.cpp "#include <duet/duet.hpp>\nint main() {}\n")
 execute_process(COMMAND ${compile} -Wno-ignored-attributes ${folder}/others.cpp -o ${folder}/others

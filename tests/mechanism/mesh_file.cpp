@@ -183,7 +183,7 @@ TEST_CASE("OBJ: lines that a backslash joins, and the numbers of lines then") {
 }
 
 TEST_CASE("other files, and none") {
-  CHECK(fault(".dae", "<COLLADA/>") == " is neither .stl nor .obj");
+  CHECK(fault(".ply", "ply\n") == " is none of .stl, .obj and .dae");
   CHECK(duet_test::message_of<file_error>([] { (void)read_mesh("nowhere.stl"); }) ==
         "duet: nowhere.stl: cannot be read");
   CHECK(duet_test::message_of<file_error>([] { (void)read_mesh("."); }) ==

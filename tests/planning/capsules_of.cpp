@@ -237,6 +237,25 @@ TEST_CASE("the links of a tree and a chain: each shape where it stands") {
   CHECK(pairs_apart(tree, of_tree.bodies).size() == 2); // hand and base
   CHECK(pairs_apart(chain, of_chain.bodies).size() == 2);
 
+  // COLLADA, in centimetres, twice as large by the description.
+  std::ofstream(folder + ".dae")
+      << "<COLLADA><asset><unit meter=\".01\"/></asset><library_geometries><geometry "
+         "id=\"g\"><mesh>"
+         "<source id=\"s\"><float_array id=\"a\">0 0 0 30 0 0 0 40 "
+         "0</float_array><technique_common>"
+         "<accessor source=\"#a\" count=\"3\" stride=\"3\"><param name=\"X\"/><param name=\"Y\"/>"
+         "<param name=\"Z\"/></accessor></technique_common></source><vertices id=\"v\"><input "
+         "semantic=\"POSITION\" source=\"#s\"/></vertices><triangles><input semantic=\"VERTEX\" "
+         "source=\"#v\" offset=\"0\"/><p>0 1 "
+         "2</p></triangles></mesh></geometry></library_geometries>"
+         "<library_visual_scenes><visual_scene id=\"w\"><node><instance_geometry "
+         "url=\"#g\"/></node>"
+         "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#w\"/></scene>"
+         "</COLLADA>";
+  robot.links[3].collision = {{{}, collision_mesh{"package://" + folder + ".dae", {2, 2, 2}}}};
+  const auto triangle = capsules_of(kinematic_tree(robot), ".").bodies.back().shape;
+  check_touches(triangle, std::vector<point>{{0, 0, 0}, {.6, 0, 0}, {0, .8, 0}}, 1);
+
   robot.links[3].collision = {{{}, collision_mesh{"package://nowhere/hand.stl"}}};
   CHECK(duet_test::message_of<file_error>([&] { (void)capsules_of(kinematic_tree(robot), "."); }) ==
         "duet: ./nowhere/hand.stl: cannot be read");

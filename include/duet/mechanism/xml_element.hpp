@@ -18,6 +18,7 @@ struct xml_element {
   std::string name;
   std::size_t line = 0; ///< where it begins
   std::vector<std::pair<std::string, std::string>> attributes;
+  std::string text; ///< that is directly in it, where it is kept
   std::vector<xml_element> children;
 
   /// The value of an attribute, or nothing.

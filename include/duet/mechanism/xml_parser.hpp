@@ -8,7 +8,7 @@
 
 #if !__has_include(<expat.h>)
 // After an #error compilers would go on, with what is not declared.
-#include "duet: read_urdf needs expat (libexpat1-dev or expat-devel or expat): compile with its headers, link with -lexpat"
+#include "duet: read_urdf and read_mesh need expat (libexpat1-dev or expat-devel or expat): compile with its headers, link with -lexpat"
 #endif
 #include <expat.h>
 
@@ -23,20 +23,27 @@
 
 namespace duet::detail {
 
+/// What becomes of text between elements.
+enum class xml_text { skipped, kept };
+
 /// Reads one file.
 class xml_parser {
 public:
-  static constexpr std::size_t most_megabytes = 16;
   static constexpr std::size_t most_depth = 100;
 
-  explicit xml_parser(const std::string& path)
-      : path_(path), parser_(XML_ParserCreate(nullptr)) { // the encoding is the file's to say
+  explicit xml_parser(const std::string& path, std::size_t most_megabytes = 16,
+                      xml_text text = xml_text::skipped)
+      : path_(path), most_megabytes_(most_megabytes),
+        parser_(XML_ParserCreate(nullptr)) { // the encoding is the file's to say
     if (parser_ == nullptr) {
       raise(std::bad_alloc());
     }
     XML_SetUserData(parser_, this);
     XML_SetElementHandler(parser_, open_element, close_element);
     XML_SetStartDoctypeDeclHandler(parser_, refuse_document_type);
+    if (text == xml_text::kept) {
+      XML_SetCharacterDataHandler(parser_, add_text);
+    }
   }
   xml_parser(const xml_parser&) = delete;
   xml_parser& operator=(const xml_parser&) = delete;
@@ -46,7 +53,7 @@ public:
   /// \throws file_error for what is not well formed, has a document type (and with it entities), is
   /// nested too deep or too large
   [[nodiscard]] xml_element root() {
-    const std::string text = whole_content(path_, most_megabytes);
+    const std::string text = whole_content(path_, most_megabytes_);
     const bool is_good =
         XML_Parse(parser_, text.data(), int(text.size()), XML_TRUE) == XML_STATUS_OK;
     if (is_out_of_memory_) {
@@ -102,6 +109,10 @@ private:
   static void XMLCALL close_element(void* data, const XML_Char*) {
     static_cast<xml_parser*>(data)->open_.pop_back();
   }
+  static void XMLCALL add_text(void* data, const XML_Char* text, int size) {
+    auto& self = *static_cast<xml_parser*>(data);
+    self.guarded([&] { self.open_.back()->text.append(text, std::size_t(size)); });
+  }
   static void XMLCALL refuse_document_type(void* data, const XML_Char*, const XML_Char*,
                                            const XML_Char*, int) {
     auto& self = *static_cast<xml_parser*>(data);
@@ -109,6 +120,7 @@ private:
   }
 
   std::string path_;
+  std::size_t most_megabytes_;
   XML_Parser parser_;
   xml_element document_; ///< what the root is in
   std::vector<xml_element*> open_{&document_};

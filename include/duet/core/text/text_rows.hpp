@@ -51,14 +51,14 @@ namespace duet::detail {
   return text;
 }
 
-/// Calls f(word) for every word of a line, between blanks.
+/// Calls f(word) for every word of a text, between blanks and ends of lines.
 template <class F>
-void for_each_word(std::string_view line, const F& f) {
-  constexpr std::string_view blanks = " \t\r";
+void for_each_word(std::string_view text, const F& f) {
+  constexpr std::string_view blanks = " \t\r\n";
   for (std::size_t end = 0, first;
-       (first = line.find_first_not_of(blanks, end)) != std::string_view::npos;) {
-    end = std::min(line.find_first_of(blanks, first), line.size());
-    f(line.substr(first, end - first));
+       (first = text.find_first_not_of(blanks, end)) != std::string_view::npos;) {
+    end = std::min(text.find_first_of(blanks, first), text.size());
+    f(text.substr(first, end - first));
   }
 }
 

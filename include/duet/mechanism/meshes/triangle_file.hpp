@@ -1,0 +1,255 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiler/bit_cast.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/core/text/text_rows.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Surfaces out of STL and OBJ.
+
+namespace duet::detail {
+
+/// Reads one file, strictly.
+class triangle_file {
+public:
+  triangle_file(std::string path, std::size_t most_megabytes)
+      : path_(std::move(path)), text_(whole_content(path_, most_megabytes)) {}
+
+  /// Corners of triangles, three of each.
+  /// \param ending  of the file's name, in small letters
+  [[nodiscard]] std::vector<std::array<double, 3>> read(std::string_view ending) {
+    at_ = text_.starts_with("\xef\xbb\xbf") ? 3 : 0; // a byte order mark
+    if (ending == ".obj") {
+      read_obj();
+    } else if (ending != ".stl") {
+      fail("is none of .stl, .obj and .dae");
+    } else if (is_binary_stl()) {
+      read_binary_stl();
+    } else {
+      read_text_stl();
+    }
+    return std::move(corners_);
+  }
+
+private:
+  using point = std::array<double, 3>;
+  static constexpr std::size_t head = 84, bytes_of_triangle = 50;
+
+  [[noreturn]] void fail(const std::string& what) const { raise(file_error(path_, what)); }
+  /// A fault in what stands at a place in the text.
+  [[noreturn]] void fail_at(std::string_view there, const std::string& what) const {
+    const auto before = std::string_view(text_).substr(0, std::size_t(there.data() - text_.data()));
+    const auto lines = std::count(before.begin(), before.end(), '\n');
+    raise(file_error(path_, std::size_t(lines) + 1, what));
+  }
+  [[noreturn]] void fail_of_line(const std::string& what) const {
+    const std::string_view first = words_.front(), last = words_.back();
+    const std::size_t size = std::size_t(last.data() - first.data()) + last.size();
+    fail_at(first, what + ", not " + quoted({first.data(), size}));
+  }
+  [[noreturn]] void fail_at_end(std::string_view missing) const {
+    const std::size_t last = text_.find_last_not_of(" \t\r\n");
+    fail_at(std::string_view(text_).substr(last), "the file ends before " + quoted(missing));
+  }
+  [[nodiscard]] static std::string quoted(std::string_view text) {
+    return "\"" + std::string(text) + "\"";
+  }
+
+  // STL: the length tells binary from text, which may both begin with "solid".
+
+  [[nodiscard]] std::uint32_t word(std::size_t at) const { // least byte first
+    std::uint32_t result = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      result |= std::uint32_t(static_cast<unsigned char>(text_[at + i])) << (8 * i);
+    }
+    return result;
+  }
+  [[nodiscard]] bool is_binary_stl() const {
+    return text_.size() >= head && text_.size() - head == bytes_of_triangle * word(80);
+  }
+  void read_binary_stl() {
+    for (std::size_t at = head; at < text_.size(); at += bytes_of_triangle) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        point x;
+        for (std::size_t i = 0; i < 3; ++i) {
+          x[i] = double(bit_cast<float>(word(at + 12 * (corner + 1) + 4 * i)));
+          if (!std::isfinite(x[i])) {
+            fail("triangle " + std::to_string((at - head) / bytes_of_triangle) +
+                 " has a corner that is not finite");
+          }
+        }
+        corners_.push_back(x);
+      }
+    }
+  }
+
+  void read_text_stl() {
+    if (!next_line() || words_[0] != "solid") {
+      fail("is no STL: neither does it begin with \"solid\", nor has it the length of a binary "
+           "file with as many triangles as it says");
+    }
+    bool is_open = true;
+    while (next_line()) {
+      if (words_[0] == (is_open ? "endsolid" : "solid")) {
+        is_open = !is_open;
+        continue;
+      }
+      require_line(is_open ? "facet normal x y z" : "solid");
+      for (std::size_t i = 2; i < 5; ++i) { // of a triangle without area it may be nan
+        static_cast<void>(number(words_[i]));
+      }
+      require_next("outer loop");
+      for (int corner = 0; corner < 3; ++corner) {
+        require_next("vertex x y z");
+        corners_.push_back(point_of_line());
+      }
+      require_next("endloop");
+      require_next("endfacet");
+    }
+    if (is_open) {
+      fail_at_end("endsolid");
+    }
+  }
+  /// Is the line of these words, but for those of one letter?
+  void require_line(std::string_view form) const {
+    std::size_t i = 0;
+    bool is_so = true;
+    for_each_word(form, [&](std::string_view word) {
+      is_so = is_so && i < words_.size() && (word.size() == 1 || word == words_[i]);
+      ++i;
+    });
+    if (!is_so || i != words_.size()) {
+      fail_of_line(quoted(form) + " expected");
+    }
+  }
+  void require_next(std::string_view form) {
+    if (!next_line()) {
+      fail_at_end(form);
+    }
+    require_line(form);
+  }
+
+  // OBJ: of its statements, vertices and faces.
+
+  void read_obj() {
+    constexpr std::array<std::string_view, 12> skipped = {
+        "vt", "vn", "vp", "l", "p", "g", "o", "s", "mtllib", "usemtl", "mg", "#"};
+    std::vector<point> vertices;
+    while (next_statement()) {
+      if (words_[0] == "v") {
+        if (words_.size() != 4 && words_.size() != 5 && words_.size() != 7) { // weight, colour
+          fail_of_line("\"v x y z\" expected");
+        }
+        vertices.push_back(point_of_line());
+      } else if (words_[0] == "f") {
+        if (words_.size() < 4) {
+          fail_of_line("a face has three corners or more");
+        }
+        std::vector<point> face;
+        for (std::size_t i = 1; i < words_.size(); ++i) {
+          face.push_back(vertices[vertex_number(words_[i], vertices.size())]);
+        }
+        for (std::size_t i = 2; i < face.size(); ++i) {
+          corners_.insert(corners_.end(), {face[0], face[i - 1], face[i]});
+        }
+      } else if (words_[0][0] != '#' &&
+                 std::find(skipped.begin(), skipped.end(), words_[0]) == skipped.end()) {
+        fail_at(words_[0], "unknown statement " + quoted(words_[0]));
+      }
+    }
+  }
+  /// `7`, `7/1`, `7//3`, `7/1/3`, from 1 on; negative from the last one back.
+  [[nodiscard]] std::size_t vertex_number(std::string_view text, std::size_t count) const {
+    const auto whole = [](std::string_view part) { // 0 where it is none
+      const double k = parse_number(part).value_or(0);
+      return std::isfinite(k) && k == std::floor(k) ? k : 0;
+    };
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    const double n = double(count), k = whole(text.substr(0, slash));
+    if (!(k != 0 && -n <= k && k <= n)) {
+      fail_at(text,
+              quoted(text) + " is no corner of the " + std::to_string(count) + " vertices before");
+    }
+    int others = 0; // of the texture, of the normal
+    for (std::size_t at = slash, end; at < text.size(); at = end) {
+      end = std::min(text.find('/', at + 1), text.size());
+      const std::string_view other = text.substr(at + 1, end - at - 1);
+      if (++others > 2 || (!other.empty() && whole(other) == 0)) {
+        fail_at(text, quoted(text) + " is none of k, k/t, k//n and k/t/n");
+      }
+    }
+    return std::size_t(k > 0 ? k - 1 : n + k);
+  }
+
+  /// The words of the next line that has some.
+  [[nodiscard]] bool next_line() {
+    for (words_.clear(); words_.empty() && at_ < text_.size();) {
+      add_line();
+    }
+    return !words_.empty();
+  }
+  /// The words of a statement of OBJ: a backslash at its end joins a line with the next, but not a
+  /// comment, which may end with the name of a folder.
+  [[nodiscard]] bool next_statement() {
+    words_.clear();
+    for (bool goes_on = false; at_ < text_.size() && (goes_on || words_.empty());) {
+      add_line();
+      goes_on = !words_.empty() && words_[0][0] != '#' && words_.back().ends_with('\\');
+      if (goes_on) {
+        words_.back().remove_suffix(1);
+        if (words_.back().empty()) {
+          words_.pop_back();
+        }
+      }
+    }
+    return !words_.empty();
+  }
+  void add_line() {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    for_each_word(std::string_view(text_).substr(at_, end - at_),
+                  [&](std::string_view word) { words_.push_back(word); });
+    at_ = end + 1;
+  }
+
+  [[nodiscard]] double number(std::string_view text) const {
+    const auto value = parse_number(text);
+    if (!value) {
+      fail_at(text, quoted(text) + " is no number");
+    }
+    return *value;
+  }
+  /// The first three of the numbers behind the first word.
+  [[nodiscard]] point point_of_line() const {
+    point result;
+    for (std::size_t i = 0; i + 1 < words_.size(); ++i) {
+      const double value = number(words_[i + 1]);
+      if (!std::isfinite(value)) {
+        fail_at(words_[i + 1], quoted(words_[i + 1]) + " is not finite");
+      }
+      if (i < 3) {
+        result[i] = value;
+      }
+    }
+    return result;
+  }
+
+  std::string path_, text_;
+  std::vector<point> corners_; ///< of triangles, three of each
+  std::size_t at_ = 0;         ///< where the next line begins
+  std::vector<std::string_view> words_;
+};
+
+} // namespace duet::detail
