@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "planning/chains.hpp"
+#include "support/message.hpp"
 
 #include <duet/planning/choose_start.hpp>
 #include <duet/planning/pairs_apart.hpp>
@@ -108,6 +109,31 @@ TEST_CASE("the objective says which start is tried first") {
     CHECK(found.starts == 1);
     CHECK((found.plan.joints.front() - branch.joints).norm() < 1e-9);
   }
+}
+
+TEST_CASE("no start is chosen where the objective is nan, and that it is so at all is told") {
+  const chain arm = robots::ur5e().table();
+  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  const auto path = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(0, 0, .05 * u)) * arm.pose(theta);
+  };
+  for (const auto& branch : all_inverse_kinematics(arm, path(0)).solutions) {
+    const auto only = [&](const auto& x) {
+      using std::sqrt;
+      auto sum = 1e-6 - (x[0] - branch.joints[0]) * (x[0] - branch.joints[0]);
+      for (int i = 1; i < 6; ++i) {
+        sum -= (x[i] - branch.joints[i]) * (x[i] - branch.joints[i]);
+      }
+      return sqrt(sum);
+    };
+    const auto found = choose_start(arm, path, 0, 1, {}, only);
+    CHECK((found.plan.joints.front() - branch.joints).norm() < 1e-9);
+  }
+  const auto nowhere = [](const auto& x) { return 0 * x[0] + std::nan(""); };
+  CHECK(
+      duet_test::message_of<invalid_input>([&] {
+        static_cast<void>(choose_start(arm, path, 0, 1, {}, nowhere));
+      }).starts_with("duet: choose_start: the objective is nan at all starts, as at the joints ("));
 }
 
 TEST_CASE("the first pose without a solution, and why") {

@@ -125,6 +125,22 @@ TEST_CASE("gradients of objectives") {
   CHECK((gradient(agile, theta).gradient - slope).norm() < 1e-12 * slope.norm());
 }
 
+TEST_CASE("an objective that is nan at the start") {
+  const auto arm = robots::panda();
+  const Eigen::Matrix<double, 7, 1> start(0, -.75, 0, -2.5, 0, 1.5, .75);
+  const auto nowhere = [](const auto& x) { return 0 * x[0] + std::nan(""); };
+  const auto here = arm.pose(start);
+  const auto path = [&](double u) {
+    return pose(quaternion<double>(1), vector3<double>(0, 0, .05 * u)) * here;
+  };
+  const char* const what = "duet: follow_path: the objective is nan at the start, joints "
+                           "(0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
+  CHECK_THROWS_WITH_AS(static_cast<void>(follow_path(arm, start, path, 0, 1, {}, nowhere)), what,
+                       invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(plan_screw_motion(arm, start, path(1), {}, nowhere)), what,
+                       invalid_input);
+}
+
 TEST_CASE("bad paths") {
   const vector start = gripper_down();
   const auto first = arm.pose(start);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "planning/chains.hpp"
+#include "support/message.hpp"
 #include "support/multiprecision.hpp"
 
 #include <duet/derivative/gradient.hpp>
@@ -395,6 +396,61 @@ TEST_CASE("what is refused") {
        "duet: preferred_posture: 8 coordinates for 7 joints");
   says(preferred_posture{unknown}, "duet: preferred_posture: joint 2 is nan");
   says(preferred_posture{start, unknown[2]}, "duet: preferred_posture: its weight is nan");
+}
+
+TEST_CASE("what is nan is told where it is so everywhere, and else is no solution") {
+  const chain arm = robots::panda().table();
+  const vector start = (vector(7) << 0, -.75, 0, -2.5, 0, 1.5, .75).finished();
+  const auto message = [&](const auto& goal, const auto& wish) {
+    return duet_test::message_of<invalid_input>(
+        [&] { static_cast<void>(inverse_kinematics(arm, goal, start, {.restarts = 5}, wish)); });
+  };
+  const std::string at_start = " joints (0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
+  const std::string all =
+      "duet: inverse_kinematics: the objective is nan at all solutions that were "
+      "found, as at the";
+  // A value that is nan with a slope that is 0, and one of which all is nan.
+  const auto constant = [](const auto& x) { return 0 * x[0] + std::nan(""); };
+  const auto root = [](const auto& x) {
+    using std::sqrt;
+    return sqrt(-1 - x[0] * x[0]);
+  };
+  CHECK(message(arm.pose(start), constant) == all + at_start);
+  CHECK(message(arm.pose(start), root) == all + at_start);
+  CHECK(message(position_goal({.5, 0, .5}), root).starts_with(all + " joints ("));
+  // Nothing is found: the objective was not asked.
+  CHECK(inverse_kinematics(arm, position_goal({3, 0, 0}), start, {.restarts = 1}, root).reason ==
+        stop_reason::out_of_reach);
+
+  const equation_goal nowhere{[]<class S>(const dual_quaternion<S>& a) {
+    return std::array<S, 6>{translation(a).norm() * std::nan("")};
+  }};
+  const std::string goal = " is nan wherever it was looked at, as at the" + at_start;
+  CHECK(message(nowhere, no_objective{}) == "duet: inverse_kinematics: the goal" + goal);
+  CHECK(message(nowhere, preferred_posture{start}) == "duet: inverse_kinematics: the goal" + goal);
+  std::vector<inverse_kinematics_result<chain::joints>> out(2);
+  CHECK(duet_test::message_of<invalid_input>([&] {
+          inverse_kinematics(arm, std::vector{nowhere, nowhere}, start, out);
+        }) == "duet: inverse_kinematics: goal 0" + goal);
+
+  // Nan on one side: from there, too, the other one is found.
+  vector other = start;
+  other[0] = -.5;
+  const auto half = [](const auto& x) {
+    using std::sqrt;
+    return x[0] + sqrt(x[0]);
+  };
+  const auto found = inverse_kinematics(arm, position_goal({.45, .1, .25}), other, {}, half);
+  CHECK(found.reason == stop_reason::reached);
+  CHECK(found.joints[0] >= 0);
+  const equation_goal beyond{[]<class S>(const dual_quaternion<S>& a) {
+    using std::log;
+    return std::array<S, 6>{log(translation(a)[1] / .2)};
+  }};
+  const auto side = inverse_kinematics(arm, beyond, other);
+  CHECK(translation(arm.pose(other))[1] < 0);
+  CHECK(side.reason == stop_reason::reached);
+  CHECK(std::abs(translation(arm.pose(side.joints))[1] - .2) < 1e-5);
 }
 
 } // namespace test_planning_wanted_solution

@@ -55,6 +55,7 @@ template <class C, class Start, class Objective, class Scene>
                                             const path_function& target, std::vector<double> stops,
                                             const plan_options& options, const Objective& objective,
                                             const Scene& around, bool may_be_out_of_reach = false) {
+  static_assert(objective_type<Objective>::is_good);
   constexpr int room = joint_room(C::joints);
   using vector = small_vector<room>;
   require_options(options);
@@ -68,6 +69,10 @@ template <class C, class Start, class Objective, class Scene>
   require(options.tolerance.times(gap) <= 1, "duet: follow_path: the path begins ", gap.length,
           " units of length and ", gap.angle, " rad away from the tip at the start");
   model.require_clearance(theta, options.tolerance.length);
+  if (const auto joints = own_joints(chain, planned_joints<room>(start, chain.size()));
+      is_nan_at(objective, joints)) {
+    fail_not_a_number("duet: follow_path: the objective is nan at the start,", joints);
+  }
   std::function<vector(const vector&)> slope;
   if constexpr (!std::same_as<Objective, no_objective>) {
     slope = [&](const vector& x) {

@@ -18,6 +18,7 @@
 #include <duet/planning/tip_goal.hpp>
 #include <duet/quaternion/norm.hpp>
 
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <ranges>
@@ -89,6 +90,7 @@ private:
 /// The search for the solutions that are wanted, of one goal after the other.
 template <class C, class Start, class Objective, class Scene>
 class wanted_solutions {
+  static_assert(objective_type<Objective>::is_good);
   static constexpr int room = joint_room(C::joints);
   static constexpr bool is_among_obstacles = std::same_as<Scene, scene>;
   using model = std::conditional_t<is_among_obstacles, chain_among_obstacles<C>, chain_model<C>>;
@@ -104,21 +106,42 @@ public:
   }
   wanted_solutions(const wanted_solutions&) = delete;
 
-  template <TipGoal G>
-  [[nodiscard]] result operator()(const G& goal) const {
+  /// \param name  which goal it is, called for messages
+  /// \throws invalid_input where the goal, or the objective, is nan wherever it was looked at
+  template <TipGoal G, class Name>
+  [[nodiscard]] result operator()(const G& goal, const Name& name) const {
     constexpr bool has_wishes = !std::same_as<Objective, no_objective> || is_among_obstacles;
     const auto x = search_(tip_goal_of<G>(goal, model_.length), has_wishes ? &wishes_ : nullptr);
+    require_numbers(x, name);
     return {own_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
             model_.given_deviation(x.left), x.iterations, x.restarts, x.reason};
   }
-  [[nodiscard]] result operator()(const dual_quaternion<double>& goal) const {
+  template <class Name>
+  [[nodiscard]] result operator()(const dual_quaternion<double>& goal, const Name& name) const {
     if (model_.reach.is_beyond(model_.place(goal), model_.tolerance(options_.tolerance))) {
       return inverse_kinematics(model_.chain(), goal, start_, options_);
     }
-    return (*this)(whole_pose{place_of(normalized(goal))});
+    return (*this)(whole_pose{place_of(normalized(goal))}, name);
   }
 
 private:
+  /// The best that was found is nan only where all is.
+  template <class Name>
+  void require_numbers(const typename solution_search<room>::attempt& x, const Name& name) const {
+    const auto fail = [&](const std::string& what) {
+      fail_not_a_number("duet: inverse_kinematics: " + what,
+                        own_joints(model_.chain(), model_.given_joints(x.joints)));
+    };
+    if (std::isnan(x.left.length) || std::isnan(x.left.angle)) {
+      if (std::isfinite(length_of(model_.at(x.joints).tip.translation))) { // no overflow
+        fail(name() + " is nan wherever it was looked at, as at the");
+      }
+    }
+    if (x.reason == stop_reason::reached && std::isnan(wishes_.objective(x.joints))) {
+      fail("the objective is nan at all solutions that were found, as at the");
+    }
+  }
+
   const Start& start_;
   const inverse_kinematics_options& options_;
   model model_;
@@ -150,7 +173,9 @@ void find_wanted_solutions(const C& chain, std::span<const G> goals, const Start
     check_goal(goals[i], "goal " + std::to_string(i));
   }
   parallel_for(
-      goals.size(), [&](std::size_t i) { out[i] = solve(goals[i]); }, how);
+      goals.size(),
+      [&](std::size_t i) { out[i] = solve(goals[i], [&] { return "goal " + std::to_string(i); }); },
+      how);
 }
 
 } // namespace detail
@@ -179,7 +204,7 @@ inverse_kinematics(const C& chain, const G& goal, const Start& start,
   const detail::wanted_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
                                                                    around);
   detail::check_goal(goal, "the region");
-  return solve(goal);
+  return solve(goal, [] { return std::string("the goal"); });
 }
 
 /// Joint coordinates that take the tip of a chain to a pose, with an objective or among obstacles
@@ -192,7 +217,7 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
   const detail::wanted_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
                                                                    around);
   detail::check_goal(goal, "the goal");
-  return solve(goal);
+  return solve(goal, [] { return std::string("the goal"); });
 }
 
 /// out[i] = inverse_kinematics(chain, goals[i], start, options, objective, around) of goals in

@@ -28,6 +28,11 @@ namespace duet {
 
 namespace detail {
 
+/// a < b; what is nan is more than any number.
+[[nodiscard]] inline bool is_less(double a, double b) {
+  return a < b || (std::isnan(b) && !std::isnan(a));
+}
+
 /// What all searches for configurations of a chain have in common.
 ///
 /// \tparam Goal  a pose, or what has a `set_equations` and an `is_beyond` of its own
@@ -250,7 +255,7 @@ inverse_kinematics_search<Room, Goal>::operator()(const Goal& goal) const {
     const attempt next = search(configuration(random));
     iterations += next.iterations;
     ++restarts;
-    if (!(best.error <= next.error)) { // nor is it a number if coordinates overflow
+    if (is_less(next.error, best.error)) {
       best = next;
     }
   }

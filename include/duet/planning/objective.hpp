@@ -9,11 +9,15 @@
 #include <Eigen/Core>
 
 #include <cmath>
+#include <concepts>
+#include <string>
 
 /// \file
 /// What joints are to lower where the tip leaves them free.
 
 namespace duet {
+
+struct scene;
 
 /// No wish.
 struct no_objective {};
@@ -44,6 +48,14 @@ preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
 
 namespace detail {
 
+/// Looks at types before anything is made of them, as compilers would complain of that first.
+template <class Objective>
+struct objective_type {
+  static_assert(!std::same_as<Objective, scene>,
+                "duet: a scene stands where the objective belongs: no_objective{} comes before it");
+  static constexpr bool is_good = true;
+};
+
 /// \throws invalid_input for a posture of another number of joints, or what is not finite in it
 template <class Objective>
 void require_objective(const Objective&, int) {}
@@ -56,6 +68,28 @@ void require_objective(const preferred_posture<V>& wish, int joints) {
             wish.posture[i]);
   }
   require(std::isfinite(wish.weight), "duet: preferred_posture: its weight is ", wish.weight);
+}
+
+/// Says that what a caller was given is nan, and at which joint coordinates.
+/// \param what  "duet: follow_path: the objective is nan at the start,"
+/// \throws invalid_input
+template <class X>
+[[noreturn]] DUET_COLD void fail_not_a_number(const std::string& what, const X& joints) {
+  std::string text;
+  for (Eigen::Index i = 0; i < joints.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + message(joints[i]);
+  }
+  raise(invalid_input(what + " joints (" + text + ")"));
+}
+
+/// Is an objective nan at joint coordinates?
+template <class Objective, class X>
+[[nodiscard]] bool is_nan_at(const Objective& objective, const X& joints) {
+  if constexpr (requires { double(objective(joints)); }) {
+    return std::isnan(double(objective(joints)));
+  } else { // what has a gradient alone is enough for `follow_path`
+    return false;
+  }
 }
 
 /// The gradient of an objective: its own, or by dual numbers.

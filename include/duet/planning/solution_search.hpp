@@ -45,7 +45,7 @@ private:
         other[i] += way;
         const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
         const double value = turn > 0 && is_within ? wishes.objective(other) : least;
-        if (value < least) {
+        if (is_less(value, least)) {
           theta = other;
           least = value;
         }
@@ -80,14 +80,14 @@ solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Ro
         next.joints = turned(next.joints, *wishes);
       }
       const auto refined = refine(next.joints, options_.iterations);
-      if (refined && (best.reason != stop_reason::reached || refined->value < least)) {
+      if (refined && (best.reason != stop_reason::reached || is_less(refined->value, least))) {
         best = {refined->theta, refined->left, 0, 0, 0, stop_reason::reached};
         least = refined->value;
       }
       candidates += refined.has_value();
       next.reason = stop_reason::obstacle;
     }
-    if (best.reason != stop_reason::reached && !(best.error <= next.error)) {
+    if (best.reason != stop_reason::reached && (restarts == 0 || is_less(next.error, best.error))) {
       best = next;
     }
     if (restarts == options_.restarts || candidates == options_.candidates ||

@@ -8,6 +8,7 @@
 #include <duet/planning/all_inverse_kinematics.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/motion_plan.hpp>
+#include <duet/planning/objective.hpp>
 #include <duet/planning/path_step.hpp>
 #include <duet/planning/start_candidates.hpp>
 #include <duet/planning/start_problem.hpp>
@@ -53,7 +54,7 @@ public:
       const joints other = turned_back(start, plan);
       const bool is_known = std::any_of(candidates.begin(), candidates.end(),
                                         [&](const candidate& each) { return each.start == other; });
-      if (!is_known) {
+      if (!is_known && !std::isnan(cost(other))) {
         candidates.push_back({other, 1, 0});
       }
       if (keep(result, std::move(plan))) {
@@ -83,16 +84,24 @@ private:
     return of.reason == stop_reason::reached;
   }
 
-  /// The best of each family, then the second best …; what is near another one is left out.
+  /// The best of each family, then the second best …; what is near another one is left out, and
+  /// where the objective is nan.
+  /// \throws invalid_input where it is nan at all of them
   [[nodiscard]] std::vector<candidate> candidates_at(const dual_quaternion<double>& pose) const {
     std::vector<candidate> result;
+    std::vector<joints> unknown;
     const auto is_before = [](const candidate& a, const candidate& b) {
       return a.rank != b.rank ? a.rank < b.rank : a.cost < b.cost;
     };
     for (const auto& family : solutions_.at(pose, options_.resolution)) {
       std::vector<candidate> all;
       for (const joints& x : family) {
-        all.push_back({x, 0, cost(x)});
+        const double value = cost(x);
+        if (std::isnan(value)) {
+          unknown.push_back(x);
+        } else {
+          all.push_back({x, 0, value});
+        }
       }
       std::sort(all.begin(), all.end(), is_before);
       std::vector<candidate> chosen;
@@ -106,6 +115,10 @@ private:
         }
       }
       result.insert(result.end(), chosen.begin(), chosen.end());
+    }
+    if (result.empty() && !unknown.empty()) {
+      fail_not_a_number("duet: choose_start: the objective is nan at all starts, as at the",
+                        unknown[0]);
     }
     std::sort(result.begin(), result.end(), is_before);
     return result;

@@ -1,0 +1,28 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+// expect: duet: a scene stands where the objective belongs: no_objective{} comes before it
+// forms: 4
+
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/choose_start.hpp>
+#include <duet/planning/follow_path.hpp>
+#include <duet/planning/goals.hpp>
+
+int main() {
+  using namespace duet;
+  const auto arm = robots::panda();
+  const Eigen::Matrix<double, 7, 1> start = Eigen::Matrix<double, 7, 1>::Zero();
+  const auto goal = arm.pose(start);
+  const auto path = [&](double) { return goal; };
+  const scene around;
+#if DUET_MUST_FAIL == 1
+  static_cast<void>(inverse_kinematics(arm, goal, start, {}, around));
+#elif DUET_MUST_FAIL == 2
+  static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {}, around));
+#elif DUET_MUST_FAIL == 3
+  static_cast<void>(follow_path(arm, start, path, 0, 1, {}, around));
+#elif DUET_MUST_FAIL == 4
+  static_cast<void>(choose_start(arm, path, 0, 1, {}, around));
+#else
+  static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, around));
+#endif
+}
