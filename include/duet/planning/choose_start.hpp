@@ -99,7 +99,8 @@ chosen_start(const C& chain, const path_function& path, double first, double las
 /// \param objective  as of `follow_path`
 /// \param around     a `scene`
 /// \return `start_choice`
-/// \throws invalid_input as `follow_path`
+/// \throws invalid_input as `follow_path`, and for an objective that is nan at all starts; those
+/// where it is are none
 template <SerialChain C, PosePath Path, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] start_choice<C::joints> choose_start(const C& chain, const Path& path, double first,
                                                    double last, const start_options& options = {},

@@ -152,8 +152,8 @@ template <PosePath Path>
 /// \return the plan, its `tau` the parameter; where `reason` is not `reached`, the part up to there
 /// \throws invalid_input for a start outside the limits or of another size, a path that does not
 ///         begin at the tip or goes nowhere, what is no pose, options out of range, a preferred
-///         posture of another size or not finite, a `scene` that is none and one that is too close
-///         at the start
+///         posture of another size or not finite, an objective that is nan at the start, a `scene`
+///         that is none and one that is too close at the start
 template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_objective,
           class Scene = no_scene>
 [[nodiscard]] motion_plan<C::joints>

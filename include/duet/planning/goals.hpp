@@ -194,7 +194,9 @@ void find_wanted_solutions(const C& chain, std::span<const G> goals, const Start
 /// \return the joints, as of poses; `deviation` is what rows of lengths and of angles miss.
 /// `obstacle`: the goal was reached, but too close to obstacles; the joints are such ones
 /// \throws invalid_input as for poses, for a region that holds no pose, a preferred posture of
-/// another size or not finite and a `scene` that is none
+/// another size or not finite, a `scene` that is none, and, with joints where it is so, for a goal
+/// that is nan wherever it was looked at and an objective that is nan at all solutions that were
+/// found. Where it is nan at some, others are chosen
 template <SerialChain C, TipGoal G, VectorLike Start, class Objective = no_objective,
           class Scene = no_scene>
 [[nodiscard]] inverse_kinematics_result<C::joints>
