@@ -132,10 +132,9 @@ private:
       fail_not_a_number("duet: inverse_kinematics: " + what,
                         own_joints(model_.chain(), model_.given_joints(x.joints)));
     };
-    if (std::isnan(x.left.length) || std::isnan(x.left.angle)) {
-      if (std::isfinite(length_of(model_.at(x.joints).tip.translation))) { // no overflow
-        fail(name() + " is nan wherever it was looked at, as at the");
-      }
+    if ((std::isnan(x.left.length) || std::isnan(x.left.angle)) &&
+        std::isfinite(length_of(model_.at(x.joints).tip.translation))) { // not by overflow
+      fail(name() + " is nan wherever it was looked at, as at the");
     }
     if (x.reason == stop_reason::reached && std::isnan(wishes_.objective(x.joints))) {
       fail("the objective is nan at all solutions that were found, as at the");
@@ -189,14 +188,14 @@ void find_wanted_solutions(const C& chain, std::span<const G> goals, const Start
 /// keep its margin, to `options.tolerance.length`.
 ///
 /// \param objective  a function of θ, generic over scalars, or something with a member
-///                   `gradient(theta)` too, as `preferred_posture`
+///                   `gradient(theta)` too, as `preferred_posture`; nan is worse than any number
 /// \param around     a `scene`
 /// \return the joints, as of poses; `deviation` is what rows of lengths and of angles miss.
 /// `obstacle`: the goal was reached, but too close to obstacles; the joints are such ones
 /// \throws invalid_input as for poses, for a region that holds no pose, a preferred posture of
 /// another size or not finite, a `scene` that is none, and, with joints where it is so, for a goal
 /// that is nan wherever it was looked at and an objective that is nan at all solutions that were
-/// found. Where it is nan at some, others are chosen
+/// found
 template <SerialChain C, TipGoal G, VectorLike Start, class Objective = no_objective,
           class Scene = no_scene>
 [[nodiscard]] inverse_kinematics_result<C::joints>
