@@ -60,7 +60,7 @@ template <class C, class Objective, class Scene, class Follow>
 chosen_start(const C& chain, const path_function& path, double first, double last,
              const start_options& options, const Objective& objective, const Scene& around,
              const Follow& follow) {
-  static_assert(objective_type<Objective>::is_good);
+  static_assert(planning_types<Objective, Scene>::are_good);
   require_options(options);
   require_objective(objective, chain.size());
   constexpr int room = std::max(16, joint_room(C::joints)); // 16 is compiled once

@@ -55,7 +55,7 @@ template <class C, class Start, class Objective, class Scene>
                                             const path_function& target, std::vector<double> stops,
                                             const plan_options& options, const Objective& objective,
                                             const Scene& around, bool may_be_out_of_reach = false) {
-  static_assert(objective_type<Objective>::is_good);
+  static_assert(planning_types<Objective, Scene>::are_good);
   constexpr int room = joint_room(C::joints);
   using vector = small_vector<room>;
   require_options(options);

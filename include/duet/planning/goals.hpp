@@ -90,7 +90,7 @@ private:
 /// The search for the solutions that are wanted, of one goal after the other.
 template <class C, class Start, class Objective, class Scene>
 class wanted_solutions {
-  static_assert(objective_type<Objective>::is_good);
+  static_assert(planning_types<Objective, Scene>::are_good);
   static constexpr int room = joint_room(C::joints);
   static constexpr bool is_among_obstacles = std::same_as<Scene, scene>;
   using model = std::conditional_t<is_among_obstacles, chain_among_obstacles<C>, chain_model<C>>;

@@ -18,6 +18,7 @@
 namespace duet {
 
 struct scene;
+struct no_scene;
 
 /// No wish.
 struct no_objective {};
@@ -49,11 +50,14 @@ preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
 namespace detail {
 
 /// Looks at types before anything is made of them, as compilers would complain of that first.
-template <class Objective>
-struct objective_type {
+template <class Objective, class Scene>
+struct planning_types {
   static_assert(!std::same_as<Objective, scene>,
                 "duet: a scene stands where the objective belongs: no_objective{} comes before it");
-  static constexpr bool is_good = true;
+  static_assert(
+      std::same_as<Scene, scene> || std::same_as<Scene, no_scene>,
+      "duet: what stands where the scene belongs is none: obstacles are given as a scene");
+  static constexpr bool are_good = true;
 };
 
 /// \throws invalid_input for a posture of another number of joints, or what is not finite in it

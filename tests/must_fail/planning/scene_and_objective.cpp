@@ -1,11 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: a scene stands where the objective belongs: no_objective{} comes before it
-// forms: 4
+// expect: duet: (a scene stands where the objective belongs|what stands where the scene bel)
+// forms: 7
 
 #include <duet/mechanism/robots.hpp>
 #include <duet/planning/choose_start.hpp>
 #include <duet/planning/follow_path.hpp>
 #include <duet/planning/goals.hpp>
+
+#include <vector>
 
 int main() {
   using namespace duet;
@@ -14,6 +16,7 @@ int main() {
   const auto goal = arm.pose(start);
   const auto path = [&](double) { return goal; };
   const scene around;
+  const std::vector<sphere<>> spheres(1);
 #if DUET_MUST_FAIL == 1
   static_cast<void>(inverse_kinematics(arm, goal, start, {}, around));
 #elif DUET_MUST_FAIL == 2
@@ -22,6 +25,12 @@ int main() {
   static_cast<void>(follow_path(arm, start, path, 0, 1, {}, around));
 #elif DUET_MUST_FAIL == 4
   static_cast<void>(choose_start(arm, path, 0, 1, {}, around));
+#elif DUET_MUST_FAIL == 5
+  static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, spheres));
+#elif DUET_MUST_FAIL == 6
+  static_cast<void>(follow_path(arm, start, path, 0, 1, {}, no_objective{}, spheres));
+#elif DUET_MUST_FAIL == 7
+  static_cast<void>(choose_start(arm, path, 0, 1, {}, no_objective{}, spheres));
 #else
   static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, around));
 #endif
