@@ -70,6 +70,25 @@ chain with_folding_elbow(duet_test::random_source& random, double shoulder, doub
                                           {.d = random.uniform(.1, 1)}}});
 }
 
+/// The same with axes 2 and 3 not parallel, and offsets of all lengths. \param fold  the third
+/// coordinate that brings the wrist into the shoulder
+chain with_skew_elbow(duet_test::random_source& random, double& fold) {
+  const auto angle = [&] { return random.uniform(.6, 1.5); };
+  const double a2 = random.uniform(.2, 1), d2 = random.uniform(-.5, .5), alpha2 = angle(),
+               alpha3 = angle(), across = d2 * std::sin(alpha2), wrist = angle();
+  // From the third axis the shoulder is as far as the wrist, and at the same height.
+  const double distance = std::hypot(a2, across), a3 = random.uniform(-.9, .9) * distance,
+               beside = std::sqrt(distance * distance - a3 * a3), d4 = beside / std::sin(alpha3),
+               d3 = -d2 * std::cos(alpha2) - d4 * std::cos(alpha3);
+  fold = std::atan2(-across, -a2) - std::atan2(-beside, a3);
+  return from_dh(std::array<dh_row<>, 6>{{{.d = random.uniform(.1, 1), .alpha = angle()},
+                                          {.a = a2, .d = d2, .alpha = alpha2},
+                                          {.a = a3, .d = d3, .alpha = alpha3},
+                                          {.d = d4, .alpha = -wrist},
+                                          {.alpha = wrist},
+                                          {.d = random.uniform(.1, 1)}}});
+}
+
 int count_of(const result& found) {
   int count = 0;
   for (const auto& s : found.solutions) {
@@ -211,6 +230,27 @@ TEST_CASE("beside an elbow that is folded onto the shoulder") {
       }
       // Wrists at right angles make every turn, and so that which is left by any of the first two.
       CHECK((k % 2 != 0 || !found.solutions.empty()));
+    }
+  }
+}
+
+TEST_CASE("beside an elbow that is folded, with axes 2 and 3 not parallel") {
+  duet_test::random_source random(5);
+  for (int k = 0; k < 10; ++k) {
+    CAPTURE(k);
+    double fold = 0;
+    const chain arm = with_skew_elbow(random, fold);
+    joints theta = configuration(arm, random, 2, fold);
+    check_beside(arm, theta, 2, branch_method::spherical_wrist,
+                 std::span<const double>(distances).first(10));
+    for (const double away : {1e-11, 1e-12, 1e-13, 1e-14, 1e-16, 0.}) {
+      CAPTURE(away);
+      theta[2] = fold + away;
+      const result found = all_inverse_kinematics(arm, arm.pose(theta));
+      CHECK_FALSE(found.is_complete);
+      for (const auto& s : found.solutions) {
+        CHECK(s.residual <= 1e-12);
+      }
     }
   }
 }

@@ -42,8 +42,8 @@ struct inverse_kinematics_branch {
   /// Coordinates: of turning joints within (−π, π], or a turn from there where that is within the
   /// limits.
   detail::joint_vector<double, N> joints;
-  /// How far the tip is from the goal: radians, and lengths in parts of the arm's size, whichever
-  /// is larger.
+  /// How far the tip is from the goal: radians, or lengths in parts of the arm's size or of the
+  /// longest way along a slide, if that is more; whichever is larger.
   double residual = 0;
   /// Of the Jacobian in `frame::hybrid`: 0 where branches meet.
   double smallest_singular_value = 0;
@@ -130,7 +130,7 @@ public:
                                   const std::optional<slides_in_place>& in_place = {}) const {
     constexpr double rounding = 2e-13; // closed forms have more near singularities
     branch result = described(x, in_place);
-    if (!in_place && result.residual > rounding) {
+    if (!in_place && result.residual * longest_way(result.joints) > rounding) {
       loop_solution refined = x;
       static_cast<void>(close_loop(loop_, refined.theta));
       const branch other = described(refined, in_place);
@@ -148,6 +148,17 @@ public:
 
 private:
   static constexpr double as_good_as_none = 1e-8;
+
+  /// Of slides, in parts of the arm's size; at least 1.
+  [[nodiscard]] double longest_way(const joint_vector<double, C::joints>& theta) const {
+    double result = 1;
+    for (int i = 0; i < 6; ++i) {
+      if (!loop_.joints[std::size_t(i)].turns) {
+        result = std::max(result, std::abs(theta[i]) / axes_.size);
+      }
+    }
+    return result;
+  }
 
   /// To the middle of what the limits of both allow, or as little as they need, if they can.
   void slide_within_limits(joint_vector<double, C::joints>& theta,
@@ -200,7 +211,7 @@ private:
     const tip_place tip =
         attached(walk<true, double>(chain_, result.joints, 6, visit_nothing), chain_.tip().offset);
     const pose_deviation left = deviation_of(error_twist(tip, goal_));
-    result.residual = std::max(left.length / axes_.size, left.angle);
+    result.residual = std::max(left.length / (axes_.size * longest_way(result.joints)), left.angle);
     return result;
   }
 

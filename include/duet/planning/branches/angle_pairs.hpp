@@ -34,9 +34,11 @@ inline constexpr double one_angle = 3e-7;
 
 /// Calls visit(θ, multiplicity) where a + b cos θ + c sin θ = 0, and where it nearly is: the pair
 /// of zeros there may be complex by rounding alone, of a, b and c by angles that were
-/// ill-conditioned. \return false where all of it is zero but for rounding
+/// ill-conditioned.
+/// \param error  of a, b and c, if that is more than rounding
+/// \return false where all of it is zero but for rounding, or an error decides if there are zeros
 template <class Visit>
-bool visit_zeros(const turning_value& f, const Visit& visit) {
+bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
   constexpr double rounding = 1e-12, nearly = 1e-9;
   const double r = std::sqrt(f.b * f.b + f.c * f.c);
   if (!(r > rounding)) {
@@ -47,10 +49,10 @@ bool visit_zeros(const turning_value& f, const Visit& visit) {
     const double turn = std::acos(cosine);
     visit(middle + turn, 1);
     visit(middle - turn, 1);
-  } else if (std::abs(cosine) <= 1 + nearly) {
+  } else if (std::abs(cosine) <= 1 + std::max(nearly, error / r)) {
     visit(cosine > 0 ? middle : middle + std::acos(-1.), 2);
   }
-  return true;
+  return std::abs(std::abs(cosine) - 1) * r >= error;
 }
 
 /// Two equations f(θ) = g(φ).
@@ -96,12 +98,17 @@ private:
     constexpr double rounding = 1e-12;
     return std::max(f[0].square(), f[1].square()) <= rounding * rounding;
   }
-  /// θ may be any: φ by the equation that says most of it.
+  /// θ may be any: φ by the equation that says most of it, where the other one holds, too.
   template <class Visit>
   static void by_rest(const two_values& f, const two_values& g, const Visit& visit) {
+    constexpr double rounding = 1e-6; // of φ where the zeros nearly coincide
     const std::size_t k = g[0].square() >= g[1].square() ? 0 : 1;
-    static_cast<void>(visit_zeros({g[k].a - f[k].a, g[k].b, g[k].c},
-                                  [&](double phi, int m) { visit(0., phi, m); }));
+    static_cast<void>(
+        visit_zeros({g[k].a - f[k].a, g[k].b, g[k].c}, [&](double phi, int multiplicity) {
+          if (std::abs(g[1 - k].at(phi) - f[1 - k].a) < rounding) {
+            visit(0., phi, multiplicity);
+          }
+        }));
   }
 
   /// A sum of both equations has no θ.
@@ -135,21 +142,25 @@ private:
     // u + q z + q̄/z
     using complex = std::complex<double>;
     const complex q0(v[0] / 2, -w[0] / 2), q1(v[1] / 2, -w[1] / 2);
-    const circle_roots<2> roots(
-        {u[0] * u[0] + u[1] * u[1] + 2 * (std::norm(q0) + std::norm(q1)) - 1,
-         2. * (u[0] * q0 + u[1] * q1), q0 * q0 + q1 * q1});
+    const double squares = u[0] * u[0] + u[1] * u[1] + 2 * (std::norm(q0) + std::norm(q1));
+    const std::array<complex, 3> left{squares - 1, 2. * (u[0] * q0 + u[1] * q1), q0 * q0 + q1 * q1};
+    const circle_roots<2> roots(left);
+    // How much larger rounding is than that of coefficients of which the largest is 1.
+    const double noise =
+        (squares + 1) /
+        std::sqrt(std::max({std::norm(left[0]), std::norm(left[1]), std::norm(left[2])}));
     std::array<bool, 4> is_done{};
     for (int i = 0; i < 4; ++i) {
       const complex z = roots[i];
-      const double off = std::sqrt(std::norm(z)) - 1,
-                   error = std::min(1e-5, 1e-9 + 1e-13 * roots.sensitivity(i));
+      const double off = std::sqrt(std::norm(z)) - 1, sensitivity = noise * roots.sensitivity(i),
+                   error = std::min(1e-5, 1e-9 + 1e-13 * sensitivity);
       const auto visit_at = [&](double phi, int multiplicity) {
         const double c = std::cos(phi), s = std::sin(phi);
         visit(std::atan2(u[1] + v[1] * c + w[1] * s, u[0] + v[0] * c + w[0] * s), phi,
               multiplicity);
       };
       // Two zeros that nearly coincide, which rounding may have made complex: z and 1/z̄.
-      if (off > error && off < std::min(1e-4, 1e-11 * roots.sensitivity(i))) {
+      if (off > error && off < std::min(1e-2, 1e-11 * sensitivity)) {
         visit_at(std::arg(z) - off, 1);
         visit_at(std::arg(z) + off, 1);
       }

@@ -30,14 +30,11 @@ namespace duet::detail {
 [[nodiscard]] inline std::optional<vector3d> common_point(const loop_joint& a, const loop_joint& b,
                                                           const loop_joint& c) {
   constexpr double rounding = 1e-9, across = 1e-6;
-  const vector3d n = cross(a.axis, b.axis);
-  const double square = dot(n, n);
-  if (!a.turns || !b.turns || !c.turns || square < across * across ||
+  if (!a.turns || !b.turns || !c.turns || length_of(cross(a.axis, b.axis)) < across ||
       length_of(cross(b.axis, c.axis)) < across) {
     return {};
   }
-  const vector3d way = b.point - a.point;
-  const vector3d point = a.point + dot(cross(way, b.axis), n) / square * a.axis;
+  const vector3d point = nearest_point(a, b);
   const auto is_on_axis = [&](const loop_joint& j) {
     return length_of(cross(j.axis, point - j.point)) < rounding;
   };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/planning/branches/angle_pairs.hpp>
+#include <duet/planning/branches/folded_elbow.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/middle_turn.hpp>
 #include <duet/planning/branches/turns.hpp>
@@ -37,6 +38,28 @@ public:
   bool operator()(const Visit& visit) const {
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
     const vector3d goal = loop_.closing.point(centre_);
+    bool is_determined = true;
+    const auto rest = [&](double theta1, double theta2, double theta3, int m, bool is_folded) {
+      six_coordinates theta;
+      theta << theta1, theta2, theta3, 0, 0, 0;
+      bool is_met = false;
+      const double error = is_folded ? error_of(theta) : 0;
+      const bool is_chosen = !(error < .1); // θ₁ and θ₂ may be anything
+      is_determined = wrist(theta, m, is_chosen ? 0 : error,
+                            [&](const six_coordinates& all, int multiplicity) {
+                              is_met = true;
+                              visit(all, multiplicity);
+                            }) &&
+                      is_determined;
+      return is_met;
+    };
+    const fold folded =
+        visit_folded(loop_, centre_, goal, [&](double theta1, double theta2, double theta3, int m) {
+          return rest(theta1, theta2, theta3, m, true);
+        });
+    if (folded.is_visited) {
+      return folded.is_certain && is_determined;
+    }
     // In a frame with its origin on the second axis: those points e₃ c and e₁⁻¹ goal agree along
     // that axis, and in their squares.
     const turned_vector from(third.axis, centre_ - third.point, third.point - second.point);
@@ -48,30 +71,30 @@ public:
     };
     const angle_pairs pairs{{height(to), square(to)}, {height(from), square(from)}};
     middle_turn middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
-    bool is_determined = true;
     const bool has_pairs = pairs([&](double near1, double near3, int m) {
       middle(near3, near1, m, [&](double theta3, double theta1, double theta2, int multiplicity) {
-        six_coordinates theta;
-        theta << theta1, theta2, theta3, 0, 0, 0;
-        is_determined = wrist(theta, multiplicity, visit) && is_determined;
+        rest(theta1, theta2, theta3, multiplicity, false);
       });
     });
-    return has_pairs && middle.nearest() > 0 && is_determined;
+    return has_pairs && middle.nearest() > 0 && is_determined && folded.is_certain;
   }
 
 private:
+  /// \param error  of the first three coordinates, if that is more than rounding
   template <class Visit>
-  bool wrist(six_coordinates& theta, int multiplicity, const Visit& visit) const {
+  bool wrist(six_coordinates& theta, int multiplicity, double error, const Visit& visit) const {
     const quaternion<double> turn =
         conj(product_of_joints(loop_, theta, 0, 3).rotation) * loop_.closing.rotation;
-    const double nearest =
-        visit_three_turns(loop_.joints[3], loop_.joints[4], loop_.joints[5], turn,
-                          [&](double alpha, double beta, double gamma, int m) {
-                            theta.tail<3>() << alpha, beta, gamma;
-                            visit(theta, multiplicity * m);
-                          });
+    const double nearest = visit_three_turns(
+        loop_.joints[3], loop_.joints[4], loop_.joints[5], turn,
+        [&](double alpha, double beta, double gamma, int m) {
+          theta.tail<3>() << alpha, beta, gamma;
+          visit(theta, multiplicity * m);
+        },
+        error);
     constexpr double close_by = 1e-3;
-    return nearest > close_by || (nearest > 0 && nearest > error_of(theta));
+    return error > 0 ? nearest > std::max(2 * close_by, error)
+                     : nearest > close_by || (nearest > 0 && nearest > error_of(theta));
   }
 
   /// Of the first three coordinates, by rounding of where the centre is.

@@ -90,8 +90,9 @@ template <class System>
 
 /// What one order of a loop says of the number of its solutions.
 struct solution_count {
-  int real = 0; ///< zeros that are real, but for rounding
-  int all = 0;  ///< complex ones included
+  int real = 0;         ///< zeros that are real, but for rounding
+  int all = 0;          ///< complex ones included
+  bool is_known = true; ///< are zeros near the circle known well enough to tell them apart?
 };
 
 /// Adds the solutions that one order of a loop leads to.
@@ -115,6 +116,7 @@ template <class System>
     result.all += distance < 9; // others are at infinity
     if (distance < farthest) {
       candidates.push_back(i);
+      result.is_known = result.is_known && rounding * roots.sensitivity(i) < farthest;
     }
   }
   std::sort(candidates.begin(), candidates.end(),
@@ -161,7 +163,8 @@ template <class System>
     }
     expected = std::max(expected, count.real);
     all = all == 0 ? count.all : std::min(all, count.all);
-    agreeing = agreeing > 0 && found.count() == before ? agreeing + 1 : 1;
+    const int others = found.count() == before ? agreeing : 0;
+    agreeing = count.is_known ? others + 1 : others;
     if (found.count() >= expected && found.count() % 2 == 0 && agreeing >= needed) {
       result.is_complete = true;
       break;

@@ -38,6 +38,12 @@ struct loop_joint {
   return {j.turns, rotated(by.rotation, j.axis), by.point(j.point)};
 }
 
+/// The point on the axis of `a` that is nearest to that of `b`.
+[[nodiscard]] inline three_vector<double> nearest_point(const loop_joint& a, const loop_joint& b) {
+  const three_vector<double> n = cross(a.axis, b.axis);
+  return a.point + dot(cross(b.point - a.point, b.axis), n) / dot(n, n) * a.axis;
+}
+
 using six_coordinates = Eigen::Matrix<double, 6, 1>;
 using six_columns = Eigen::Matrix<double, 6, 6>;
 

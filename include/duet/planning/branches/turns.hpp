@@ -9,6 +9,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 /// \file
@@ -33,29 +34,44 @@ namespace duet::detail {
          turn_about(b, halves.sine(1), halves.cosine(1));
 }
 
+/// Calls visit(α, β, multiplicity) where turns by β about b, then by α about a, take one unit
+/// vector to another.
+/// \param error  of the vectors, if that is more than rounding
+/// \return how far that has been from the axis a, at least; 0 where α or β are undetermined; with
+/// an error, which tells complex angles next to a from real ones, how far it is to be
+template <class Visit>
+double visit_two_turns(const vector3d& a, const vector3d& b, const vector3d& from,
+                       const vector3d& to, const Visit& visit, double error = 0) {
+  const turned_vector by_b(b, from);
+  middle_turn first(a, by_b, to);
+  const bool has_beta = visit_zeros(
+      {dot(a, by_b.along) - dot(a, to), dot(a, by_b.across), dot(a, by_b.beside)},
+      [&](double near_beta, int near_multiplicity) {
+        first(near_beta, 0, near_multiplicity,
+              [&](double beta, double, double alpha, int m) { visit(alpha, beta, m); });
+      },
+      error);
+  return !has_beta   ? 0
+         : error > 0 ? std::min(first.nearest(), length_of(cross(a, to)))
+                     : first.nearest();
+}
+
 /// Calls visit(α, β, γ, multiplicity) where turns by α, β and γ about the axes of three joints are,
 /// one after the other, a given one.
+/// \param error  of that one, if that is more than rounding
 /// \return how far the last axis has been from the first, at least, as the sine of the angle
 /// between them; 0 where α or β are undetermined
 template <class Visit>
 double visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_joint& c,
-                         const quaternion<double>& turn, const Visit& visit) {
+                         const quaternion<double>& turn, const Visit& visit, double error = 0) {
   // The last axis stays where it is in the last turn, the angle between it and the first in that.
-  const turned_vector last(b.axis, c.axis);
-  const vector3d goal = rotated(turn, c.axis);
-  middle_turn first(a.axis, last, goal);
-  const bool has_beta =
-      visit_zeros({dot(a.axis, last.along) - dot(a.axis, goal), dot(a.axis, last.across),
-                   dot(a.axis, last.beside)},
-                  [&](double near_beta, int near_multiplicity) {
-                    first(near_beta, 0, near_multiplicity,
-                          [&](double beta, double, double alpha, int multiplicity) {
-                            const quaternion<double> before =
-                                two_turns(a.axis, alpha, b.axis, beta);
-                            visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
-                          });
-                  });
-  return has_beta ? first.nearest() : 0;
+  return visit_two_turns(
+      a.axis, b.axis, c.axis, rotated(turn, c.axis),
+      [&](double alpha, double beta, int multiplicity) {
+        const quaternion<double> before = two_turns(a.axis, alpha, b.axis, beta);
+        visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
+      },
+      error);
 }
 
 } // namespace duet::detail
