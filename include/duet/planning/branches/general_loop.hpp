@@ -146,16 +146,14 @@ template <class System>
 }
 
 /// All solutions of a loop by a system of equations. They are complete where as many are found as
-/// there are real zeros; else the next order is tried. Axes that meet or are parallel may hide
-/// solutions from an order: then two have to agree.
+/// there are real zeros, and a second order of the joints finds no others: axes that meet or are
+/// parallel may hide solutions from an order, and rounding a pair in some 1e6.
 template <class System>
 [[nodiscard]] loop_answer solve_general_loop(const joint_loop& loop) {
   loop_solutions found(loop);
   loop_answer result;
-  const auto orders = orders_of<System>(loop);
-  const int needed = orders.size() < 8 ? 2 : 1; // of 12, or of 8 where joints slide
   int expected = 0, all = 0, agreeing = 0;
-  for (const loop_order& order : orders) {
+  for (const loop_order& order : orders_of<System>(loop)) {
     const int before = found.count();
     const solution_count count = solve_in_order<System>(order, found);
     if (count.all == 0) {
@@ -165,7 +163,7 @@ template <class System>
     all = all == 0 ? count.all : std::min(all, count.all);
     const int others = found.count() == before ? agreeing : 0;
     agreeing = count.is_known ? others + 1 : others;
-    if (found.count() >= expected && found.count() % 2 == 0 && agreeing >= needed) {
+    if (found.count() >= expected && found.count() % 2 == 0 && agreeing >= 2) {
       result.is_complete = true;
       break;
     }
