@@ -8,6 +8,8 @@
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/all_inverse_kinematics.hpp>
+#include <duet/planning/branches/chain_loop.hpp>
+#include <duet/planning/branches/folded_elbow.hpp>
 
 #include <doctest/doctest.h>
 
@@ -17,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <span>
 
@@ -76,7 +79,8 @@ struct skew_elbow {
   double fold; ///< the third coordinate that brings the wrist into the shoulder
 };
 /// \param miss  by which it comes no nearer than that
-skew_elbow with_skew_elbow(duet_test::random_source& random, double miss) {
+/// \param apart  how far the axes of the shoulder are
+skew_elbow with_skew_elbow(duet_test::random_source& random, double miss, double apart = 0) {
   const auto angle = [&] { return random.uniform(.6, 1.5); };
   const double a2 = random.uniform(.2, 1), d2 = random.uniform(-.5, .5), alpha2 = angle(),
                alpha3 = angle(), across = d2 * std::sin(alpha2), wrist = angle();
@@ -84,7 +88,7 @@ skew_elbow with_skew_elbow(duet_test::random_source& random, double miss) {
   const double distance = std::hypot(a2, across), a3 = random.uniform(-.9, .9) * distance,
                beside = std::sqrt(distance * distance - a3 * a3), d4 = beside / std::sin(alpha3),
                d3 = -d2 * std::cos(alpha2) - d4 * std::cos(alpha3);
-  return {{{{.d = random.uniform(.1, 1), .alpha = angle()},
+  return {{{{.a = apart, .d = random.uniform(.1, 1), .alpha = angle()},
             {.a = a2, .d = d2, .alpha = alpha2},
             {.a = a3, .d = d3 + miss, .alpha = alpha3},
             {.d = d4, .alpha = -wrist},
@@ -129,26 +133,41 @@ wide_joints way_to(const dual_quaternion<real_50>& goal, const dual_quaternion<r
   return twist;
 }
 
-/// The solution in 50 digits that θ is near to, by the Jacobian at θ.
+/// How far before the tip, along its z axis, that of the sixth joint, the fifth axis goes by.
+double wrist_of(const chain& arm) {
+  const detail::chain_axes axes(arm, joints::Zero().eval(), -1);
+  const auto to_wrist = axes.size * detail::nearest_point(axes.joints[5], axes.joints[4]) +
+                        axes.middle - axes.tip.translation;
+  return dot(axes.joints[5].axis, to_wrist);
+}
+
+/// The solution in 50 digits that θ is near to, by Newton's method for where the wrist is: of the
+/// tip's way turns of the wrist are a part, whose squares are larger than a fold.
 wide_joints exact_solution(const chain& arm, const dual_quaternion<real_50>& goal,
                            const joints& theta) {
-  const Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>> lu(jacobian(arm, theta, frame::hybrid));
+  const auto to_wrist = pose(quaternion<real_50>(real_50(1)),
+                             vector3<real_50>(real_50(0), real_50(0), real_50(wrist_of(arm))));
   wide_joints exact = theta.cast<real_50>();
-  for (int k = 0; k < 60; ++k) {
-    const wide_joints way = way_to(goal, arm.pose(exact));
-    const double size = double(way.norm());
-    if (size < 1e-40) {
+  for (int k = 0; k < 12; ++k) {
+    const auto tip = arm.pose(exact);
+    const wide_joints way = way_to(goal * to_wrist, tip * to_wrist);
+    if (way.norm() < 1e-40) {
       break;
     }
-    const joints step = lu.solve((way / size).cast<double>());
-    exact += real_50(size) * step.cast<real_50>();
+    const Eigen::Matrix<real_50, 3, 1> lever = translation(tip * to_wrist) - translation(tip);
+    Eigen::Matrix<real_50, 6, 6> all = jacobian(arm, exact, frame::hybrid);
+    for (int i = 0; i < 6; ++i) {
+      all.col(i).head<3>() += all.col(i).tail<3>().cross(lever);
+    }
+    exact += all.partialPivLu().solve(way);
   }
   return exact;
 }
 
 /// \param joint  whose coordinate is how far θ is from a singularity
+/// \param certain  as near as that it has to be certain that there are no others
 void check_beside(const chain& arm, joints theta, int joint, branch_method method,
-                  std::span<const double> how_far = distances) {
+                  double certain = 1e-12, std::span<const double> how_far = distances) {
   const double singular = theta[joint];
   for (const double side : {1., -1.}) {
     theta[joint] = singular + side * 2e-3;
@@ -164,7 +183,7 @@ void check_beside(const chain& arm, joints theta, int joint, branch_method metho
         CHECK(s.residual <= 1e-12);
       }
       const bool is_certain = away >= 1e-12;
-      CHECK(found.is_complete == is_certain);
+      CHECK((found.is_complete == is_certain || (is_certain && away < certain)));
       if (!is_certain) { // the joints move with the tip in place
         continue;
       }
@@ -178,7 +197,7 @@ void check_beside(const chain& arm, joints theta, int joint, branch_method metho
         const wide_joints exact = exact_solution(arm, goal, s.joints);
         CHECK(double(way_to(goal, arm.pose(exact)).norm()) < 1e-35);
         CHECK(distance(exact.cast<double>(), s.joints) < rounding);
-        met += distance(theta, s.joints) < rounding;
+        met += distance(theta, s.joints) < std::min(rounding, .05); // others are .1 away
         for (const auto& other : found.solutions) {
           CHECK((&s == &other || distance(s.joints, other.joints) > .1));
         }
@@ -225,26 +244,29 @@ TEST_CASE("beside the singularity of a wrist after three parallel axes") {
   }
 }
 
+void check_beside_fold(const chain& arm, int elbow, double fold, duet_test::random_source& random) {
+  const std::span<const double> down_to_1e_12 = std::span(distances).first(12);
+  joints theta = configuration(arm, random, elbow, fold);
+  check_beside(arm, theta, elbow, branch_method::spherical_wrist, 1e-8, down_to_1e_12);
+  for (const double away : {1e-14, 1e-16, 0.}) { // the joints move with the tip in place
+    CAPTURE(away);
+    theta[elbow] = fold + away;
+    const result found = all_inverse_kinematics(arm, arm.pose(theta));
+    CHECK_FALSE(found.is_complete);
+    CHECK_FALSE(found.solutions.empty());
+    for (const auto& s : found.solutions) {
+      CHECK(s.residual <= 1e-12);
+    }
+  }
+}
+
 TEST_CASE("beside an elbow that is folded onto the shoulder") {
   duet_test::random_source random(4);
-  const std::span<const double> down_to_1e_10 = std::span(distances).first(10);
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
     const double shoulder = k < 3 ? pi / 2 : random.uniform(.6, 1.5),
                  wrist = k % 2 == 0 ? pi / 2 : random.uniform(.6, 1.5);
-    const chain arm = with_folding_elbow(random, shoulder, wrist);
-    joints theta = configuration(arm, random, 2, -pi / 2);
-    check_beside(arm, theta, 2, branch_method::spherical_wrist, down_to_1e_10);
-    for (const double away : {1e-13, 1e-14, 1e-16, 0.}) { // the joints move with the tip in place
-      theta[2] = -pi / 2 + away;
-      const result found = all_inverse_kinematics(arm, arm.pose(theta));
-      CHECK_FALSE(found.is_complete);
-      for (const auto& s : found.solutions) {
-        CHECK(s.residual <= 1e-12);
-      }
-      // Wrists at right angles make every turn, and so that which is left by any of the first two.
-      CHECK((k % 2 != 0 || !found.solutions.empty()));
-    }
+    check_beside_fold(with_folding_elbow(random, shoulder, wrist), 2, -pi / 2, random);
   }
 }
 
@@ -252,29 +274,110 @@ TEST_CASE("beside an elbow that is folded, with axes 2 and 3 not parallel") {
   duet_test::random_source random(5);
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
-    const double miss = k < 6 ? 0 : 1e-5;
-    auto [rows, fold] = with_skew_elbow(random, miss);
-    const int joint = k % 2 == 0 ? 2 : 3;
-    if (joint == 3) {
-      rows = mirrored(rows);
-      fold = -fold;
-    }
-    const chain arm = from_dh(rows);
-    joints theta = configuration(arm, random, joint, fold);
-    check_beside(arm, theta, joint, branch_method::spherical_wrist,
-                 std::span<const double>(distances).first(miss == 0 ? 10 : 3));
-    if (miss > 0) {
-      continue;
-    }
-    for (const double away : {1e-11, 1e-12, 1e-13, 1e-14, 1e-16, 0.}) {
+    const auto [rows, fold] = with_skew_elbow(random, 0);
+    check_beside_fold(from_dh(rows), 2, fold, random);
+  }
+}
+
+TEST_CASE("beside an elbow that folds a wrist of two axes onto a shoulder of three") {
+  duet_test::random_source random(6);
+  for (int k = 0; k < 10; ++k) {
+    CAPTURE(k);
+    const auto [rows, fold] = with_skew_elbow(random, 0);
+    check_beside_fold(from_dh(mirrored(rows)), 3, -fold, random);
+  }
+}
+
+TEST_CASE("beside a fold that comes no nearer than 1e-5") {
+  duet_test::random_source random(10);
+  for (int k = 0; k < 10; ++k) {
+    CAPTURE(k);
+    const auto [rows, fold] = with_skew_elbow(random, 1e-5);
+    const bool is_shoulder = k % 2 == 0;
+    const chain arm = from_dh(is_shoulder ? rows : mirrored(rows));
+    const int elbow = is_shoulder ? 2 : 3;
+    joints theta = configuration(arm, random, elbow, is_shoulder ? fold : -fold);
+    for (const double away : {1e-3, -3e-4, 1e-4, -3e-5}) {
       CAPTURE(away);
-      theta[joint] = fold + away;
+      theta[elbow] = (is_shoulder ? fold : -fold) + away;
       const result found = all_inverse_kinematics(arm, arm.pose(theta));
-      CHECK_FALSE(found.is_complete);
+      CHECK(found.is_complete);
+      CHECK(count_of(found) % 2 == 0);
+      const auto goal = arm.pose(wide_joints(theta.cast<real_50>()));
+      int met = 0;
       for (const auto& s : found.solutions) {
-        CHECK(s.residual <= 1e-12);
+        const double rounding = (1e-14 + 2 * s.residual) / s.smallest_singular_value;
+        const wide_joints exact = exact_solution(arm, goal, s.joints);
+        CHECK(distance(exact.cast<double>(), s.joints) < rounding);
+        met += distance(theta, s.joints) < rounding;
       }
+      CHECK(met == 1);
     }
+  }
+}
+
+/// The less they are apart, the fewer digits the equations have.
+TEST_CASE("beside a fold next to a shoulder whose axes are a little apart") {
+  duet_test::random_source random(7);
+  for (const double apart : {1e-2, 1e-3}) {
+    int met = 0, certain = 0;
+    for (int k = 0; k < 50; ++k) {
+      const auto [rows, fold] = with_skew_elbow(random, 0, apart);
+      const chain arm = from_dh(rows);
+      joints theta = configuration(arm, random, 2, fold);
+      theta[2] += k % 2 == 0 ? 1e-8 : -1e-8;
+      const result found = all_inverse_kinematics(arm, arm.pose(theta));
+      met += std::any_of(found.solutions.begin(), found.solutions.end(),
+                         [&](const auto& s) { return distance(s.joints, theta) < 1e-5; });
+      certain += found.is_complete;
+    }
+    CHECK(met == 50);
+    CHECK(certain >= 48);
+  }
+}
+
+TEST_CASE("shoulders whose axes are next to nothing apart: beside the fold nothing is certain") {
+  duet_test::random_source random(8);
+  for (const double apart : {1e-4, 1e-6, 1e-8}) {
+    for (int k = 0; k < 20; ++k) {
+      const auto [rows, fold] = with_skew_elbow(random, 0, apart);
+      const chain arm = from_dh(rows);
+      joints theta = configuration(arm, random, 2, fold);
+      theta[2] += .1 * apart;
+      CHECK_FALSE(all_inverse_kinematics(arm, arm.pose(theta)).is_complete);
+    }
+  }
+}
+
+/// Against 50 digits, as far from the fold as digits go.
+TEST_CASE("where a turning vector has a small length") {
+  duet_test::random_source random(9);
+  const auto any = [&] {
+    const auto x = random.direction<3>();
+    return detail::vector3d{x[0], x[1], x[2]};
+  };
+  for (int k = 0; k < 20; ++k) {
+    const detail::vector3d n = any(), v = any();
+    const detail::turned_vector still(n, v), moved(n, v, -1 * still.at(.4));
+    for (const double length : {1e-2, 1e-5, 1e-8, 1e-11}) {
+      // By .6 beside it: .8² + .6² = 1.
+      const detail::turned_vector by(n, v, .6 * length * n - still.at(.4));
+      const auto found = detail::angles_of_length(k % 2 == 0 ? moved : by, length);
+      REQUIRE(found.size() == 2);
+      for (const auto& [theta, multiplicity] : found) {
+        CHECK(multiplicity == 1);
+        // |v(θ) − v(.4)| = 2 |n × v| |sin ½(θ − .4)|
+        const real_50 across = length_of(cross(n, v)),
+                      way = 2 * across * abs(sin((real_50(theta) - real_50(.4)) / 2));
+        CHECK(double(abs(way - (k % 2 == 0 ? 1 : .8) * length)) < 2e-15);
+      }
+      CHECK(found[0].theta < .4);
+      CHECK(found[1].theta > .4);
+    }
+    const auto one = detail::angles_of_length(moved, 0);
+    REQUIRE(one.size() == 1);
+    CHECK(one[0].multiplicity == 2);
+    CHECK(one[0].theta == doctest::Approx(.4).epsilon(1e-13));
   }
 }
 

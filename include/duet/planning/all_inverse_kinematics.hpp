@@ -132,7 +132,7 @@ public:
     branch result = described(x, in_place);
     if (!in_place && result.residual * longest_way(result.joints) > rounding) {
       loop_solution refined = x;
-      static_cast<void>(close_loop(loop_, refined.theta));
+      static_cast<void>(close_loop(loop_, refined.theta, 1));
       const branch other = described(refined, in_place);
       result = other.residual < result.residual ? other : result; // it may run away
     }

@@ -14,12 +14,16 @@
 namespace duet::detail {
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& theta) {
+DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& theta,
+                                       double size_of_angles) {
   constexpr double rounding = 2e-15, good = 1e-13;
   double before = HUGE_VAL;
   for (int k = 0; k < 40; ++k) {
     const loop_gap gap(loop, theta);
-    const double left = gap.twist.norm() / gap.size;
+    const double to_angle = gap.size / std::min(gap.size, size_of_angles);
+    const double left = std::sqrt(gap.twist.head<3>().squaredNorm() +
+                                  to_angle * to_angle * gap.twist.tail<3>().squaredNorm()) /
+                        gap.size;
     if (left <= rounding || (left <= good && left >= before / 2)) {
       return true;
     }

@@ -38,27 +38,23 @@ public:
   bool operator()(const Visit& visit) const {
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
     const vector3d goal = loop_.closing.point(centre_);
-    bool is_determined = true;
-    const auto rest = [&](double theta1, double theta2, double theta3, int m, bool is_folded) {
-      six_coordinates theta;
-      theta << theta1, theta2, theta3, 0, 0, 0;
+    const folded_elbow folded(loop_, centre_, goal);
+    bool is_determined = folded.is_certain;
+    if (folded.is_folded) {
       bool is_met = false;
-      const double error = is_folded ? error_of(theta) : 0;
-      const bool is_chosen = !(error < .1); // θ₁ and θ₂ may be anything
-      is_determined = wrist(theta, m, is_chosen ? 0 : error,
-                            [&](const six_coordinates& all, int multiplicity) {
-                              is_met = true;
-                              visit(all, multiplicity);
-                            }) &&
-                      is_determined;
-      return is_met;
-    };
-    const fold folded =
-        visit_folded(loop_, centre_, goal, [&](double theta1, double theta2, double theta3, int m) {
-          return rest(theta1, theta2, theta3, m, true);
-        });
-    if (folded.is_visited) {
-      return folded.is_certain && is_determined;
+      const auto met = [&](const six_coordinates& all, int multiplicity) {
+        is_met = true;
+        visit(all, multiplicity);
+      };
+      for (const auto& [theta1, theta2, theta3, multiplicity] : folded.all) {
+        if (!(folded.is_any && is_met)) {
+          six_coordinates theta;
+          theta << theta1, theta2, theta3, 0, 0, 0;
+          const double error = folded.is_any ? 0 : error_of(theta);
+          is_determined = wrist(theta, multiplicity, error, met) && is_determined;
+        }
+      }
+      return is_determined;
     }
     // In a frame with its origin on the second axis: those points e₃ c and e₁⁻¹ goal agree along
     // that axis, and in their squares.
@@ -73,10 +69,12 @@ public:
     middle_turn middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
     const bool has_pairs = pairs([&](double near1, double near3, int m) {
       middle(near3, near1, m, [&](double theta3, double theta1, double theta2, int multiplicity) {
-        rest(theta1, theta2, theta3, multiplicity, false);
+        six_coordinates theta;
+        theta << theta1, theta2, theta3, 0, 0, 0;
+        is_determined = wrist(theta, multiplicity, 0, visit) && is_determined;
       });
     });
-    return has_pairs && middle.nearest() > 0 && is_determined && folded.is_certain;
+    return has_pairs && middle.nearest() > 0 && is_determined;
   }
 
 private:

@@ -130,9 +130,11 @@ struct loop_gap {
 };
 
 /// Newton's method from θ to a solution, to the level of rounding.
+/// \param size_of_angles  divides angles, as `loop_gap::size` divides lengths: that, which saves a
+/// step where much is tried, unless 1
 /// \return did it get there?
-[[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop,
-                                                     six_coordinates& theta);
+[[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& theta,
+                                                     double size_of_angles = HUGE_VAL);
 
 } // namespace duet::detail
 

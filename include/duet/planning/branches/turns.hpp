@@ -10,7 +10,9 @@
 #include <duet/quaternion/three_vector.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 /// \file
 /// Turns about given axes that make a given one.
@@ -34,27 +36,44 @@ namespace duet::detail {
          turn_about(b, halves.sine(1), halves.cosine(1));
 }
 
-/// Calls visit(α, β, multiplicity) where turns by β about b, then by α about a, take one unit
-/// vector to another.
-/// \param error  of the vectors, if that is more than rounding
-/// \return how far that has been from the axis a, at least; 0 where α or β are undetermined; with
-/// an error, which tells complex angles next to a from real ones, how far it is to be
-template <class Visit>
-double visit_two_turns(const vector3d& a, const vector3d& b, const vector3d& from,
-                       const vector3d& to, const Visit& visit, double error = 0) {
-  const turned_vector by_b(b, from);
-  middle_turn first(a, by_b, to);
-  const bool has_beta = visit_zeros(
-      {dot(a, by_b.along) - dot(a, to), dot(a, by_b.across), dot(a, by_b.beside)},
-      [&](double near_beta, int near_multiplicity) {
-        first(near_beta, 0, near_multiplicity,
-              [&](double beta, double, double alpha, int m) { visit(alpha, beta, m); });
-      },
-      error);
-  return !has_beta   ? 0
-         : error > 0 ? std::min(first.nearest(), length_of(cross(a, to)))
-                     : first.nearest();
-}
+/// Two turns, first by β about b, then by α about a, that take one unit vector to another.
+class two_turns_between {
+public:
+  struct solution {
+    double alpha = 0, beta = 0;
+    int multiplicity = 1;
+  };
+
+  /// \param error  of the vectors, if that is more than rounding
+  two_turns_between(const vector3d& a, const vector3d& b, const vector3d& from, const vector3d& to,
+                    double error = 0) {
+    const turned_vector by_b(b, from);
+    middle_turn first(a, by_b, to);
+    const bool has_beta = visit_zeros(
+        {dot(a, by_b.along) - dot(a, to), dot(a, by_b.across), dot(a, by_b.beside)},
+        [&](double near_beta, int near_multiplicity) {
+          first(near_beta, 0, near_multiplicity, [&](double beta, double, double alpha, int m) {
+            all_[std::size_t(count_++)] = {alpha, beta, m};
+          });
+        },
+        error);
+    nearest_ = !has_beta ? 0 : first.nearest();
+    if (error > 0) {
+      nearest_ = std::min(nearest_, length_of(cross(a, to)));
+    }
+  }
+
+  [[nodiscard]] const solution* begin() const { return all_.data(); }
+  [[nodiscard]] const solution* end() const { return all_.data() + count_; }
+  /// How far the vector has been from the axis a, at least; 0 where α or β are undetermined. With
+  /// an error, which there decides if angles are complex, also how far it is to be.
+  [[nodiscard]] double nearest() const { return nearest_; }
+
+private:
+  std::array<solution, 4> all_; // two values of β, beside each of which there may be another
+  int count_ = 0;
+  double nearest_ = 0;
+};
 
 /// Calls visit(α, β, γ, multiplicity) where turns by α, β and γ about the axes of three joints are,
 /// one after the other, a given one.
@@ -65,13 +84,12 @@ template <class Visit>
 double visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_joint& c,
                          const quaternion<double>& turn, const Visit& visit, double error = 0) {
   // The last axis stays where it is in the last turn, the angle between it and the first in that.
-  return visit_two_turns(
-      a.axis, b.axis, c.axis, rotated(turn, c.axis),
-      [&](double alpha, double beta, int multiplicity) {
-        const quaternion<double> before = two_turns(a.axis, alpha, b.axis, beta);
-        visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
-      },
-      error);
+  const two_turns_between both(a.axis, b.axis, c.axis, rotated(turn, c.axis), error);
+  for (const auto& [alpha, beta, multiplicity] : both) {
+    const quaternion<double> before = two_turns(a.axis, alpha, b.axis, beta);
+    visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
+  }
+  return both.nearest();
 }
 
 } // namespace duet::detail
