@@ -35,14 +35,15 @@ struct case_of_bench {
 };
 constexpr std::size_t ur5e = 0, puma = 1, irb = 2, kr = 3, mate = 4;
 
+template <int N>
 struct planned {
-  motion_plan<6> plan;
+  motion_plan<N> plan;
   duet_test::path_verdict way;
 };
 
 /// The plan, which keeps to its screw, and what a complete search says.
-planned solve(const case_of_bench& which) {
-  const arm<6> a = six_joints()[which.arm];
+template <int N>
+planned<N> solve(const arm<N>& a, const case_of_bench& which) {
   const auto p = make(a, which.kind, which.seed, which.number);
   const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
   auto plan = plan_screw_motion(a.chain, p.start, path.last);
@@ -50,12 +51,13 @@ planned solve(const case_of_bench& which) {
   const auto way = duet_test::complete_way(a.chain, path, plan);
   return {std::move(plan), way};
 }
+planned<6> solve_six(const case_of_bench& which) { return solve(six_joints()[which.arm], which); }
 
 void check_ends_at_limit(const std::vector<case_of_bench>& all) {
   for (const auto& each : all) {
     CAPTURE(each.arm);
     CAPTURE(each.number);
-    const auto [plan, way] = solve(each);
+    const auto [plan, way] = solve_six(each);
     CHECK(way.why == stop_reason::joint_limit);
     CHECK(plan.reason == way.why);
     CHECK(plan.tau.back() > way.end - 1e-4);
@@ -90,14 +92,14 @@ TEST_CASE("a plan that gets farther than the exact way stops for the reason that
 
 /// The elbow, 1.5 milliradians from where it is stretched, may bend to either side.
 TEST_CASE("beside a stretched elbow both ways on are looked at") {
-  const auto [plan, way] = solve({kr, family::beside, 2, 86});
+  const auto [plan, way] = solve_six({kr, family::beside, 2, 86});
   CHECK(way.why == stop_reason::reached);
   CHECK(plan.reason == stop_reason::reached);
 }
 
 /// A limit is in the way of the swing, but the tip passes the singularity straight on 9.6e-6 off.
 TEST_CASE("past a singularity as near as the deviation allows") {
-  CHECK(solve({ur5e, family::past, 4, 32}).plan.reason == stop_reason::reached);
+  CHECK(solve_six({ur5e, family::past, 4, 32}).plan.reason == stop_reason::reached);
 }
 
 using seven = Eigen::Matrix<double, 7, 1>;
@@ -135,20 +137,8 @@ TEST_CASE("the layered search itself, where the answer is known") {
   CHECK(self_motion_curves(panda, out(ended.end + 1e-5)).empty());
 }
 
-struct planned_seven {
-  motion_plan<7> plan;
-  duet_test::path_verdict way;
-};
-
-/// As of six joints.
-planned_seven solve_seven(const case_of_bench& which) {
-  const arm<7> a = seven_joints()[which.arm];
-  const auto p = make(a, which.kind, which.seed, which.number);
-  const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
-  auto plan = plan_screw_motion(a.chain, p.start, path.last);
-  CHECK(duet_test::largest_deviation(a.chain, plan, path) < 1.01e-5);
-  const auto way = duet_test::complete_way(a.chain, path, plan);
-  return {std::move(plan), way};
+planned<7> solve_seven(const case_of_bench& which) {
+  return solve(seven_joints()[which.arm], which);
 }
 constexpr std::size_t panda = 0, iiwa = 1, baxter = 2;
 
@@ -176,7 +166,7 @@ TEST_CASE("ways of six joints are followed to where they end") {
   for (const case_of_bench& each :
        {case_of_bench{mate, family::from_wrist, 3, 30}, {kr, family::from_elbow, 4, 74}}) {
     CAPTURE(each.arm);
-    const auto [plan, way] = solve(each);
+    const auto [plan, way] = solve_six(each);
     CHECK(plan.reason == way.why);
     CHECK(plan.tau.back() > way.end - 1e-5);
   }
@@ -192,7 +182,7 @@ TEST_CASE("following a way to its end loses no plan that passes beside it") {
                                     {mate, family::past, 3, 56}}) {
     CAPTURE(each.arm);
     CAPTURE(each.number);
-    CHECK(solve(each).plan.reason == stop_reason::reached);
+    CHECK(solve_six(each).plan.reason == stop_reason::reached);
   }
 }
 
