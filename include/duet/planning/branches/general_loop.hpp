@@ -90,9 +90,8 @@ template <class System>
 
 /// What one order of a loop says of the number of its solutions.
 struct solution_count {
-  int real = 0;         ///< zeros that are real, but for rounding
-  int all = 0;          ///< complex ones included
-  bool is_known = true; ///< are zeros near the circle known well enough to tell them apart?
+  int real = 0; ///< zeros that are real, but for rounding
+  int all = 0;  ///< complex ones included
 };
 
 /// Adds the solutions that one order of a loop leads to.
@@ -116,7 +115,6 @@ template <class System>
     result.all += distance < 9; // others are at infinity
     if (distance < farthest) {
       candidates.push_back(i);
-      result.is_known = result.is_known && rounding * roots.sensitivity(i) < farthest;
     }
   }
   std::sort(candidates.begin(), candidates.end(),
@@ -161,8 +159,7 @@ template <class System>
     }
     expected = std::max(expected, count.real);
     all = all == 0 ? count.all : std::min(all, count.all);
-    const int others = found.count() == before ? agreeing : 0;
-    agreeing = count.is_known ? others + 1 : others;
+    agreeing = found.count() == before ? agreeing + 1 : 1;
     if (found.count() >= expected && found.count() % 2 == 0 && agreeing >= 2) {
       result.is_complete = true;
       break;
