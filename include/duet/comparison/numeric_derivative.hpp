@@ -4,6 +4,7 @@
 #include <duet/comparison/measure.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/dual/complex.hpp>
 
@@ -46,8 +47,8 @@ template <class F, std::floating_point T>
 /// What `central_difference_derivative` returns.
 template <class Y>
 struct derivative_and_error {
-  Y derivative; ///< f′(x)
-  double error; ///< estimate of the largest error of a component
+  Y derivative = detail::zero_initialized<Y>(); ///< f′(x)
+  double error = 0;                             ///< estimate of the largest error of a component
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

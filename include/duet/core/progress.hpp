@@ -17,11 +17,11 @@ namespace duet {
 
 /// How much of a range is done.
 struct progress {
-  std::size_t done;  ///< elements that are done
-  std::size_t count; ///< of the whole range
+  std::size_t done = 0;  ///< elements that are done
+  std::size_t count = 0; ///< of the whole range
 
-  /// From 0 to exactly 1.
-  [[nodiscard]] double share() const { return double(done) / double(count); }
+  /// From 0 to exactly 1, which an empty range is.
+  [[nodiscard]] double share() const { return count == 0 ? 1.0 : double(done) / double(count); }
 };
 
 /// What a long run tells its progress: a reference to a callable object that takes a `progress`.

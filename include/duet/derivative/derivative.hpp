@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/parts.hpp>
@@ -18,8 +19,8 @@ namespace duet {
 /// What `derivative` returns: y = f(x), and dy/dx of the same shape.
 template <class Y, class DY>
 struct value_and_derivative {
-  Y value;       ///< f(x)
-  DY derivative; ///< dy/dx, of the shape of f(x)
+  Y value = detail::zero_initialized<Y>();        ///< f(x)
+  DY derivative = detail::zero_initialized<DY>(); ///< dy/dx, of the shape of f(x)
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/jacobian.hpp>
@@ -26,8 +27,8 @@ namespace duet {
 /// What `gradient` returns: f(x), and ∇f as a column.
 template <class Y, class G>
 struct value_and_gradient {
-  Y value;    ///< f(x)
-  G gradient; ///< ∇f, a column
+  Y value = detail::zero_initialized<Y>();    ///< f(x)
+  G gradient = detail::zero_initialized<G>(); ///< ∇f, a column
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -39,9 +40,9 @@ struct value_and_gradient {
 /// What `hessian` returns: f(x), ∇f as a column, and the symmetric matrix of second derivatives.
 template <class Y, class G, class H>
 struct value_gradient_and_hessian {
-  Y value;    ///< f(x)
-  G gradient; ///< ∇f, a column
-  H hessian;  ///< ∂²f/∂x_i∂x_j, a symmetric matrix
+  Y value = detail::zero_initialized<Y>();    ///< f(x)
+  G gradient = detail::zero_initialized<G>(); ///< ∇f, a column
+  H hessian = detail::zero_initialized<H>();  ///< ∂²f/∂x_i∂x_j, a symmetric matrix
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/function.hpp>
@@ -23,8 +24,8 @@ namespace duet {
 /// What `jacobian` returns: y = f(x), and ∂y/∂x, a row for each component of y.
 template <class Y, class J>
 struct value_and_jacobian {
-  Y value;    ///< f(x)
-  J jacobian; ///< ∂y_i/∂x_j, a row for each component of y
+  Y value = detail::zero_initialized<Y>();    ///< f(x)
+  J jacobian = detail::zero_initialized<J>(); ///< ∂y_i/∂x_j, a row for each component of y
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
@@ -20,9 +21,9 @@ namespace duet {
 /// f(x), ∇f, and the product of the Hessian with a vector.
 template <class Y, class G>
 struct value_gradient_and_product {
-  Y value;    ///< f(x)
-  G gradient; ///< ∇f, a column
-  G product;  ///< H v, a column
+  Y value = detail::zero_initialized<Y>();    ///< f(x)
+  G gradient = detail::zero_initialized<G>(); ///< ∇f, a column
+  G product = detail::zero_initialized<G>();  ///< H v, a column
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -57,8 +58,8 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X, Variables V>
 /// f(x, y), and the block ∂²f/∂xᵢ∂yⱼ of its Hessian.
 template <class Y, class M>
 struct value_and_mixed_hessian {
-  Y value; ///< f(x, y)
-  M mixed; ///< ∂²f/∂xᵢ∂yⱼ, a row for each component of x
+  Y value = detail::zero_initialized<Y>(); ///< f(x, y)
+  M mixed = detail::zero_initialized<M>(); ///< ∂²f/∂xᵢ∂yⱼ, a row for each component of x
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
 #include <Eigen/Core>
@@ -21,8 +22,8 @@ namespace duet {
 /// A = V diag(λ) Vᵀ: the eigenvalues ascend, and column i of `vectors` belongs to the i-th.
 template <class Values, class Vectors>
 struct eigenvalues_and_vectors {
-  Values values;   ///< λ, ascending, a column
-  Vectors vectors; ///< V, unit eigenvectors as columns
+  Values values = detail::zero_initialized<Values>();    ///< λ, ascending, a column
+  Vectors vectors = detail::zero_initialized<Vectors>(); ///< V, unit eigenvectors as columns
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

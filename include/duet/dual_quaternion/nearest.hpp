@@ -77,9 +77,9 @@ template <class T>
 /// Where a screw motion comes nearest to a pose.
 template <class T>
 struct nearest_result {
-  T tau;                   ///< the fraction of the motion, in [0, 1]
-  dual_quaternion<T> pose; ///< there
-  T squared_distance;      ///< from there to the given pose, in squared units of length
+  T tau = T(0);                 ///< the fraction of the motion, in [0, 1]
+  dual_quaternion<T> pose = {}; ///< there
+  T squared_distance = T(0);    ///< from there to the given pose, in squared units of length
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

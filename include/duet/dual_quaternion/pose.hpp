@@ -83,11 +83,11 @@ template <class T, Promotable<T> U>
   return rotate(a, line);
 }
 
-/// The plane n·x = offset.
+/// The plane n·x = offset. The default is z = 0.
 template <class T>
 struct plane {
-  vector3<T> normal; ///< n, a unit vector
-  T offset;          ///< of the origin along n, in units of length
+  vector3<T> normal = vector3<T>::UnitZ(); ///< n, a unit vector
+  T offset = T(0); ///< of the plane along n from the origin, in units of length
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/select.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -41,11 +42,11 @@ enum class screw_kind {
 /// A rigid displacement as one motion along and about one line.
 template <class T>
 struct screw_motion {
-  vector3<T> axis;   ///< unit direction n of the line
-  vector3<T> moment; ///< point × n
-  T angle;           ///< φ ∈ [0, π], radians
-  T translation;     ///< d along the axis, in units of length
-  screw_kind kind;   ///< which of the two there are
+  vector3<T> axis = detail::zero_initialized<vector3<T>>();   ///< unit direction n of the line
+  vector3<T> moment = detail::zero_initialized<vector3<T>>(); ///< point × n
+  T angle = T(0);                                             ///< φ ∈ [0, π], radians
+  T translation = T(0);               ///< d along the axis, in units of length
+  screw_kind kind = screw_kind::none; ///< which of the two there are
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -17,24 +17,24 @@ namespace duet {
 
 /// A box about the origin, its edges along the axes.
 struct collision_box {
-  std::array<double, 3> size; ///< the lengths of its edges
+  std::array<double, 3> size = {}; ///< the lengths of its edges
 };
 
 /// A cylinder about the origin, along z.
 struct collision_cylinder {
-  double radius; ///< in units of length
-  double length; ///< from end to end
+  double radius = 0; ///< in units of length
+  double length = 0; ///< from end to end
 };
 
 /// A cylinder about the origin, along z, with half a ball on each end.
 struct collision_capsule {
-  double radius; ///< of cylinder and balls
-  double length; ///< of the cylinder
+  double radius = 0; ///< of cylinder and balls
+  double length = 0; ///< of the cylinder
 };
 
 /// A ball about the origin.
 struct collision_sphere {
-  double radius; ///< in units of length
+  double radius = 0; ///< in units of length
 };
 
 /// The surface in a file.

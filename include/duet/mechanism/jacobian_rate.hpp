@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/zero_initialized.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
@@ -98,8 +99,8 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At =
 /// J and its rate J̇ = Σ_j ∂J/∂θ_j θ̇_j.
 template <class J>
 struct jacobian_and_rate {
-  J jacobian; ///< J, 6 rows and a column for each joint
-  J rate;     ///< J̇, of the same size, per unit of time
+  J jacobian = detail::zero_initialized<J>(); ///< J, 6 rows and a column for each joint
+  J rate = detail::zero_initialized<J>();     ///< J̇, of the same size, per unit of time
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -25,9 +25,9 @@ struct urdf_joint_name {
 
 /// An element of a robot description that URDF has not, perhaps misspelt: nothing is read of it.
 struct urdf_unknown_element {
-  std::string name;   ///< `tool` of `<tool>`
-  std::string within; ///< the element that it is in: `<robot>`, a link or a joint with its name
-  std::size_t line;   ///< where it begins
+  std::string name;     ///< `tool` of `<tool>`
+  std::string within;   ///< the element that it is in: `<robot>`, a link or a joint with its name
+  std::size_t line = 0; ///< where it begins
 };
 
 /// What a robot description has, in the order of the file.

@@ -4,6 +4,7 @@
 #include <duet/core/batch/math.hpp>
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
@@ -41,7 +42,8 @@ template <int N>
 struct inverse_kinematics_branch {
   /// Coordinates: of turning joints within (−π, π], or a turn from there where that is within the
   /// limits.
-  detail::joint_vector<double, N> joints;
+  detail::joint_vector<double, N> joints =
+      detail::zero_initialized<detail::joint_vector<double, N>>();
   /// How far the tip is from the goal: radians, or lengths in parts of the arm's size or of the
   /// longest way along a slide, if that is more; whichever is larger.
   double residual = 0;

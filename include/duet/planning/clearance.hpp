@@ -33,8 +33,8 @@ struct link_body {
 
 /// Two bodies that must not touch.
 struct body_pair {
-  std::size_t first;  ///< which of `scene::bodies`
-  std::size_t second; ///< the other one
+  std::size_t first = 0;  ///< which of `scene::bodies`
+  std::size_t second = 0; ///< the other one
 };
 
 /// What a body can run into.

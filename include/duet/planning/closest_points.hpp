@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/planning/box_distance.hpp>
@@ -18,10 +19,13 @@ namespace duet {
 /// Where a body is nearest to an obstacle or another body, or deepest in it.
 template <class T>
 struct proximity {
-  T distance;             ///< negative where they overlap: by how much
-  vector3<T> on_body;     ///< the point of the body's surface
-  vector3<T> on_obstacle; ///< the point of the obstacle's surface
-  vector3<T> normal;      ///< unit, out of the obstacle: on_body = on_obstacle + distance · normal
+  T distance = T(0); ///< negative where they overlap: by how much
+  vector3<T> on_body = detail::zero_initialized<vector3<T>>(); ///< the point of the body's surface
+  vector3<T> on_obstacle =
+      detail::zero_initialized<vector3<T>>(); ///< the point of the obstacle's surface
+  vector3<T> normal =
+      detail::zero_initialized<vector3<T>>(); ///< unit, out of the obstacle: on_body = on_obstacle
+                                              ///< + distance · normal
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/zero_initialized.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/motion_plan.hpp>
 
@@ -30,10 +31,12 @@ struct inverse_kinematics_options {
 /// \tparam N  as of `serial_chain`
 template <int N>
 struct inverse_kinematics_result {
-  detail::joint_vector<double, N> joints; ///< within the limits
-  pose_deviation deviation;               ///< of the tip from the goal
-  int iterations = 0;                     ///< from all configurations together
-  int restarts = 0;                       ///< how many random configurations it began anew from
+  /// Within the limits.
+  detail::joint_vector<double, N> joints =
+      detail::zero_initialized<detail::joint_vector<double, N>>();
+  pose_deviation deviation; ///< of the tip from the goal
+  int iterations = 0;       ///< from all configurations together
+  int restarts = 0;         ///< how many random configurations it began anew from
   /// Why it ended: `reached` where the tip is at the goal, else what is in the way.
   stop_reason reason = stop_reason::no_progress;
 

@@ -4,6 +4,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/rounding.hpp>
 #include <duet/core/text/number_text.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 
 #include <algorithm>
@@ -20,9 +21,9 @@ namespace duet {
 /// Joint coordinates with their rates.
 template <class V>
 struct joint_motion {
-  V value;        ///< θ: radians, or units of length where joints slide
-  V velocity;     ///< θ̇, per unit of time
-  V acceleration; ///< θ̈, per unit of time squared
+  V value = detail::zero_initialized<V>(); ///< θ: radians, or units of length where joints slide
+  V velocity = detail::zero_initialized<V>();     ///< θ̇, per unit of time
+  V acceleration = detail::zero_initialized<V>(); ///< θ̈, per unit of time squared
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

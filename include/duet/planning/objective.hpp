@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
@@ -26,8 +27,8 @@ struct no_objective {};
 /// w/2 Σ (θᵢ − θ̂ᵢ)²: a preferred posture θ̂, of weight w.
 template <class V>
 struct preferred_posture {
-  V posture;         ///< θ̂, joint coordinates
-  double weight = 1; ///< w
+  V posture = detail::zero_initialized<V>(); ///< θ̂, joint coordinates
+  double weight = 1;                         ///< w
 
   /// Its value at joint coordinates θ.
   template <class X>

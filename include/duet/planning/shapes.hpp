@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -17,8 +18,8 @@ namespace duet {
 /// All points no further than `radius` from `centre`.
 template <class T = double>
 struct sphere {
-  vector3<T> centre; ///< in units of length
-  T radius;          ///< in units of length
+  vector3<T> centre = detail::zero_initialized<vector3<T>>(); ///< in units of length
+  T radius = T(0);                                            ///< in units of length
 };
 
 /// All points no further than `radius` from the line between two points, which may be one.
@@ -36,15 +37,18 @@ struct capsule {
 /// All points whose coordinates in the frame `placed` are, each, between ± `half_sizes`.
 template <class T = double>
 struct box {
-  dual_quaternion<T> placed; ///< the pose of its centre, along its edges
-  vector3<T> half_sizes;     ///< along its own axes, in units of length
+  dual_quaternion<T> placed{
+      dual<T, 1, screw_tag>(T(1))}; ///< the pose of its centre, along its edges
+  vector3<T> half_sizes =
+      detail::zero_initialized<vector3<T>>(); ///< along its own axes, in units of length
 };
 
-/// All points with normal·x ≤ offset: the unit normal points out of what is solid.
+/// All points with normal·x ≤ offset: the unit normal points out of the solid. The default is the
+/// ground z ≤ 0.
 template <class T = double>
 struct half_space {
-  vector3<T> normal; ///< a unit vector, out of what is solid
-  T offset;          ///< of the boundary along the normal, in units of length
+  vector3<T> normal = vector3<T>::UnitZ(); ///< a unit vector, out of the solid
+  T offset = T(0);                         ///< of the boundary along the normal, in units of length
 };
 
 /// A capsule carried along.

@@ -52,7 +52,8 @@ namespace duet {
 
 /// Three axes, 0 = x, 1 = y, 2 = z, no two neighbours equal.
 struct euler_sequence {
-  int first, second, third; ///< axes of the moving body, turned about in this order
+  /// Axes of the moving body, rotated about in this order; the default is `zyx`.
+  int first = 2, second = 1, third = 0;
 
   /// Are first and third one axis?
   [[nodiscard]] constexpr bool is_proper() const { return first == third; }

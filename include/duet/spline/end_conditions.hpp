@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/zero_initialized.hpp>
 
 #include <Eigen/Core>
 
@@ -16,16 +17,20 @@ namespace duet {
 /// evenly. The assumption is wrong for most motions and costs accuracy near the ends.
 struct natural {};
 
-/// Given angular velocities, or twists.
+/// Given angular velocities, or twists: zero, at rest, unless given.
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct clamped {
-  V start, end; ///< ω or [v; ω] at the first and the last row, spatial axes, per unit of u
+  V start =
+      detail::zero_initialized<V>(); ///< ω or [v; ω] at the first row, spatial axes, per unit of u
+  V end = detail::zero_initialized<V>(); ///< likewise, at the last row
 };
 
-/// Given angular accelerations, or derivatives of twists.
+/// Given angular accelerations, or derivatives of twists: zero unless given.
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct end_acceleration {
-  V start, end; ///< ω̇ or [v̇; ω̇] at the first and the last row, spatial axes, per unit of u²
+  V start =
+      detail::zero_initialized<V>(); ///< ω̇ or [v̇; ω̇] at the first row, spatial axes, per unit of u²
+  V end = detail::zero_initialized<V>(); ///< likewise, at the last row
 };
 
 /// Given angular velocities and accelerations, or twists and their derivatives: all that the

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual/promotion.hpp>
@@ -30,10 +31,13 @@ template <class T>
 struct motion {
   using rate_type = Eigen::Matrix<typename manifold<quaternion<T>>::scalar,
                                   manifold<quaternion<T>>::dimension, 1>;
-  quaternion<T> value;    ///< the rotation or pose
-  rate_type velocity;     ///< ω, rad per unit of u; of poses [v; ω]
-  rate_type acceleration; ///< the derivative of `velocity`, per unit of u²
-  rate_type jerk;         ///< the derivative of `acceleration`, per unit of u³
+  quaternion<T> value = {}; ///< the rotation or pose
+  rate_type velocity =
+      detail::zero_initialized<rate_type>(); ///< ω, rad per unit of u; of poses [v; ω]
+  rate_type acceleration =
+      detail::zero_initialized<rate_type>(); ///< the derivative of `velocity`, per unit of u²
+  rate_type jerk =
+      detail::zero_initialized<rate_type>(); ///< the derivative of `acceleration`, per unit of u³
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

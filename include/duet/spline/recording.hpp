@@ -22,8 +22,8 @@ namespace duet {
 
 /// A row that was left out or put elsewhere, and why.
 struct recording_fault {
-  std::size_t line;   ///< in the file, counted from 1
-  std::string reason; ///< on one line, as `tx is nan: left out`
+  std::size_t line = 0; ///< in the file, counted from 1
+  std::string reason;   ///< on one line, as `tx is nan: left out`
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -30,7 +30,8 @@ public:
   using storage = detail::packets<T, W>;
   using packet = typename storage::mask;
 
-  lane_mask() = default;
+  /// False in all lanes.
+  DUET_ALWAYS_INLINE lane_mask() : packets_{} {}
   /// x in all lanes.
   lane_mask(bool x) {
     for (int i = 0; i < W; ++i) {

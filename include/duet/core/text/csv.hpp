@@ -21,7 +21,7 @@ namespace duet {
 
 /// A row of a file, as numbers.
 struct csv_row {
-  std::size_t line;            ///< where it stands in the file, counted from 1
+  std::size_t line = 0;        ///< where it stands in the file, counted from 1
   std::string name;            ///< the first cell where it is not a number, else empty
   std::vector<double> numbers; ///< the other cells
 };

@@ -22,9 +22,9 @@ namespace duet {
 
 /// Where progress is shown, and how often.
 struct progress_display {
-  std::FILE* stream; ///< where to
-  bool is_terminal;  ///< one line, written over and over, instead of many
-  double interval;   ///< seconds from line to line, and to the first
+  std::FILE* stream = stderr; ///< where to
+  bool is_terminal = false;   ///< one line, written over and over, instead of many
+  double interval = 10;       ///< seconds from line to line, and to the first
 
   /// Standard error: every second where that is a terminal, else every ten. The environment
   /// variable `DUET_PROGRESS_INTERVAL` gives other seconds; with 0 nothing is passed over, with

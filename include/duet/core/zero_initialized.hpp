@@ -1,0 +1,25 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+
+/// \file
+/// Initial values of fields of aggregates.
+
+namespace duet::detail {
+
+/// T(), or zeros where T is a matrix of fixed size, whose default constructor leaves its entries
+/// uninitialized.
+template <class T>
+[[nodiscard]] constexpr T zero_initialized() {
+  if constexpr (requires {
+                  requires T::SizeAtCompileTime >
+                  0;
+                }) {
+    return T::Zero();
+  } else {
+    return T();
+  }
+}
+
+} // namespace duet::detail
