@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/multiprecision.hpp"
+#include "support/ulp.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/expression/condition.hpp>
@@ -11,15 +12,18 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace test_expression_scalars {
 namespace {
 
 using namespace duet::expression;
 using duet_test::real_50;
+using duet_test::ulps;
 
 constexpr symbol<"x"> x;
 constexpr symbol<"y"> y;
@@ -106,6 +110,47 @@ TEST_CASE("functions of two scalars and choices") {
   CHECK(derivative(choice, x)(x = 3.0, y = 2.0) == 0.5);
   CHECK(derivative(max(x, c<2>), x)(x = 1.0) == 0);
   CHECK(derivative(min(x, 2.0), x)(x = 1.0) == 1);
+}
+
+TEST_CASE("products are finite wherever the written order is" * doctest::should_fail()) {
+  CHECK((y * x * x)(x = 1e-200, y = 1e300) == 1e300 * 1e-200 * 1e-200);
+  CHECK((0.5_c * x * y)(x = 1.5e308, y = 2.0) == 1.5e308);
+  CHECK((x * y * x / y)(x = 1e-200, y = 1e200) == doctest::Approx(1e-200));
+}
+
+TEST_CASE("whole powers up to 16: values and slopes within 4 units of the last place" *
+          doctest::should_fail()) {
+  double worst_value = 0, worst_slope = 0;
+  const auto check = [&]<int N>(std::integral_constant<int, N>) {
+    const auto power = pow(x, c<N>);
+    const auto slope = derivative(power, x);
+    for (int i = 0; i < 500; ++i) {
+      const double at = 1 + i / 499.;
+      const real_50 true_value = pow(real_50(at), N);
+      const real_50 true_slope = N * pow(real_50(at), N - 1);
+      worst_value = std::max(worst_value, ulps(power(x = at), true_value, true_value));
+      worst_slope = std::max(worst_slope, ulps(slope(x = at), true_slope, abs(true_slope)));
+    }
+  };
+  [&]<int... N>(std::integer_sequence<int, N...>) {
+    (check(std::integral_constant<int, N + 1>{}), ...);
+    (check(std::integral_constant<int, -N - 1>{}), ...);
+  }
+  (std::make_integer_sequence<int, 16>{});
+  CHECK(worst_value <= 4);
+  CHECK(worst_slope <= 4);
+}
+
+TEST_CASE("the derivative of sqrt(x^2) at 0 is that of dual numbers" * doctest::should_fail()) {
+  const auto function = [](const auto& t) {
+    using std::sqrt;
+    return sqrt(t * t);
+  };
+  const double by_duals = duet::derivative(function, 0.0).derivative;
+  const double by_formula = derivative(function(x), x)(x = 0.0);
+  CAPTURE(by_duals);
+  CAPTURE(by_formula);
+  CHECK((by_formula == by_duals || (by_formula != by_formula && by_duals != by_duals)));
 }
 
 TEST_CASE("any scalar: 50 digits, float, Taylor numbers") {

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/multiprecision.hpp"
+
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/functions_of_many.hpp>
@@ -42,6 +44,37 @@ TEST_CASE("text, with no parentheses too few or too many") {
   CHECK(to_text(atan2(x, y + 1)) == "atan2(x, y + 1)");
   CHECK(to_text(select(x < y, x, -y)) == "select(x < y, x, -y)");
   CHECK(to_text(pi * x) == "pi * x");
+}
+
+TEST_CASE("constants to the last digit") {
+  constexpr quaternion_symbol<"q"> q;
+  constexpr pose_symbol<"A"> a;
+  constexpr vector_symbol<"w"> w;
+  constexpr dual_vector_symbol<"l"> l;
+  const double third = 1 / 3.;
+  CHECK(to_text(x * third) == "x * 0.3333333333333333");
+  CHECK(to_text(cross(w, Eigen::Vector3d(third, 1e-7, -2))) ==
+        "cross(w, (0.3333333333333333, 1e-07, -2))");
+  CHECK(to_latex(cross(w, Eigen::Vector3d(third, 1e-7, -2))) ==
+        "\\vec{w} \\times (0.3333333333333333, 10^{-7}, -2)");
+  CHECK(to_text(q * duet::quaternion<double>(third, 0, -.5, 1e22)) ==
+        "q * (0.3333333333333333, 0, -0.5, 1e+22)");
+  using duet::screw_tag;
+  const auto half = duet::dual<double, 1, screw_tag>(third, .5);
+  const auto minus = duet::dual<double, 1, screw_tag>(0, -third);
+  const duet::dual_quaternion<double> constant(half, minus, half, minus);
+  CHECK(to_text(a * constant) ==
+        "A * (0.3333333333333333[0.5], 0[-0.3333333333333333], 0.3333333333333333[0.5], "
+        "0[-0.3333333333333333])");
+  CHECK(to_latex(a * constant) ==
+        "A (0.3333333333333333 + 0.5 \\varepsilon, 0 - 0.3333333333333333 \\varepsilon, "
+        "0.3333333333333333 + 0.5 \\varepsilon, 0 - 0.3333333333333333 \\varepsilon)");
+  CHECK(to_text(cross(l, duet::dual_vector<double>(half, minus, half))) ==
+        "cross(l, (0.3333333333333333[0.5], 0[-0.3333333333333333], 0.3333333333333333[0.5]))");
+  CHECK(
+      to_text(x * duet_test::real_50(.1L)).starts_with("x * 0.1000000000000000000013552527156068"));
+  CHECK(to_latex(dual_part(l)) == "\\operatorname{dual}(l)");
+  CHECK(to_latex(real_part(l)) == "\\operatorname{real}(l)");
 }
 
 TEST_CASE("derivatives as text") {

@@ -27,7 +27,8 @@ namespace op {
 /// a or b of a + εb; what is made of dual numbers becomes what is made of real ones.
 template <bool Dual>
 struct part_of_dual : linear_operation {
-  static constexpr detail::function_name name = {Dual ? "dual_part" : "real_part", ""};
+  static constexpr detail::function_name name = {
+      Dual ? "dual_part" : "real_part", Dual ? "\\operatorname{dual}" : "\\operatorname{real}"};
   static constexpr kind kind_of(kind k) {
     return k == kind::dual_vector ? kind::vector : k == kind::pose ? kind::quaternion : k;
   }

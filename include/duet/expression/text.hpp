@@ -19,6 +19,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <type_traits>
@@ -157,28 +158,46 @@ namespace detail {
   return k == kind::scalar ? factor_place::symbol : factor_place::in_order;
 }
 
+/// A constant to its last digit: vectors as (x, y, z), quaternions as (w, x, y, z), dual numbers
+/// a + εb as a[b], in LaTeX as they are.
 template <class T>
 [[nodiscard]] printed printed_constant(notation style, const T& value) {
+  const auto listed = [&](const auto&... x) {
+    std::string text;
+    ((text += (text.empty() ? "" : ", ") + printed_constant(style, x).text), ...);
+    return text;
+  };
   if constexpr (std::floating_point<T>) {
     return printed_number(style, duet::to_text(value));
+  } else if constexpr (is_screw_dual<T>) {
+    const std::string real = listed(value.value()), dual = listed(value.epsilon());
+    if (style == notation::text) {
+      return {real + "[" + dual + "]", precedence::atom, style, factor_place::symbol};
+    }
+    const bool is_negative = dual[0] == '-';
+    return {real + (is_negative ? " - " : " + ") + dual.substr(is_negative) + " \\varepsilon",
+            precedence::sum, style, factor_place::symbol};
   } else if constexpr (is_sized_matrix(constant_traits<T>::kind_of)) {
     std::vector<std::string> entries;
     for (Eigen::Index i = 0; i < value.rows(); ++i) {
       for (Eigen::Index j = 0; j < value.cols(); ++j) {
-        entries.push_back(printed_constant(style, value(i, j)).text);
+        entries.push_back(listed(value(i, j)));
       }
     }
     return printed_matrix(style, std::size_t(value.cols()), entries);
+  } else if constexpr (Scalar<T>) {
+    std::ostringstream digits;
+    digits.precision(std::numeric_limits<T>::max_digits10);
+    digits << value;
+    return {digits.str(), precedence::atom, style, factor_place::symbol};
   } else {
-    std::ostringstream text;
-    if constexpr (requires { value.transpose(); }) {
-      const Eigen::IOFormat row(Eigen::StreamPrecision, Eigen::DontAlignCols, ", ", ", ", "", "",
-                                "(", ")");
-      text << value.transpose().format(row);
+    std::string text;
+    if constexpr (is_quaternion<T>) {
+      text = listed(value.w(), value.x(), value.y(), value.z());
     } else {
-      text << value;
+      text = listed(value[0], value[1], value[2]);
     }
-    return {text.str(), precedence::atom, style, place_of(constant_traits<T>::kind_of)};
+    return {"(" + text + ")", precedence::atom, style, place_of(constant_traits<T>::kind_of)};
   }
 }
 
