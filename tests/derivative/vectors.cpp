@@ -100,6 +100,16 @@ void check_fixed_size() {
 } // namespace
 
 // Up to 32 components in one pass, beyond in several, the last of them not full.
+TEST_CASE("a point in braces") {
+  const auto f = [](const auto& x) { return x[0] * x[0] * x[1]; };
+  static_assert(std::is_same_v<decltype(gradient(f, {3, 2.0}).gradient), Eigen::Vector2d>);
+  CHECK(gradient(f, {3, 2.0}).gradient == Eigen::Vector2d(12, 9));
+  CHECK(gradient([](const auto& x) { return x[0] * x[0]; }, {3.0}).gradient[0] == 6);
+  CHECK(hessian(f, {3, 2.0}).hessian == (Eigen::Matrix2d() << 4, 6, 6, 0).finished());
+  const auto g = [&](const auto& x) { return std::array{f(x), x[1] * x[1]}; };
+  CHECK(jacobian(g, {3, 2.0}).jacobian == (Eigen::Matrix2d() << 12, 9, 0, 4).finished());
+}
+
 TEST_CASE("sizes known at compile time") {
   check_fixed_size<1>();
   check_fixed_size<2>();

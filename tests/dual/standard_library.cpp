@@ -90,6 +90,25 @@ TEST_CASE_TEMPLATE("they are regular, ordered and swappable", D, DUET_EVERY_NUMB
   CHECK(is(D{}, 0, 0));
 }
 
+TEST_CASE_TEMPLATE("std::max, std::min and std::clamp of a number and a constant", D,
+                   DUET_EVERY_NUMBER) {
+  const D x = variable<D>(2);
+  CHECK(is(std::max(x * x, 3.0), 4, 4));
+  CHECK(is(std::max(5, x * x), 5, 0));
+  CHECK(is(std::max(x, 2), 2, 1)); // of equal numbers the first
+  CHECK(is(std::max(2, x), 2, 0));
+  CHECK(is(std::min(x, 2), 2, 1));
+  CHECK(is(std::min(2, x), 2, 0));
+  CHECK(is(std::min(x * x, 5), 4, 4));
+  CHECK(is(std::clamp(x, 0, 3.0), 2, 1));
+  CHECK(is(std::clamp(x, 2, 2), 2, 1));
+  CHECK(is(std::clamp(x, 3, 4), 3, 0));
+  CHECK(is(std::clamp(x, 0, 1), 1, 0));
+  CHECK(is(std::clamp(3, x, x * x), 3, 0));
+  CHECK(is(std::clamp(5, 0, x * x), 4, 4));
+  CHECK(is(std::max(x, x * x), 4, 4));
+}
+
 TEST_CASE_TEMPLATE("literals of every arithmetic type", D, DUET_EVERY_NUMBER) {
   const D x = variable<D>(2);
   CHECK(is(3 * x + 1, 7, 3));

@@ -147,6 +147,17 @@ TEST_CASE("matrices that are no poses") {
   CHECK_THROWS_AS(static_cast<void>(duet::from_transform_matrix(m)), duet::invalid_input);
 }
 
+TEST_CASE("a rotation matrix and a translation") {
+  const duet::quaternion<double> q = duet::from_rotation_vector(Eigen::Vector3d(.1, -.2, 3));
+  const Eigen::Vector3d t(1, -2, 3);
+  const auto a = duet::pose(duet::rotation_matrix(q), t);
+  CHECK(duet::transform_matrix(a).isApprox(duet::transform_matrix(duet::pose(q, t)), 1e-15));
+  CHECK(duet::translation(a).isApprox(t, 1e-15));
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(duet::pose(Eigen::Matrix3d(2 * duet::rotation_matrix(q)), t)),
+      doctest::Contains("rotation"), duet::invalid_input);
+}
+
 TEST_CASE("a rotation that is no unit makes no pose, which would scale what it carries") {
   const vector t(1, 2, 3);
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::pose(duet::quaternion<double>(2), t)),

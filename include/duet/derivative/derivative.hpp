@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/dual/math.hpp>
@@ -27,6 +28,12 @@ struct value_and_derivative {
     f("value", value);
     f("derivative", derivative);
   }
+  /// For those who extend duet: what is returned is no derivative alone.
+  template <class M>
+    requires(Arithmetic<M> || std::derived_from<M, Eigen::MatrixBase<M>>)
+  DUET_REFUSED("derivative returns value and derivative: const auto [y, dy] = derivative(f, x); or "
+               "derivative(f, x).derivative")
+  operator M() const;
 };
 template <class Y, class DY>
 value_and_derivative(Y, DY) -> value_and_derivative<Y, DY>;

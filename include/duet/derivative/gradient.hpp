@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/argument.hpp>
@@ -14,6 +15,8 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -35,6 +38,12 @@ struct value_and_gradient {
     f("value", value);
     f("gradient", gradient);
   }
+  /// For those who extend duet: what is returned is no gradient alone.
+  template <class M>
+    requires std::derived_from<M, Eigen::MatrixBase<M>>
+        DUET_REFUSED("gradient returns value and gradient: const auto [y, g] = gradient(f, x); or "
+                     "gradient(f, x).gradient")
+  operator M() const;
 };
 
 /// What `hessian` returns: f(x), ∇f as a column, and the symmetric matrix of second derivatives.
@@ -50,6 +59,12 @@ struct value_gradient_and_hessian {
     f("gradient", gradient);
     f("hessian", hessian);
   }
+  /// For those who extend duet: what is returned is no hessian alone.
+  template <class M>
+    requires std::derived_from<M, Eigen::MatrixBase<M>> DUET_REFUSED(
+        "hessian returns value, gradient and Hessian: const auto [y, g, H] = hessian(f, x); or "
+        "hessian(f, x).hessian")
+  operator M() const;
 };
 
 /// f(x); writes ∇f into `gradient`, any writable Eigen vector of as many components as x.
@@ -219,6 +234,18 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
     detail::hessian_in_blocks<tag>(f, x, result);
   }
   return result;
+}
+
+/// Of a point in braces, `gradient(f, {1, 2})`.
+template <class Tag = void, detail::FunctionOfAny F, std::size_t N>
+[[nodiscard]] auto gradient(F&& f, const double (&x)[N]) {
+  return gradient<Tag>(std::forward<F>(f), std::to_array(x));
+}
+
+/// Of a point in braces, `hessian(f, {1, 2})`.
+template <class Tag = void, detail::FunctionOfAny F, std::size_t N>
+[[nodiscard]] auto hessian(F&& f, const double (&x)[N]) {
+  return hessian<Tag>(std::forward<F>(f), std::to_array(x));
 }
 
 template <int Chunk = 0, class Tag = void, detail::FunctionOfReals F, class... X>

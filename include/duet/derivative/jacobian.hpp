@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/argument.hpp>
@@ -11,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
@@ -32,6 +34,12 @@ struct value_and_jacobian {
     f("value", value);
     f("jacobian", jacobian);
   }
+  /// For those who extend duet: what is returned is no jacobian alone.
+  template <class M>
+    requires std::derived_from<M, Eigen::MatrixBase<M>>
+        DUET_REFUSED("jacobian returns value and Jacobian: const auto [y, J] = jacobian(f, x); or "
+                     "jacobian(f, x).jacobian")
+  operator M() const;
 };
 
 namespace detail {
@@ -132,6 +140,12 @@ template <class Tag = void, detail::FunctionOfAny F, class X, class V>
     }
   }();
   return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};
+}
+
+/// Of a point in braces, `jacobian(f, {1, 2})`.
+template <class Tag = void, detail::FunctionOfAny F, std::size_t N>
+[[nodiscard]] auto jacobian(F&& f, const double (&x)[N]) {
+  return jacobian<Tag>(std::forward<F>(f), std::to_array(x));
 }
 
 template <class Tag = void, detail::FunctionOfReals F, class... X>

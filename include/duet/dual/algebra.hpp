@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/promotion.hpp>
@@ -117,6 +118,18 @@ struct infinitesimal_operators {
     return before;
   }
 };
+
+#define DUET_REFUSES_ASSIGNMENT(op)                                                                \
+  template <Arithmetic A, Infinitesimal D>                                                         \
+  DUET_REFUSED("a sum or product of numbers with derivatives is of their type: where x is one of " \
+               "them, decltype(x) s = 0 instead of double s = 0")                                  \
+  A&                                                                                               \
+  operator op(A&, const D&);
+DUET_REFUSES_ASSIGNMENT(+=)
+DUET_REFUSES_ASSIGNMENT(-=)
+DUET_REFUSES_ASSIGNMENT(*=)
+DUET_REFUSES_ASSIGNMENT(/=)
+#undef DUET_REFUSES_ASSIGNMENT
 
 // Concepts of two types are those of the second beside the first, for `template <class A, …<A> B>`.
 

@@ -3,21 +3,32 @@
 
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
+#include <duet/dual/algebra.hpp>
 
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 /// \file
 /// `std::sin(x)` of a dual or a formula x, and its like: qualified names find the standard
 /// library's functions alone, which know none. Compilers would list these; they say what to write
 /// instead.
 ///
-/// (The standard keeps its namespace to itself. These are called by no program that compiles, and
-/// wherever another function fits, it is more specialised than a parameter pack.)
+/// `std::max`, `std::min` and `std::clamp` of a dual and a constant, which need one type in the
+/// standard library, work. (A program that would compile without these overloads calls none of
+/// them: wherever another function fits, it is more specialised than a parameter pack.)
 
 namespace duet::detail {
 
 template <class X>
 concept UnknownToStd = RealInfinitesimal<X> || is_symbolic<X>;
+
+/// Sums in the type A of their initial value would lose the derivatives of what they add up.
+template <class A, class Iterator>
+concept LosesDerivatives = Arithmetic<A> && requires(const Iterator& i) {
+  requires RealInfinitesimal<std::remove_cvref_t<decltype(*i)>>;
+};
 
 } // namespace duet::detail
 
@@ -28,6 +39,9 @@ concept UnknownToStd = RealInfinitesimal<X> || is_symbolic<X>;
                " does not know numbers with derivatives nor formulas: write " #function            \
                "(x), after `using std::" #function ";` where x may be a double")                   \
   double function(const X&...);
+#define DUET_REFUSED_SUM                                                                           \
+  DUET_REFUSED("std::accumulate, reduce and inner_product add up in the type of their initial "    \
+               "value: where x is one of the numbers, decltype(x)(0) instead of 0.0")
 #define DUET_REFUSES_SPECIAL(function)                                                             \
   template <class... X>                                                                            \
     requires(duet::detail::UnknownToStd<X> || ...)                                                 \
@@ -82,6 +96,53 @@ DUET_REFUSES_STD(tanh)
 DUET_REFUSES_STD(tgamma)
 DUET_REFUSES_STD(trunc)
 
+template <class Iterator, class A>
+  requires duet::detail::LosesDerivatives<A, Iterator> DUET_REFUSED_SUM A accumulate(Iterator,
+                                                                                     Iterator, A);
+template <class Iterator, class A, class Add>
+  requires duet::detail::LosesDerivatives<A, Iterator>
+      DUET_REFUSED_SUM A accumulate(Iterator, Iterator, A, Add);
+template <class Iterator, class A>
+  requires duet::detail::LosesDerivatives<A, Iterator> DUET_REFUSED_SUM A reduce(Iterator, Iterator,
+                                                                                 A);
+template <class Iterator, class A, class Add>
+  requires duet::detail::LosesDerivatives<A, Iterator> DUET_REFUSED_SUM A reduce(Iterator, Iterator,
+                                                                                 A, Add);
+template <class Iterator, class Other, class A>
+  requires duet::detail::LosesDerivatives<A, Iterator>
+      DUET_REFUSED_SUM A inner_product(Iterator, Iterator, Other, A);
+
+/// The larger of a dual and a constant, or of duals of two nestings; of equal ones a.
+template <class A, duet::detail::OrderedScalars<A> B>
+  requires(!std::is_same_v<A, B>)
+[[nodiscard]] constexpr duet::promote_t<A, B> max(const A& a, const B& b) {
+  using T = duet::promote_t<A, B>;
+  return duet::select(
+      a < b, [&] { return T(b); }, [&] { return T(a); });
+}
+/// The smaller of a dual and a constant, or of duals of two nestings; of equal ones a.
+template <class A, duet::detail::OrderedScalars<A> B>
+  requires(!std::is_same_v<A, B>)
+[[nodiscard]] constexpr duet::promote_t<A, B> min(const A& a, const B& b) {
+  using T = duet::promote_t<A, B>;
+  return duet::select(
+      b < a, [&] { return T(b); }, [&] { return T(a); });
+}
+/// x, but `low` where x < low, and `high` where high < x, of duals and constants.
+template <class X, class Low, class High>
+  requires((duet::RealInfinitesimal<X> || duet::RealInfinitesimal<Low> ||
+            duet::RealInfinitesimal<High>)&&!(std::is_same_v<X, Low> && std::is_same_v<X, High>))
+[[nodiscard]] constexpr duet::promote_t<duet::promote_t<X, Low>, High>
+clamp(const X& x, const Low& low, const High& high) {
+  using T = duet::promote_t<duet::promote_t<X, Low>, High>;
+  return duet::select(
+      x < low, [&] { return T(low); },
+      [&] {
+        return duet::select(
+            high < x, [&] { return T(high); }, [&] { return T(x); });
+      });
+}
+
 DUET_REFUSES_SPECIAL(assoc_laguerre)
 DUET_REFUSES_SPECIAL(assoc_legendre)
 DUET_REFUSES_SPECIAL(beta)
@@ -107,4 +168,5 @@ DUET_REFUSES_SPECIAL(sph_neumann)
 } // namespace std
 
 #undef DUET_REFUSES_STD
+#undef DUET_REFUSED_SUM
 #undef DUET_REFUSES_SPECIAL

@@ -60,6 +60,13 @@ pose(const quaternion<A>& rotation, const vector3<B>& translation) {
   return detail::pose_of_unit(rotation, translation);
 }
 
+/// The pose [R t; 0 1]. \throws invalid_input as `from_rotation_matrix`
+template <class A, Promotable<A> B>
+[[nodiscard]] dual_quaternion<promote_t<A, B>> pose(const matrix3<A>& rotation,
+                                                    const vector3<B>& translation) {
+  return detail::pose_of_unit(from_rotation_matrix(rotation), translation);
+}
+
 /// A point carried along by a pose: R x + t.
 template <class T, Promotable<T> U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_point(const dual_quaternion<T>& a,
@@ -123,9 +130,8 @@ template <class T>
                   "duet: from_transform_matrix: the last row is ", innermost(m(3, 0)), " ",
                   innermost(m(3, 1)), " ", innermost(m(3, 2)), " ", innermost(m(3, 3)),
                   ", not 0 0 0 1");
-  const matrix3<T> r = m.template topLeftCorner<3, 3>();
-  const vector3<T> t = m.template topRightCorner<3, 1>();
-  return detail::pose_of_unit(from_rotation_matrix(r), t);
+  return pose(matrix3<T>(m.template topLeftCorner<3, 3>()),
+              vector3<T>(m.template topRightCorner<3, 1>()));
 }
 
 DUET_REFUSES_FOREIGN(pose, dual_quaternion<double>)

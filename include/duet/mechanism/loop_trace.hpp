@@ -58,7 +58,8 @@ struct loop_trace_options {
 /// first. Limits of joints are not heeded.
 ///
 /// Dead points of a coordinate are where its rate changes its sign, found to rounding. Where
-/// branches meet the trace ends.
+/// branches cross the trace goes straight on, or by `loop_trace_options::ways`; it ends where they
+/// touch.
 /// \param drive  which of the motion's drives, from 0
 /// \throws invalid_input for a drive that there is none of
 [[nodiscard]] DUET_COMPILED_FUNCTION loop_trace_result

@@ -58,6 +58,11 @@ public:
       : w_(static_cast<T>(q.w())), x_(static_cast<T>(q.x())), y_(static_cast<T>(q.y())),
         z_(static_cast<T>(q.z())) {}
 
+  template <class M>
+    requires(std::derived_from<M, Eigen::MatrixBase<M>>&& M::SizeAtCompileTime != 4)
+  DUET_REFUSED("the matrix of a rotation is rotation_matrix(q), that of a pose transform_matrix(A)")
+  operator M() const;
+
   [[nodiscard]] constexpr const T& w() const { return w_; } ///< the scalar part
   [[nodiscard]] constexpr const T& x() const { return x_; } ///< what stands at i
   [[nodiscard]] constexpr const T& y() const { return y_; } ///< what stands at j

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/zero_initialized.hpp>
 
@@ -48,6 +49,20 @@ struct not_a_knot {};
 /// The motion closes on itself, with its rates; the last row repeats the first.
 struct periodic {};
 
+namespace detail {
+
+/// What numbers given for angular velocities or twists become.
+struct rate_of_number {
+  constexpr rate_of_number() = default;
+  DUET_REFUSED("rates at the ends are vectors, angular velocities (3) or twists (6): "
+               "clamped{Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, 2)}; clamped{} is at rest")
+  rate_of_number(double);
+};
+
+} // namespace detail
+
+clamped(double, double)->clamped<detail::rate_of_number>;
+end_acceleration(double, double)->end_acceleration<detail::rate_of_number>;
 template <class V>
 clamped(V, V) -> clamped<typename V::PlainObject>;
 template <class A, class B>
