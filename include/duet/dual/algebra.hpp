@@ -153,6 +153,11 @@ concept Lifted = Infinitesimal<T> || lane_traits<T>::is_batch;
 template <class T>
 concept LiftedReal = Lifted<T> && Real<real_type_t<T>>;
 
+/// Over the reals, or over complex numbers of built-in precision: of others `<complex>` knows no
+/// more than what is made of exponentials, logarithms and roots.
+template <class T>
+concept LiftedAnalytic = LiftedReal<T> ||(Lifted<T>&& std::floating_point<constant_t<T>>);
+
 /// At least one of the two is lifted, and they meet in numbers over the reals.
 template <class B, class A>
 concept MixedReals = (Lifted<A> || Lifted<B>)&&Promotable<B, A>&& LiftedReal<promote_t<A, B>>;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/complex.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/rules/functions.hpp>
 #include <duet/dual/rules/piecewise.hpp>

@@ -195,7 +195,7 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE second_dual dividing(const T& c) const {
     const T inverse = T(1) / value_;
     const T slope = -(c * inverse) * inverse;
-    return composed(T(c / value_), slope, T(-2 * slope * inverse));
+    return composed(T(c / value_), slope, T(detail::integer<T>(-2) * slope * inverse));
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static second_dual sum(const second_dual& a,
                                                           const second_dual& b) {
@@ -220,7 +220,7 @@ public:
   [[nodiscard]] static second_dual quotient(const second_dual& a, const second_dual& b) {
     const T inverse = T(1) / b.value_;
     const T slope = -inverse * inverse;
-    const T curvature = -2 * slope * inverse;
+    const T curvature = detail::integer<T>(-2) * slope * inverse;
     const T value = a.value_ / b.value_;
     if (!all(detail::is_all_finite(curvature))) [[unlikely]] {
       return composed<2>(value, {&a, &b}, {inverse, T(a.value_ * slope)},

@@ -7,6 +7,7 @@
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
+#include <duet/dual/parts.hpp>
 
 #include <cmath>
 
@@ -21,12 +22,72 @@
 
 namespace duet::detail {
 
-/// 1 − x². Factors are accurate near ±1; near 0 the derivative of their product would cancel.
+/// Is |x| < ½? There derivatives of (1 − x)(1 + x) would cancel, beyond it 1 − x² does.
+template <class T>
+[[nodiscard]] auto is_below_half(const T& x) {
+  if constexpr (Real<real_type_t<T>>) {
+    return quiet_less(innermost(x) * innermost(x), 0.25);
+  } else {
+    return norm(innermost(x)) < 0.25;
+  }
+}
+
+/// 1 − x²
 template <class T>
 [[nodiscard]] T one_minus_square(const T& x) {
   return select(
-      quiet_less(innermost(x) * innermost(x), 0.25), [&] { return T(1 - x * x); },
-      [&] { return T((1 - x) * (1 + x)); });
+      is_below_half(x), [&] { return T(integer<T>(1) - x * x); },
+      [&] { return T((integer<T>(1) - x) * (integer<T>(1) + x)); });
+}
+
+/// √(1 − x²), of complex numbers √(1 − x) √(1 + x): the branch that arcsines need, also on the
+/// cuts, and no overflow.
+template <class T>
+[[nodiscard]] T root_of_one_minus_square(const T& x) {
+  using std::sqrt;
+  if constexpr (Real<real_type_t<T>>) {
+    return sqrt(one_minus_square(x));
+  } else {
+    return select(
+        is_below_half(x), [&] { return T(sqrt(T(integer<T>(1) - x * x))); },
+        [&] { return T(sqrt(T(integer<T>(1) - x)) * sqrt(T(integer<T>(1) + x))); });
+  }
+}
+
+/// 1/(1 − x²) of complex numbers, without overflow.
+template <class T>
+[[nodiscard]] T inverse_of_one_minus_square(const T& x) {
+  return select(
+      is_below_half(x), [&] { return T(integer<T>(1) / (integer<T>(1) - x * x)); },
+      [&] { return T(integer<T>(1) / (integer<T>(1) - x) / (integer<T>(1) + x)); });
+}
+
+/// i x of a complex number, with the signs of its zeros.
+template <class T>
+[[nodiscard]] T times_i(const T& x) {
+  using complex = real_type_t<T>;
+  return map_reals(x, [](const complex& z) { return complex(-z.imag(), z.real()); });
+}
+
+/// 1/cos²x of a complex number. Far from the real axis the cosine overflows, and by 1 + tan²x it
+/// would cancel.
+template <class T>
+[[nodiscard]] T inverse_square_of_cosine(const T& x) {
+  using std::abs;
+  using std::cos;
+  using std::exp;
+  const auto y = innermost(x).imag();
+  return select(
+      quiet_less_equal(abs(y), 1),
+      [&] {
+        const T inverse = integer<T>(1) / cos(x);
+        return T(inverse * inverse);
+      },
+      [&] {
+        const T e = exp(T(times_i(x) * integer<T>(y < 0 ? -2 : 2)));
+        const T sum = integer<T>(1) + e;
+        return T(integer<T>(4) * e / (sum * sum));
+      });
 }
 
 } // namespace duet::detail
@@ -123,7 +184,7 @@ struct log10 {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    return 1 / (x * constant::ln10<real_type_t<T>>());
+    return detail::integer<T>(1) / (x * constant::ln10<detail::constant_t<T>>());
   }
 };
 
@@ -165,10 +226,8 @@ struct tan {
   T slope([[maybe_unused]] const T& x, [[maybe_unused]] const T& y) const {
     if constexpr (Real<real_type_t<T>>) {
       return 1 + y * y;
-    } else { // far from the real axis tan x is nearly ±i, and 1 + y² would cancel
-      using std::cos;
-      const T inverse = detail::integer<T>(1) / cos(x);
-      return inverse * inverse;
+    } else {
+      return detail::inverse_square_of_cosine(x);
     }
   }
 };
@@ -181,8 +240,7 @@ struct asin {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    using std::sqrt;
-    return 1 / sqrt(detail::one_minus_square(x));
+    return detail::integer<T>(1) / detail::root_of_one_minus_square(x);
   }
 };
 
@@ -194,8 +252,7 @@ struct acos {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    using std::sqrt;
-    return -1 / sqrt(detail::one_minus_square(x));
+    return detail::integer<T>(-1) / detail::root_of_one_minus_square(x);
   }
 };
 
@@ -207,15 +264,19 @@ struct atan {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    using std::abs;
-    // x² would overflow long before its reciprocal vanishes.
-    return select(
-        detail::quiet_less_equal(abs(innermost(x)), real_type_t<T>(1)),
-        [&] { return T(1 / (1 + x * x)); },
-        [&] {
-          const T r = 1 / x;
-          return T(r * r / (1 + r * r));
-        });
+    if constexpr (Real<real_type_t<T>>) {
+      using std::abs;
+      // x² would overflow long before its reciprocal vanishes.
+      return select(
+          detail::quiet_less_equal(abs(innermost(x)), real_type_t<T>(1)),
+          [&] { return T(1 / (1 + x * x)); },
+          [&] {
+            const T r = 1 / x;
+            return T(r * r / (1 + r * r));
+          });
+    } else {
+      return detail::inverse_of_one_minus_square(detail::times_i(x));
+    }
   }
 };
 

@@ -48,22 +48,28 @@ template <Infinitesimal D>
 [[nodiscard]] auto tanh(const detail::Lifted auto& x) { return detail::lift(rule::tanh{}, x); }
 
 /// The function of `<cmath>` with its derivatives.
-[[nodiscard]] auto asin(const detail::LiftedReal auto& x) { return detail::lift(rule::asin{}, x); }
-[[nodiscard]] auto acos(const detail::LiftedReal auto& x) { return detail::lift(rule::acos{}, x); }
-[[nodiscard]] auto atan(const detail::LiftedReal auto& x) { return detail::lift(rule::atan{}, x); }
+[[nodiscard]] auto asin(const detail::LiftedAnalytic auto& x) {
+  return detail::lift(rule::asin{}, x);
+}
+[[nodiscard]] auto acos(const detail::LiftedAnalytic auto& x) {
+  return detail::lift(rule::acos{}, x);
+}
+[[nodiscard]] auto atan(const detail::LiftedAnalytic auto& x) {
+  return detail::lift(rule::atan{}, x);
+}
 [[nodiscard]] auto cbrt(detail::LiftedReal auto x) { return detail::lift(rule::cbrt{}, x); }
 [[nodiscard]] auto exp2(detail::LiftedReal auto x) { return detail::lift(rule::exp2{}, x); }
 [[nodiscard]] auto expm1(detail::LiftedReal auto x) { return detail::lift(rule::expm1{}, x); }
 [[nodiscard]] auto log1p(detail::LiftedReal auto x) { return detail::lift(rule::log1p{}, x); }
-[[nodiscard]] auto asinh(detail::LiftedReal auto x) { return detail::lift(rule::asinh{}, x); }
-[[nodiscard]] auto acosh(detail::LiftedReal auto x) { return detail::lift(rule::acosh{}, x); }
-[[nodiscard]] auto atanh(detail::LiftedReal auto x) { return detail::lift(rule::atanh{}, x); }
+[[nodiscard]] auto asinh(detail::LiftedAnalytic auto x) { return detail::lift(rule::asinh{}, x); }
+[[nodiscard]] auto acosh(detail::LiftedAnalytic auto x) { return detail::lift(rule::acosh{}, x); }
+[[nodiscard]] auto atanh(detail::LiftedAnalytic auto x) { return detail::lift(rule::atanh{}, x); }
 [[nodiscard]] auto erf(detail::LiftedReal auto x) { return detail::lift(rule::erf{}, x); }
 [[nodiscard]] auto erfc(detail::LiftedReal auto x) { return detail::lift(rule::erfc{}, x); }
 [[nodiscard]] auto tgamma(detail::LiftedReal auto x) { return detail::lift(rule::tgamma{}, x); }
 [[nodiscard]] auto lgamma(detail::LiftedReal auto x) { return detail::lift(rule::lgamma{}, x); }
 [[nodiscard]] auto log2(const detail::LiftedReal auto& x) { return detail::lift(rule::log2{}, x); }
-[[nodiscard]] auto log10(const detail::LiftedReal auto& x) {
+[[nodiscard]] auto log10(const detail::LiftedAnalytic auto& x) {
   return detail::lift(rule::log10{}, x);
 }
 
@@ -94,14 +100,23 @@ template <class Rule, class... A>
 template <class A, class B>
   requires(detail::MixedScalars<A, B> || detail::MixedReals<A, B>)
 [[nodiscard]] auto pow(const A& x, const B& p) {
-  if constexpr (ConstantOf<B, A>) {
-    const auto exponent = detail::as_constant<A>(p);
-    return detail::lift(rule::power<std::remove_const_t<decltype(exponent)>>{exponent}, x);
-  } else if constexpr (ConstantOf<A, B>) {
-    const auto base = detail::as_constant<B>(x);
-    return detail::lift(rule::exponential<std::remove_const_t<decltype(base)>>{base}, p);
+  const auto by_rules = [&] {
+    if constexpr (ConstantOf<B, A>) {
+      const auto exponent = detail::as_constant<A>(p);
+      return detail::lift(rule::power<std::remove_const_t<decltype(exponent)>>{exponent}, x);
+    } else if constexpr (ConstantOf<A, B>) {
+      const auto base = detail::as_constant<B>(x);
+      return detail::lift(rule::exponential<std::remove_const_t<decltype(base)>>{base}, p);
+    } else {
+      return detail::lift_promoted(rule::pow{}, x, p);
+    }
+  };
+  using number = real_type_t<promote_t<A, B>>;
+  if constexpr (Real<number> || std::integral<detail::constant_t<number>>) {
+    return by_rules();
   } else {
-    return detail::lift_promoted(rule::pow{}, x, p);
+    return detail::with_innermost(by_rules(),
+                                  detail::complex_power_of_constants<number>(innermost(x), innermost(p)));
   }
 }
 

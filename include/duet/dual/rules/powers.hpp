@@ -5,10 +5,12 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/parts.hpp>
+#include <duet/dual/rules/lift.hpp>
 #include <duet/dual/storage/structural_zero.hpp>
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <type_traits>
 
 /// \file
@@ -37,6 +39,32 @@ template <class T, class Base>
   }
 }
 
+/// The power of two constants as `<complex>` has it for their types; it is a C. (Of other numbers
+/// than built-in ones libc++ has it of two complex ones only.)
+template <class C, class X, class P>
+[[nodiscard]] C complex_power_of_constants(const X& x, const P& p) {
+  using std::pow;
+  const auto with_precision = [](const auto& a) {
+    if constexpr (std::floating_point<std::remove_cvref_t<decltype(a)>>) {
+      return static_cast<constant_t<C>>(a);
+    } else {
+      return a;
+    }
+  };
+  const auto base = with_precision(x);
+  const auto exponent = with_precision(p);
+  if constexpr (requires { pow(base, exponent); }) {
+    return C(pow(base, exponent));
+  } else {
+    return pow(C(base), C(exponent));
+  }
+}
+
+/// x^p as slopes need it: of complex numbers with 0⁰ = 1, of which `<complex>` makes NaN, and with
+/// whole powers by products, which the logarithm of a large x would cost digits.
+template <class T, class Exponent>
+[[nodiscard]] T power_in_slope(const T& x, const Exponent& p);
+
 } // namespace duet::detail
 
 namespace duet::rule {
@@ -48,14 +76,13 @@ struct power {
 
   template <class T>
   T value(const T& x) const {
-    using std::pow;
-    return pow(x, exponent);
+    return detail::power_in_slope(x, exponent);
   }
   template <class T>
   T slope(const T& x, [[maybe_unused]] const T& y) const {
-    using std::pow;
     const auto by_power = [&] {
-      return T(exponent * pow(x, Exponent(exponent - detail::integer<Exponent>(1))));
+      return T(exponent * detail::power_in_slope(
+                              x, Exponent(exponent - detail::integer<Exponent>(1))));
     };
     return select(
         detail::is_structural_zero(exponent) ||
@@ -111,8 +138,7 @@ struct exponential {
 struct pow {
   template <class T>
   T value(const T& x, const T& p) const {
-    using std::pow;
-    return pow(x, p);
+    return detail::power_in_slope(x, p);
   }
   template <class T>
   std::array<T, 2> slopes(const T& y, const T& x, const T& p) const {
@@ -121,3 +147,42 @@ struct pow {
 };
 
 } // namespace duet::rule
+
+namespace duet::detail {
+
+/// x^n by products.
+template <class T>
+[[nodiscard]] T whole_power(T x, int n) {
+  T result(integer<T>(1));
+  for (int k = std::abs(n); k > 0; k /= 2) {
+    if (k % 2 == 1) {
+      result = result * x;
+    }
+    x = x * x;
+  }
+  return n < 0 ? T(integer<T>(1) / result) : result;
+}
+
+/// Whole exponents up to this one are taken by products in slopes of complex powers.
+inline constexpr int whole_power_limit = 64;
+
+template <class T, class Exponent>
+[[nodiscard]] T power_in_slope(const T& x, const Exponent& p) {
+  using std::fabs;
+  using std::pow;
+  if constexpr (Real<real_type_t<T>> || std::integral<constant_t<T>>) {
+    return pow(x, p);
+  } else if constexpr (Infinitesimal<Exponent>) {
+    return lift(rule::pow{}, x, p);
+  } else if constexpr (Infinitesimal<T>) {
+    return lift(rule::power<Exponent>{p}, x);
+  } else {
+    const auto& real = real_part(p);
+    if (p == real && fabs(real) <= whole_power_limit && real == int(real)) {
+      return whole_power(x, int(real));
+    }
+    return complex_power_of_constants<T>(x, p);
+  }
+}
+
+} // namespace duet::detail

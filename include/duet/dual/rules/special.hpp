@@ -178,10 +178,8 @@ struct tanh {
                 [&] { return T(-2 * x); }));
             return T(4 * e / ((1 + e) * (1 + e)));
           });
-    } else {
-      using std::cosh;
-      const T inverse = detail::integer<T>(1) / cosh(x);
-      return inverse * inverse;
+    } else { // cosh x = cos ix
+      return detail::inverse_square_of_cosine(detail::times_i(x));
     }
   }
 };
@@ -194,8 +192,12 @@ struct asinh {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    using std::hypot;
-    return 1 / hypot(T(1), x);
+    if constexpr (Real<real_type_t<T>>) {
+      using std::hypot;
+      return 1 / hypot(T(1), x);
+    } else {
+      return detail::integer<T>(1) / detail::root_of_one_minus_square(detail::times_i(x));
+    }
   }
 };
 
@@ -208,7 +210,21 @@ struct acosh {
   template <class T>
   T slope(const T& x, const T&) const {
     using std::sqrt;
-    return 1 / sqrt(x - 1) / sqrt(x + 1); // the radicand x² − 1 would cancel and overflow
+    const auto by_factors = [&] { // the radicand x² − 1 would cancel and overflow
+      const auto one = detail::integer<T>(1);
+      return T(one / sqrt(T(x - one)) / sqrt(T(x + one)));
+    };
+    if constexpr (Real<real_type_t<T>>) {
+      return by_factors();
+    } else { // √(x − 1) √(x + 1) = ±i √(1 − x²), + above the real axis
+      return select(
+          detail::is_below_half(x),
+          [&] {
+            const T y = detail::times_i(T(detail::integer<T>(1) / detail::root_of_one_minus_square(x)));
+            return std::signbit(innermost(x).imag()) ? y : T(-y);
+          },
+          by_factors);
+    }
   }
 };
 
@@ -220,7 +236,11 @@ struct atanh {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    return 1 / detail::one_minus_square(x);
+    if constexpr (Real<real_type_t<T>>) {
+      return 1 / detail::one_minus_square(x);
+    } else {
+      return detail::inverse_of_one_minus_square(x);
+    }
   }
 };
 
