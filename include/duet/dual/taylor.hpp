@@ -181,6 +181,15 @@ public:
   }
   template <class C>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor divided_by(const C& c) const {
+    if constexpr (Infinitesimal<T> && !Infinitesimal<C>) {
+      // As a T its inverse would multiply infinite coefficients by zeros.
+      const C inverse = C(1) / c;
+      if (all(detail::is_all_finite(inverse))) {
+        taylor result = times(inverse);
+        result.coefficients_[0] = coefficients_[0] / c;
+        return result;
+      }
+    }
     const T inverse = T(1) / c;
     taylor result = each([&](int k) DUET_INLINE_LAMBDA {
       return detail::surviving_product(inverse, coefficient(k));

@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 /// \file
 /// The derivatives of the special functions of special_functions.hpp; see
@@ -49,13 +50,24 @@ struct rule_by_boost {
 enum class bessel { j, y, i, k };
 
 /// 2 C_ν′ = ±C_{ν−1} ± C_{ν+1}, without a division by x.
+///
+/// Where x² vanishes beside 1, one of the two is all of it: what is left of the other, and of its
+/// derivatives, would be ∞ − ∞.
 template <bessel Kind>
 struct cylinder : rule_by_boost<cylinder<Kind>> {
+  static constexpr bool is_second = Kind == bessel::y || Kind == bessel::k;
   double order;
   constexpr explicit cylinder(double nu) : order(nu) {}
 
   template <class T>
   T plain(const T& x) const {
+    if (x == 0) {
+      return at_zero<T>();
+    }
+    if (Kind == bessel::y && order < 0 && is_whole()) { // Boost has another sign for small x
+      const T y = cylinder(-order).plain(x);
+      return std::fmod(order, 2) == 0 ? y : T(-y);
+    }
     const T nu(order);
     if constexpr (Kind == bessel::j) {
       return boost::math::cyl_bessel_j(nu, x, quiet_policy());
@@ -69,13 +81,58 @@ struct cylinder : rule_by_boost<cylinder<Kind>> {
   }
   template <class T>
   T slope(const T& x, const T&) const {
-    const T above = cylinder(order + 1).value(x);
+    using std::isinf;
+    constexpr bool is_sum = Kind == bessel::i || Kind == bessel::k;
+    T above = cylinder(order + 1).value(x);
     if (order == 0) {
       return Kind == bessel::i ? above : T(-above);
     }
-    const T below = cylinder(order - 1).value(x);
-    const T sum = Kind == bessel::i || Kind == bessel::k ? T(below + above) : T(below - above);
+    T below = cylinder(order - 1).value(x);
+    const auto& z = innermost(x);
+    const T& larger = is_larger_above() ? above : below;
+    if (has_branch_point() &&
+        (z * z < std::numeric_limits<real_type_t<T>>::min() || isinf(innermost(larger)))) {
+      (is_larger_above() ? below : above) = T(0);
+    }
+    const T sum = is_sum ? T(below + above) : T(below - above);
     return Kind == bessel::k ? T(-sum / 2) : T(sum / 2);
+  }
+
+private:
+  [[nodiscard]] constexpr bool is_whole() const { return order == double((long long)(order)); }
+  /// Y_−½, Y_−3/2, …, which are ±J_½, ±J_3/2, …
+  [[nodiscard]] constexpr bool is_of_first_kind() const {
+    return !is_second ||
+           (Kind == bessel::y && order < 0 && !is_whole() && cylinder(order + 0.5).is_whole());
+  }
+  /// Is it no power series at 0?
+  [[nodiscard]] constexpr bool has_branch_point() const { return is_second || !is_whole(); }
+  /// Which of the two in the slope is the larger one near 0?
+  [[nodiscard]] constexpr bool is_larger_above() const {
+    return is_second && (order > 0 || is_of_first_kind());
+  }
+
+  /// The limit from above.
+  template <class T>
+  [[nodiscard]] T at_zero() const {
+    const double size = std::abs(order);
+    const bool is_odd = std::fmod(std::floor(size), 2) == 1;
+    const T infinity = std::numeric_limits<T>::infinity();
+    if constexpr (Kind == bessel::k) {
+      return infinity;
+    } else if constexpr (Kind == bessel::y) {
+      if (is_of_first_kind()) {
+        return T(0);
+      }
+      // Y_−ν = cos νπ Y_ν + sin νπ J_ν
+      const bool is_positive = order < 0 && std::fmod(std::floor(size + 0.5), 2) == 1;
+      return is_positive ? infinity : T(-infinity);
+    } else {
+      if (order > 0 || (order != 0 && is_whole())) {
+        return T(0);
+      }
+      return order == 0 ? T(1) : is_odd ? T(-infinity) : infinity; // (x/2)^ν/Γ(ν + 1)
+    }
   }
 };
 
@@ -95,9 +152,13 @@ struct spherical_bessel_rule : rule_by_boost<spherical_bessel_rule<IsNeumann>> {
   }
   template <class T>
   T slope(const T& x, const T&) const {
+    using std::isinf;
     using real = real_type_t<T>;
     const T above = spherical_bessel_rule(order + 1).value(x);
     if (order == 0) {
+      return -above;
+    }
+    if (IsNeumann && isinf(innermost(above))) { // it is the larger one
       return -above;
     }
     return (real(order) * spherical_bessel_rule(order - 1).value(x) - real(order + 1) * above) /
@@ -105,7 +166,8 @@ struct spherical_bessel_rule : rule_by_boost<spherical_bessel_rule<IsNeumann>> {
   }
 };
 
-/// ∂/∂φ of the elliptic integrals: 1/Δ, Δ and 1/((1 − ν sin²φ)Δ), Δ² = 1 − k² sin²φ.
+/// ∂/∂φ of the elliptic integrals: 1/Δ, Δ and 1/((1 − ν sin²φ)Δ), Δ² = 1 − k² sin²φ, of large k
+/// cos²φ + (1 − k²) sin²φ, which does not cancel.
 template <int Kind>
 struct elliptic : rule_by_boost<elliptic<Kind>> {
   double modulus;
@@ -125,12 +187,19 @@ struct elliptic : rule_by_boost<elliptic<Kind>> {
   }
   template <class T>
   T slope(const T& phi, const T&) const {
+    using std::cos;
     using std::sin;
     using std::sqrt;
     using real = real_type_t<T>;
     const T s = sin(phi);
-    const T p = real(modulus) * s;
-    const T delta = sqrt(one_minus_square(p));
+    const real k(modulus);
+    const T delta = [&] {
+      if (k * k < real(0.5)) {
+        return T(sqrt(one_minus_square(T(k * s))));
+      }
+      const T c = cos(phi);
+      return k * k == 1 ? abs(c) : T(sqrt(T(c * c + (1 - k) * (1 + k) * s * s)));
+    }();
     if constexpr (Kind == 1) {
       return 1 / delta;
     } else if constexpr (Kind == 2) {
@@ -159,6 +228,8 @@ struct beta_rule {
   T value(const T& x, const T& y) const {
     if constexpr (Infinitesimal<T>) {
       return lift(*this, x, y);
+    } else if (x == 0 || y == 0) {
+      return std::numeric_limits<T>::infinity();
     } else {
       return boost::math::beta(x, y, quiet_policy());
     }
@@ -173,7 +244,7 @@ struct beta_rule {
 /// K(k) = π/2 / agm(1, √(1 − k²)), and E(k) by the same means: E/K = 1 − Σ 2^{n−1} c_n². Both by
 /// means of dual numbers, whose derivatives converge one step after another.
 template <class D>
-[[nodiscard]] std::array<D, 2> complete_elliptic(const D& k) {
+[[nodiscard]] std::array<D, 2> complete_elliptic_by_mean(const D& k) {
   using std::sqrt;
   using real = real_type_t<D>;
   D a(1), b = sqrt(one_minus_square(k));
@@ -189,6 +260,28 @@ template <class D>
   }
   const D first = constant::pi<real>() / (2 * a);
   return {first, first * (1 - sum)};
+}
+
+/// K(k) and E(k) where k is ±1: K′ = (E/(1 − k²) − K)/k and E′ = (E − K)/k, of which what is largest
+/// there decides about all derivatives.
+template <bool IsFirst>
+struct complete_at_one : rule_by_boost<complete_at_one<IsFirst>> {
+  template <class T>
+  T plain(const T&) const {
+    return IsFirst ? std::numeric_limits<T>::infinity() : T(1);
+  }
+  template <class T>
+  T slope(const T& k, const T&) const {
+    return IsFirst ? T(1 / (k * one_minus_square(k))) : T(complete_at_one<true>{}.value(k) * -innermost(k));
+  }
+};
+
+template <class D>
+[[nodiscard]] std::array<D, 2> complete_elliptic(const D& k) {
+  if (innermost(k) * innermost(k) == 1) {
+    return {complete_at_one<true>{}.value(k), complete_at_one<false>{}.value(k)};
+  }
+  return complete_elliptic_by_mean(k);
 }
 
 /// ζ(s) by Euler's and Maclaurin's formula, for s clearly below 0 by that of 1 − s.
@@ -236,14 +329,14 @@ template <class D>
   return sum + power * tail;
 }
 
-/// P_l^m by its recurrence upwards from P_m^m = (2m − 1)!! sᵐ, s = √(1 − x²).
+/// dᵐP_l/dxᵐ by the recurrence of P_l^m upwards from (2m − 1)!!
 template <class D>
-[[nodiscard]] D legendre_by_recurrence(unsigned l, unsigned m, const D& x, const D& power) {
+[[nodiscard]] D legendre_by_recurrence(unsigned l, unsigned m, const D& x) {
   using real = real_type_t<D>;
   if (m > l) {
     return D(0);
   }
-  D below(0), p = power;
+  D below(0), p(1);
   for (unsigned k = 1; k < m; ++k) {
     p = p * real(2 * k + 1);
   }

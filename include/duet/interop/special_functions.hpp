@@ -11,6 +11,8 @@
 #include <boost/math/special_functions/zeta.hpp>
 
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 /// \file
 /// The special functions that `<cmath>` has since C++17, over dual and Taylor numbers: values by
@@ -82,7 +84,9 @@ template <Arithmetic K, Arithmetic N, SpecialArgument D>
 }
 /// Riemann's zeta function ζ(s).
 [[nodiscard]] auto riemann_zeta(const SpecialArgument auto& s) {
-  const auto value = boost::math::zeta(innermost(s), detail::quiet_policy());
+  using real = std::remove_cvref_t<decltype(innermost(s))>;
+  const real value = innermost(s) == 1 ? std::numeric_limits<real>::infinity()
+                                       : boost::math::zeta(innermost(s), detail::quiet_policy());
   return detail::with_innermost(detail::zeta_of(s), value);
 }
 /// Beta function B(x, y), by both.
@@ -95,14 +99,19 @@ template <class A, class B>
 /// Legendre polynomial P_n(x).
 template <SpecialArgument D>
 [[nodiscard]] D legendre(unsigned n, const D& x) {
-  return detail::legendre_by_recurrence(n, 0, x, D(1));
+  return detail::legendre_by_recurrence(n, 0, x);
 }
 /// Associated Legendre function (1 − x²)^(m/2) dᵐP_l/dxᵐ, without the sign (−1)ᵐ.
 template <SpecialArgument D>
 [[nodiscard]] D assoc_legendre(unsigned l, unsigned m, const D& x) {
   using std::pow;
   const D power = pow(detail::one_minus_square(x), real_type_t<D>(m) / 2);
-  return detail::legendre_by_recurrence(l, m, x, power);
+  const D polynomial = detail::legendre_by_recurrence(l, m, x);
+  if (m % 2 == 1 && innermost(power) == 0) {
+    // Derivatives of the root are 0 or infinite; what those of the polynomial add is smaller.
+    return power * innermost(polynomial);
+  }
+  return power * polynomial;
 }
 /// Spherical harmonic Y_l^m(θ, 0), with the sign (−1)ᵐ.
 template <SpecialArgument D>

@@ -113,7 +113,8 @@ struct cbrt {
   }
   template <class T>
   T slope(const T&, const T& y) const {
-    return 1 / (3 * y * y);
+    const T inverse = 1 / y; // y² would multiply its 0 by an infinite derivative
+    return inverse * inverse / 3;
   }
 };
 
