@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <concepts>
@@ -229,6 +230,55 @@ TEST_CASE("functions and their derivatives: powers") {
                  [](C z) { return pow(z, z) * ((log(z) + 1.0) * (log(z) + 1.0) + 1.0 / z); });
 }
 
+TEST_CASE("functions and their derivatives: inverse circular and hyperbolic") {
+  check_analytic([](const auto& z) { return log10(z); }, [](C z) { return 1 / std::log(10) / z; },
+                 [](C z) { return -1 / std::log(10) / (z * z); });
+  // The roots in two factors are on the branches of the functions.
+  const auto root = [](C z) { return sqrt(1.0 - z) * sqrt(1.0 + z); };
+  check_analytic([](const auto& z) { return asin(z); }, [=](C z) { return 1.0 / root(z); },
+                 [=](C z) { return z / (root(z) * root(z) * root(z)); });
+  check_analytic([](const auto& z) { return acos(z); }, [=](C z) { return -1.0 / root(z); },
+                 [=](C z) { return -z / (root(z) * root(z) * root(z)); });
+  check_analytic([](const auto& z) { return atan(z); }, [](C z) { return 1.0 / (1.0 + z * z); },
+                 [](C z) { return -2.0 * z / ((1.0 + z * z) * (1.0 + z * z)); });
+  const auto turned = [=](C z) { return root(C(-z.imag(), z.real())); };
+  check_analytic([](const auto& z) { return asinh(z); }, [=](C z) { return 1.0 / turned(z); },
+                 [=](C z) { return -z / (turned(z) * turned(z) * turned(z)); });
+  const auto shifted = [](C z) { return sqrt(z - 1.0) * sqrt(z + 1.0); };
+  check_analytic([](const auto& z) { return acosh(z); }, [=](C z) { return 1.0 / shifted(z); },
+                 [=](C z) { return -z / (shifted(z) * shifted(z) * shifted(z)); });
+  check_analytic([](const auto& z) { return atanh(z); }, [](C z) { return 1.0 / (1.0 - z * z); },
+                 [](C z) { return 2.0 * z / ((1.0 - z * z) * (1.0 - z * z)); });
+  // Near 0 derivatives of the factors would cancel; far away the square overflows.
+  const C small(1e-12, 2e-12);
+  CHECK(std::abs(asin(series::variable(small)).derivative(2) - small) <= 1e-26);
+  CHECK(std::abs(acosh(series::variable(small)).derivative(2) + i * small) <= 1e-26);
+  CHECK(std::abs(atan(series::variable(small)).derivative(2) + 2.0 * small) <= 1e-26);
+  const C large(3e200, -4e200);
+  CHECK(std::abs(asinh(D::variable(large)).epsilon() * large - 1.0) <= 8 * epsilon);
+  CHECK(std::abs(acosh(D::variable(large)).epsilon() * large - 1.0) <= 8 * epsilon);
+  CHECK(atanh(D::variable(large)).epsilon() == C(0));
+}
+
+TEST_CASE("powers at 0, and whole ones of large numbers") {
+  const auto at_zero = [](const auto& p) { return pow(series::variable(0), p); };
+  const auto are = [](const series& y, const std::array<C, 3>& expected) {
+    return y.derivative(1) == expected[0] && y.derivative(2) == expected[1] &&
+           y.derivative(3) == expected[2];
+  };
+  CHECK(are(at_zero(0), {0, 0, 0}));
+  CHECK(are(at_zero(1), {1, 0, 0}));
+  CHECK(are(at_zero(2.0), {0, 2, 0}));
+  CHECK(are(at_zero(C(3)), {0, 0, 6}));
+  CHECK(are(at_zero(series(C(2))), {0, 2, 0}));
+  CHECK(std::isinf(at_zero(1.5).derivative(2).real()));
+  CHECK(at_zero(1.5).derivative(1) == C(0));
+  const auto both = pow(dual<D, 1, outer_tag>::variable(D(0)), nested(D::variable(2)));
+  CHECK(both.epsilon().value() == C(0));
+  const C z(3e100, 4e100);
+  CHECK(std::abs(pow(D::variable(z), 3).epsilon() - 3.0 * z * z) <= 4 * epsilon * 3 * 25e200);
+}
+
 TEST_CASE("tangents far from the real axis, where 1 + tan² would cancel") {
   const C z(0.3, 18);
   const D y = tan(D::variable(z));
@@ -237,7 +287,10 @@ TEST_CASE("tangents far from the real axis, where 1 + tan² would cancel") {
   CHECK(std::abs(y.epsilon() - exact) <= 64 * epsilon * std::abs(exact));
   const D h = tanh(D::variable(-i * z));
   CHECK(std::abs(h.epsilon() - exact) <= 64 * epsilon * std::abs(exact));
-  CHECK(tan(D::variable(C(0.3, 800))).epsilon() == C(0)); // saturated
+  const auto saturated = tan(series::variable(C(0.3, 800)));
+  CHECK(saturated.derivative(1) == C(0));
+  CHECK(saturated.derivative(3) == C(0));
+  CHECK(tanh(series::variable(C(-800, 0.3))).derivative(2) == C(0));
 }
 
 TEST_CASE("constants do not poison what they meet at singular points") {

@@ -201,6 +201,10 @@ template <Infinitesimal D, detail::OtherReal<D> U>
 [[nodiscard]] auto operator==(const std::complex<D>& z, const U& x) {
   return z.real() == x && z.imag() == 0;
 }
+template <Infinitesimal D, detail::OtherReal<D> U>
+[[nodiscard]] auto operator!=(const std::complex<D>& z, const U& x) {
+  return !(z == x);
+}
 
 // Of two types, one of them perhaps without derivatives.
 
@@ -223,6 +227,10 @@ template <class A, detail::OtherReal<A> B>
 template <class A, detail::OtherReal<A> B>
 [[nodiscard]] auto operator==(const std::complex<A>& z, const std::complex<B>& w) {
   return z.real() == w.real() && z.imag() == w.imag();
+}
+template <class A, detail::OtherReal<A> B>
+[[nodiscard]] auto operator!=(const std::complex<A>& z, const std::complex<B>& w) {
+  return !(z == w);
 }
 
 } // namespace duet

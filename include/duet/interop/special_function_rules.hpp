@@ -99,16 +99,16 @@ struct cylinder : rule_by_boost<cylinder<Kind>> {
   }
 
 private:
-  [[nodiscard]] constexpr bool is_whole() const { return order == double((long long)(order)); }
+  [[nodiscard]] bool is_whole() const { return std::trunc(order) == order; }
   /// Y_−½, Y_−3/2, …, which are ±J_½, ±J_3/2, …
-  [[nodiscard]] constexpr bool is_of_first_kind() const {
+  [[nodiscard]] bool is_of_first_kind() const {
     return !is_second ||
            (Kind == bessel::y && order < 0 && !is_whole() && cylinder(order + 0.5).is_whole());
   }
   /// Is it no power series at 0?
-  [[nodiscard]] constexpr bool has_branch_point() const { return is_second || !is_whole(); }
+  [[nodiscard]] bool has_branch_point() const { return is_second || !is_whole(); }
   /// Which of the two in the slope is the larger one near 0?
-  [[nodiscard]] constexpr bool is_larger_above() const {
+  [[nodiscard]] bool is_larger_above() const {
     return is_second && (order > 0 || is_of_first_kind());
   }
 
@@ -187,6 +187,7 @@ struct elliptic : rule_by_boost<elliptic<Kind>> {
   }
   template <class T>
   T slope(const T& phi, const T&) const {
+    using std::abs;
     using std::cos;
     using std::sin;
     using std::sqrt;

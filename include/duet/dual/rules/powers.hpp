@@ -170,6 +170,7 @@ template <class T, class Exponent>
 [[nodiscard]] T power_in_slope(const T& x, const Exponent& p) {
   using std::fabs;
   using std::pow;
+  using std::trunc;
   if constexpr (Real<real_type_t<T>> || std::integral<constant_t<T>>) {
     return pow(x, p);
   } else if constexpr (Infinitesimal<Exponent>) {
@@ -178,7 +179,7 @@ template <class T, class Exponent>
     return lift(rule::power<Exponent>{p}, x);
   } else {
     const auto& real = real_part(p);
-    if (p == real && fabs(real) <= whole_power_limit && real == int(real)) {
+    if (p == real && fabs(real) <= whole_power_limit && trunc(real) == real) {
       return whole_power(x, int(real));
     }
     return complex_power_of_constants<T>(x, p);
