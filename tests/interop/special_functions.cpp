@@ -11,9 +11,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
+#include <limits>
 #include <string>
 
 // The special functions of <cmath> over Taylor numbers: values by the standard library, derivatives
@@ -25,6 +28,9 @@ namespace {
 using duet_test::central_difference;
 using duet_test::worst_error;
 using R = duet_test::real_100;
+
+struct middle_tag;
+struct outermost_tag;
 
 const R pi = acos(R(-1));
 constexpr double pi_half = 1.5707963267948966;
@@ -53,6 +59,30 @@ void check(const char* name, F f, Standard standard, Exact exact, std::initializ
     }
   }
   CHECK_MESSAGE(worst <= limit, worst);
+}
+
+/// Are f and its derivatives at x what `expected` says, in all numbers that carry them? NaN there
+/// stands for any finite number.
+template <class F, class Expected>
+void check_all_numbers(F f, double x, Expected expected) {
+  using D = duet::dual<double>;
+  using second = duet::dual<D, 1, middle_tag>;
+  using third = duet::dual<second, 1, outermost_tag>;
+  const auto series = f(duet::taylor<double, 3>::variable(x));
+  const auto nested = f(third::variable(second::variable(D::variable(x))));
+  const auto half = f(duet::second_dual<double, 1>::variable(x));
+  const std::array by_nesting{nested.value().value().value(), nested.value().value().epsilon(),
+                              nested.value().epsilon().epsilon(),
+                              nested.epsilon().epsilon().epsilon()};
+  const std::array by_second{half.value(), half.partial(0), half.second_partial(0, 0)};
+  for (std::size_t k = 0; k <= 3; ++k) {
+    CAPTURE(k);
+    const double y = expected(int(k));
+    const auto is = [&](double z) { return y != y ? std::isfinite(z) : z == y; };
+    CHECK(is(series.derivative(int(k))));
+    CHECK(is(by_nesting[k]));
+    CHECK((k == 3 || is(by_second[std::min(k, std::size_t(2))])));
+  }
 }
 
 /// Σ_k (±z²/4)^k (z/2)^ν/(k! (k + ν)!) for whole ν
@@ -102,6 +132,52 @@ TEST_CASE("Bessel functions") {
   const auto at_zero = cyl_bessel_j(1, duet::taylor<double, 3>::variable(0));
   CHECK(at_zero.derivative(1) == 0.5);
   CHECK(at_zero.derivative(3) == doctest::Approx(-0.375).epsilon(1e-15));
+}
+
+TEST_CASE("Bessel functions at and near 0, where derivatives are infinite") {
+  const double inf = std::numeric_limits<double>::infinity();
+  const double nothing = 0;
+  // Near 0 every one is c x^p, but for integers of the first kind: 0, ±∞ or what x^p gives.
+  const auto check_power = [&](const auto& f, double p, bool is_negative) {
+    CAPTURE(p);
+    const double sign = is_negative ? -1 : 1;
+    double factor = sign;
+    check_all_numbers(f, 0, [&](int k) {
+      factor *= k == 0 ? 1 : p + 1 - k;
+      return p == k ? std::numeric_limits<double>::quiet_NaN() : p > k ? nothing : factor * inf;
+    });
+    // Where x^p is in range, its derivatives have the ratios p, p(p − 1), …
+    const double x = 1e-50;
+    const auto y = f(duet::taylor<double, 3>::variable(x));
+    CHECK(y.value() * sign > 0);
+    CHECK(y.derivative(1) * x == doctest::Approx(p * y.value()).epsilon(1e-13).scale(0));
+    CHECK(y.derivative(3) * x * x * x ==
+          doctest::Approx(p * (p - 1) * (p - 2) * y.value()).epsilon(1e-13).scale(0));
+  };
+  for (const double nu : {1.0 / 3, 0.5, 1.5, 2.25, 2.5, -0.5, -1.0 / 3, -1.5}) {
+    const bool is_negative = nu < -1; // 1/Γ(ν + 1)
+    check_power([=](const auto& x) { return cyl_bessel_j(nu, x); }, nu, is_negative);
+    check_power([=](const auto& x) { return cyl_bessel_i(nu, x); }, nu, is_negative);
+  }
+  for (const double nu : {1.0 / 3, 0.5, 1.0, 1.5, 2.0, 2.5}) {
+    check_power([=](const auto& x) { return cyl_neumann(nu, x); }, -nu, true);
+    check_power([=](const auto& x) { return cyl_bessel_k(nu, x); }, -nu, false);
+  }
+  check_power([](const auto& x) { return cyl_neumann(-0.5, x); }, 0.5, false); // J_½
+  check_power([](const auto& x) { return cyl_neumann(-1.5, x); }, 1.5, true);  // −J_3/2
+  check_power([](const auto& x) { return cyl_neumann(-0.75, x); }, -0.75, false);
+  check_power([](const auto& x) { return cyl_neumann(-1, x); }, -1, false);
+  for (const unsigned n : {0u, 1u, 2u}) {
+    check_power([=](const auto& x) { return sph_neumann(n, x); }, -1.0 - n, true);
+  }
+  const auto signs = [&](int k) { return k % 2 == 0 ? -inf : inf; };
+  check_all_numbers([](const auto& x) { return cyl_neumann(0, x); }, 0, signs);
+  check_all_numbers([](const auto& x) { return cyl_bessel_k(0, x); }, 0,
+                    [&](int k) { return -signs(k); });
+  // Where values overflow, too.
+  check_all_numbers([](const auto& x) { return cyl_neumann(5, x); }, 1e-100, signs);
+  check_all_numbers([](const auto& x) { return sph_neumann(3, x); }, 1e-300, signs);
+  CHECK(cyl_bessel_j(0.5, duet::dual<double>(0)).epsilon() == 0); // a constant
 }
 
 TEST_CASE("elliptic integrals") {
@@ -250,6 +326,50 @@ TEST_CASE("associated Legendre functions of odd order at the ends") {
   // P_5^5 = 945 (1 − x²)^(5/2): its second derivative is 945 · 15 x² √(1 − x²) − 945 · 5 (1 −
   // x²)^(3/2)
   CHECK(assoc_legendre(5, 5, duet::taylor<double, 2>::variable(1)).derivative(2) == 0);
+}
+
+TEST_CASE("associated Legendre functions of odd order have infinite derivatives at the ends") {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double x : {-1.0, 1.0}) {
+    for (unsigned l = 1; l <= 6; ++l) {
+      for (const unsigned m : {1u, 3u, 5u}) {
+        if (m > l) {
+          continue;
+        }
+        CAPTURE(x);
+        CAPTURE(l);
+        CAPTURE(m);
+        // c (1 − x²)^(m/2), c = dᵐP_l/dxᵐ, positive at 1 and of parity l − m
+        double factor = x > 0 || (l - m) % 2 == 0 ? 1 : -1;
+        check_all_numbers([=](const auto& y) { return assoc_legendre(l, m, y); }, x, [&](int k) {
+          factor *= k == 0 ? 1 : -x * (m / 2.0 + 1 - k);
+          return m > 2 * unsigned(k) ? 0 : factor * inf;
+        });
+      }
+    }
+  }
+}
+
+TEST_CASE("end points of domains") {
+  const double inf = std::numeric_limits<double>::infinity();
+  const auto alternating = [=](int k) { return k % 2 == 0 ? inf : -inf; };
+  check_all_numbers([](const auto& k) { return comp_ellint_1(k); }, 1, [=](int) { return inf; });
+  check_all_numbers([](const auto& k) { return comp_ellint_1(k); }, -1, alternating);
+  check_all_numbers([](const auto& k) { return comp_ellint_2(k); }, 1,
+                    [=](int k) { return k == 0 ? 1 : -inf; });
+  check_all_numbers([](const auto& k) { return comp_ellint_2(k); }, -1,
+                    [=](int k) { return k == 0 ? 1 : -alternating(k); });
+  check_all_numbers([](const auto& x) { return beta(x, 2); }, 0, alternating);
+  check_all_numbers([](const auto& x) { return riemann_zeta(x); }, 1, alternating);
+  check_all_numbers([](const auto& x) { return expint(x); }, 0,
+                    [=](int k) { return -alternating(k); });
+  check_all_numbers([](const auto& x) { return boost::math::cbrt(x); }, 0,
+                    [=](int k) { return k == 0 ? 0 : -alternating(k); });
+  // E(φ, 1) = sin φ to the last number before π/2
+  const auto e = ellint_2(1, duet::taylor<double, 3>::variable(pi_half));
+  CHECK(e.derivative(1) == std::cos(pi_half));
+  CHECK(e.derivative(2) == -1);
+  CHECK(e.derivative(3) == -std::cos(pi_half));
 }
 
 TEST_CASE("spherical harmonics of orders whose factorials leave the range") {
