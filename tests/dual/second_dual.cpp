@@ -131,6 +131,26 @@ TEST_CASE("structural zeros survive") {
   CHECK(root.second_partial(1, 0) == 0);
 }
 
+TEST_CASE("the square of a norm at 0 is to be computed without the norm") {
+  using D = second_dual<double, 2>;
+  const D x = D::variable(0, 0), y = D::variable(0, 1);
+  const D square = x * x + y * y;
+  CHECK(square.second_partial(0, 0) == 2);
+  CHECK(square.second_partial(1, 1) == 2);
+  CHECK(square.second_partial(0, 1) == 0);
+  // No number of two ε has this square, which is no square of a linear form: ∞, and not a wrong 0.
+  const D norm = sqrt(square);
+  CHECK(norm.partial(0) == 0);
+  CHECK(norm.second_partial(0, 0) == std::numeric_limits<double>::infinity());
+  CHECK(std::isnan((norm * norm).second_partial(0, 0)));
+  CHECK(std::isnan(pow(norm, 2).second_partial(1, 1)));
+  CHECK((norm * norm).partial(0) == 0);
+  // Beside 0 it is right to rounding.
+  const D near = sqrt((x + 1e-90) * (x + 1e-90) + y * y);
+  CHECK((near * near).second_partial(0, 0) == doctest::Approx(2).epsilon(1e-14));
+  CHECK((near * near).second_partial(1, 1) == doctest::Approx(2).epsilon(1e-14));
+}
+
 TEST_CASE("inside and outside other levels") {
   // d/dt of the Hessian of t x² y.
   const auto trace = [](auto t) {

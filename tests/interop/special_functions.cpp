@@ -341,10 +341,11 @@ TEST_CASE("associated Legendre functions of odd order have infinite derivatives 
         CAPTURE(m);
         // c (1 − x²)^(m/2), c = dᵐP_l/dxᵐ, positive at 1 and of parity l − m
         double factor = x > 0 || (l - m) % 2 == 0 ? 1 : -1;
-        check_all_numbers([=](const auto& y) { return assoc_legendre(l, m, y); }, x, [&](int k) {
-          factor *= k == 0 ? 1 : -x * (m / 2.0 + 1 - k);
-          return m > 2 * unsigned(k) ? 0 : factor * inf;
-        });
+        check_all_numbers([=](const auto& y) { return assoc_legendre(l, m, y); }, x,
+                          [&](int k) {
+                            factor *= k == 0 ? 1 : -x * (m / 2.0 + 1 - k);
+                            return m > 2 * unsigned(k) ? 0 : factor * inf;
+                          });
       }
     }
   }

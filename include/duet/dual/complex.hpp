@@ -4,10 +4,12 @@
 #include <duet/core/batch/lanes.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/complex_of_level.hpp>
+#include <duet/dual/dual.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/rules/functions.hpp>
 #include <duet/dual/rules/piecewise.hpp>
+#include <duet/dual/taylor.hpp>
 
 #include <cmath>
 #include <complex>
@@ -75,8 +77,8 @@ template <class X, class P>
 
 // The functions of <complex>. The standard keeps its namespace to itself, but std::sqrt(z) finds
 // nothing elsewhere. Each is declared as one of the standard library's is, and preferred to it as
-// the more constrained. (`norm`, `conj`, `real`, `imag` and `polar` of the standard library
-// are right as they are.)
+// the more constrained. (`norm`, `conj`, `real`, `imag` and `polar` of one type are right as the
+// standard library has them.)
 
 #define DUET_ANALYTIC(function)                                                                    \
   template <duet::Infinitesimal D>                                                                 \
@@ -165,8 +167,7 @@ template <duet::Infinitesimal D>
       [](const auto& w) {
         using number = typename remove_cvref_t<decltype(w)>::value_type;
         if (isinf(w.real()) || isinf(w.imag())) {
-          return complex<number>(numeric_limits<number>::infinity(),
-                                 copysign(number(0), w.imag()));
+          return complex<number>(numeric_limits<number>::infinity(), copysign(number(0), w.imag()));
         }
         return w;
       },

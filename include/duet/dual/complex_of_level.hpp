@@ -62,8 +62,8 @@ template <class X>
 /// An analytic function of complex numbers over D.
 template <class F, class... D>
 [[nodiscard]] auto analytic(const F& f, const std::complex<D>&... z) {
-  return by_lane(
-      [&](const auto&... w) { return complex_of_level(f(level_of_complex(w)...)); }, z...);
+  return by_lane([&](const auto&... w) { return complex_of_level(f(level_of_complex(w)...)); },
+                 z...);
 }
 
 /// U is a real number that meets D, but is no D; or at least one of two is over numbers with

@@ -219,9 +219,9 @@ public:
       // As a T its inverse would multiply infinite partials by zeros.
       const C inverse = C(1) / c;
       if (all(detail::is_all_finite(inverse))) {
-        return {T(value_ / c), partials_type::map([&](const auto& p) DUET_INLINE_LAMBDA {
-                  return p * inverse;
-                }, partials_)};
+        return {T(value_ / c),
+                partials_type::map([&](const auto& p) DUET_INLINE_LAMBDA { return p * inverse; },
+                                   partials_)};
       }
     }
     return {T(value_ / c), detail::chain(T(T(1) / c), partials_)};

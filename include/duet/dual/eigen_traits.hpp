@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <complex>
 #include <concepts>
 #include <limits>
 #include <type_traits>
@@ -46,6 +47,16 @@ public:
             const Lane& lane) const {
     madd(a, b.get(lane), c, unused, lane);
   }
+};
+
+/// Eigen's roots of complex numbers branch on zeros, where they lose derivatives.
+template <duet::Infinitesimal D>
+struct sqrt_impl<std::complex<D>> {
+  static std::complex<D> run(const std::complex<D>& z) { return sqrt(z); }
+};
+template <duet::Infinitesimal D>
+struct rsqrt_impl<std::complex<D>> {
+  static std::complex<D> run(const std::complex<D>& z) { return 1 / sqrt(z); }
 };
 
 } // namespace Eigen::internal

@@ -263,8 +263,8 @@ template <class D>
   return {first, first * (1 - sum)};
 }
 
-/// K(k) and E(k) where k is ±1: K′ = (E/(1 − k²) − K)/k and E′ = (E − K)/k, of which what is largest
-/// there decides about all derivatives.
+/// K(k) and E(k) where k is ±1: K′ = (E/(1 − k²) − K)/k and E′ = (E − K)/k, of which what is
+/// largest there decides about all derivatives.
 template <bool IsFirst>
 struct complete_at_one : rule_by_boost<complete_at_one<IsFirst>> {
   template <class T>
@@ -273,7 +273,8 @@ struct complete_at_one : rule_by_boost<complete_at_one<IsFirst>> {
   }
   template <class T>
   T slope(const T& k, const T&) const {
-    return IsFirst ? T(1 / (k * one_minus_square(k))) : T(complete_at_one<true>{}.value(k) * -innermost(k));
+    return IsFirst ? T(1 / (k * one_minus_square(k)))
+                   : T(complete_at_one<true>{}.value(k) * -innermost(k));
   }
 };
 

@@ -115,8 +115,8 @@ template <class A, class B>
   if constexpr (Real<number> || std::integral<detail::constant_t<number>>) {
     return by_rules();
   } else {
-    return detail::with_innermost(by_rules(),
-                                  detail::complex_power_of_constants<number>(innermost(x), innermost(p)));
+    return detail::with_innermost(
+        by_rules(), detail::complex_power_of_constants<number>(innermost(x), innermost(p)));
   }
 }
 

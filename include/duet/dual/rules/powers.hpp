@@ -81,8 +81,8 @@ struct power {
   template <class T>
   T slope(const T& x, [[maybe_unused]] const T& y) const {
     const auto by_power = [&] {
-      return T(exponent * detail::power_in_slope(
-                              x, Exponent(exponent - detail::integer<Exponent>(1))));
+      return T(exponent *
+               detail::power_in_slope(x, Exponent(exponent - detail::integer<Exponent>(1))));
     };
     return select(
         detail::is_structural_zero(exponent) ||

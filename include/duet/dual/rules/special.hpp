@@ -220,7 +220,8 @@ struct acosh {
       return select(
           detail::is_below_half(x),
           [&] {
-            const T y = detail::times_i(T(detail::integer<T>(1) / detail::root_of_one_minus_square(x)));
+            const T y =
+                detail::times_i(T(detail::integer<T>(1) / detail::root_of_one_minus_square(x)));
             return std::signbit(innermost(x).imag()) ? y : T(-y);
           },
           by_factors);
