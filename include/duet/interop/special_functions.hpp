@@ -17,8 +17,8 @@
 /// \file
 /// The special functions that `<cmath>` has since C++17, over dual and Taylor numbers: values by
 /// Boost.Math, but of Legendre's, Hermite's and Laguerre's by recurrences; derivatives of every
-/// order by recurrences, but not of comp_ellint_1 and comp_ellint_2 at k = ±1. Names, arguments and
-/// signs are those of `<cmath>`. Orders, degrees, moduli and characteristics are plain numbers, see
+/// order by recurrences, infinite ones at the ends of domains included. Names, arguments and signs
+/// are those of `<cmath>`. Orders, degrees, moduli and characteristics are plain numbers, see
 /// docs/boost.md.
 ///
 /// A header of its own, for Boost's take a compiler seconds.

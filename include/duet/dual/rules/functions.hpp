@@ -11,6 +11,8 @@
 #include <duet/dual/rules/powers.hpp>
 #include <duet/dual/rules/special.hpp>
 
+#include <concepts>
+
 /// \file
 /// The smooth functions of `<cmath>`, and `midpoint`, over dual and Taylor numbers, and over
 /// batches lane by lane. Values are those of the standard library; derivatives are in
