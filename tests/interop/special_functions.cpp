@@ -85,12 +85,9 @@ void check_all_numbers(F f, double x, Expected expected) {
   }
 }
 
-/// Σ_k (±z²/4)^k (z/2)^ν/(k! (k + ν)!) for whole ν
-R bessel_series(int nu, const R& z, int sign) {
-  R term = 1;
-  for (int k = 1; k <= nu; ++k) {
-    term *= z / (2 * k);
-  }
+/// Σ_k (±z²/4)^k (z/2)^ν/(k! Γ(k + ν + 1))
+R bessel_series(const R& nu, const R& z, int sign) {
+  R term = pow(R(z / 2), nu) / tgamma(R(nu + 1));
   R sum = 0;
   for (int k = 1; k < 120; ++k) {
     sum += term;
@@ -111,6 +108,34 @@ TEST_CASE("Bessel functions") {
         "I", [=](const auto& x) { return cyl_bessel_i(nu, x); },
         [=](double x) { return std::cyl_bessel_i(double(nu), x); },
         [=](const R& x) { return bessel_series(nu, x, 1); }, {0.25, 1, 2.4, 7.5, 13});
+  }
+  for (const double nu : {1.0 / 3, 1.5, 2.25}) { // at 1e-8 as well, where a power is all of it
+    const R order = nu;
+    const auto at = {1e-8, 0.25, 1.0, 7.5};
+    check(
+        "J", [=](const auto& x) { return cyl_bessel_j(nu, x); },
+        [=](double x) { return std::cyl_bessel_j(nu, x); },
+        [=](const R& x) { return bessel_series(order, x, -1); }, at);
+    check(
+        "I", [=](const auto& x) { return cyl_bessel_i(nu, x); },
+        [=](double x) { return std::cyl_bessel_i(nu, x); },
+        [=](const R& x) { return bessel_series(order, x, 1); }, at);
+    check(
+        "Y", [=](const auto& x) { return cyl_neumann(nu, x); },
+        [=](double x) { return std::cyl_neumann(nu, x); },
+        [=](const R& x) -> R {
+          return (cos(R(order * pi)) * bessel_series(order, x, -1) - bessel_series(-order, x, -1)) /
+                 sin(R(order * pi));
+        },
+        at);
+    check(
+        "K", [=](const auto& x) { return cyl_bessel_k(nu, x); },
+        [=](double x) { return std::cyl_bessel_k(nu, x); },
+        [=](const R& x) -> R {
+          return pi / 2 * (bessel_series(-order, x, 1) - bessel_series(order, x, 1)) /
+                 sin(R(order * pi));
+        },
+        at);
   }
   // K_½ = √(π/2x) e^−x, Y_½ = −√(2/πx) cos x
   check(
