@@ -67,16 +67,6 @@ template <class QR, class G>
   return qr.colsPermutation() * x;
 }
 
-/// A power of two that brings the largest entry of a matrix near 1: squares then stay in the range.
-template <class R, class A>
-[[nodiscard]] R scale_of(const A& a) {
-  using std::frexp;
-  using std::ldexp;
-  int exponent = 0;
-  static_cast<void>(frexp(R(a.cwiseAbs().maxCoeff()), &exponent));
-  return ldexp(R(1), std::min(-exponent, std::numeric_limits<R>::max_exponent - 1));
-}
-
 /// Every entry times a real number; infinite ones have no part 0 · ∞.
 template <class Derived, class R>
 [[nodiscard]] auto times(const Eigen::MatrixBase<Derived>& a, const R& factor) {

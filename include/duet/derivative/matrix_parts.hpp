@@ -10,6 +10,9 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <type_traits>
 
 /// \file
@@ -153,6 +156,16 @@ template <class A, class B, class X>
     }
   }
   return r;
+}
+
+/// A power of two that brings the largest entry of a matrix near 1: squares then stay in the range.
+template <class R, class A>
+[[nodiscard]] R scale_of(const A& a) {
+  using std::frexp;
+  using std::ldexp;
+  int exponent = 0;
+  static_cast<void>(frexp(R(a.cwiseAbs().maxCoeff()), &exponent));
+  return ldexp(R(1), std::min(-exponent, std::numeric_limits<R>::max_exponent - 1));
 }
 
 /// \throws invalid_input where a real matrix has an entry that is infinite or not a number.

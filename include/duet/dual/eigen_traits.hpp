@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/eigen_refused.hpp>
 #include <duet/dual/eigen_solvers.hpp>
 #include <duet/dual/eigen_structure.hpp>
 #include <duet/dual/math.hpp>

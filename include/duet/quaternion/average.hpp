@@ -27,16 +27,16 @@ namespace duet {
 
 namespace detail {
 
-inline void require_weights(std::size_t count, const std::vector<double>& weights) {
-  require(count > 0, "duet: average: there is nothing to average");
-  require(weights.empty() || weights.size() == count, "duet: average: ", weights.size(),
+inline void require_weights(const char* function, std::size_t count, const std::vector<double>& weights) {
+  require(count > 0, "duet: ", function, ": there are no elements");
+  require(weights.empty() || weights.size() == count, "duet: ", function, ": ", weights.size(),
           " weights for ", count, " elements");
   for (std::size_t i = 0; i < weights.size(); ++i) {
     require(weights[i] >= 0 && weights[i] <= std::numeric_limits<double>::max(),
-            "duet: average: weight ", i, " is ", weights[i], ", not a number from 0 up");
+            "duet: ", function, ": weight ", i, " is ", weights[i], ", not a number from 0 up");
   }
   require(weights.empty() || *std::max_element(weights.begin(), weights.end()) > 0,
-          "duet: average: all weights are 0");
+          "duet: ", function, ": all weights are 0");
 }
 
 /// Newton's method for the mean of real rotations; also the inverse matrix of its last equation,
@@ -107,7 +107,7 @@ template <class T>
 [[nodiscard]] quaternion<T> average(const std::vector<quaternion<T>>& q,
                                     const std::vector<double>& weights = {}) {
   using R = real_type_t<T>;
-  detail::require_weights(q.size(), weights);
+  detail::require_weights("average", q.size(), weights);
   // In relation to the largest, so that they do not overflow.
   const double largest = weights.empty() ? 1 : *std::max_element(weights.begin(), weights.end());
   double sum = 0;
