@@ -160,24 +160,6 @@ TEST_CASE("dynamic sizes") {
   }
 }
 
-TEST_CASE("iterations over duals give the same where no entry is zero") {
-  using D = dual<double>;
-  const MatrixXd value = random_symmetric(4, 8);
-  const MatrixXd slope = random_symmetric(4, 9);
-  const auto a = lower<D, Dynamic>(value, slope, [](double v, double s) { return D(v, s); });
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<D, Dynamic, Dynamic>> unrolled(a);
-  const auto e = symmetric_eigen(a);
-  for (int i = 0; i < 4; ++i) {
-    CHECK(std::abs(e.values[i].epsilon() - unrolled.eigenvalues()[i].epsilon()) <= 1e-13);
-    for (int j = 0; j < 4; ++j) {
-      // Signs may differ: over duals every reflector is made.
-      const D v = e.vectors(i, j);
-      const D w = unrolled.eigenvectors()(i, j);
-      CHECK(std::abs((v * v).epsilon() - (w * w).epsilon()) <= 1e-13);
-    }
-  }
-}
-
 // A = R(t) diag(1 + t, 4, 9) R(t)ᵀ with R a rotation by t about the third axis: two vectors turn
 // with unit speed.
 TEST_CASE("a closed form to third order") {

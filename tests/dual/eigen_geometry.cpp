@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/differences.hpp"
+
 #include <duet/dual/eigen_traits.hpp>
 
 #include <Eigen/Geometry>
@@ -46,10 +48,14 @@ TEST_CASE("angle and axis") {
   const DMatrix r = turn.toRotationMatrix();
   CHECK(near(values(r), rotation));
   CHECK(near(slopes(r), rate));
-  const Eigen::AngleAxis<D> back(r);
-  CHECK(back.angle().value() == doctest::Approx(0.7));
-  CHECK(back.angle().epsilon() == doctest::Approx(1));
-  CHECK(slopes(back.axis()).norm() <= 1e-14);
+  CHECK(values(r) == rotation);
+  CHECK(near(slopes((turn * turn).toRotationMatrix()), rate * rotation + rotation * rate));
+  CHECK(near(slopes((turn * turn.inverse()).toRotationMatrix()), Matrix3d::Zero().eval()));
+  CHECK(slopes((turn * DVector(1, 2, 3)).eval()).isApprox(rate * Vector3d(1, 2, 3)));
+  CHECK(turn.cast<double>().angle() == 0.7);
+  CHECK(Eigen::AngleAxis<D>(Eigen::AngleAxisd(rotation)).isApprox(turn));
+  CHECK(slopes((Eigen::Quaternion<D>::Identity() * turn).toRotationMatrix()).isApprox(rate));
+  CHECK(Eigen::AngleAxis<D>::Identity().toRotationMatrix() == DMatrix::Identity());
 }
 
 TEST_CASE("quaternions") {
@@ -99,8 +105,71 @@ TEST_CASE("products of vectors") {
   const Vector3d unit = x.normalized();
   CHECK(near(slopes(a.normalized()), ((dx - unit * unit.dot(dx)) / x.norm()).eval()));
   CHECK(a.unitOrthogonal().dot(a).epsilon() == doctest::Approx(0).epsilon(1e-15));
-  const DMatrix r = Eigen::Quaternion<D>::FromTwoVectors(a, b).toRotationMatrix();
-  CHECK(slopes((r * a.normalized() - b.normalized()).eval()).norm() <= 1e-13);
+}
+
+// What the page "With Eigen" calls right: zeros, equal values, the identity and half turns.
+namespace {
+
+/// Members of Eigen at structured inputs that move with t.
+template <class T>
+Eigen::Matrix<T, Eigen::Dynamic, 1> at_structured_points(const T& t) {
+  using vector2 = Eigen::Matrix<T, 2, 1>;
+  using vector3 = Eigen::Matrix<T, 3, 1>;
+  using vector4 = Eigen::Matrix<T, 4, 1>;
+  using quaternion = Eigen::Quaternion<T>;
+  const T zero(0), one(1);
+  const quaternion moving = quaternion(Eigen::AngleAxis<T>(t, vector3::UnitX())) *
+                            quaternion(Eigen::AngleAxis<T>(T(2 * t + t * t), vector3::UnitZ()));
+  Eigen::Matrix<T, Eigen::Dynamic, 1> all(0);
+  const auto add = [&](const auto& x) {
+    const auto size = all.size();
+    all.conservativeResize(size + x.size());
+    all.tail(x.size()) = x.reshaped();
+  };
+  for (const auto& q : {moving, quaternion(quaternion(zero, one, zero, zero) * moving),
+                        quaternion(quaternion(zero, zero, one, zero) * moving),
+                        quaternion(quaternion(zero, zero, zero, one) * moving)}) {
+    add(quaternion(q.toRotationMatrix()).coeffs());
+    add(q.inverse().coeffs());
+    add(q.normalized().coeffs());
+    Eigen::Transform<T, 3, Eigen::Affine> a;
+    a.setIdentity();
+    a.linear() = q.toRotationMatrix();
+    a.linear()(0, 1) += t;
+    a.translation() = vector3(t, zero, one);
+    add(a.inverse().matrix().eval());
+    add(a.inverse(Eigen::Isometry).matrix().eval());
+    const Eigen::Transform<T, 3, Eigen::Projective> projective(a.matrix());
+    add(projective.inverse().matrix().eval());
+  }
+  add(vector3(one, t, T(2 * t)).unitOrthogonal());
+  add(vector4(t, T(3 * t), one, t).unitOrthogonal());
+  add(vector3(t, zero, one).cross(vector3(zero, zero, T(1 + t))));
+  add(vector4(t, zero, one, zero).cross3(vector4(zero, one, T(1 + t), zero)));
+  add(vector3(t, zero, T(1 + t)).normalized());
+  add(vector3(t, zero, T(1 + t)).stableNormalized());
+  add(vector3(t, zero, T(1 + t)).hnormalized().eval());
+  const auto line =
+      Eigen::ParametrizedLine<T, 3>::Through(vector3(one, t, T(3)), vector3(one, zero, T(4)));
+  const Eigen::Hyperplane<T, 3> plane(vector3(zero, t, one).normalized(), vector3(t, zero, zero));
+  add(line.intersectionPoint(plane));
+  add(line.projection(vector3(one, zero, zero)));
+  add(plane.projection(vector3(one, T(2), zero)));
+  const auto first = Eigen::Hyperplane<T, 2>::Through(vector2(zero, t), vector2(one, T(2 * t)));
+  const auto second = Eigen::Hyperplane<T, 2>::Through(vector2(t, zero), vector2(T(3 * t), one));
+  add(first.coeffs());
+  add(first.intersection(second));
+  Eigen::Rotation2D<T> a(t), b(T(7 - t)), c;
+  c.fromRotationMatrix(a.toRotationMatrix());
+  add(vector4(c.angle(), b.smallestAngle(), b.smallestPositiveAngle(), a.slerp(t, b).angle()));
+  return all;
+}
+
+} // namespace
+
+TEST_CASE("derivatives of Eigen's members are right to third order at structured points") {
+  CHECK(duet_test::error_to_third_order([](const auto& t) { return at_structured_points(t); }) <=
+        1e-13);
 }
 
 } // namespace test_dual_eigen_geometry

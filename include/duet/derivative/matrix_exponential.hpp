@@ -69,6 +69,8 @@ template <class S, class A>
   require_finite("matrix_exponential", values);
   const int count = halvings(values);
   using R = decltype(norm_1(values));
+  require(count < std::numeric_limits<R>::digits, "duet: matrix_exponential: entries of A up to ",
+          values.cwiseAbs().maxCoeff(), " leave no digit of exp(A)");
   constexpr int size = A::RowsAtCompileTime;
   using matrix = Eigen::Matrix<S, size, size>;
   const matrix part = a.unaryExpr([&](const auto& x) { return S(x * ldexp(R(1), -count)); });
@@ -104,7 +106,8 @@ template <class S, class A>
 /// The relative error of what is no further from normal than its powers show is about 2nε(1 + ‖A‖).
 ///
 /// \return an n × n matrix
-/// \throws invalid_input if A is not square, empty or not finite, or if exp A overflows
+/// \throws invalid_input if A is not square, empty or not finite, if its norm leaves no digit
+/// (2^s ≥ 1/ε), or if exp A overflows
 template <class A>
 [[nodiscard]] auto matrix_exponential(const Eigen::MatrixBase<A>& a) {
   using S = detail::common_scalar_t<A, A>;

@@ -25,42 +25,41 @@ struct polar_decomposition {
   polar_decomposition(const char* function, const A& a) {
     const real_svd<R, N, N> svd(function, a);
     const Eigen::Index last = a.rows() - 1;
+    scale = scale_of<R>(a);
     v = svd.v;
-    lambda = svd.values;
+    lambda = svd.values * scale;
     u = svd.u;
     if (R(u.determinant() * v.determinant()) < 0) {
       u.col(last) = -u.col(last);
       lambda[last] = -lambda[last];
     }
     rounding = svd.rounding();
+    gap = last == 0 ? svd.values[0] : R((lambda[last - 1] + lambda[last]) / scale);
   }
 
   matrix u, v; ///< R₀ = u vᵀ
-  Eigen::Matrix<R, N, 1> lambda;
+  R scale; ///< a power of two that brings A near 1, so that its residual keeps its digits beside 1
+  Eigen::Matrix<R, N, 1> lambda; ///< λ times `scale`
+  R gap; ///< the least sum of two λ: 0 if more than one rotation is nearest
   R rounding;
-
-  /// The least sum of two λ: 0 where more than one rotation is nearest.
-  [[nodiscard]] R gap() const {
-    const Eigen::Index n = lambda.size();
-    return n == 1 ? R(1) : R(lambda[n - 2] + lambda[n - 1]);
-  }
 
   /// The correction of R for a real residual of `polar_residual`, both as columns.
   template <class Column>
   [[nodiscard]] Column step(const Column& residual) const {
     const Eigen::Index n = lambda.size();
-    matrix x = v.transpose() * residual.reshaped(n, n) * v;
+    matrix x = residual.reshaped(n, n);
+    x = v.transpose().lazyProduct(x).eval().lazyProduct(v).eval();
     for (Eigen::Index j = 0; j < n; ++j) {
       for (Eigen::Index i = 0; i < j; ++i) {
         const R symmetric = (x(i, j) + x(j, i)) / 2;
-        const R skew = (x(i, j) - x(j, i) + symmetric * (lambda[j] - lambda[i])) /
-                       (lambda[i] + lambda[j]);
+        const R skew =
+            (x(i, j) - x(j, i) + symmetric * (lambda[j] - lambda[i])) / (lambda[i] + lambda[j]);
         x(i, j) = symmetric + skew;
         x(j, i) = symmetric - skew;
       }
     }
-    const matrix correction = u * x * v.transpose();
-    return correction.reshaped();
+    x = u.lazyProduct(x).eval().lazyProduct(v.transpose()).eval();
+    return x.reshaped();
   }
 };
 
@@ -87,12 +86,13 @@ template <class S, class Polar, class A>
 [[nodiscard]] auto rotation_of(const Polar& polar, const A& a) {
   constexpr int n = A::RowsAtCompileTime;
   using R = real_type_t<S>;
-  const Eigen::Matrix<R, n, n> values = polar.u * polar.v.transpose();
+  const Eigen::Matrix<R, n, n> values = polar.u.lazyProduct(polar.v.transpose());
   Eigen::Matrix<S, n == Eigen::Dynamic ? n : n * n, 1> r = converted<S>(values).reshaped();
   if constexpr (scalar_traits<S>::order > 0) {
+    const Eigen::Matrix<S, n, n> scaled = a * polar.scale;
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
       correct_infinitesimals(
-          r, [&](const auto& residual) { return polar.step(residual); }, polar_residual(a, r));
+          r, [&](const auto& residual) { return polar.step(residual); }, polar_residual(scaled, r));
     }
   }
   return Eigen::Matrix<S, n, n>(r.reshaped(a.rows(), a.rows()));
@@ -128,12 +128,11 @@ template <class A>
                   ", but must be square");
   constexpr int n = detail::least_size(A::RowsAtCompileTime, A::ColsAtCompileTime);
   const Eigen::Matrix<typename A::Scalar, n, n> matrix = a;
-  const detail::polar_decomposition<R, n> polar("nearest_rotation",
-                                                detail::real_values<R>(matrix));
-  detail::require(polar.gap() > polar.rounding,
+  const detail::polar_decomposition<R, n> polar("nearest_rotation", detail::real_values<R>(matrix));
+  detail::require(polar.gap > polar.rounding,
                   "duet: nearest_rotation: more than one rotation is nearest, as the least two "
                   "singular values, the last with the sign of det A, add up to ",
-                  polar.gap());
+                  polar.gap);
   return detail::rotation_of<S>(polar, matrix);
 }
 

@@ -54,20 +54,24 @@ struct real_svd {
   real_svd(const char* function, const A& a) {
     require(a.size() > 0, "duet: ", function, ": A is empty");
     require_finite(function, a);
-    // Eigen 3.4 has thin matrices only where sizes are not known at compile time.
-    using matrix = Eigen::Matrix<R, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Rows, Columns>;
-    constexpr int thin = int(Eigen::ComputeThinU) | int(Eigen::ComputeThinV);
+    // Zeros that make it square are turned with nothing. Thin matrices cost compilers 7 s in Eigen.
+    constexpr int size = rank == Eigen::Dynamic ? Eigen::Dynamic : std::max(Rows, Columns);
+    using matrix = Eigen::Matrix<R, size, size>;
+    const Eigen::Index m = a.rows(), n = a.cols(), k = std::min(m, n);
+    matrix square = matrix::Zero(std::max(m, n), std::max(m, n));
+    square.template topLeftCorner<Rows, Columns>(m, n) = a;
+    constexpr int full = int(Eigen::ComputeFullU) | int(Eigen::ComputeFullV);
 #if EIGEN_MAJOR_VERSION >= 5
-    const Eigen::JacobiSVD<matrix, thin> svd{matrix(a)};
+    const Eigen::JacobiSVD<matrix, full | int(Eigen::NoQRPreconditioner)> svd(square);
 #else
-    const Eigen::JacobiSVD<matrix> svd(matrix(a), thin);
+    const Eigen::JacobiSVD<matrix, Eigen::NoQRPreconditioner> svd(square, full);
 #endif
     if (svd.info() != Eigen::Success) {
       raise(no_convergence(message("duet: ", function, ": Eigen's solver did not converge")));
     }
-    u = svd.matrixU();
-    values = svd.singularValues();
-    v = svd.matrixV();
+    u = svd.matrixU().template topLeftCorner<Rows, rank>(m, k);
+    values = svd.singularValues().template head<rank>(k);
+    v = svd.matrixV().template topLeftCorner<Columns, rank>(n, k);
   }
 
   vectors<Rows> u;
@@ -85,24 +89,23 @@ struct real_svd {
     const Eigen::Index m = u.rows(), n = v.rows();
     const Eigen::Matrix<R, Rows, 1> r = residual.template head<Rows>(m);
     const Eigen::Matrix<R, Columns, 1> s = residual.template segment<Columns>(m, n);
-    const Eigen::Matrix<R, rank, 1> rho = u.transpose() * r, varsigma = v.transpose() * s;
+    const Eigen::Matrix<R, rank, 1> rho = u.transpose().lazyProduct(r),
+                                    varsigma = v.transpose().lazyProduct(s);
     Eigen::Matrix<R, rank, 1> a(values.size()), b(values.size());
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       const R gap = (values[j] - values[i]) * (values[j] + values[i]);
-      a[i] = i == j ? residual[m + n]
-                    : R((values[j] * rho[i] + values[i] * varsigma[i]) / gap);
-      b[i] = i == j ? residual[m + n + 1]
-                    : R((values[i] * rho[i] + values[j] * varsigma[i]) / gap);
+      a[i] = i == j ? residual[m + n] : R((values[j] * rho[i] + values[i] * varsigma[i]) / gap);
+      b[i] = i == j ? residual[m + n + 1] : R((values[i] * rho[i] + values[j] * varsigma[i]) / gap);
     }
-    constexpr int size = Rows == Eigen::Dynamic || Columns == Eigen::Dynamic ? Eigen::Dynamic
-                                                                             : Rows + Columns + 1;
+    constexpr int size =
+        Rows == Eigen::Dynamic || Columns == Eigen::Dynamic ? Eigen::Dynamic : Rows + Columns + 1;
     Eigen::Matrix<R, size, 1> y(m + n + 1);
-    y.template head<Rows>(m) = u * a;
-    y.template segment<Columns>(m, n) = v * b;
+    y.template head<Rows>(m) = u.lazyProduct(a);
+    y.template segment<Columns>(m, n) = v.lazyProduct(b);
     if (m > n) { // what is left lies in the complement of the columns of U, V
-      y.template head<Rows>(m) += (r - u * rho) / values[j];
+      y.template head<Rows>(m) += (r - u.lazyProduct(rho)) / values[j];
     } else if (n > m) {
-      y.template segment<Columns>(m, n) += (s - v * varsigma) / values[j];
+      y.template segment<Columns>(m, n) += (s - v.lazyProduct(varsigma)) / values[j];
     }
     y[m + n] = (rho[j] + varsigma[j]) / 2;
     return y;
@@ -178,8 +181,8 @@ template <class S, class A>
 }
 
 template <class A>
-using svd_of = real_svd<real_type_t<common_scalar_t<A, A>>, A::RowsAtCompileTime,
-                        A::ColsAtCompileTime>;
+using svd_of =
+    real_svd<real_type_t<common_scalar_t<A, A>>, A::RowsAtCompileTime, A::ColsAtCompileTime>;
 
 } // namespace detail
 
@@ -214,7 +217,8 @@ template <class A>
 ///
 /// \param a  A, of any size m × n
 ///
-/// The values are those of `Eigen::JacobiSVD` over real numbers, also the signs of the vectors.
+/// The values are those of `Eigen::JacobiSVD` over real numbers, without preconditioning, also the
+/// signs of the vectors; it takes time proportional to max(m, n)² min(m, n).
 /// The derivatives follow from A v = σ u, Aᵀu = σ v, uᵀu = vᵀv = 1; with i ≠ j
 ///
 ///   dσ_j = u_jᵀ dA v_j,
@@ -241,7 +245,8 @@ template <class A>
     const Eigen::Index m = a.rows(), n = a.cols();
     for (Eigen::Index j = 0; j < real.values.size() && !detail::is_constant(matrix); ++j) {
       detail::require(detail::is_simple(real, j), "duet: svd: singular value ", j, ", ",
-                      real.values[j], ", has no derivatives, as it is 0 or equal to another and A "
+                      real.values[j],
+                      ", has no derivatives, as it is 0 or equal to another and A "
                       "is not constant");
       const auto y = detail::singular_triple<S>(real, j, matrix);
       result.u.col(j) = y.head(m);

@@ -17,8 +17,8 @@ namespace duet::detail {
 
 /// An expression of Eigen over dual or Taylor numbers, or over complex numbers of those.
 template <class Expression>
-concept OverInfinitesimal =
-    Infinitesimal<typename Eigen::NumTraits<typename Eigen::internal::traits<Expression>::Scalar>::Real>;
+concept OverInfinitesimal = Infinitesimal<
+    typename Eigen::NumTraits<typename Eigen::internal::traits<Expression>::Scalar>::Real>;
 
 /// False, but not before a template is instantiated.
 template <class>
@@ -49,12 +49,11 @@ public:                                                                         
 
 #define DUET_REFUSES_MATRIX_FUNCTION(keyword, result, function, instead)                           \
   template <class M>                                                                               \
-    requires duet::detail::OverInfinitesimal<M>                                                    \
-  keyword result<M> {                                                                              \
-    static_assert(duet::detail::never<M>,                                                          \
-                  "duet: Eigen's " function " of a matrix loses derivatives over dual numbers: "   \
-                  instead);                                                                        \
-  };
+    requires duet::detail::OverInfinitesimal<M> keyword result<M> {                                \
+      static_assert(duet::detail::never<M>,                                                        \
+                    "duet: Eigen's " function                                                      \
+                    " of a matrix loses derivatives over dual numbers: " instead);                 \
+    };
 
 namespace Eigen {
 
@@ -105,9 +104,8 @@ template <class P, class Q>
   requires(duet::detail::OverInfinitesimal<P> || duet::detail::OverInfinitesimal<Q>)
 DUET_REFUSED("Eigen's umeyama loses derivatives over dual numbers: register_points(p, q) or "
              "register_points_with_scale(p, q)")
-Matrix<typename internal::traits<P>::Scalar, Dynamic, Dynamic> umeyama(const MatrixBase<P>&,
-                                                                       const MatrixBase<Q>&,
-                                                                       bool = true);
+Matrix<typename internal::traits<P>::Scalar, Dynamic, Dynamic>
+umeyama(const MatrixBase<P>&, const MatrixBase<Q>&, bool = true);
 
 /// As Eigen's own, but the axis and angle of a quaternion or matrix, which have no derivatives at
 /// the identity and jump at a half turn, are refused.

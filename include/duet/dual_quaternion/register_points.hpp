@@ -88,13 +88,14 @@ struct registration {
       covariance += weight(i) * y * x.transpose();
       variance += weight(i) * x.squaredNorm();
       // Coordinates are rounded, so that points on a line are not quite on one.
-      rounding += weight(i) * R(largest_of(p(i)) * largest_of(y) + largest_of(x) * largest_of(q(i)));
+      rounding +=
+          weight(i) * R(largest_of(p(i)) * largest_of(y) + largest_of(x) * largest_of(q(i)));
     }
-    rounding = 16 * std::numeric_limits<R>::epsilon() * rounding;
+    rounding = R(16 * std::numeric_limits<R>::epsilon() * rounding);
     const polar_decomposition<R, 3> polar("register_points", real_values<R>(covariance));
-    require(polar.gap() > std::max(polar.rounding, rounding),
+    require(polar.gap > std::max(polar.rounding, rounding),
             "duet: register_points: the points do not determine a rotation: they are collinear, or "
-            "mirror images with a symmetry (singular values of the covariance ",
+            "mirror images with a symmetry (signed singular values of the scaled covariance: ",
             polar.lambda[0], ", ", polar.lambda[1], ", ", polar.lambda[2], ")");
     rotation = rotation_of<T>(polar, covariance);
     scale = (rotation.transpose() * covariance).trace() / variance * (p_scale / q_scale);
@@ -105,7 +106,6 @@ struct registration {
 private:
   static R largest_of(const vector3<T>& x) { return real_values<R>(x).cwiseAbs().maxCoeff(); }
 };
-
 
 } // namespace detail
 
@@ -121,8 +121,8 @@ private:
 /// they exist wherever R is unique, also for planar and symmetric sets and for exact data.
 ///
 /// \throws invalid_input if the sets differ in size or are not finite, if weights are not as
-/// `average` wants them, and if R is not unique: if the points of a set are collinear, or one set is
-/// the mirror image of the other with too much symmetry
+/// `average` wants them, and if R is not unique: if the points of a set are collinear, or one set
+/// is the mirror image of the other with too much symmetry
 template <class P, class Q>
 [[nodiscard]] auto register_points(const Eigen::MatrixBase<P>& from, const Eigen::MatrixBase<Q>& to,
                                    const std::vector<double>& weights = {}) {
@@ -144,10 +144,9 @@ template <class P, class Q>
                                               const std::vector<double>& weights = {}) {
   using T = detail::common_scalar_t<P, Q>;
   const detail::registration<T> r(from.eval(), to.eval(), weights);
-  return scaled_pose<T>{
-      pose(from_rotation_matrix(r.rotation),
-           vector3<T>(r.to_centre - r.scale * (r.rotation * r.from_centre))),
-      r.scale};
+  return scaled_pose<T>{pose(from_rotation_matrix(r.rotation),
+                             vector3<T>(r.to_centre - r.scale * (r.rotation * r.from_centre))),
+                        r.scale};
 }
 
 } // namespace duet

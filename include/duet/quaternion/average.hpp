@@ -27,13 +27,14 @@ namespace duet {
 
 namespace detail {
 
-inline void require_weights(const char* function, std::size_t count, const std::vector<double>& weights) {
+inline void require_weights(const char* function, std::size_t count,
+                            const std::vector<double>& weights) {
   require(count > 0, "duet: ", function, ": there are no elements");
   require(weights.empty() || weights.size() == count, "duet: ", function, ": ", weights.size(),
           " weights for ", count, " elements");
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    require(weights[i] >= 0 && weights[i] <= std::numeric_limits<double>::max(),
-            "duet: ", function, ": weight ", i, " is ", weights[i], ", not a number from 0 up");
+    require(weights[i] >= 0 && weights[i] <= std::numeric_limits<double>::max(), "duet: ", function,
+            ": weight ", i, " is ", weights[i], ", not a number from 0 up");
   }
   require(weights.empty() || *std::max_element(weights.begin(), weights.end()) > 0,
           "duet: ", function, ": all weights are 0");

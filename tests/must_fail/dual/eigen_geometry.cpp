@@ -9,13 +9,13 @@ using points = Eigen::Matrix<D, 3, 5>;
 
 #ifdef DUET_MUST_FAIL
 D angle(const Eigen::Quaternion<D>& q) {
-  Eigen::AngleAxis<D> a(q); // mistake
+  Eigen::AngleAxis<D> a(q);                    // mistake
   Eigen::AngleAxis<D> b(q.toRotationMatrix()); // mistake
-  a = q; // mistake
-  a = q.toRotationMatrix(); // mistake
-  b.fromRotationMatrix(q.toRotationMatrix()); // mistake
+  a = q;                                       // mistake
+  a = q.toRotationMatrix();                    // mistake
+  b.fromRotationMatrix(q.toRotationMatrix());  // mistake
   const points p = points::Zero();
-  static_cast<void>(Eigen::umeyama(p, p)); // mistake
+  static_cast<void>(Eigen::umeyama(p, p));        // mistake
   static_cast<void>(Eigen::umeyama(p, p, false)); // mistake
   return a.angle();
 }
