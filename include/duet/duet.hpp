@@ -33,7 +33,10 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/linear_solve.hpp>
+#include <duet/derivative/matrix_exponential.hpp>
+#include <duet/derivative/nearest_rotation.hpp>
 #include <duet/derivative/second_order.hpp>
+#include <duet/derivative/svd.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/dual/complex.hpp>
@@ -45,6 +48,7 @@
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/dual_quaternion/register_points.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/expression/condition.hpp>

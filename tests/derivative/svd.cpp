@@ -163,11 +163,25 @@ TEST_CASE("nearest_rotation: derivatives to third order, at equal and zero singu
             return nearest_rotation(moving<3, 3>(a, T(t * size / 8)));
           }) <= 2e-14);
   }
-  for (const MatrixXd& a : {MatrixXd{{0, 2}, {-2, 0}}, MatrixXd(MatrixXd::Identity(4, 4))}) {
-    CHECK(error_to_third_order([&](const auto& t) {
-            using T = std::decay_t<decltype(t)>;
-            return nearest_rotation(moving<Dynamic, Dynamic>(a, T(t / 8)));
-          }) <= 2e-14);
+}
+
+TEST_CASE("nearest_rotation: of two rows a closed form, of four at the identity the skew part") {
+  using series = duet::taylor<double, 3>;
+  for (const MatrixXd& value : {MatrixXd{{0, 2}, {-2, 0}}, MatrixXd{{1, 2}, {4, 5}}}) {
+    const auto a = moving<Dynamic, Dynamic>(value, series::variable(0));
+    const series angle = atan2(a(1, 0) - a(0, 1), a(0, 0) + a(1, 1));
+    const auto r = nearest_rotation(a);
+    for (int k = 0; k <= 3; ++k) {
+      CHECK(std::abs((r(0, 0) - cos(angle)).derivative(k)) <= 1e-13);
+      CHECK(std::abs((r(1, 0) - sin(angle)).derivative(k)) <= 1e-13);
+    }
+  }
+  const auto a = moving<Dynamic, Dynamic>(MatrixXd::Identity(4, 4), series::variable(0));
+  const auto r = nearest_rotation(a);
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      CHECK(r(i, j).derivative(1) == (a(i, j) - a(j, i)).derivative(1) / 2);
+    }
   }
 }
 

@@ -10,7 +10,7 @@
 
 /// \file
 /// The rotation nearest to a matrix (orthogonal Procrustes problem, polar decomposition),
-/// differentiated by its own equation. It must be included explicitly.
+/// differentiated by its own equation.
 
 namespace duet {
 namespace detail {

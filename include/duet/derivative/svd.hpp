@@ -12,8 +12,7 @@
 #include <type_traits>
 
 /// \file
-/// Singular value decomposition, differentiated by its own equations. It must be included
-/// explicitly.
+/// Singular value decomposition, differentiated by its own equations.
 
 namespace duet {
 

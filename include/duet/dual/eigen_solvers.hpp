@@ -24,11 +24,8 @@
 /// there is one, which flips the sign of that row of R and column of Q. At a column that vanishes
 /// altogether Q has no derivative, and what Eigen does is kept: no reflector.
 ///
-/// Not covered: Jacobi and Givens rotations (SVD, eigenvalue solvers), which skip zeros by value
-/// too, as Hessenberg decompositions of later Eigens do, and reflectors of a vector that is no
-/// block of another, `v.makeHouseholder(…)`. For symmetric matrices there is `symmetric_eigen`;
-/// else perturb the input or write the derivative by hand where off-diagonal entries vanish.
-/// EigenSolver's derivatives are one step of its iteration behind the values.
+/// Not covered: reflectors of a vector that is no block of another, `v.makeHouseholder(…)`.
+/// Decompositions by Jacobi and Givens rotations are in dual/eigen_refused.hpp.
 ///
 /// Eigen documents no way to replace the two. What is specialised here, `BlockImpl` and
 /// `triangular_solve_vector`, is the same in 3.4, 5.0 and its main branch of August 2026; tests

@@ -15,8 +15,7 @@
 #include <vector>
 
 /// \file
-/// Rigid registration of point sets (Kabsch, Umeyama), with or without a scale. It must be included
-/// explicitly.
+/// Rigid registration of point sets (Kabsch, Umeyama), with or without a scale.
 
 namespace duet {
 
