@@ -151,6 +151,8 @@ TEST_CASE("default-initialized aggregates hold the values that their fields stat
   DUET_CHECK(value_gradient_and_product<double, Vector3d>);
   DUET_CHECK(value_and_mixed_hessian<double, Matrix3d>);
   DUET_CHECK(eigenvalues_and_vectors<Vector3d, Matrix3d>);
+  DUET_CHECK(singular_value_decomposition<Matrix3d, Vector3d, Matrix3d>);
+  DUET_CHECK(scaled_pose<double>);
   DUET_CHECK(nearest_result<double>);
   DUET_CHECK(plane<double>);
   DUET_CHECK(screw_motion<double>);

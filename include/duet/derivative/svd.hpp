@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
 #include <Eigen/Core>
@@ -19,9 +20,9 @@ namespace duet {
 /// A = U diag(σ) Vᵀ, thin: σ descends, and column i of `u` and of `v` belongs to σᵢ.
 template <class U, class Values, class V>
 struct singular_value_decomposition {
-  U u;           ///< U, unit left singular vectors as columns
-  Values values; ///< σ, descending, a column
-  V v;           ///< V, unit right singular vectors as columns
+  U u = detail::zero_initialized<U>();                ///< U, unit left singular vectors as columns
+  Values values = detail::zero_initialized<Values>(); ///< σ, descending, a column
+  V v = detail::zero_initialized<V>();                ///< V, unit right singular vectors as columns
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

@@ -19,11 +19,11 @@
 
 namespace duet {
 
-/// A similarity x ↦ s R x + t.
+/// A similarity x ↦ s R x + t; the default is the identity.
 template <class T>
 struct scaled_pose {
-  dual_quaternion<T> pose; ///< rotation R and translation t
-  T scale = T(1);          ///< s > 0
+  dual_quaternion<T> pose{dual<T, 1, screw_tag>(T(1))}; ///< rotation R and translation t
+  T scale = T(1);                                       ///< s > 0
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
