@@ -9,7 +9,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -58,6 +62,9 @@ TEST_CASE("points of every domain are inside it") {
   check_domain(rotations{1.5});
   check_domain(quaternions{});
   check_domain(quaternions{1e140});
+  check_domain(real_numbers{}.without(0).without(0.5, 0.1));
+  check_domain(vectors<2>{2}.where([](const auto& v) { return v[0] > v[1]; }));
+  check_domain(arrays<2, real_numbers>{}.without({0, 0}));
 }
 
 TEST_CASE("special points") {
@@ -82,24 +89,238 @@ TEST_CASE("arguments are made in the precision they are asked for") {
   CHECK(pair == std::array{0.25, 0.5});
 }
 
-TEST_CASE("few special points come in all combinations, many with random company") {
+TEST_CASE("few special points come in all combinations, of many some, and each in random company") {
   const auto few = sampler(real_numbers{}, real_numbers{}).points(0, 1);
-  const std::size_t one = real_numbers{}.special_points().size();
-  CHECK(few.size() == one * one);
-  CHECK(has(few, {0, 0}));
-  CHECK(has(few, {1e-8, -1}));
+  for (const coordinates& x : real_numbers{}.special_points()) {
+    for (const coordinates& y : real_numbers{}.special_points()) {
+      CHECK(has(few, {x[0], y[0]}));
+    }
+  }
 
   const auto many = sampler(rotations{}, rotations{}, rotations{}).points(0, 1);
-  CHECK(many.size() == 3 * rotations{}.special_points().size());
-  const auto third_is_identity = [](const coordinates& p) {
-    return p[6] == 0 && p[7] == 0 && p[8] == 0 && p[0] != 0;
+  CHECK(has(many, coordinates(9, 0.0)));
+  for (const coordinates& special : rotations{}.special_points()) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto is_there = [&](const coordinates& p) {
+        return std::equal(special.begin(), special.end(), p.begin() + std::ptrdiff_t(3 * i));
+      };
+      CHECK(std::any_of(many.begin(), many.end(), is_there));
+    }
+  }
+}
+
+namespace {
+
+/// Are there points at distances from `centre` of every decade from 1e-12 to 1e-3, at both sides,
+/// as far as both are in the domain?
+template <class Domain>
+void check_beside(const Domain& domain, const coordinates& centre, int sides = 2) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    std::array<std::array<int, 2>, 9> found{};
+    for (const coordinates& p : sampler(domain).points(1000, seed)) {
+      double distance = 0, projection = 0;
+      for (std::size_t i = 0; i < p.size(); ++i) {
+        distance = std::hypot(distance, p[i] - centre[i]);
+        projection += (p[i] - centre[i]) * (p.size() == 1 || i != 1 ? 1 : 0.7);
+      }
+      if (distance >= 1e-12 && distance < 1e-3) {
+        ++found[std::size_t(12 + std::floor(std::log10(distance)))][projection < 0 ? 1 : 0];
+      }
+    }
+    for (const auto& decade : found) {
+      CHECK(decade[0] + decade[1] >= 2);
+      CHECK(std::min(decade[0], decade[1]) >= (sides == 2 ? 1 : 0));
+    }
+  }
+}
+
+/// Are there any within 1e-6 of it?
+template <class Domain>
+void check_near(const Domain& domain, const coordinates& centre) {
+  const auto points = sampler(domain).points(1000, 1);
+  CHECK(std::count_if(points.begin(), points.end(), [&](const coordinates& p) {
+          double distance = 0;
+          for (std::size_t i = 0; i < p.size(); ++i) {
+            distance = std::hypot(distance, p[i] - centre[i]);
+          }
+          return distance > 0 && distance < 1e-6;
+        }) >= 2);
+}
+
+} // namespace
+
+TEST_CASE("inputs beside zero, at distances of every size down to 1e-12") {
+  check_beside(real_numbers{-2, 2}, {0});
+  check_beside(real_numbers{-1e3, 1e3}, {0});
+  check_beside(real_numbers{0, 2}, {0}, 1);
+  check_beside(real_numbers{-2, 2}.without(0), {0});
+  check_beside(vectors<2>{}, {0, 0});
+  check_beside(vectors<3>{5}, {0, 0, 0});
+  check_beside(rotations{}, {0, 0, 0});
+  check_beside(quaternions{}, {0, 0, 0, 0});
+  check_beside(arrays<1, vectors<2>>{}, {0, 0});
+}
+
+TEST_CASE("inputs beside the other special points") {
+  const double pi = 3.141592653589793;
+  for (const double x : {-4.0, 4.0, 1.0, -1.0, 0.5, 2.0, pi, -pi, pi / 2}) {
+    check_near(real_numbers{-4, 4}, {x});
+  }
+  check_near(real_numbers{5, 6}, {5});
+  check_near(vectors<3>{4}, {pi, 0, 0});
+  check_near(rotations{}, {0, pi, 0});
+  check_near(rotations{}, {0, 0, 6.283185});
+  check_near(quaternions{1}, {-1, 0, 0, 0});
+  check_near(quaternions{1}, {0, 1, 0, 0});
+}
+
+TEST_CASE("components that are zero or equal, beside others that are not") {
+  const auto points = sampler(vectors<3>{}).points(1000, 1);
+  const auto count = [&](const auto& is) {
+    return std::count_if(points.begin(), points.end(), is);
   };
-  CHECK(std::any_of(many.begin(), many.end(), third_is_identity));
+  CHECK(count([](const auto& p) { return p[1] == 0 && p[0] != 0 && p[2] != 0; }) > 5);
+  CHECK(count([](const auto& p) { return p[1] == p[2] && p[0] != p[1] && p[1] != 0; }) > 5);
+  CHECK(count([](const auto& p) { return p[0] == -p[2] && p[0] != p[1] && p[0] != 0; }) > 5);
+}
+
+namespace {
+
+/// Of rotation i and j of each point, the components of q_i* q_j.
+template <class Inputs>
+std::vector<duet::quaternion<double>> relative(const Inputs& inputs, std::size_t samples,
+                                               std::size_t i, std::size_t j) {
+  std::vector<duet::quaternion<double>> result;
+  for (const coordinates& p : inputs.points(samples, 1)) {
+    const auto at = [&](std::size_t k) {
+      return rotations{}.make<double>(std::span(p).subspan(3 * k, 3));
+    };
+    result.push_back(conj(at(i)) * at(j));
+  }
+  return result;
+}
+
+} // namespace
+
+TEST_CASE("equal, nearly equal and opposite arguments, however many there are") {
+  const auto check = [](const auto& inputs, std::size_t arguments) {
+    for (std::size_t j = 1; j < arguments; ++j) {
+      for (std::size_t i = 0; i < j; ++i) {
+        int equal = 0, nearly = 0, half_turn = 0, opposite = 0;
+        for (const auto& q : relative(inputs, 0, i, j)) {
+          const double s = std::hypot(q.x(), q.y(), q.z());
+          equal += s < 1e-15 ? 1 : 0;
+          nearly += s > 1e-13 && s < 1e-3 && q.w() > 0 ? 1 : 0;
+          half_turn += std::abs(q.w()) < 1e-3 ? 1 : 0;
+          opposite += s < 1e-3 && q.w() < 0 ? 1 : 0;
+        }
+        CHECK(equal >= 1);
+        CHECK(nearly >= 2);
+        CHECK(half_turn >= 1);
+        CHECK(opposite >= 1);
+      }
+    }
+  };
+  check(sampler(rotations{}, rotations{}), 2);
+  check(sampler(rotations{}, rotations{}, rotations{}), 3);
+  check(sampler(rotations{}, rotations{}, rotations{}, rotations{}), 4);
+  check(sampler(arrays<3, rotations>{}), 3);
+  check(sampler(rotations{}.without({0, 0, 0}), arrays<2, rotations>{}), 3);
+
+  const auto points =
+      sampler(real_numbers{-9, 9}, real_numbers{}, real_numbers{-9, 9}).points(1000, 1);
+  const auto count = [&](const auto& is) {
+    return std::count_if(points.begin(), points.end(), is);
+  };
+  CHECK(count([](const auto& p) { return p[0] == p[2] && p[0] != p[1] && p[0] != 0; }) > 5);
+  CHECK(count([](const auto& p) { return p[0] == p[1] && p[1] != p[2]; }) > 5);
+  CHECK(count([](const auto& p) { return p[0] == -p[1] && p[1] != 0; }) > 2);
+  CHECK(count([](const auto& p) {
+          return p[0] != p[2] && std::abs(p[0] - p[2]) < 1e-6 && std::abs(p[0]) > 1e-3;
+        }) > 10);
+  CHECK(count([](const auto& p) { return p[0] == p[1] && p[1] == p[2] && p[0] != 0; }) > 5);
+  const double pi = 3.141592653589793;
+  CHECK(count([&](const auto& p) { return std::abs(std::abs(p[0] - p[2]) - pi) < 1e-15; }) > 0);
+
+  const auto pairs = sampler(vectors<3>{2}, vectors<3>{1}).points(1000, 1);
+  const auto sine = [](const coordinates& p) { // of the angle between both
+    const Eigen::Vector3d a(p[0], p[1], p[2]), b(p[3], p[4], p[5]);
+    const double lengths = a.norm() * b.norm();
+    return lengths > 1e-3 ? a.cross(b).norm() / lengths : 1.0;
+  };
+  const auto cosine = [](const coordinates& p) {
+    const Eigen::Vector3d a(p[0], p[1], p[2]), b(p[3], p[4], p[5]);
+    const double lengths = a.norm() * b.norm();
+    return lengths > 1e-3 ? std::abs(a.dot(b)) / lengths : 1.0;
+  };
+  const auto among = [&](const auto& f, double least, double largest) {
+    return std::count_if(pairs.begin(), pairs.end(),
+                         [&](const coordinates& p) { return f(p) >= least && f(p) < largest; });
+  };
+  CHECK(among(sine, 0, 1e-15) > 5);
+  CHECK(among(sine, 1e-12, 1e-4) > 5);
+  CHECK(among(cosine, 0, 1e-12) > 5);
+}
+
+TEST_CASE("what is excluded is nowhere among the points") {
+  const auto check = [](const auto& inputs, const auto& is_excluded) {
+    for (const coordinates& p : inputs.points(1000, 1)) {
+      CHECK(!is_excluded(p));
+    }
+  };
+  const auto is_zero = [](const coordinates& p) { return p[0] == 0; };
+  check(sampler(real_numbers{}.without(0)), is_zero);
+  check(sampler(real_numbers{}.without(0), real_numbers{}), is_zero);
+  check(sampler(real_numbers{}).without({0}), is_zero);
+  check(sampler(real_numbers{}.without(0.5, 0.25)),
+        [](const coordinates& p) { return std::abs(p[0] - 0.5) <= 0.25; });
+  check(sampler(real_numbers{}.where([](double x) { return x < 0.5; }).without(0)),
+        [](const coordinates& p) { return p[0] >= 0.5 || p[0] == 0; });
+  check(sampler(real_numbers{}, real_numbers{}).where([](double x, double y) { return x != y; }),
+        [](const coordinates& p) { return p[0] == p[1]; });
+  check(sampler(vectors<2>{}.without({0, 0}, 1e-3)),
+        [](const coordinates& p) { return std::hypot(p[0], p[1]) <= 1e-3; });
+  check(sampler(rotations{}.where([](const auto& q) { return std::abs(q.w()) > 1e-6; })),
+        [](const coordinates& p) {
+          return std::abs(std::hypot(p[0], p[1], p[2]) - 3.141592653589793) < 1e-7;
+        });
+  check(sampler(arrays<2, real_numbers>{{-1, 1}}.where([](const auto& x) { return x[0] < x[1]; })),
+        [](const coordinates& p) { return p[0] >= p[1]; });
+  check(sampler(quaternions{}.without({1, 0, 0, 0}, 0.5)), [](const coordinates& p) {
+    return std::hypot(std::hypot(p[0] - 1, p[1]), p[2], p[3]) <= 0.5;
+  });
+}
+
+TEST_CASE("exclusions that cannot be") {
+  const auto points_of = [](const auto& inputs) {
+    return [inputs] { static_cast<void>(inputs.points(10, 1)); };
+  };
+  CHECK_THROWS_AS(points_of(sampler(real_numbers{}.without(0, 2)))(), duet::invalid_input);
+  CHECK_THROWS_AS(points_of(sampler(vectors<2>{}).without({0, 0}, 9))(), duet::invalid_input);
+  CHECK_THROWS_WITH_AS(
+      points_of(sampler(arrays<1, real_numbers>{{1, 1}}.where([](auto) { return false; })))(),
+      "duet: sampler: 1000 random inputs in a row are excluded, the last {1}", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(
+      points_of(
+          sampler(real_numbers{1, 1}, real_numbers{2, 2}).named("a", "b").where([](auto a, auto b) {
+            return a == b;
+          }))(),
+      "duet: sampler: 1000 random inputs in a row are excluded, the last a = 1, b = 2",
+      duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(vectors<3>{}.without({0, 0})),
+                       "duet: sampler: a point of 2 coordinates, but the arguments have 3",
+                       duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(sampler(real_numbers{}).without({0}, -1)),
+                       "duet: sampler: a radius of -1", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(sampler(real_numbers{}.without(0)).including({0})),
+                       "duet: sampler: the point (0) is outside the domain of the arguments",
+                       duet::invalid_input);
 }
 
 TEST_CASE("random points come after the special ones, and repeat with the seed") {
   const auto inputs = sampler(real_numbers{}, vectors<3>{});
-  CHECK(inputs.points(1000, 1).size() == inputs.points(0, 1).size() + 1000);
+  CHECK(inputs.points(2000, 1).size() == inputs.points(1000, 1).size() + 1000);
+  CHECK(inputs.points(1000, 1).size() > 1000);
   CHECK(inputs.points(1000, 1) == inputs.points(1000, 1));
   CHECK(inputs.points(1000, 1) != inputs.points(1000, 2));
 }

@@ -17,8 +17,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 // What `compare` says of formulas that are right, wrong, wrong in one place only, or badly rounded.
 
@@ -52,8 +56,7 @@ TEST_CASE("a right formula agrees in every precision") {
       "wave", slope_of_wave, closed_form, sampler(real_numbers{-3, 3}));
   CHECK(c);
   CHECK(c.outcome == verdict::agrees);
-  const std::size_t special = real_numbers{-3, 3}.special_points().size();
-  CHECK(c.samples == special + 1000);
+  CHECK(c.samples == sampler(real_numbers{-3, 3}).points(1000, 1).size());
   CHECK(c.counts[0] == c.samples);
   CHECK(!c.simplest);
   CHECK(c.errors.size() == 4);
@@ -82,7 +85,7 @@ TEST_CASE("few samples come after all special inputs, not in place of them") {
   };
   const comparison c = compare<double>("few samples", [](double x) { return x; }, wrong_elsewhere,
                                        sampler(real_numbers{-3, 3}), {.samples = 3});
-  CHECK(c.samples == special.size() + 3);
+  CHECK(c.samples >= special.size() + 3);
   CHECK(c.outcome == verdict::disagrees);
 }
 
@@ -130,7 +133,7 @@ TEST_CASE("a slip in one place only is found there") {
   const comparison c =
       compare("matrix", right, wrong_at_half_turn, sampler(rotations{}).named("q"));
   CHECK(c.outcome == verdict::disagrees);
-  CHECK(c.counts[std::size_t(verdict::disagrees)] == 2); // about the diagonal axis, both ways
+  CHECK(c.counts[std::size_t(verdict::disagrees)] >= 2); // about the diagonal axis, both ways
 }
 
 TEST_CASE("digits lost by cancellation are told from a slip") {
@@ -188,6 +191,236 @@ TEST_CASE("what is not finite where the other is") {
   CHECK(compare("both", naive, naive, sampler(real_numbers{-1, 1})));
 }
 
+namespace {
+
+/// cos x, sin x and e^x, one of them wrong near zero: cos x by x²/6, sin x by x, e^x by 1.
+struct wrong_near_zero {
+  int component;
+  double threshold;
+  bool negative_only = false;
+
+  template <class T>
+  [[nodiscard]] std::array<T, 3> operator()(const T& x) const {
+    using std::abs, std::cos, std::exp, std::sin;
+    std::array<T, 3> y = {cos(x), sin(x), exp(x)};
+    if (abs(x) < threshold && !(negative_only && x >= 0)) {
+      y[std::size_t(component)] += component == 0 ? x * x / 6 : component == 1 ? x : T(1);
+    }
+    return y;
+  }
+};
+
+} // namespace
+
+TEST_CASE("a slip in the series for small arguments, whatever its threshold") {
+  const wrong_near_zero right{0, 0};
+  const auto inputs = sampler(real_numbers{-2, 2});
+  const auto outcome = [&](const wrong_near_zero& wrong, std::uint64_t seed) {
+    return compare("series", right, wrong, inputs, {.seed = seed}).outcome;
+  };
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const bool negative_only : {false, true}) {
+      for (const double threshold : {1e-3, 9e-5, 1e-5, 2e-6}) {
+        CHECK(outcome({0, threshold, negative_only}, seed) == verdict::disagrees);
+      }
+      for (const double threshold : {9e-5, 1e-5, 1e-8, 1e-10}) {
+        CHECK(outcome({1, threshold, negative_only}, seed) == verdict::disagrees);
+        CHECK(outcome({2, threshold, negative_only}, seed) == verdict::disagrees);
+      }
+    }
+    CHECK(outcome(right, seed) == verdict::agrees);
+  }
+  for (const wrong_near_zero& wrong : {wrong_near_zero{0, 9e-5, true}, wrong_near_zero{0, 1e-5},
+                                       wrong_near_zero{1, 1e-8}, wrong_near_zero{2, 1e-10}}) {
+    CHECK(compare<double, real_50>("series", right, wrong, inputs, {.samples = 200}).outcome ==
+          verdict::disagrees);
+  }
+  // x²/6 is less than the last place of 1.
+  CHECK(outcome({0, 1e-9}, 1) == verdict::agrees);
+  CHECK(compare<double, real_50>("series", right, wrong_near_zero{0, 1e-9}, inputs).outcome ==
+        verdict::loses_digits);
+}
+
+namespace {
+
+/// The rotation vector of q, wrong where `where` says so.
+struct wrong_logarithm {
+  bool (*where)(double w, double size, const Eigen::Vector3d& v);
+
+  template <class T>
+  [[nodiscard]] duet::vector3<T> operator()(const duet::quaternion<T>& q) const {
+    const duet::vector3<T> r = duet::rotation_vector(q);
+    const auto v = Eigen::Vector3d(double(q.x()), double(q.y()), double(q.z()));
+    return where(double(q.w()), v.norm(), v) ? duet::vector3<T>(r / 2) : r;
+  }
+  template <class T>
+  [[nodiscard]] duet::vector3<T> operator()(const duet::quaternion<T>& a,
+                                            const duet::quaternion<T>& b) const {
+    return (*this)(duet::quaternion<T>(conj(a) * b));
+  }
+  template <class T>
+  [[nodiscard]] duet::vector3<T> operator()(const duet::quaternion<T>& a,
+                                            const duet::quaternion<T>& b,
+                                            const duet::quaternion<T>& c) const {
+    return (*this)(a, b) + (*this)(b, c);
+  }
+};
+
+const std::vector<wrong_logarithm> wrong_logarithms = {
+    {[](double w, double size, const auto&) { return w > 0 && size < 1e-4; }},
+    {[](double w, double size, const auto&) { return w > 0 && size < 1e-8; }},
+    {[](double w, double, const auto&) { return w < 0; }},
+    {[](double w, double, const auto&) { return std::abs(w) < 1e-6; }},
+    {[](double w, double size, const auto&) { return w < 0 && size < 1e-5; }},
+    {[](double, double, const auto& v) { return v[0] < 0 && v[1] > 0 && v[2] < 0; }},
+};
+
+} // namespace
+
+TEST_CASE("a slip at small rotations, half turns, full turns or in one octant") {
+  const wrong_logarithm right{[](double, double, const auto&) { return false; }};
+  std::vector<wrong_logarithm> wrong = wrong_logarithms;
+  wrong.push_back({[](double w, double size, const auto&) { return w > 0 && size < 1e-11; }});
+  wrong.push_back({[](double, double size, const auto&) { return size > 0 && size < 1e-10; }});
+  wrong.push_back({[](double, double, const auto& v) { return v[0] == 0 && v[1] * v[2] != 0; }});
+  wrong.push_back({[](double, double, const auto& v) { return v[0] == v[1] && v[0] * v[2] != 0; }});
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const wrong_logarithm& f : wrong) {
+      CHECK(compare("log", right, f, sampler(rotations{}), {.seed = seed}).outcome ==
+            verdict::disagrees);
+    }
+  }
+}
+
+TEST_CASE("a slip where two of two or three arguments are equal, or a half or full turn apart") {
+  const wrong_logarithm right{[](double, double, const auto&) { return false; }};
+  const auto two = sampler(rotations{}, rotations{});
+  const auto three = sampler(rotations{}, rotations{}, rotations{});
+  for (const wrong_logarithm& f : wrong_logarithms) {
+    CHECK(compare("Log(A'B)", right, f, two).outcome == verdict::disagrees);
+    CHECK(compare("three", right, f, three).outcome == verdict::disagrees);
+  }
+  CHECK(compare("Log(A'B)", right, right, two));
+}
+
+namespace {
+
+/// (1 − cos x)/x², as it is written, or so that it keeps its digits; or, below a threshold, wrong.
+struct half_square_sinc {
+  bool naive = false;
+  double threshold = 0;
+
+  template <class T>
+  [[nodiscard]] T operator()(const T& x) const {
+    using std::abs, std::cos, std::sin;
+    const T half_sine = sin(x / 2) / x;
+    return abs(x) < threshold ? T(T(0.5) - x * x / 12)
+           : naive            ? T((1 - cos(x)) / (x * x))
+                              : T(2 * half_sine * half_sine);
+  }
+};
+
+} // namespace
+
+TEST_CASE("a point is excluded, and the right formula agrees or loses digits beside it") {
+  const auto sinc = [](auto x) {
+    using std::sin;
+    return x == 0 ? decltype(x)(1) : decltype(x)(sin(x) / x);
+  };
+  const auto naive = [](auto x) {
+    using std::sin;
+    return sin(x) / x;
+  };
+  CHECK(compare("sinc", sinc, naive, sampler(real_numbers{}.without(0))));
+  CHECK(compare("sinc", sinc, naive, sampler(real_numbers{}).without({0}, 1e-9)));
+  CHECK(
+      compare("sinc", sinc, naive, sampler(real_numbers{}.where([](double x) { return x != 0; }))));
+  const auto inputs = sampler(real_numbers{-2, 2}.without(0));
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    const comparison_options options = {.seed = seed};
+    CHECK(compare("right", half_square_sinc{}, half_square_sinc{}, inputs, options));
+    // No digit is right in either precision, as for a slip: it is none.
+    const comparison c =
+        compare("naive", half_square_sinc{}, half_square_sinc{true}, inputs, options);
+    CHECK(c.outcome == verdict::loses_digits);
+    CHECK(c.errors[1].relative == 1);
+    for (const bool is_naive : {false, true}) {
+      CHECK(compare("slip", half_square_sinc{}, half_square_sinc{is_naive, 1e-4}, inputs, options)
+                .outcome == verdict::disagrees);
+    }
+  }
+  CHECK(compare("naive", half_square_sinc{}, half_square_sinc{true}, sampler(real_numbers{0.01, 2}),
+                {.tolerance = 1e6}));
+}
+
+TEST_CASE("rounding is never taken for a slip, whatever the seed") {
+  const auto plain = [](auto x) { return x; };
+  const auto amplified = [](auto x) { return (x + 1000000) - 1000000; };
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CHECK(compare("amplified", plain, amplified, sampler(real_numbers{}), {.seed = seed}).outcome ==
+          verdict::loses_digits);
+  }
+}
+
+TEST_CASE("a slip beside a component whose rounding is larger") {
+  const auto right = [](auto x) { return std::array{x + 1, x + 2}; };
+  const auto both = [](auto x) {
+    return std::array{(x + 1 + 100000000) - 100000000, (x + 2) * (1 + decltype(x)(1e-11))};
+  };
+  CHECK(compare("both", right, both, sampler(real_numbers{0, 1})).outcome == verdict::disagrees);
+}
+
+TEST_CASE("components that are not finite do not hide the others") {
+  const auto right = [](auto x) { return std::array{x, x}; };
+  const auto wrong = [](auto x) { return std::array{x / (x - x), 2 * x}; };
+  const comparison c = compare("nan", right, wrong, sampler(real_numbers{}));
+  CHECK(c.outcome == verdict::disagrees);
+  CHECK(c.counts[std::size_t(verdict::not_finite)] == c.samples);
+  CHECK(c.counts[std::size_t(verdict::disagrees)] > 500);
+  CHECK(to_text(c).starts_with("nan: disagrees at "));
+  CHECK(to_text(c).find("not finite at " + std::to_string(c.samples)) != std::string::npos);
+  REQUIRE(c.simplest);
+  CHECK(c.simplest->input == "x = 1");
+  CHECK(c.simplest->automatic[1] == 1);
+  CHECK(c.simplest->closed_form[1] == 2);
+  const auto not_finite = [](auto x) { return std::array{x / (x - x), x}; };
+  CHECK(compare("nan", right, not_finite, sampler(real_numbers{})).outcome == verdict::not_finite);
+  // What is infinite in both is no scale for the others.
+  CHECK(compare("infinite", not_finite, wrong, sampler(real_numbers{})).outcome ==
+        verdict::disagrees);
+}
+
+TEST_CASE("0, 1, 2, 3, … 9, -1, 1/2: the simplest input") {
+  const auto right = [](auto x) { return x; };
+  const auto simplest = [&](double lower, double upper, double least, double largest) {
+    const auto wrong = [&](auto x) { return x >= least && x <= largest ? x + 1 : x; };
+    return compare<double>("x", right, wrong, sampler(real_numbers{lower, upper}))
+        .simplest.value()
+        .input;
+  };
+  CHECK(simplest(-20, 20, -20, 20) == "x = 0");
+  CHECK(simplest(-20, 20, 0.5, 20) == "x = 1");
+  CHECK(simplest(-20, 20, 1.5, 20) == "x = 2");
+  CHECK(simplest(-20, 20, 2.5, 20) == "x = 3");
+  CHECK(simplest(-20, 20, 4, 20) == "x = 4");
+  CHECK(simplest(-20, 20, -20, -0.1) == "x = -1");
+  CHECK(simplest(-20, 20, 0.2, 0.7) == "x = 0.5");
+  CHECK(simplest(-20, 20, -0.7, -0.2) == "x = -0.5");
+  CHECK(simplest(-20, 20, 7.5, 8.5) == "x = 8");
+  CHECK(simplest(-2, 2, 1e-5, 9.5e-5) == "x = 1e-05");
+
+  // Of equal and of nearly equal arguments.
+  const auto equal = [](auto x, auto y) { return x == y && x > 0.25 ? x + 1 : x; };
+  const auto first = [](auto x, auto) { return x; };
+  CHECK(compare<double>("x", first, equal, sampler(real_numbers{}, real_numbers{}))
+            .simplest.value()
+            .input == "x1 = 1, x2 = 1");
+  const auto nearly = [](auto x, auto y) { return x != y && std::abs(x - y) < 1e-7 ? x + 1 : x; };
+  CHECK(compare<double>("x", first, nearly, sampler(real_numbers{}, real_numbers{}))
+            .simplest.value()
+            .input == "x1 = 0, x2 = 1e-12");
+}
+
 TEST_CASE("the same seed gives the same result") {
   const auto slip = [](auto x) { return x; };
   const auto run = [&] {
@@ -240,6 +473,47 @@ TEST_CASE("results of different sizes") {
           sampler(real_numbers{}))),
       "duet: compare \"sizes\": the automatic result has 2 components, the closed form 3",
       duet::invalid_input);
+}
+
+TEST_CASE("results of different shapes") {
+  const auto as = [](auto rows, auto columns) {
+    return [](auto x) {
+      return Eigen::Matrix<decltype(x), decltype(rows)::value, decltype(columns)::value>::Constant(
+                 x)
+          .eval();
+    };
+  };
+  const std::integral_constant<int, 1> one;
+  const std::integral_constant<int, 3> three;
+  const std::integral_constant<int, 4> four;
+  const std::integral_constant<int, 12> twelve;
+  const auto judge = [](const auto& f, const auto& g) {
+    return compare<double>("shapes", f, g, sampler(real_numbers{}), {.samples = 1});
+  };
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(judge(as(three, four), as(four, three))),
+      "duet: compare \"shapes\": the automatic result is 3 x 4, the closed form 4 x 3",
+      duet::invalid_input);
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(judge(as(three, four), as(twelve, one))),
+      "duet: compare \"shapes\": the automatic result is 3 x 4, the closed form 12 numbers",
+      duet::invalid_input);
+  const auto pair_with = [](const auto& f) {
+    return [&f](auto x) { return std::pair{std::array{x, x}, f(x)}; };
+  };
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(judge(pair_with(as(three, four)), pair_with(as(four, three)))),
+      "duet: compare \"shapes\": the automatic result is 2 numbers and 3 x 4, the closed form 2 "
+      "numbers and 4 x 3",
+      duet::invalid_input);
+  const auto dynamic = [](auto x) { return Eigen::MatrixX<decltype(x)>::Constant(3, 4, x).eval(); };
+  CHECK(judge(as(three, four), dynamic));
+  CHECK(judge(as(one, four), as(four, one))); // a row is as good as a column
+  CHECK(judge(as(three, four), [](auto x) {
+    std::array<decltype(x), 12> all;
+    all.fill(x);
+    return all;
+  }));
 }
 
 namespace {

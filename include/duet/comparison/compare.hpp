@@ -6,18 +6,18 @@
 #include <duet/comparison/judgement.hpp>
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
+#include <duet/comparison/simplified.hpp>
 #include <duet/core/compiled.hpp>
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/progress.hpp>
-#include <duet/core/text/number_text.hpp>
 #include <duet/derivative/function.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -28,59 +28,12 @@
 /// \file
 /// The judge: is my closed form right?
 
-namespace duet::detail {
-
-/// How much there is to read in a point: nothing for a zero, 1 for a 1, else digits and sign.
-[[nodiscard]] inline std::size_t complexity(double x) { return x == 0 ? 0 : to_text(x).size(); }
-
-/// x with so many significant decimal digits.
-[[nodiscard]] inline double rounded_to_digits(double x, int digits) {
-  if (x == 0 || !std::isfinite(x)) {
-    return x;
-  }
-  // Through a power of ten that is exact, on whichever side of 1.
-  const int shift = digits - 1 - int(std::floor(std::log10(std::abs(x))));
-  const double power = std::pow(10.0, std::abs(shift));
-  return shift >= 0 ? std::round(x * power) / power : std::round(x / power) * power;
-}
-
-/// Replaces coordinates by simpler numbers, one after the other, while `fails(point)` stays true.
-///
-/// Every replacement takes something away that there is to read, so this ends; points are tried in
-/// a fixed order, so it ends at the same one every time.
-template <class Contains, class Fails>
-[[nodiscard]] coordinates simplified(coordinates point, const Contains& contains,
-                                     const Fails& fails) {
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (std::size_t i = 0; i < point.size(); ++i) {
-      const double old = point[i];
-      for (const double candidate :
-           {0.0, 1.0, 2.0, -1.0, 0.5, std::round(old), std::abs(rounded_to_digits(old, 1)),
-            rounded_to_digits(old, 1), rounded_to_digits(old, 2), rounded_to_digits(old, 4)}) {
-        if (complexity(candidate) >= complexity(old)) {
-          continue;
-        }
-        point[i] = candidate;
-        if (contains(point) && fails(point)) {
-          changed = true;
-          break;
-        }
-        point[i] = old;
-      }
-    }
-  }
-  return point;
-}
-
-} // namespace duet::detail
-
 namespace duet {
 
 /// Settings of `compare`.
 struct comparison_options {
-  std::size_t samples = 1000;    ///< random points; the special ones and the caller's come on top
+  std::size_t samples = 1000;    ///< random points, half of them anywhere and half beside special
+                                 ///< ones; those and the caller's come on top
   std::uint64_t seed = 1;        ///< of the random points; the same seed gives the same result
   double tolerance = 100;        ///< in units of the last place
   progress_callback report = {}; ///< told after every input, may end the run: see `progress_line`
@@ -113,6 +66,9 @@ public:
   [[nodiscard]] virtual std::string describe(const coordinates& point) const = 0;
   /// In every precision.
   virtual void measure_at(const coordinates& point, std::span<difference> out) const = 0;
+  /// Of a component, in the first and the last precision; NaN where one result is not finite.
+  [[nodiscard]] virtual std::array<double, 2> errors_at(const coordinates& point,
+                                                        std::size_t component) const = 0;
   [[nodiscard]] virtual counterexample values_at(const coordinates& point) const = 0;
 };
 
@@ -138,12 +94,25 @@ public:
     std::size_t k = 0;
     ((out[k++] = measure<T>(label_, automatic_, closed_form_, inputs_, point, tolerance_)), ...);
   }
+  [[nodiscard]] std::array<double, 2> errors_at(const coordinates& point,
+                                                std::size_t component) const override {
+    using scalars = std::tuple<T...>;
+    return {error_at<std::tuple_element_t<0, scalars>>(point, component),
+            error_at<std::tuple_element_t<sizeof...(T) - 1, scalars>>(point, component)};
+  }
   [[nodiscard]] counterexample values_at(const coordinates& point) const override {
     return {describe(point), evaluate_at<double>(automatic_, inputs_, point),
             evaluate_at<double>(closed_form_, inputs_, point)};
   }
 
 private:
+  template <class S>
+  [[nodiscard]] double error_at(const coordinates& point, std::size_t component) const {
+    const auto errors = errors_of(evaluate_at<S>(automatic_, inputs_, point),
+                                  evaluate_at<S>(closed_form_, inputs_, point));
+    return component < errors.size() ? static_cast<double>(errors[component]) : 0.0;
+  }
+
   const std::string& label_;
   const F& automatic_;
   const G& closed_form_;
@@ -157,6 +126,11 @@ template <class Pair>
 [[nodiscard]] comparison compared(const std::string& label, const Pair& pair,
                                   std::vector<worst_errors> errors,
                                   const comparison_options& options) {
+  struct sample {
+    std::size_t point;
+    double ulps;
+    suspect error;
+  };
   std::vector<difference> differences(errors.size());
   const std::vector<coordinates> points = pair.points(options);
   comparison result;
@@ -164,47 +138,75 @@ template <class Pair>
   result.samples = points.size();
   result.tolerance = options.tolerance;
   result.errors = std::move(errors);
-  coordinates worst_point;
-  double worst_ulps = -1;
+  std::array<sample, 4> worst{}; // of every verdict
+  std::vector<sample> suspects;
+  bool rounds = false; // by more than is allowed, in the first precision
   std::vector<difference> shorter(differences.size()); // where fewer digits were what counted
+  const auto count = [&](verdict found, const sample& s) {
+    sample& w = worst[std::size_t(found)];
+    w = ++result.counts[std::size_t(found)] == 1 || s.ulps > w.ulps ? s : w;
+  };
   for (std::size_t i = 0; i < points.size(); ++i) {
     pair.measure_at(points[i], differences);
-    const verdict found = judged(differences, options.tolerance);
-    double ulps = 0;
+    sample here{i, 0, {}};
     for (std::size_t k = 0; k < differences.size(); ++k) {
-      worst_errors& worst = result.errors[k];
-      worst.absolute = std::max(worst.absolute, differences[k].absolute);
-      worst.relative = std::max(worst.relative, differences[k].relative);
-      if (differences[k].ulps > worst.ulps) {
-        worst.ulps = differences[k].ulps;
-        worst.input = pair.describe(points[i]);
+      worst_errors& largest = result.errors[k];
+      largest.absolute = std::max(largest.absolute, differences[k].absolute);
+      largest.relative = std::max(largest.relative, differences[k].relative);
+      if (differences[k].ulps > largest.ulps) {
+        largest.ulps = differences[k].ulps;
+        largest.input = pair.describe(points[i]);
       }
-      ulps = std::max(ulps, differences[k].common_ulps());
+      here.ulps = std::max(here.ulps, differences[k].common_ulps());
       if (differences[k].ulps_in_shorter > 1 && differences[k].ulps > options.tolerance) {
         shorter[k] = differences[k];
       }
     }
-    ++result.counts[std::size_t(found)];
+    const verdict found = judged(differences, options.tolerance);
+    if (found == verdict::disagrees) {
+      here.error = *suspected(differences);
+      suspects.push_back(here);
+    }
+    rounds = rounds || (found == verdict::loses_digits &&
+                        differences.front().common_ulps() > options.tolerance);
+    if (!all_finite(differences)) {
+      count(verdict::not_finite, here);
+    } else if (found != verdict::disagrees) {
+      count(found, here);
+    }
     const progress now{i + 1, points.size()};
     if (options.report && !options.report(now) && now.done < now.count) {
       raise(cancelled(now));
     }
-    if (found == verdict::agrees) {
-      continue;
-    }
-    if (found > result.outcome || (found == result.outcome && ulps > worst_ulps)) {
-      result.outcome = found;
-      worst_ulps = ulps;
-      worst_point = points[i];
-    }
+  }
+  const auto is_slip_at = [&](const coordinates& point, const suspect& s) {
+    return differences.size() < 2 || is_slip(pair, point, s, points.back());
+  };
+  // The largest first, until one is a slip: then all are that cannot be rounding.
+  std::stable_sort(suspects.begin(), suspects.end(),
+                   [](const sample& a, const sample& b) { return a.ulps > b.ulps; });
+  bool is_found = false;
+  for (const sample& s : suspects) {
+    const bool is_slip = is_found ? !s.error.may_be_rounding : is_slip_at(points[s.point], s.error);
+    is_found = is_found || is_slip;
+    rounds = rounds || !is_slip;
+    count(is_slip ? verdict::disagrees : verdict::loses_digits, s);
   }
   count_in_shorter(result, shorter);
+  for (const verdict v : {verdict::loses_digits, verdict::not_finite, verdict::disagrees}) {
+    result.outcome = result.counts[std::size_t(v)] > 0 ? v : result.outcome;
+  }
   if (result.outcome != verdict::agrees) {
     const coordinates simplest = simplified(
-        worst_point, [&](const coordinates& point) { return pair.contains(point); },
+        points[worst[std::size_t(result.outcome)].point],
+        [&](const coordinates& point) { return pair.contains(point); },
         [&](const coordinates& point) {
           pair.measure_at(point, differences);
-          return judged(differences, options.tolerance) == result.outcome;
+          const std::optional<suspect> s = suspected(differences);
+          return result.outcome == verdict::not_finite  ? !all_finite(differences)
+                 : result.outcome == verdict::disagrees ? s && (!rounds || is_slip_at(point, *s))
+                 : s                                    ? !is_slip_at(point, *s)
+                     : judged(differences, options.tolerance) == result.outcome;
         });
     result.simplest = pair.values_at(simplest);
     pair.measure_at(simplest, differences);

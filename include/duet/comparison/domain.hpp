@@ -2,6 +2,9 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+
+#include <duet/comparison/restricted.hpp>
+#include <duet/core/constants.hpp>
 #include <duet/core/random_source.hpp>
 #include <duet/core/text/number_text.hpp>
 
@@ -22,11 +25,10 @@
 
 namespace duet {
 
-/// A point as its coordinates, over which it can be simplified and made in any precision.
-using coordinates = std::vector<double>;
-
 /// A kind of argument: how many coordinates it has, which of them are in its range, the points that
-/// formulas stumble over, and how an argument over T is made of coordinates.
+/// formulas stumble over (inputs beside these follow; the first is the one with the most of them),
+/// and how an argument over T is made of coordinates. A domain may have
+/// `related_points(point, random)`, the second arguments that are special beside a first one.
 template <class D>
 concept InputDomain = requires(const D& domain, random_source& random,
                                std::span<const double> point) {
@@ -38,24 +40,21 @@ concept InputDomain = requires(const D& domain, random_source& random,
   domain.template make<double>(point);
 };
 
-namespace detail {
-
-/// "(1, 0.5, 0)"
-[[nodiscard]] inline std::string tuple_text(std::span<const double> numbers) {
-  std::string text = "(";
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    text += (i > 0 ? ", " : "") + to_text(numbers[i]);
-  }
-  return text + ")";
-}
-
-} // namespace detail
-
-/// A real number in [lower, upper]. Special: the ends, the integers and halves of small size in
-/// between, and numbers within 1e-8 of zero.
+/// A real number in [lower, upper]. Special: zero, the ends, integers and halves of small size, and
+/// multiples of π/2 up to a full turn. Beside x: −x, π − x, and what is a half or full turn away.
 struct real_numbers {
   double lower = -1; ///< the least number
   double upper = 1;  ///< the largest number
+
+  /// Less the number x and what is within `radius` of it.
+  [[nodiscard]] auto without(double x, double radius = 0) const {
+    return restricted(*this).without(coordinates{x}, radius);
+  }
+  /// Less the numbers for which `keeps` is false.
+  template <class Predicate>
+  [[nodiscard]] auto where(Predicate keeps) const {
+    return restricted(*this).where(std::move(keeps));
+  }
 
   // For those who extend duet: what an `InputDomain` is asked.
 
@@ -64,13 +63,21 @@ struct real_numbers {
     return point[0] >= lower && point[0] <= upper;
   }
   [[nodiscard]] std::vector<coordinates> special_points() const {
+    const double pi = constant::pi<double>();
     std::vector<coordinates> points;
-    for (const double x : {lower, upper, 0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 3.0, 1e-8, -1e-4}) {
-      if (contains(std::array{x})) {
+    for (const double x : {0.0, lower, upper, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 3.0, 1e-8, -1e-4,
+                           pi / 2, -pi / 2, pi, -pi, 2 * pi, -2 * pi}) {
+      if (contains(std::array{x}) &&
+          std::find(points.begin(), points.end(), coordinates{x}) == points.end()) {
         points.push_back({x});
       }
     }
     return points;
+  }
+  [[nodiscard]] std::vector<coordinates> related_points(std::span<const double> point,
+                                                        random_source&) const {
+    const double x = point[0], pi = constant::pi<double>();
+    return {{-x}, {pi - x}, {x + pi}, {x - pi}, {x + 2 * pi}, {x - 2 * pi}};
   }
   [[nodiscard]] coordinates random_point(random_source& random) const {
     return {random.uniform(lower, upper)};
@@ -85,10 +92,22 @@ struct real_numbers {
 };
 
 /// A vector of N components between −bound and bound. Special: zero, vectors along the axes and
-/// diagonals, and vectors of length 1e-4 and 1e-8. Every fourth random one is short.
+/// the diagonal, of length 1e-4 and 1e-8 times the bound, and, of three components, of length 1, π
+/// and 2π. Beside v: −v, vectors parallel and perpendicular to it, and of its length. Every fourth
+/// random one is short.
 template <int N>
 struct vectors {
   double bound = 1; ///< the largest size of a component
+
+  /// Less the point with these coordinates and what is within `radius` of it.
+  [[nodiscard]] auto without(const coordinates& point, double radius = 0) const {
+    return restricted(*this).without(point, radius);
+  }
+  /// Less the arguments, over `double`, for which `keeps` is false.
+  template <class Predicate>
+  [[nodiscard]] auto where(Predicate keeps) const {
+    return restricted(*this).where(std::move(keeps));
+  }
 
   // For those who extend duet: what an `InputDomain` is asked.
 
@@ -105,6 +124,34 @@ struct vectors {
         points.emplace_back(std::size_t(N), 0.0);
         points.back()[axis] = length;
       }
+    }
+    if constexpr (N == 3) {
+      const double pi = constant::pi<double>();
+      for (const coordinates& point :
+           {coordinates{0.48, 0.6, 0.64}, coordinates{pi, 0, 0}, coordinates{0, 2 * pi, 0},
+            coordinates{0.48 * pi, 0.6 * pi, 0.64 * pi}}) {
+        if (contains(point)) {
+          points.push_back(point);
+        }
+      }
+    }
+    return points;
+  }
+  [[nodiscard]] std::vector<coordinates> related_points(std::span<const double> point,
+                                                        random_source& random) const {
+    const auto other = random.direction<N>();
+    double square = 0, product = 0;
+    for (std::size_t i = 0; i < std::size_t(N); ++i) {
+      square += point[i] * point[i];
+      product += point[i] * other[i];
+    }
+    const double size = std::sqrt(square), factor = random.uniform(-2, 2);
+    std::vector<coordinates> points(4);
+    for (std::size_t i = 0; i < std::size_t(N); ++i) {
+      points[0].push_back(-point[i]);
+      points[1].push_back(factor * point[i]);
+      points[2].push_back(square > 0 ? size * other[i] - product / size * point[i] : other[i]);
+      points[3].push_back(size * other[i]);
     }
     return points;
   }
@@ -129,10 +176,21 @@ struct vectors {
   }
 };
 
-/// N arguments of one kind, as a `std::array`. Special: all of them the same special point.
+/// N arguments of one kind, as a `std::array`. Special: all of them the same special point; two,
+/// and all, are as special beside each other as two arguments of that domain.
 template <std::size_t N, class Domain>
 struct arrays {
   Domain element; ///< that of each argument
+
+  /// Less the point with these coordinates and what is within `radius` of it.
+  [[nodiscard]] auto without(const coordinates& point, double radius = 0) const {
+    return restricted(*this).without(point, radius);
+  }
+  /// Less the arguments, over `double`, for which `keeps` is false.
+  template <class Predicate>
+  [[nodiscard]] auto where(Predicate keeps) const {
+    return restricted(*this).where(std::move(keeps));
+  }
 
   // For those who extend duet: what an `InputDomain` is asked.
 

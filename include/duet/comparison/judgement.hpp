@@ -5,11 +5,14 @@
 #include <duet/comparison/measure.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 /// \file
 /// What differences in several precisions say together, also where a function has fewer digits than
@@ -17,29 +20,101 @@
 
 namespace duet::detail {
 
-/// What the differences in several precisions, the least precise first, say together.
-///
-/// Rounding errors shrink with ε. A slip is seen in every scalar, and stays what it is. A function
-/// that returns fewer digits than its arguments have is as precise in every scalar: there, the same
-/// error is a slip where it leaves less than half of these digits.
-[[nodiscard]] inline verdict judged(std::span<const difference> differences, double tolerance) {
-  std::size_t failures = 0;
-  for (const difference& d : differences) {
-    if (!d.is_finite) {
-      return verdict::not_finite;
-    }
-    failures += d.common_ulps() > tolerance ? 1U : 0U;
-  }
-  if (failures == 0) {
-    return verdict::agrees;
-  }
+/// The error of a component that may be a slip.
+struct suspect {
+  std::size_t component = 0;
+  double error = 0;             ///< in the last precision
+  double allowed = 0;           ///< what it might be there
+  bool is_short = false;        ///< a function has fewer digits than that: rounding stays, too
+  bool may_be_rounding = false; ///< it leaves half of those digits
+};
+
+/// The component, if any, that is wrong in every precision, by an error that is the same in the
+/// first and the last of them: of several the one with the largest.
+[[nodiscard]] inline std::optional<suspect> suspected(std::span<const difference> differences) {
   const difference& last = differences.back();
-  const bool shrinks = differences.size() > 1 && last.absolute < differences.front().absolute / 2;
-  const double half_of_digits = std::pow(10.0, std::min(last.digits[0], last.digits[1]) / 2.0);
-  const bool may_be_rounding =
-      differences.size() > 1 && last.ulps_in_shorter > 1 && last.common_ulps() < half_of_digits;
-  return failures == differences.size() && !shrinks && !may_be_rounding ? verdict::disagrees
-                                                                        : verdict::loses_digits;
+  std::optional<suspect> found;
+  for (std::size_t i = 0; i < last.errors.size(); ++i) {
+    const double error = last.errors[i];
+    const bool fails =
+        std::all_of(differences.begin(), differences.end(), [&](const difference& d) {
+          return i < d.errors.size() && d.errors[i] > d.allowed;
+        });
+    if (fails && error >= differences.front().errors[i] / 2 && (!found || error > found->error)) {
+      found = {i, error, last.allowed, differences.size() > 1 && last.ulps_in_shorter > 1};
+    }
+  }
+  if (found && found->is_short) {
+    found->may_be_rounding =
+        last.common_ulps() < std::pow(10.0, std::min(last.digits[0], last.digits[1]) / 2.0);
+  }
+  return found;
+}
+
+/// Are all components finite in both results, or in none, in every precision?
+[[nodiscard]] inline bool all_finite(std::span<const difference> differences) {
+  return std::all_of(differences.begin(), differences.end(),
+                     [](const difference& d) { return d.is_finite; });
+}
+
+/// What the differences in several precisions, the least precise first, say of the components that
+/// are finite.
+///
+/// Rounding errors shrink with ε. A slip is seen in every scalar, and stays what it is.
+[[nodiscard]] inline verdict judged(std::span<const difference> differences, double tolerance) {
+  return suspected(differences) ? verdict::disagrees
+         : std::any_of(differences.begin(), differences.end(),
+                       [&](const difference& d) { return d.common_ulps() > tolerance; })
+             ? verdict::loses_digits
+             : verdict::agrees;
+}
+
+/// Is the error of a component at a point a slip? It may be rounding that leaves no digit in any
+/// precision, as that of 1 − cos x at 1e-12, or that is by chance the same in two.
+///
+/// On the way to another point, at distances that grow from 2e-16 on, errors are the same in the
+/// first and the last precision for a while. Where it is rounding, the last precision then begins
+/// to have digits, and its error shrinks little by little. That of a slip goes at once, or stays to
+/// the end.
+/// \param pair  a formula_pair of several precisions
+template <class Pair>
+[[nodiscard]] bool is_slip(const Pair& pair, const coordinates& point, const suspect& at_point,
+                           const coordinates& other) {
+  double error = at_point.error, inside = 0, outside = 0x1p-52;
+  const auto at = [&](double s) {
+    coordinates between = point;
+    for (std::size_t i = 0; i < point.size(); ++i) {
+      between[i] += s * (other[i] - point[i]);
+    }
+    // What is excluded tells nothing.
+    return pair.contains(between) ? pair.errors_at(between, at_point.component)
+                                  : std::array{error, error};
+  };
+  const auto stays = [&](double s) {
+    const auto [first, last] = at(s);
+    const bool same = first > 0 && last >= first / 2;
+    error = same ? last : error;
+    return same;
+  };
+  for (; outside < 1 && stays(outside); outside *= 8) {
+    inside = outside;
+  }
+  if (outside >= 1) {
+    return !at_point.may_be_rounding;
+  }
+  for (int i = 0; i < 5 && inside > 0; ++i) {
+    const double middle = std::sqrt(inside * outside);
+    (stays(middle) ? inside : outside) = middle;
+  }
+  double beyond = 0;
+  for (int i = 0; i < 12; ++i) {
+    beyond = std::max(beyond, at(std::min(1.0, outside * (1 + i / 11.0)))[1]);
+    if (at_point.is_short) { // its rounding does not shrink, but is now and then nothing
+      beyond = std::max(beyond, at(std::min(1.0, outside * std::exp2(i / 2.0)))[1]);
+    }
+  }
+  // What is wrong at one point alone may be so by chance, unless it is right beside it.
+  return beyond < error / 8 && (inside > 0 || beyond <= 8 * at_point.allowed);
 }
 
 [[nodiscard]] inline std::string scalar_name(int digits) {

@@ -6,6 +6,9 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/function.hpp>
+#include <duet/dual/eigen_structure.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -23,101 +26,172 @@
 
 namespace duet::detail {
 
-/// The least decimal digits of some numbers, and the ε of those.
-struct precision {
-  int digits = 0;
-  double epsilon = 0;
+/// The rows and columns of a matrix of more than one of each; else how many numbers, in one column
+/// where they are a vector of Eigen, in none where they are elements or parts of something else.
+struct shape {
+  Eigen::Index rows = 0;
+  Eigen::Index columns = 0;
+
+  [[nodiscard]] bool is_matrix() const { return columns > 1; }
 };
 
+/// What a result is made of: the least decimal digits of its numbers, the ε of those, and its
+/// shapes, in the order of its components.
+struct makeup {
+  int digits = 0;
+  double epsilon = 0;
+  std::vector<shape> shapes{};
+
+  void append(shape s) {
+    if (s.rows == 1 || s.columns == 1) {
+      s = {s.rows * std::max<Eigen::Index>(s.columns, 1), s.columns > 0 ? 1 : 0};
+    }
+    if (!s.is_matrix() && !shapes.empty() && !shapes.back().is_matrix()) {
+      shapes.back() = {shapes.back().rows + s.rows, 0};
+    } else {
+      shapes.push_back(s);
+    }
+  }
+};
+
+/// Are there the same matrices at the same places? What is no matrix at all, nor a vector of Eigen,
+/// has any shape.
+[[nodiscard]] inline bool fit(const makeup& a, const makeup& b) {
+  const auto has_any = [](const makeup& m) {
+    return m.shapes.empty() || (m.shapes.size() == 1 && m.shapes[0].columns == 0);
+  };
+  return has_any(a) || has_any(b) ||
+         std::equal(a.shapes.begin(), a.shapes.end(), b.shapes.begin(), b.shapes.end(),
+                    [](const shape& s, const shape& t) {
+                      return s.rows == t.rows && s.is_matrix() == t.is_matrix() &&
+                             (!s.is_matrix() || s.columns == t.columns);
+                    });
+}
+
+/// "3 x 4 and 2 numbers"
+[[nodiscard]] inline std::string shapes_text(const makeup& m) {
+  std::string text;
+  for (const shape& s : m.shapes) {
+    text += (text.empty() ? "" : " and ") + std::to_string(s.rows) +
+            (s.is_matrix() ? " x " + std::to_string(s.columns) : " numbers");
+  }
+  return text;
+}
+
 template <class T>
-[[nodiscard]] precision precision_of() {
+[[nodiscard]] makeup makeup_of() {
   return {std::numeric_limits<T>::digits10, static_cast<double>(std::numeric_limits<T>::epsilon())};
 }
 
+/// Calls visit(x) for every matrix, and what is no container, in y.
+template <class Y, class Visit>
+void for_each_shaped(const Y& y, const Visit& visit) {
+  if constexpr (!EigenMatrix<Y> && requires { std::tuple_size<Y>::value; }) {
+    std::apply([&](const auto&... x) { (for_each_shaped(x, visit), ...); }, y);
+  } else if constexpr (requires { y.get_allocator(); }) {
+    for (const auto& x : y) {
+      for_each_shaped(x, visit);
+    }
+  } else {
+    visit(y);
+  }
+}
+
 /// The scalars of a result in a row.
-/// \param coarsest  becomes that of the result's real numbers where it is less
+/// \param found  becomes its makeup, but where it had fewer digits keeps those
 template <class T, class Y>
-[[nodiscard]] std::vector<T> components_of(const Y& y, precision& coarsest) {
+[[nodiscard]] std::vector<T> components_of(const Y& y, makeup& found) {
   std::vector<T> components;
-  static_cast<void>(map_scalars(
-      [&](const auto& s) {
-        using scalar = std::decay_t<decltype(s)>;
-        static_assert(Real<scalar> || Arithmetic<scalar>,
-                      "duet: compare: a compared function must return plain numbers; take the "
-                      "derivative out of what the driver returned");
-        if constexpr (Real<scalar>) { // whole numbers are exact
-          if (std::numeric_limits<scalar>::digits10 < coarsest.digits) {
-            coarsest = precision_of<scalar>();
+  for_each_shaped(y, [&](const auto& x) {
+    const std::size_t first = components.size();
+    static_cast<void>(map_scalars(
+        [&](const auto& s) {
+          using scalar = std::decay_t<decltype(s)>;
+          static_assert(Real<scalar> || Arithmetic<scalar>,
+                        "duet: compare: a compared function must return plain numbers; take the "
+                        "derivative out of what the driver returned");
+          if constexpr (Real<scalar>) { // whole numbers are exact
+            if (std::numeric_limits<scalar>::digits10 < found.digits) {
+              found.digits = std::numeric_limits<scalar>::digits10;
+              found.epsilon = static_cast<double>(std::numeric_limits<scalar>::epsilon());
+            }
           }
-        }
-        components.push_back(T(s));
-        return s;
-      },
-      y));
+          components.push_back(T(s));
+          return s;
+        },
+        x));
+    if constexpr (EigenMatrix<std::decay_t<decltype(x)>>) {
+      found.append({x.rows(), x.cols()});
+    } else if constexpr (!std::is_same_v<Y, T>) {
+      found.append({Eigen::Index(components.size() - first), 0});
+    }
+  });
   return components;
 }
 
 template <class T, class Y>
 [[nodiscard]] std::vector<T> components_of(const Y& y) {
-  precision ignored;
+  makeup ignored;
   return components_of<T>(y, ignored);
 }
 
 /// f at the point, in the precision of T.
 template <class T, class F, class Inputs>
 [[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
-                                         std::span<const double> point, precision& coarsest) {
-  return components_of<T>(result_of_call(std::apply(f, inputs.template make<T>(point))), coarsest);
+                                         std::span<const double> point, makeup& found) {
+  return components_of<T>(result_of_call(std::apply(f, inputs.template make<T>(point))), found);
 }
 template <class T, class F, class Inputs>
 [[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
                                          std::span<const double> point) {
-  precision ignored;
+  makeup ignored;
   return evaluate_at<T>(f, inputs, point, ignored);
 }
 
 /// The difference of two results in one precision.
 struct difference {
   bool is_finite = true; ///< no component is infinite or NaN in one result only
-  double absolute = 0;
+  double absolute = 0;   ///< of the components that are finite in both, as all that follows
   double relative = 0;
   double ulps = 0; ///< of the arguments' scalar
   /// How many of them are one of the shorter result, and the decimal digits of both.
   double ulps_in_shorter = 1;
   std::array<int, 2> digits{};
+  /// Where one is more than the tolerance: those of every component, and what they may be.
+  std::vector<double> errors{};
+  double allowed = 0;
 
   /// What counts: the error in units that both results have.
   [[nodiscard]] double common_ulps() const { return ulps / ulps_in_shorter; }
 };
 
+/// The largest size of a finite component.
 template <class T>
 [[nodiscard]] T largest(const std::vector<T>& components) {
   using std::abs;
+  using std::isfinite;
   T result(0);
   for (const T& x : components) {
-    if (abs(x) > result) {
+    if (isfinite(x) && abs(x) > result) {
       result = abs(x);
     }
   }
   return result;
 }
 
-/// max |a − b|, or −1 where exactly one of two components is finite. What is not finite in both
-/// does not count.
+/// |a − b| of every component; 0 where neither is finite, NaN where one is.
 template <class T>
-[[nodiscard]] T distance(const std::vector<T>& a, const std::vector<T>& b) {
+[[nodiscard]] std::vector<T> errors_of(const std::vector<T>& a, const std::vector<T>& b) {
   using std::abs;
   using std::isfinite;
-  T result(0);
+  std::vector<T> errors;
+  errors.reserve(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    if (isfinite(a[i]) != isfinite(b[i])) {
-      return T(-1);
-    }
-    if (isfinite(a[i]) && abs(T(a[i] - b[i])) > result) {
-      result = abs(T(a[i] - b[i]));
-    }
+    errors.push_back(isfinite(a[i]) != isfinite(b[i]) ? std::numeric_limits<T>::quiet_NaN()
+                     : isfinite(a[i])                 ? T(abs(T(a[i] - b[i])))
+                                                      : T(0));
   }
-  return result;
+  return errors;
 }
 
 /// ‖f′‖‖x‖: how much f changes, per relative change of its arguments. The smaller of both one-sided
@@ -137,8 +211,8 @@ template <class T, class F, class Inputs>
       coordinates moved(point.begin(), point.end());
       moved[i] += h;
       if (inputs.contains(moved)) {
-        const T d = distance(evaluate_at<T>(f, inputs, moved), value);
-        change = change < 0 || (d >= 0 && d < change) ? d : change;
+        const T d = largest(errors_of(evaluate_at<T>(f, inputs, moved), value));
+        change = change < 0 || d < change ? d : change;
       }
     }
     if (change > 0) {
@@ -153,20 +227,22 @@ template <class T, class F, class G, class Inputs>
 [[nodiscard]] difference measure(const std::string& label, const F& automatic, const G& closed_form,
                                  const Inputs& inputs, std::span<const double> point,
                                  double tolerance) {
-  std::array precisions = {precision_of<T>(), precision_of<T>()};
-  const std::vector<T> a = evaluate_at<T>(automatic, inputs, point, precisions[0]);
-  const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point, precisions[1]);
+  std::array found = {makeup_of<T>(), makeup_of<T>()};
+  const std::vector<T> a = evaluate_at<T>(automatic, inputs, point, found[0]);
+  const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point, found[1]);
   require(a.size() == b.size(), "duet: compare \"", label, "\": the automatic result has ",
           a.size(), " components, the closed form ", b.size());
-  difference result;
-  result.digits = {precisions[0].digits, precisions[1].digits};
-  result.ulps_in_shorter =
-      std::max(precisions[0].epsilon, precisions[1].epsilon) / precision_of<T>().epsilon;
-  const T d = distance(a, b);
-  if (d < 0) {
-    result.is_finite = false;
-    return result;
+  if (!fit(found[0], found[1])) {
+    raise(
+        invalid_input(message("duet: compare \"", label, "\": the automatic result is ",
+                              shapes_text(found[0]), ", the closed form ", shapes_text(found[1]))));
   }
+  difference result;
+  result.digits = {found[0].digits, found[1].digits};
+  result.ulps_in_shorter = std::max(found[0].epsilon, found[1].epsilon) / makeup_of<T>().epsilon;
+  const std::vector<T> errors = errors_of(a, b);
+  result.is_finite = std::all_of(errors.begin(), errors.end(), [](const T& e) { return e >= 0; });
+  const T d = largest(errors);
   const T half_epsilon = std::numeric_limits<T>::epsilon() / 2;
   T scale = largest(a);
   const auto ratio = [](const T& x, const T& y) {
@@ -179,6 +255,11 @@ template <class T, class F, class G, class Inputs>
   if (result.ulps > tolerance) {
     scale += sensitivity(automatic, inputs, point, a);
     result.ulps = ratio(d, T(half_epsilon * scale));
+    result.allowed =
+        tolerance * result.ulps_in_shorter * static_cast<double>(T(half_epsilon * scale));
+    for (const T& e : errors) {
+      result.errors.push_back(static_cast<double>(e));
+    }
   }
   return result;
 }

@@ -91,10 +91,10 @@ template <class F, Real T>
       for (std::size_t i = 0; i < a.size(); ++i) {
         current[column][i] = (factor * a[i] - b[i]) / (factor - 1);
       }
-      const T towards_a = detail::distance(current[column], a);
-      const T towards_b = detail::distance(current[column], b);
+      const T towards_a = detail::largest(detail::errors_of(current[column], a));
+      const T towards_b = detail::largest(detail::errors_of(current[column], b));
       const T error = towards_a > towards_b ? towards_a : towards_b;
-      if (detail::is_finite(current[column]) && error >= 0 &&
+      if (detail::is_finite(current[column]) && detail::is_finite(a) && detail::is_finite(b) &&
           (best_error < 0 || error < best_error)) {
         best_error = error;
         best = current[column];

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -20,10 +21,21 @@
 namespace duet {
 
 /// A unit quaternion; its coordinates are its rotation vector (full angle, radians). Special:
-/// identity, tiny rotations, half turns about the axes and a diagonal, and nearly full turns. A
-/// unit in every precision, since it is made in it.
+/// identity, tiny rotations, half turns about the axes and a diagonal, and nearly full turns.
+/// Beside q: its inverse, −q, rotations about its axis, and those that are a half turn away. A unit
+/// in every precision, since it is made in it.
 struct rotations {
   double largest_angle = 6.283185; ///< just below a full turn, where the rotation vector jumps
+
+  /// Less the point with these coordinates and what is within `radius` of it.
+  [[nodiscard]] auto without(const coordinates& point, double radius = 0) const {
+    return restricted(*this).without(point, radius);
+  }
+  /// Less the arguments, over `double`, for which `keeps` is false.
+  template <class Predicate>
+  [[nodiscard]] auto where(Predicate keeps) const {
+    return restricted(*this).where(std::move(keeps));
+  }
 
   // For those who extend duet: what an `InputDomain` is asked.
 
@@ -45,6 +57,26 @@ struct rotations {
     }
     return points;
   }
+  [[nodiscard]] std::vector<coordinates> related_points(std::span<const double> point,
+                                                        random_source& random) const {
+    const double pi = constant::pi<double>();
+    const double angle = std::hypot(point[0], point[1], point[2]);
+    const auto scaled = [&](double factor) {
+      return coordinates{factor * point[0], factor * point[1], factor * point[2]};
+    };
+    const auto axis = random.direction<3>();
+    const auto about_axis = [&](double by) {
+      return coordinates{by * axis[0], by * axis[1], by * axis[2]};
+    };
+    const auto away = rotation_vector(
+        quaternion<double>(make<double>(point) * quaternion<double>(0, axis[0], axis[1], axis[2])));
+    const double opposite = std::min(2 * pi - angle, largest_angle * (1 - 1e-15));
+    return {angle > 0 ? scaled(-opposite / angle) : about_axis(opposite), // −q
+            {away[0], away[1], away[2]},
+            scaled(-1),
+            angle > 0 ? scaled(1 - pi / angle) : about_axis(pi), // a half turn about its own axis
+            scaled(random.uniform(-2, 2))};
+  }
   [[nodiscard]] coordinates random_point(random_source& random) const {
     const auto axis = random.direction<3>();
     const double angle = random.uniform(0, largest_angle);
@@ -60,9 +92,20 @@ struct rotations {
 };
 
 /// Any quaternion but zero, with components between −bound and bound; its coordinates are its
-/// components, scalar first. Special: ±1, the imaginary units, and nearly real ones.
+/// components, scalar first. Special: nearly zero ones, ±1, the imaginary units, and nearly real
+/// ones. Beside q: −q, q*, 1/q, its multiples, and what is perpendicular to it.
 struct quaternions {
   double bound = 2; ///< the largest size of a component
+
+  /// Less the point with these coordinates and what is within `radius` of it.
+  [[nodiscard]] auto without(const coordinates& point, double radius = 0) const {
+    return restricted(*this).without(point, radius);
+  }
+  /// Less the arguments, over `double`, for which `keeps` is false.
+  template <class Predicate>
+  [[nodiscard]] auto where(Predicate keeps) const {
+    return restricted(*this).where(std::move(keeps));
+  }
 
   // For those who extend duet: what an `InputDomain` is asked.
 
@@ -75,15 +118,26 @@ struct quaternions {
   [[nodiscard]] std::vector<coordinates> special_points() const {
     std::vector<coordinates> points;
     for (const coordinates& unit :
-         {coordinates{1, 0, 0, 0}, coordinates{-1, 0, 0, 0}, coordinates{0, 1, 0, 0},
-          coordinates{0, 0, -1, 0}, coordinates{0, 0, 0, 1}, coordinates{1, 1e-8, 0, 0},
-          coordinates{0.5, 0, 1e-4, 0}, coordinates{0.5, 0.5, 0.5, 0.5}}) {
+         {coordinates{1e-12, 0, 0, 0}, coordinates{1, 0, 0, 0}, coordinates{-1, 0, 0, 0},
+          coordinates{0, 1, 0, 0}, coordinates{0, 0, -1, 0}, coordinates{0, 0, 0, 1},
+          coordinates{1, 1e-8, 0, 0}, coordinates{0.5, 0, 1e-4, 0},
+          coordinates{0.5, 0.5, 0.5, 0.5}}) {
       points.push_back(unit);
       for (double& x : points.back()) {
         x *= bound;
       }
     }
     return points;
+  }
+  [[nodiscard]] std::vector<coordinates> related_points(std::span<const double> point,
+                                                        random_source& random) const {
+    const double w = point[0], x = point[1], y = point[2], z = point[3];
+    const double square = w * w + x * x + y * y + z * z, factor = random.uniform(-2, 2);
+    return {{-w, -x, -y, -z},
+            {w, -x, -y, -z},
+            {w / square, -x / square, -y / square, -z / square},
+            {factor * w, factor * x, factor * y, factor * z},
+            {-x, w, -z, y}};
   }
   [[nodiscard]] coordinates random_point(random_source& random) const {
     coordinates point;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <duet/comparison/domain.hpp>
+#include <duet/comparison/restricted.hpp>
+#include <duet/comparison/structured_points.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
 
@@ -10,9 +12,11 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,9 +25,11 @@
 
 namespace duet {
 
-/// The arguments of a function, each from a domain of its own. Points are special ones in all
-/// combinations (or, where those are too many, each with random company), points of the caller,
-/// random points.
+/// The arguments of a function, each from a domain of its own. Points are those of the caller,
+/// special ones in all combinations (or, where those are too many, each with random company, and
+/// some combinations), and random ones, of which one half is anywhere. The other is beside special
+/// points, at distances that are log-uniform from 1e-12 on; or has arguments of one domain that are
+/// equal, nearly equal or otherwise related, or components that are zero or equal.
 ///
 /// Example: `sampler(vectors<3>{3.0}, real_numbers{0, 1}).named("w", "t").including({0, 0, 1,
 /// 0.5})`
@@ -57,6 +63,27 @@ public:
     return result;
   }
 
+  /// Less one point, the coordinates of all arguments in a row, and what is within `radius` of it.
+  /// \throws invalid_input where their number is wrong, or the radius negative
+  [[nodiscard]] sampler without(const coordinates& point, double radius = 0) const {
+    return and_kept([keeps = detail::beyond(point, radius, size())](
+                        const sampler&, std::span<const double> p) { return keeps(p); });
+  }
+
+  /// Less the points for which `keeps`, a function of all arguments over `double`, is false.
+  ///
+  /// Example: `sampler(rotations{}, rotations{}).where([](const auto& a, const auto& b) { return
+  /// abs(dot(a, b)) > 1e-3; })`
+  template <class Predicate>
+  [[nodiscard]] sampler where(Predicate keeps) const {
+    static_assert(
+        takes_arguments<Predicate>,
+        "duet: where takes a function of all arguments, over double, that returns a bool");
+    return and_kept([keeps = std::move(keeps)](const sampler& s, std::span<const double> point) {
+      return static_cast<bool>(std::apply(keeps, s.template make<double>(point)));
+    });
+  }
+
   /// Number of coordinates of all arguments together.
   [[nodiscard]] std::size_t size() const {
     return std::apply([](const auto&... d) { return (d.size() + ...); }, domains_);
@@ -68,7 +95,8 @@ public:
     for_each_part(point, [&](const auto& domain, std::span<const double> part, std::size_t) {
       result = result && domain.contains(part);
     });
-    return result;
+    return result && std::all_of(keeps_.begin(), keeps_.end(),
+                                 [&](const auto& keeps) { return keeps(*this, point); });
   }
 
   /// "w = (0, 0, 1), t = 0.5"
@@ -80,14 +108,24 @@ public:
     return text;
   }
 
-  /// The points of the caller, the special ones, and then `count` random ones.
+  /// The points of the caller, the special ones, and then `count` random ones; more where the half
+  /// that is not anywhere would be less than four of a kind.
+  /// \throws invalid_input where nothing is left of the domains
   [[nodiscard]] std::vector<coordinates> points(std::size_t count, std::uint64_t seed) const {
     random_source random(seed);
     std::vector<coordinates> result = own_points_;
     append_special_points(result, random);
-    const std::size_t all = result.size() + count;
-    while (result.size() < all) {
-      result.push_back(joined([&](const auto& domain) { return domain.random_point(random); }));
+    const auto is_excluded = [this](const coordinates& point) { return !contains(point); };
+    std::erase_if(result, is_excluded);
+    detail::structured_points structured(arguments(random), random);
+    const std::size_t beside = std::max((count + 1) / 2, structured.least_count());
+    for (std::size_t k = 0; k < beside; ++k) {
+      coordinates point = random_point(random);
+      structured.put_into(point);
+      result.push_back(is_excluded(point) ? random_point(random) : std::move(point));
+    }
+    for (std::size_t k = 0; k < count / 2; ++k) {
+      result.push_back(random_point(random));
     }
     return result;
   }
@@ -100,6 +138,40 @@ public:
 
 private:
   static constexpr std::size_t max_combinations = 512;
+  static constexpr std::size_t some_combinations = 64; // where there are more
+
+  using keeps_point = std::function<bool(const sampler&, std::span<const double>)>;
+
+  template <class Predicate>
+  static constexpr bool takes_arguments = std::is_invocable_r_v<
+      bool,
+      decltype([](const auto& p, const Domains&... d) -> decltype(p(d.template make<double>(
+                                                          std::span<const double>())...)) {}),
+      const Predicate&, const Domains&...>;
+
+  [[nodiscard]] sampler and_kept(keeps_point keeps) const {
+    sampler result = *this;
+    result.keeps_.push_back(std::move(keeps));
+    return result;
+  }
+
+  [[nodiscard]] coordinates random_point(random_source& random) const {
+    return detail::kept_point(
+        [&] { return joined([&](const auto& domain) { return domain.random_point(random); }); },
+        [&](const coordinates& point) { return contains(point); },
+        [&](const coordinates& point) { return describe(point); });
+  }
+
+  [[nodiscard]] std::vector<detail::argument> arguments(random_source& random) const {
+    std::vector<detail::argument> result;
+    std::size_t first = 0;
+    std::apply(
+        [&](const auto&... domain) {
+          ((detail::append_arguments(result, domain, first, random), first += domain.size()), ...);
+        },
+        domains_);
+    return result;
+  }
 
   /// visit(domain, its coordinates, index) for every argument.
   template <class Visit>
@@ -151,6 +223,15 @@ private:
       }
       return;
     }
+    for (std::size_t c = 0; c < some_combinations; ++c) {
+      std::size_t index = 0;
+      result.push_back(joined([&](const auto& domain) {
+        const auto& points = special[index++];
+        return points.empty() ? domain.random_point(random)
+               : c == 0       ? points[0]
+                              : points[std::size_t(random.integer(0, int(points.size()) - 1))];
+      }));
+    }
     for (std::size_t chosen = 0; chosen < special.size(); ++chosen) {
       for (const coordinates& point : special[chosen]) {
         std::size_t index = 0;
@@ -172,6 +253,7 @@ private:
   std::tuple<Domains...> domains_;
   std::array<std::string, sizeof...(Domains)> names_;
   std::vector<coordinates> own_points_;
+  std::vector<keeps_point> keeps_;
 };
 
 } // namespace duet

@@ -1,0 +1,284 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/comparison/domain.hpp>
+#include <duet/core/random_source.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Inputs where formulas fail that are right elsewhere: beside special ones, equal and nearly equal
+/// arguments, components that are zero or equal.
+
+namespace duet::detail {
+
+/// An argument at its place among the coordinates of all; an array is as many as it has elements.
+/// What is common to all samplers does not know its domain's type, so that compilers make it once.
+struct argument {
+  const void* kind;                 ///< the same for two that may be equal
+  std::size_t first, size;          ///< its coordinates
+  std::vector<coordinates> special; ///< special points, the first the one to be near most often
+  double extent;                    ///< the largest size of a coordinate, as far as is known
+  std::function<coordinates(random_source&)> random_point;
+  std::function<std::vector<coordinates>(std::span<const double>, random_source&)> related_points;
+  std::function<bool(std::span<const double>)> contains;
+};
+
+template <class Domain>
+inline constexpr char kind_of = 0;
+
+/// Appends the arguments that stand for one of this domain.
+/// \param first  the place of its first coordinate
+template <class Domain>
+void append_arguments(std::vector<argument>& arguments, const Domain& domain, std::size_t first,
+                      random_source& random) {
+  argument made{&kind_of<Domain>, first, domain.size(), domain.special_points(), 0, {}, {}, {}};
+  made.random_point = [&domain](random_source& r) { return domain.random_point(r); };
+  made.contains = [&domain](std::span<const double> point) { return domain.contains(point); };
+  if constexpr (requires(const coordinates& c) { domain.related_points(c, random); }) {
+    made.related_points = [&domain](std::span<const double> point, random_source& r) {
+      return domain.related_points(point, r);
+    };
+  }
+  for (const coordinates& point : made.special) {
+    for (const double x : point) {
+      made.extent = std::max(made.extent, std::abs(x));
+    }
+  }
+  arguments.push_back(std::move(made));
+}
+template <std::size_t N, class Domain>
+void append_arguments(std::vector<argument>& arguments, const arrays<N, Domain>& domain,
+                      std::size_t first, random_source& random) {
+  for (std::size_t i = 0; i < N; ++i) {
+    append_arguments(arguments, domain.element, first + i * domain.element.size(), random);
+  }
+}
+/// What is excluded is known to the sampler, which asks for every point whether it is contained.
+template <class Domain>
+void append_arguments(std::vector<argument>& arguments, const restricted<Domain>& domain,
+                      std::size_t first, random_source& random) {
+  append_arguments(arguments, domain.domain(), first, random);
+}
+
+/// Makes such inputs out of random ones.
+class structured_points {
+public:
+  structured_points(std::vector<argument> arguments, random_source& random)
+      : arguments_(std::move(arguments)), random_(random) {
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      add({&structured_points::put_near_special, {i}});
+      add({&structured_points::put_near_special, {i}});
+      if (arguments_[i].size > 1) {
+        add({&structured_points::put_pattern, {i}});
+      }
+    }
+    std::vector<std::size_t> all, alike;
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      all.push_back(i);
+      alike.clear();
+      bool is_first = true;
+      for (std::size_t j = 0; j < arguments_.size(); ++j) {
+        if (arguments_[j].kind == arguments_[i].kind) {
+          alike.push_back(j);
+          is_first = is_first && j >= i;
+          if (j > i) {
+            add({&structured_points::put_related, {i, j}});
+          }
+        }
+      }
+      if (is_first && alike.size() > 2) {
+        add({&structured_points::put_alike, alike});
+      }
+    }
+    if (all.size() > 1) {
+      add({&structured_points::put_near_special, all});
+    }
+  }
+
+  /// How many there are at least: four of each kind.
+  [[nodiscard]] std::size_t least_count() const {
+    return std::min<std::size_t>(4 * recipes_.size(), 256);
+  }
+
+  /// The next one, out of a random point.
+  /// \param point  the coordinates of all arguments in a row
+  void put_into(coordinates& point) {
+    recipe& next = recipes_[count_++ % recipes_.size()];
+    (this->*next.put)(point, next);
+    ++next.used;
+  }
+
+private:
+  struct recipe {
+    void (structured_points::*put)(coordinates&, const recipe&);
+    std::vector<std::size_t> of; ///< of the arguments
+    std::size_t used = 0;
+    double phase = 0;
+  };
+
+  void add(recipe r) {
+    r.phase = random_.unit();
+    recipes_.push_back(std::move(r));
+  }
+
+  /// Log-uniform up to `largest`, down to 1e-12 of it or, where that is more than 1, of 1.
+  /// \param u  in [0, 1)
+  [[nodiscard]] static double distance(double u, double largest) {
+    const double least = 1e-12 * std::min(largest, 1.0);
+    return least * std::pow(largest / least, u);
+  }
+  /// Spread evenly over [0, 1), for the first few k as for many, and each i.
+  [[nodiscard]] static double even(const recipe& r, std::size_t k, std::size_t i = 0) {
+    const double u = r.phase + double(k) * 0.6180339887498949 + double(i) * 0.7548776662466927;
+    return u - std::floor(u);
+  }
+
+  /// A direction of n coordinates: any, along an axis, or of components that are zero or equal.
+  [[nodiscard]] coordinates direction(std::size_t n) {
+    coordinates result(n, 0.0);
+    const int kind = random_.integer(0, 3);
+    if (n == 1 || kind == 0) {
+      result[std::size_t(random_.integer(0, int(n) - 1))] = random_.sign();
+      return result;
+    }
+    double square = 0;
+    for (double& x : result) {
+      x = random_.normal();
+    }
+    if (kind == 1) {
+      shape(result);
+    }
+    for (const double x : result) {
+      square += x * x;
+    }
+    for (double& x : result) {
+      x /= std::sqrt(square > 0 ? square : 1);
+    }
+    return result;
+  }
+
+  /// Makes a coordinate zero, or two, or all, the same or opposite.
+  void shape(std::span<double> x) {
+    const auto any = [&] { return std::size_t(random_.integer(0, int(x.size()) - 1)); };
+    const std::size_t from = any(), to = any();
+    switch (random_.integer(0, 3)) {
+    case 0:
+      x[to] = 0;
+      break;
+    case 1:
+      x[to] = x[from];
+      break;
+    case 2:
+      x[to] = to == from ? x[to] : -x[from];
+      break;
+    default:
+      std::fill(x.begin(), x.end(), x[from]);
+    }
+  }
+
+  [[nodiscard]] static std::span<double> part(coordinates& point, const argument& a) {
+    return std::span(point).subspan(a.first, a.size);
+  }
+
+  /// \return whether it is in the domain, and only then put there
+  static bool put(coordinates& point, const argument& a, std::span<const double> values) {
+    const bool contained = a.contains(values);
+    if (contained) {
+      std::copy(values.begin(), values.end(), part(point, a).begin());
+    }
+    return contained;
+  }
+
+  /// Puts what is at that distance from `centre`, or nearer where that is out of the domain.
+  bool put_near(coordinates& point, const argument& a, std::span<const double> centre,
+                double distance) {
+    const coordinates towards = direction(a.size);
+    for (int i = 0; i < 40; ++i, distance *= i % 2 == 0 ? -0.25 : -1) {
+      coordinates values(centre.begin(), centre.end());
+      for (std::size_t k = 0; k < a.size; ++k) {
+        values[k] += distance * towards[k];
+      }
+      if (put(point, a, values)) {
+        return true;
+      }
+    }
+    return put(point, a, centre);
+  }
+
+  /// Every other time beside the first special point, else beside the others in turn.
+  void put_near_special(coordinates& point, const recipe& r) {
+    for (const std::size_t i : r.of) {
+      const argument& a = arguments_[i];
+      if (!a.special.empty()) {
+        const std::size_t k = r.used / 2, n = a.special.size();
+        const bool first = r.used % 2 == 0;
+        put_near(point, a, a.special[first ? 0 : k % n],
+                 distance(first ? even(r, k) : even(r, k / n, k % n), a.extent > 0 ? a.extent : 1));
+      }
+    }
+  }
+
+  void put_pattern(coordinates& point, const recipe& r) {
+    const argument& a = arguments_[r.of[0]];
+    const auto old = part(point, a);
+    coordinates values(old.begin(), old.end());
+    shape(values);
+    put(point, a, values);
+  }
+
+  /// A value of both: a random one of either, or a special one.
+  [[nodiscard]] coordinates common_value(const argument& a, const argument& b) {
+    for (int i = 0; i < 20; ++i) {
+      const argument& of = i % 2 == 0 ? a : b;
+      const coordinates value =
+          random_.integer(0, 3) == 0 && !of.special.empty()
+              ? of.special[std::size_t(random_.integer(0, int(of.special.size()) - 1))]
+              : of.random_point(random_);
+      if (a.contains(value) && b.contains(value)) {
+        return value;
+      }
+    }
+    return {};
+  }
+
+  /// Equal or, every other time, in another special relation; exactly, or nearly.
+  void put_related(coordinates& point, const recipe& r) {
+    const argument &a = arguments_[r.of[0]], &b = arguments_[r.of[1]];
+    const coordinates value = common_value(a, b);
+    if (value.empty()) {
+      return;
+    }
+    put(point, a, value);
+    const std::size_t k = r.used / 2;
+    if (r.used % 2 == 0 || !b.related_points) {
+      put_near(point, b, value, k % 3 == 0 ? 0 : distance(even(r, k), 1));
+      return;
+    }
+    const std::vector<coordinates> related = b.related_points(value, random_);
+    const std::size_t n = related.size();
+    put_near(point, b, related[k % n], k / n % 3 == 0 ? 0 : distance(even(r, k / n, k % n), 1));
+  }
+
+  /// All equal, exactly or, two of three times, nearly.
+  void put_alike(coordinates& point, const recipe& r) {
+    const coordinates value = common_value(arguments_[r.of[0]], arguments_[r.of[1]]);
+    for (std::size_t k = 0; k < r.of.size() && !value.empty(); ++k) {
+      put_near(point, arguments_[r.of[k]], value,
+               k == 0 || r.used % 3 == 0 ? 0 : distance(even(r, r.used), 1));
+    }
+  }
+
+  std::vector<argument> arguments_;
+  random_source& random_;
+  std::vector<recipe> recipes_;
+  std::size_t count_ = 0;
+};
+
+} // namespace duet::detail
