@@ -91,10 +91,10 @@ struct real_numbers {
   }
 };
 
-/// A vector of N components between −bound and bound. Special: zero, vectors along the axes and
-/// the diagonal, of length 1e-4 and 1e-8 times the bound, and, of three components, of length 1, π
-/// and 2π. Beside v: −v, vectors parallel and perpendicular to it, and of its length. Every fourth
-/// random one is short.
+/// A vector of N components between −bound and bound. Special: zero, a corner, vectors along the
+/// axes and the diagonal, of length 1e-4 and 1e-8 times the bound, and, of three components, of
+/// length 1, π and 2π. Beside v: −v, vectors parallel and perpendicular to it, and of its length.
+/// Every fourth random one is short.
 template <int N>
 struct vectors {
   double bound = 1; ///< the largest size of a component
@@ -118,7 +118,8 @@ struct vectors {
   }
   [[nodiscard]] std::vector<coordinates> special_points() const {
     std::vector<coordinates> points = {coordinates(std::size_t(N), 0.0),
-                                       coordinates(std::size_t(N), bound / 2)};
+                                       coordinates(std::size_t(N), bound / 2),
+                                       coordinates(std::size_t(N), bound)};
     for (const double length : {bound, -bound, 1e-4 * bound, 1e-8 * bound}) {
       for (std::size_t axis = 0; axis < std::size_t(N); ++axis) {
         points.emplace_back(std::size_t(N), 0.0);
