@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -90,6 +91,46 @@ TEST_CASE("a pose on a screw motion, and one beside it, is found again") {
       const auto there = start * duet::from_screw(motion.axis, motion.moment, motion.angle * t,
                                                   motion.translation * t);
       CHECK_GE(squared_distance(there, beside, 0.3), near.squared_distance - 1e-15);
+    }
+  }
+}
+
+TEST_CASE("nearest_on_screw: of all turns the nearest, found by brute force as well") {
+  const auto start = duet::pose(duet::from_rotation_vector(vector(0.2, -1, 0.4)), vector(1, 0, 2));
+  const double turn = 6.283185307179586;
+  for (const double turns : {-2.5, 0.5, 1.0, 1.5, 2.0, 3.25, 5.0, 1e6}) {
+    for (const double pitch : {0.3, -0.01, 1e-6}) {
+      const duet::screw_motion<double> motion = {vector(0, 0.6, 0.8), vector(0.5, 0, 0),
+                                                 turns * turn, turns * pitch,
+                                                 duet::screw_kind::screw};
+      const auto at = [&](double tau) {
+        return start * duet::from_screw(motion.axis, motion.moment, motion.angle * tau,
+                                        motion.translation * tau);
+      };
+      for (const double tau : {0.0, 0.01, 0.25, 0.37, 0.5, 0.732, 0.99, 1.0}) {
+        CAPTURE(turns);
+        CAPTURE(pitch);
+        CAPTURE(tau);
+        for (const double length : {0.0, 0.3, 3.0}) {
+          const auto found = nearest_on_screw(start, motion, at(tau), length);
+          CHECK_LT(std::abs(found.tau - tau), turns == 1e6 ? 1e-7 : 1e-9);
+          CHECK_LT(found.squared_distance, turns == 1e6 ? 1e-15 : 1e-24);
+        }
+        if (turns == 1e6) {
+          continue;
+        }
+        // Far off the motion, rotated by nearly half a turn, two minima lie beside a kink.
+        for (const double angle : {1.0, 3.14}) {
+          const auto p = at(tau) * duet::pose(duet::from_rotation_vector(vector(0, -angle, 0)),
+                                              vector(0.3, 0.2, 0));
+          const double found = nearest_on_screw(start, motion, p, 0.2).squared_distance;
+          double least = 1e300;
+          for (int i = 0; i <= 500; ++i) {
+            least = std::min(least, squared_distance(at(i / 500.), p, 0.2));
+          }
+          CHECK_LE(found, least + 1e-15);
+        }
+      }
     }
   }
 }

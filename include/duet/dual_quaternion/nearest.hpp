@@ -9,13 +9,13 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 
-#include <boost/math/tools/minima.hpp>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 /// \file
 /// The pose on a screw motion that is nearest to a given one.
@@ -33,26 +33,130 @@ template <class T, class S>
                                                 S(motion.angle * tau), S(motion.translation * tau));
 }
 
-/// The best of 32 places a turn, refined in the interval between its neighbours as far as values
-/// can tell, to half the digits.
-template <class R, class F>
-[[nodiscard]] R coarse_minimum(const F& f, const R& angle) {
-  using std::abs;
-  const int cells = 32 * (1 + int(abs(double(angle)) / (2 * constant::pi<double>())));
-  int best = 0;
-  R least = f(R(0));
-  for (int i = 1; i <= cells; ++i) {
-    const R here = f(R(i) / R(cells));
-    if (here < least) {
-      least = here;
-      best = i;
+/// A motion and a pose over the values alone, whose squared distance f(τ) has all its minima found.
+template <class R>
+class distance_minima {
+public:
+  distance_minima(const dual_quaternion<R>& start, const screw_motion<R>& motion,
+                  const dual_quaternion<R>& p, double length)
+      : start_(start), motion_(motion), p_(p), length_(length) {}
+
+  /// The τ in [0, 1] where f is least.
+  ///
+  /// f is (τd − h)², h the height of P along the axis, and a function of period 2π of the angle τφ.
+  /// A minimum that is farther than a full turn from the τ in [0, 1] nearest to h/d has another one
+  /// nearer by, so two full turns are searched at most. In each, the angle between the rotations
+  /// has one kink, at its maximum π; elsewhere f is smooth, and between samples 1/32 of a turn
+  /// apart f′ has at most one zero or one extremum.
+  [[nodiscard]] R least() {
+    using std::abs;
+    using std::atan2;
+    using std::ceil;
+    const R turn = 2 * constant::pi<R>() / abs(motion_.angle); // infinite without rotation
+    const R height = motion_.axis.dot(translation(dual_quaternion<R>(conj(start_) * p_)));
+    const R ratio = motion_.translation != 0 ? R(height / motion_.translation) : R(0);
+    const R centre = ratio > 0 ? std::min(ratio, R(1)) : R(0);
+    const R low = std::max(R(centre - turn), R(0)), high = std::min(R(centre + turn), R(1));
+    const int cells = high - low > turn ? 64 : 32;
+    std::vector<R> taus;
+    for (int i = 0; i < cells; ++i) {
+      taus.push_back(low + (high - low) * R(i) / R(cells));
+    }
+    taus.push_back(high);
+    // The scalar part of P* A exp(½τφ n), w cos ½τφ − v·n sin ½τφ, is 0 at the kinks.
+    const quaternion<R> q = rotation(dual_quaternion<R>(conj(p_) * start_));
+    const R along = vector3<R>(q.x(), q.y(), q.z()).dot(motion_.axis);
+    const R kink = 2 * atan2(q.w(), along) / motion_.angle;
+    const R first = ceil((low - kink) / turn);
+    for (const double k : {-1e-9, 1e-9, 1 - 1e-9, 1 + 1e-9, 2 - 1e-9, 2 + 1e-9}) {
+      if (const R tau = kink + (first + R(k)) * turn; tau > low && tau < high) {
+        taus.push_back(tau);
+      }
+    }
+    std::sort(taus.begin(), taus.end());
+    keep(low);
+    keep(high);
+    point left = at(taus.front());
+    for (std::size_t i = 1; i < taus.size(); ++i) {
+      const point right = at(taus[i]);
+      look_between(left, right);
+      left = right;
+    }
+    return best_;
+  }
+
+private:
+  /// f, f′ and f″ at τ.
+  struct point {
+    R tau;
+    std::array<R, 3> f;
+  };
+  [[nodiscard]] point at(const R& tau) const {
+    return {tau, derivatives<2>(
+                     [&](const auto& t) {
+                       using S = std::decay_t<decltype(t)>;
+                       return squared_distance(pose_on_screw(start_, motion_, t),
+                                               dual_quaternion<S>(p_), length_);
+                     },
+                     tau)};
+  }
+
+  void keep(const R& tau) {
+    const R f = squared_distance(pose_on_screw(start_, motion_, tau), p_, length_);
+    if (!(f >= least_)) {
+      least_ = f;
+      best_ = tau;
     }
   }
-  const R low = R(best > 0 ? best - 1 : 0) / R(cells);
-  const R high = R(best < cells ? best + 1 : cells) / R(cells);
-  return boost::math::tools::brent_find_minima(f, low, high, std::numeric_limits<R>::digits / 2)
-      .first;
-}
+
+  /// Keeps the minima between two points.
+  void look_between(point left, point right) {
+    // Where f′ has one sign at both ends but turns back between them, two of its zeros may be
+    // there: to either side of its extremum, which halving finds.
+    while (left.f[1] * right.f[1] > 0 && left.f[1] * left.f[2] < 0 && right.f[1] * right.f[2] > 0) {
+      const point middle = at(R(left.tau + (right.tau - left.tau) / 2));
+      if (!(middle.tau > left.tau && middle.tau < right.tau)) {
+        return;
+      }
+      if (!(middle.f[1] * left.f[1] > 0)) {
+        refine(left, middle);
+        refine(middle, right);
+        return;
+      }
+      (middle.f[1] * middle.f[2] < 0 ? left : right) = middle;
+    }
+    refine(left, right);
+  }
+
+  /// Keeps the minimum between a point where f falls and one where it rises: by Newton's method,
+  /// and by halving where that would leave the interval.
+  void refine(point low, point high) {
+    if (!(low.f[1] < 0 && high.f[1] >= 0)) {
+      return;
+    }
+    using std::abs;
+    point x = low;
+    for (int step = 0; step < 200; ++step) {
+      R next = x.tau - x.f[1] / x.f[2];
+      if (!(next > low.tau && next < high.tau)) {
+        next = low.tau + (high.tau - low.tau) / 2;
+      }
+      if (!(next > low.tau && next < high.tau) ||
+          abs(next - x.tau) <= 2 * std::numeric_limits<R>::epsilon() * abs(next)) {
+        break;
+      }
+      x = at(next);
+      (x.f[1] < 0 ? low : high) = x;
+    }
+    keep(x.tau);
+  }
+
+  dual_quaternion<R> start_;
+  screw_motion<R> motion_;
+  dual_quaternion<R> p_;
+  double length_;
+  R best_ = 0, least_ = std::numeric_limits<R>::infinity();
+};
 
 /// e where the largest length is about 2^e and its square would overflow or vanish, otherwise 0.
 template <class T>
@@ -112,11 +216,18 @@ template <class T>
     using S = std::decay_t<decltype(tau)>;
     return squared_distance(pose_on_screw(start, motion, tau), dual_quaternion<S>(p), length);
   };
-  T tau(coarse_minimum<R>([&](const R& t) { return innermost(distance_at(T(t))); },
-                          innermost(motion.angle)));
-  // Two steps of Newton's method give the value its other half of the digits, each further one an
-  // order of derivatives.
-  for (int step = 0; step < 2 + scalar_traits<T>::order; ++step) {
+  const auto number = [](const T& x) { return R(innermost(x)); };
+  const auto numbers = [&](const dual_quaternion<T>& a) {
+    const auto part = [&](const screw_dual<T>& x) {
+      return screw_dual<R>(number(x.value()), number(x.epsilon()));
+    };
+    return dual_quaternion<R>(part(a.w()), part(a.x()), part(a.y()), part(a.z()));
+  };
+  const screw_motion<R> values{motion.axis.unaryExpr(number), motion.moment.unaryExpr(number),
+                               number(motion.angle), number(motion.translation), motion.kind};
+  T tau(distance_minima<R>(numbers(start), values, numbers(p), length).least());
+  // The value has its digits. Each step of Newton's method adds an order of derivatives.
+  for (int step = 0; step < scalar_traits<T>::order; ++step) {
     const auto d = derivatives<2>(distance_at, tau);
     if (!(innermost(d[2]) > 0)) { // at an end, or all along the motion it is as far
       for (const int end : {0, 1}) {
