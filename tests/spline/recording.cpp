@@ -115,6 +115,40 @@ TEST_CASE("differences of nanoseconds since 1970 keep their digits") {
   std::remove(path.c_str());
 }
 
+TEST_CASE("times keep their digits with exponents and in a file of their own") {
+  const std::string times = "test_spline_recording_epoch.txt";
+  for (const bool is_kitti : {false, true}) {
+    for (const char* unit : {"", "milliseconds", "microseconds", "nanoseconds"}) {
+      std::string text, column;
+      const std::string u = unit;
+      for (int i = 0; i < 200; ++i) { // steps of 5 ms; a double of seconds holds 5.000114
+        const int ms = 1000 + 5 * i;
+        // 1.403636581000e+09 and so on: the digits are the same in every unit.
+        const std::string cell = "1.40363658" + std::to_string(ms) +
+                                 (u.empty()             ? "e+09"
+                                  : u == "milliseconds" ? "e+12"
+                                  : u == "microseconds" ? "e+15"
+                                                        : "e+18");
+        column += cell + "\n";
+        text += is_kitti ? "1 0 0 0 0 1 0 0 0 0 1 0\n" : cell + " 0 0 0 0 0 0 1\n";
+      }
+      write(text);
+      std::ofstream(times) << column;
+      CAPTURE(unit);
+      CAPTURE(is_kitti);
+      const auto r = duet::load_recording<screw>(path, is_kitti ? times : "");
+      double largest = 0;
+      for (int i = 0; i < 200; ++i) {
+        largest = std::max(largest, std::abs(r.table.parameters[std::size_t(i)] - .005 * i));
+      }
+      CHECK_LT(largest, 1.2e-16);
+      CHECK((r.remark.find(unit) != std::string::npos || u.empty()));
+    }
+  }
+  std::remove(times.c_str());
+  std::remove(path.c_str());
+}
+
 TEST_CASE("of KITTI's rows that are left out the numbers and times stay") {
   const std::string times = "test_spline_recording_times.txt";
   write("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 -1 0\n1 0 0 5 0 1 0 0 0 0 1 0\n");

@@ -439,6 +439,14 @@ TEST_CASE("times keep their digits") {
   CHECK(time_of("1234.5", "ms") == 1.2345);
   CHECK(time_of(".5", "ms") == 0.0005);
   CHECK(time_of("1.5e3", "ms") == 1.5);
+  CHECK(time_of("1.403636580868555648e+18", "ns") == 1403636580.868555648);
+  CHECK(time_of("-140363658086855564.8E1", "ns") == -1403636580.868555648);
+  CHECK(time_of("14036365808685556480e-10", "s") == 1403636580.868555648);
+  CHECK(time_of("0e999999999", "ns") == 0);
+  CHECK(time_of("0." + std::string(500, '0') + "7e500", "s") == 0.7);
+  CHECK(time_of("7" + std::string(500, '0') + "e-500", "s") == 7);
+  CHECK(time_of("4e-321", "s") == 4e-321);
+  CHECK(time_of("1.5e300", "s") == 1.5e300);
   CHECK(time_of("1403636580.868555648", "s") == 1403636580.868555648);
   CHECK(time_of("12.e0", "s") == 12);
   CHECK(time_of("0." + std::string(320, '0') + "4", "s") == 4e-321);
@@ -451,7 +459,23 @@ TEST_CASE("times keep their digits") {
   CHECK(loaded<double>("time,qw,qx,qy,qz\n1403636580868555648,1,0,0,0\n").parameters.at(0) ==
         1403636580.868555648);
 
+  // Whole numbers that are no seconds, and what comes just before.
+  const auto taken = [](const std::string& cell) {
+    return loaded<double>("time,qw,qx,qy,qz\n" + cell + ",1,0,0,0\n").parameters.at(0);
+  };
+  CHECK(taken("1403636580868") == 1403636580.868);
+  CHECK(taken("1.403636580868555e15") == 1403636580.868555);
+  CHECK(taken("-1403636580868555") == -1403636580.868555);
+  CHECK(taken("99999999999") == 99999999999);
+  CHECK(taken("100000000000") == 1e8);
+  CHECK(taken("1403636580868.5") == 1403636580868.5);
+
   using duet::detail::file_time;
+  for (const char* cell : {"1.4036365808435553280e+09", "14036365808.43555328e-1",
+                           "0.000014036365808435553280E14", "+1.403636580843555328e9"}) {
+    CHECK(std::abs(file_time(cell, 0).since(file_time("1403636580.838555648", 0)) - 4999680e-9) <
+          1.2e-16);
+  }
   const file_time first("1403636580838555648", 9), second("1403636580843555328", 9);
   CHECK(std::abs(second.since(first) - 4999680e-9) < 1e-16);
   CHECK(first < second);
@@ -517,6 +541,24 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
         "duet: " + path + ":1: the header has both 't' and 'u'");
   CHECK(complaint("# t qx qy qz qw norm\n0 .3 .9 .3 .1\n") ==
         "duet: " + path + ":1: the comment names 6 columns, the rows have 5");
+  // A comment whose names fit nothing is none that TUM's rows need.
+  for (const char* comment :
+       {"# timestamp tx ty tz qx qy qz qw norm\n", "# time a b c d e f g\n",
+        "# timestamp px py pz rx ry rz rw\n", "# time of day is UTC in whole seconds\n",
+        "# t [s] and more\n", "# timestamp tx ty tz qx qy qz\n"}) {
+    CAPTURE(comment);
+    CHECK(rotation_of(std::string(comment) + "0 1 2 3 .3 .9 .3 .1\n") == normalized(q));
+  }
+  for (const char* comment :
+       {"# t p0 p1 p2 q0 q1 q2 q3\n", "# t rw rx ry rz px py pz\n", "# t w a b c d e f\n",
+        "# time a b c x y z d\n", "# timestamp qw qx qy qz tx ty tz norm\n",
+        "# timestamp tx ty tz qw qx qy qz norm\n"}) {
+    CAPTURE(comment);
+    CHECK(complaint(std::string(comment) + "0 1 2 3 .3 .9 .3 .1\n")
+              .starts_with("duet: " + path + ":1: the "));
+  }
+  CHECK(complaint("# t qx qy qz qw\n1 0 0 0 0 1 0 0 0 0 1 0\n") ==
+        "duet: " + path + ":1: the comment names 5 columns, the rows have 12");
   std::remove(path.c_str());
 }
 
@@ -603,6 +645,14 @@ TEST_CASE("times and rows of different numbers") {
         "duet: " + file.path + ":3: parameter 0 does not increase, the row before has 0");
   CHECK(complaint("0 1\n") == "duet: " + times.path + ":1: 1 numbers expected, got 2");
   CHECK(complaint("0\nnan\n") == "duet: " + times.path + ":2: column 1 is nan");
+  CHECK(complaint("1403636580838\n1403636580838.5\n") ==
+        "duet: " + times.path +
+            ":2: time 1403636580838.5 is no whole number of milliseconds: a header with its unit, "
+            "as in `timestamp [s]`, is needed");
+  CHECK(complaint("t [h]\n0\n1\n") ==
+        "duet: " + times.path + ":1: timestamps in 'h': s, ms, us or ns expected");
+  times.write("t [ms]\n1500\n2500.5\n");
+  CHECK(duet::load_table<screw>(file.path, times.path).parameters == std::vector{1.5, 2.5005});
   CHECK(complaint("") == "duet: " + times.path + ": holds no rows");
   file.write("0 1 2 3 0 0 0 1\n");
   CHECK(complaint("0\n") ==

@@ -217,29 +217,58 @@ public:
     }
   }
 
-  /// The layout that it gives rows of so many columns, if any.
-  /// \throws file_error where it is in doubt
+  /// The layout that the comment gives rows of so many columns. Nothing if it is no header: if its
+  /// names or their number do not fit the rows, and no name contradicts the usual layout of such
+  /// rows.
+  /// \throws file_error if it is in doubt
   [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
                                                    bool has_u, bool has_place,
-                                                   const euler_columns* angles) const {
+                                                   const euler_columns* angles,
+                                                   const std::optional<table_layout>& usual) const {
     table_layout result;
+    std::string problem;
     if (cells_.size() == columns) {
       const std::vector<std::string_view> header(cells_.begin(), cells_.end());
-      if (const std::string problem = result.read(header, has_u, has_place, angles);
-          !problem.empty()) {
-        raise(file_error(path, line_, problem));
+      problem = result.read(header, has_u, has_place, angles);
+      if (problem.empty()) {
+        return result;
       }
-      return result;
+    } else if (is_certain_) {
+      problem = "the comment names " + std::to_string(cells_.size()) + " columns, the rows have " +
+                std::to_string(columns);
     }
-    if (is_certain_) {
-      raise(file_error(path, line_,
-                       "the comment names " + std::to_string(cells_.size()) +
-                           " columns, the rows have " + std::to_string(columns)));
+    if (problem.empty() || (usual && angles == nullptr && agrees_with(*usual))) {
+      return std::nullopt;
     }
-    return std::nullopt;
+    raise(file_error(path, line_, problem));
+  }
+
+  /// A remark on a comment that could be a header of so many columns, but is not; empty if none.
+  [[nodiscard]] std::string remark(std::size_t columns) const {
+    return is_certain_ || (columns > 0 && cells_.size() == columns)
+               ? "the names in the comment of line " + std::to_string(line_) + " do not fit"
+               : "";
   }
 
 private:
+  /// Whether every known name is that of the column at its place. An unknown name may be of a
+  /// scalar part, which must be where the usual one is, or of four numbers whose order is in doubt.
+  [[nodiscard]] bool agrees_with(const table_layout& usual) const {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const column_name cell(cells_[i]);
+      const std::string& name = cell.name;
+      const bool is_w = name == "w" || name.ends_with("_w") || (name.size() == 2 && name[1] == 'w');
+      const bool has_number =
+          name.size() == 2 && name[0] == 'q' && name[1] >= '0' && name[1] <= '9';
+      const table_column what =
+          cell.what == table_column::other && is_w ? table_column::qw : cell.what;
+      if (has_number || (what != table_column::other && usual.at[std::size_t(what)] != i)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   std::size_t line_ = 0;
   std::vector<std::string> cells_;
   bool is_certain_ = false;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -21,24 +22,33 @@ public:
   explicit file_time(double seconds = 0)
       : seconds_(seconds), whole_(std::trunc(seconds)), rest_(seconds - whole_) {}
 
-  /// Of a cell that spells a finite number, in units of 10^−digits s. The decimal point is moved in
-  /// the text, as divisions round.
+  /// The time of a cell that holds a finite number, decimal or with an exponent, in units of
+  /// 10^−digits s. The decimal point is moved in the text, because divisions round.
   file_time(std::string_view cell, std::size_t digits) {
     cell = trimmed(cell);
-    if (cell.find_first_of("eE") != cell.npos) {
-      *this = file_time(number_of(cell) / number_of("1e" + std::to_string(digits)));
-      return;
-    }
     const double sign = cell.starts_with('-') ? -1 : 1;
     if (cell.starts_with('-') || cell.starts_with('+')) {
       cell.remove_prefix(1);
     }
+    const std::size_t e = std::min(cell.find_first_of("eE"), cell.size());
+    // Beyond these exponents a finite number is 0.
+    const double most = double(cell.size() + digits) + 400;
+    const double exponent = number_of(cell.substr(std::min(e + 1, cell.size())));
+    const auto shift = int(std::clamp(exponent, -most, most)) - int(digits);
+    cell = cell.substr(0, e);
     const std::size_t point = std::min(cell.find('.'), cell.size());
-    std::string before = std::string(digits, '0');
-    before += cell.substr(0, point);
-    std::string after = before.substr(before.size() - digits);
-    after += cell.substr(std::min(point + 1, cell.size()));
-    before = "0" + before.substr(0, before.size() - digits);
+    std::string before(cell.substr(0, point));
+    std::string after(cell.substr(std::min(point + 1, cell.size())));
+    if (const auto count = std::size_t(std::abs(shift)); shift < 0) {
+      before.insert(0, count, '0');
+      after.insert(0, before, before.size() - count, count);
+      before.resize(before.size() - count);
+    } else {
+      after.resize(std::max(after.size(), count), '0');
+      before.append(after, 0, count);
+      after.erase(0, count);
+    }
+    before = "0" + before;
     after = "." + after + "0";
     seconds_ = sign * number_of(before + after);
     whole_ = sign * number_of(before);
@@ -56,7 +66,7 @@ public:
   }
 
 private:
-  /// 0 where it is nearer to 0 than any double.
+  /// The number; 0 if the text is empty or the number nearer to 0 than any double.
   [[nodiscard]] static double number_of(std::string_view text) {
     double number = 0;
     static_cast<void>(read_number(text, number));

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,13 +16,14 @@
 /// Which format a file of rotations or poses has. It is told by
 ///
 /// - a header, a first line of names or a comment before the first row: columns by their names,
-///   others passed over. Times are in the unit that it says, else in seconds; in nanoseconds in
-///   files with the names of the EuRoC data set, or where the first is 1e17 or more. rostopic's
+///   others passed over. A comment counts if its names and their number fit the columns. Times are
+///   in the unit that it says, in nanoseconds in files with the names of the EuRoC data set, else
+///   in seconds; whole numbers that as seconds would be later than the year 5000 are taken for
+///   milliseconds (from 1e11 on), microseconds (1e14) or nanoseconds (1e17). rostopic's
 ///   (%time, or field.header.stamp where it is there, too) are nanoseconds where they are whole
 ///   numbers, seconds where they have a point, as it prints them. Columns u and tau are no times
 ///   and are taken as they are;
-/// - 8 numbers apart by blanks: TUM's `timestamp tx ty tz qx qy qz qw`, in seconds, or nanoseconds
-///   by the same rule;
+/// - 8 numbers apart by blanks: TUM's `timestamp tx ty tz qx qy qz qw`, times by the same rule;
 /// - 8 numbers apart by commas, the first 1e17 or more: EuRoC's `timestamp,x,y,z,qw,qx,qy,qz`.
 ///   Smaller ones are refused, as w may be first or last (semicolons in place of commas: alike);
 /// - 12 numbers: KITTI's matrix [R t], row by row; the time is the row's number from 0 on, or in a
@@ -32,16 +34,43 @@ namespace duet::detail {
 /// How the rows of a file are to be read.
 struct row_format {
   table_layout layout;
-  bool is_matrix = false;     ///< [R t] row by row, not by the layout
-  std::size_t digits = 0;     ///< times are in units of 10^−digits s
-  bool must_be_whole = false; ///< times are taken for nanoseconds and must be whole
-  std::string remark;         ///< how the file was understood, where that is not plain
+  bool is_matrix = false;   ///< [R t] row by row, not by the layout
+  std::size_t digits = 0;   ///< times are in units of 10^−digits s
+  std::string guessed_unit; ///< the unit times were taken for by their size, then whole numbers
+  std::string remark;       ///< how the file was understood, where that is not plain
 };
 
-/// Is it a time since 1970 in nanoseconds?
-[[nodiscard]] inline bool is_of_nanoseconds(std::string_view cell) {
-  constexpr double least = 1e17; // 1973; as seconds the age of the universe
-  return std::abs(parse_number(cell).value_or(0)) >= least;
+/// A unit of time that no header names, told by the size of the first time.
+struct guessed_time_unit {
+  std::size_t digits = 0; ///< the unit is 10^−digits s
+  std::string name;       ///< empty for seconds
+
+  explicit guessed_time_unit(std::size_t digits_of_second)
+      : digits(digits_of_second), name(digits == 9   ? "nanoseconds"
+                                       : digits == 6 ? "microseconds"
+                                       : digits == 3 ? "milliseconds"
+                                                     : "") {}
+  /// From the years 1973 to 5138 in each unit; a number with a fraction is in seconds, except one
+  /// beyond 1e17.
+  explicit guessed_time_unit(std::string_view cell)
+      : guessed_time_unit([&]() -> std::size_t {
+          const double size = std::abs(parse_number(cell).value_or(0));
+          const bool is_whole = size == std::floor(size);
+          return size >= 1e17 ? 9 : !is_whole || size < 1e11 ? 0 : size >= 1e14 ? 6 : 3;
+        }()) {}
+};
+
+/// The layout of a row of numbers without a header: TUM's or EuRoC's, nothing for others.
+[[nodiscard]] inline std::optional<table_layout>
+usual_layout(const std::vector<std::string_view>& cells, bool has_commas) {
+  using enum table_column;
+  if (cells.size() != 8 || (has_commas && guessed_time_unit(cells[0]).digits != 9)) {
+    return std::nullopt;
+  }
+  return has_commas ? table_layout({u, x, y, z, qw, qx, qy, qz},
+                                   {"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"})
+                    : table_layout({u, x, y, z, qx, qy, qz, qw},
+                                   {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"});
 }
 
 /// \param cells  the first row
@@ -49,7 +78,6 @@ struct row_format {
 [[nodiscard]] inline row_format format_of_row(const std::string& path, std::size_t line,
                                               const std::vector<std::string_view>& cells,
                                               bool has_commas) {
-  using enum table_column;
   row_format result;
   if (cells.size() == 12) {
     result.is_matrix = true;
@@ -57,8 +85,8 @@ struct row_format {
     result.remark = "12 columns: read as in KITTI files, the matrix [R t] row by row";
     return result;
   }
-  const bool has_nanoseconds = is_of_nanoseconds(cells[0]);
-  if (cells.size() != 8 || (has_commas && !has_nanoseconds)) {
+  const std::optional<table_layout> layout = usual_layout(cells, has_commas);
+  if (!layout) {
     raise(
         file_error(path, line,
                    std::to_string(cells.size()) +
@@ -67,21 +95,27 @@ struct row_format {
                        "qz qw, apart by blanks) and KITTI's (12 numbers) need none: " +
                        known_columns));
   }
-  if (has_commas) {
-    result.layout = table_layout({u, x, y, z, qw, qx, qy, qz},
-                                 {"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"});
-  } else {
-    result.layout = table_layout({u, x, y, z, qx, qy, qz, qw},
-                                 {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"});
-  }
-  if (has_nanoseconds) {
-    result.digits = 9;
-    result.must_be_whole = true;
-    result.remark = std::string("timestamps in nanoseconds: read as ") +
+  result.layout = *layout;
+  const guessed_time_unit unit(cells[0]);
+  result.digits = unit.digits;
+  result.guessed_unit = unit.name;
+  if (!unit.name.empty()) {
+    result.remark = "timestamps in " + unit.name + ": read as " +
                     (has_commas ? "in EuRoC files, timestamp, x, y, z, qw, qx, qy, qz"
                                 : "timestamp tx ty tz qx qy qz qw");
   }
   return result;
+}
+
+/// The digits of a unit of time in a header: 9 for ns, 0 for s.
+/// \throws file_error for an unknown unit
+[[nodiscard]] inline std::size_t digits_of_time_unit(const std::string& path, std::size_t line,
+                                                     const std::string& unit) {
+  const std::size_t digits = unit == "ns" ? 9 : unit == "us" ? 6 : unit == "ms" ? 3 : 0;
+  if (digits == 0 && unit != "s" && unit != "sec" && unit != "seconds") {
+    raise(file_error(path, line, "timestamps in '" + unit + "': s, ms, us or ns expected"));
+  }
+  return digits;
 }
 
 /// \param cells      the first row
@@ -97,18 +131,21 @@ struct row_format {
   if (header.has_time && unit.empty()) {
     const std::string_view first = header.at[0] < cells.size() ? cells[header.at[0]] : "";
     const bool is_of_ros = header.is_of_ros && first.find_first_of(".eE") == first.npos;
-    if (header.is_euroc || is_of_ros || is_of_nanoseconds(first)) {
-      result.digits = 9;
-      result.must_be_whole = true;
+    const guessed_time_unit guess =
+        header.is_euroc || is_of_ros ? guessed_time_unit(9) : guessed_time_unit(first);
+    result.digits = guess.digits;
+    result.guessed_unit = guess.name;
+    if (!guess.name.empty()) {
       result.remark = header.is_euroc ? "a EuRoC file: timestamps in nanoseconds"
                       : is_of_ros     ? header.names[0] + " as rostopic writes it, in nanoseconds"
-                                      : "timestamps of this size are taken for nanoseconds";
+                                      : "timestamps of this size are taken for " + guess.name;
     }
-  } else if (header.has_time && (unit == "ns" || unit == "us" || unit == "ms")) {
-    result.digits = unit == "ns" ? 9 : unit == "us" ? 6 : 3;
-    result.remark = std::string(header.is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
-  } else if (header.has_time && unit != "s" && unit != "sec" && unit != "seconds") {
-    raise(file_error(path, line, "timestamps in '" + unit + "': s, ms, us or ns expected"));
+  } else if (header.has_time) {
+    result.digits = digits_of_time_unit(path, line, unit);
+    if (result.digits > 0) {
+      result.remark =
+          std::string(header.is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
+    }
   }
   for (std::size_t k = 1; has_place && k < 4; ++k) {
     if (!header.units[k].empty() && header.units[k] != "m") {

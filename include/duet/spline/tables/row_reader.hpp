@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/text_rows.hpp>
@@ -50,7 +49,7 @@ public:
       : path_(std::move(path)), times_path_(std::move(times_path)), has_place_(has_place),
         angles_(angles) {
     if (!times_path_.empty()) {
-      times_ = csv_file(times_path_, 1).rows();
+      read_times();
     }
   }
 
@@ -103,18 +102,74 @@ public:
   }
 
   /// How the file was understood, where that is not plain.
-  [[nodiscard]] std::string remark() const { return format_ ? format_->remark : ""; }
+  [[nodiscard]] std::string remark() const {
+    return format_ ? format_->remark + times_remark_ : "";
+  }
 
 private:
+  /// A time in the file of times.
+  struct time_row {
+    std::size_t line;
+    file_time time;
+  };
+
+  /// A time a line, in the unit of a header if there is one.
+  void read_times() {
+    std::optional<guessed_time_unit> unit;
+    for_each_line(times_path_, [&](std::size_t line, std::string_view whole) {
+      split_cells(split_line(whole).text, cells_);
+      if (cells_.empty()) {
+        return;
+      }
+      if (!unit && are_words(cells_)) {
+        const std::string name = column_name(cells_[0]).unit;
+        unit.emplace(name.empty() ? 0 : digits_of_time_unit(times_path_, line, name));
+        return;
+      }
+      double number = 0;
+      if (const std::string fault = read_cell(times_path_, line, "column 1", cells_[0], number);
+          !fault.empty()) {
+        raise(file_error(times_path_, line, fault));
+      }
+      if (cells_.size() != 1) {
+        raise(file_error(times_path_, line,
+                         "1 numbers expected, got " + std::to_string(cells_.size())));
+      }
+      if (!unit) {
+        unit.emplace(cells_[0]);
+        times_remark_ = unit->name.empty() ? "" : "; times taken for " + unit->name;
+      }
+      require_whole(times_path_, line, "time", number, times_remark_.empty() ? "" : unit->name);
+      times_.push_back({line, file_time(cells_[0], unit->digits)});
+    });
+    if (times_.empty()) {
+      raise(file_error(times_path_, "holds no rows"));
+    }
+  }
+
+  /// \throws file_error for a fraction of a unit that was guessed
+  static void require_whole(const std::string& path, std::size_t line, const std::string& name,
+                            double x, const std::string& unit) {
+    if (!unit.empty() && x != std::floor(x)) {
+      raise(file_error(path, line,
+                       name + " " + to_text(x) + " is no whole number of " + unit +
+                           ": a header with its unit, as in `timestamp [s]`, is needed"));
+    }
+  }
+
   void choose_format(std::size_t line, bool has_commas) {
     if (!header_) {
-      header_ = comment_.layout(path_, cells_.size(), true, has_place_, angles_);
+      header_ = comment_.layout(path_, cells_.size(), true, has_place_, angles_,
+                                usual_layout(cells_, has_commas));
     }
     if (!header_ && angles_ != nullptr) {
       raise(file_error(path_, line, "no header before the first row names the columns of angles"));
     }
     format_ = header_ ? format_of_header(path_, line, *header_, cells_, has_place_)
                       : format_of_row(path_, line, cells_, has_commas);
+    if (const std::string remark = comment_.remark(cells_.size()); !header_ && !remark.empty()) {
+      format_->remark += (format_->remark.empty() ? "" : "; ") + remark;
+    }
     if (!times_path_.empty() && !format_->is_matrix) {
       raise(file_error(path_, line, "has times of its own besides those of " + times_path_));
     }
@@ -139,12 +194,7 @@ private:
                   ", not 1";
       return;
     }
-    if (format_->must_be_whole && x[0] != std::floor(x[0])) {
-      raise(file_error(path_, row.line,
-                       layout.names[0] + " " + to_text(x[0]) +
-                           " is no whole number of nanoseconds: a header with its unit, as in "
-                           "`timestamp [s]`, is needed"));
-    }
+    require_whole(path_, row.line, layout.names[0], x[0], format_->guessed_unit);
     row.time = file_time(cells_[layout.at[0]], format_->digits);
     row.place = {x[1], x[2], x[3]};
     row.rotation = unit_of_file(q);
@@ -163,7 +213,7 @@ private:
     if (times_path_.empty()) {
       row.time = file_time(double(row_count_));
     } else if (row_count_ < times_.size()) {
-      row.time = file_time(times_[row_count_].numbers[0]);
+      row.time = times_[row_count_].time;
     } else {
       raise(file_error(path_, row.line,
                        "a row beyond the " + std::to_string(times_.size()) + " times of " +
@@ -181,7 +231,8 @@ private:
   std::string path_, times_path_;
   bool has_place_;
   const euler_columns* angles_;
-  std::vector<csv_row> times_;
+  std::vector<time_row> times_;
+  std::string times_remark_;
   std::optional<table_layout> header_;
   commented_header comment_;
   std::optional<row_format> format_;
