@@ -5,6 +5,7 @@
 
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
+#include <duet/spline/knots.hpp>
 
 #include <doctest/doctest.h>
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -44,6 +46,27 @@ cumulative_bspline<double, Order> random_curve(const std::vector<double>& knots,
 }
 
 } // namespace
+
+TEST_CASE("cumulative_bspline: increments of small steps keep the digits of the controls") {
+  std::vector<double> breaks(38);
+  std::iota(breaks.begin(), breaks.end(), 0.);
+  for (const double step : {1e-12, 1e-9, 1e-6}) {
+    std::vector<quaternion> controls;
+    for (int i = 0; i < 40; ++i) {
+      controls.push_back(duet::from_rotation_vector(vector(.3, -.4, 1.1)) *
+                         duet::from_rotation_vector(vector(i * step, -.5 * i * step, 0)));
+    }
+    const cumulative_bspline<double> s(duet::clamped_knots(breaks, 4), controls);
+    double largest = 0;
+    for (std::size_t i = 1; i < controls.size(); ++i) {
+      using wide = duet::quaternion<long double>;
+      const auto truth = log(normalized(conj(wide(controls[i - 1])) * wide(controls[i]))).vec();
+      const auto miss = (s.increments()[i].cast<long double>() - truth).norm() / truth.norm();
+      largest = std::max(largest, double(miss));
+    }
+    CHECK_LT(largest, 1e-18 / step + 1e-15); // what the truth itself loses
+  }
+}
 
 TEST_CASE("P2: the curve is the product over all control quaternions") {
   for_each_order([](auto order) {

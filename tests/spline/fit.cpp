@@ -438,6 +438,74 @@ TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
   check(1e-6, std::numeric_limits<double>::infinity());
 }
 
+TEST_CASE_TEMPLATE("fit: small steps far from the identity keep their digits", Q, rotation,
+                   pose_type) {
+  const auto along = [](double x) {
+    if constexpr (std::is_same_v<Q, rotation>) {
+      return duet::from_rotation_vector(vector3<double>(0, x, 2 * x));
+    } else {
+      return duet::pose(duet::from_rotation_vector(vector3<double>(0, x, 2 * x)),
+                        vector3<double>(x, 0, -x));
+    }
+  };
+  random_source random(7);
+  const Q origin = moved(Q(1.0), random, 1.3);
+  const auto u = steps(8, 60);
+  for (const double step : {1e-12, 1e-8}) {
+    // What the rounded rows are, seen from the first of them.
+    std::vector<Q> rows, seen;
+    for (const double x : u) {
+      rows.push_back(origin * along(step * (x + .1 * std::sin(x))));
+      seen.push_back(duet::detail::turn_between(rows[0], rows.back()));
+    }
+    const auto knots = duet::clamped_knots(steps(8, 8), 4);
+    const auto fitted = duet::fit<curve<Q>>(u, rows, knots).curve;
+    const auto expected = duet::fit<curve<Q>>(u, seen, knots).curve;
+    double largest = 0;
+    for (const double x : steps(8, 40)) {
+      const auto rate = fitted.motion(x, duet::frame::body).velocity;
+      const auto truth = expected.motion(x, duet::frame::body).velocity;
+      largest = std::max(largest, (rate - truth).norm() / truth.norm());
+    }
+    CHECK_LT(largest, 1e-12);
+  }
+}
+
+TEST_CASE("fit: residuals of the size of the motion, half of them bounded, still converge") {
+  // Gauss and Newton's steps alone shrink by a twentieth each here.
+  random_source random(2091);
+  std::vector<double> u;
+  std::vector<pose_type> rows;
+  for (int i = 0; i < 300; ++i) {
+    u.push_back(.05 * i);
+    const auto at = duet::pose(duet::from_rotation_vector(vector3<double>(.3 * u[std::size_t(i)], 0,
+                                                                          .9 * u[std::size_t(i)])),
+                               vector3<double>(.4 * u[std::size_t(i)], .1, 0));
+    rows.push_back(moved(at, random, i % 10 < 3 ? 2.5 : .5));
+  }
+  const auto result =
+      duet::fit<curve<pose_type>>(u, rows, duet::knots_at_rows(u, 5, 4), {.outlier = 1e-3});
+  CHECK_LT(result.iterations, 100);
+}
+
+TEST_CASE("fit: what keeps plain least squares from converging is named") {
+  std::vector<double> u;
+  std::vector<pose_type> rows;
+  for (int i = 0; i < 60; ++i) {
+    u.push_back(.05 * i);
+    rows.push_back(duet::pose(duet::from_rotation_vector(vector3<double>(0, 0, u.back())),
+                              vector3<double>(u.back(), 0, 0)));
+  }
+  rows[23] = duet::pose(duet::rotation(rows[23]), vector3<double>(1e6, -2e6, 5e5));
+  const auto knots = duet::knots_at_rows(u, 5, 4);
+  const std::string message = duet_test::message_of<duet::no_convergence>(
+      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, rows, knots)); });
+  CHECK_MESSAGE(message.find(": row 23 is 2.29") != std::string::npos, message);
+  CHECK(
+      message.ends_with(" from the rows around it, and fit_options::outlier makes the fit robust"));
+  CHECK(duet::fit<curve<pose_type>>(u, rows, knots, {.outlier = .1}).residuals[22] < 1e-3);
+}
+
 TEST_CASE("a knot at every n-th row") {
   using knots = std::vector<double>;
   const knots u{0, 1, 2, 4, 8, 9, 10};

@@ -3,13 +3,17 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/dual.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -66,6 +70,27 @@ template <class T>
   return {dot(a, b), difference.x(), difference.y(), difference.z()};
 }
 
+/// Whether |q|² is 1 to rounding. Normalising such a quaternion would only round it once more, and
+/// small rotations from one row to the next would lose digits that the rows have.
+template <class T>
+[[nodiscard]] bool is_unit_to_rounding(const quaternion<T>& q) {
+  using std::abs;
+  constexpr double digits = 8;
+  if constexpr (Real<T>) {
+    return abs(norm2(q) - 1) <= T(digits) * std::numeric_limits<T>::epsilon();
+  } else if constexpr (std::is_same_v<T, dual<real_type_t<T>, 1, screw_tag>>) {
+    using R = real_type_t<T>;
+    const auto part = [](const T& x) { return R(abs(R(x.value() * x.epsilon()))); };
+    const T square = norm2(q);
+    const R rounding = R(digits) * std::numeric_limits<R>::epsilon();
+    return abs(square.value() - 1) <= rounding &&
+           abs(square.epsilon()) <=
+               rounding * (part(q.w()) + part(q.x()) + part(q.y()) + part(q.z()));
+  } else {
+    return false;
+  }
+}
+
 /// log and exp as they are, but compiled once: where curves are found, calls do not count.
 template <class T>
 [[nodiscard]] DUET_OUT_OF_LINE vector3<T> turn_vector(const quaternion<T>& q) {
@@ -78,7 +103,8 @@ template <class T>
 
 } // namespace detail
 
-/// Quaternions that are units but for rounding, normalised.
+/// Quaternions that are units but for few digits, normalised; those that are units to rounding stay
+/// as they are.
 ///
 /// \throws invalid_row for a quaternion that is not finite, its infinitesimal parts included, or
 /// whose norm is not 1
@@ -93,7 +119,9 @@ template <class T>
           i, is_finite ? detail::message("quaternion ", q[i], " has norm ", length, ", not 1")
                        : detail::message("quaternion ", q[i], " is not finite")));
     }
-    q[i] = normalized(q[i]);
+    if (!detail::is_unit_to_rounding(q[i])) {
+      q[i] = normalized(q[i]);
+    }
   }
   return q;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/derivative/manifold.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -12,6 +11,7 @@
 #include <duet/spline/fit_options.hpp>
 #include <duet/spline/fitting/bspline_residuals.hpp>
 #include <duet/spline/fitting/fit_start.hpp>
+#include <duet/spline/fitting/gradient_changes.hpp>
 #include <duet/spline/orientations.hpp>
 
 #include <Eigen/Core>
@@ -20,6 +20,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -43,11 +44,20 @@ class bspline_fit : bspline_residuals<T, Order> {
   using typename residual_type::element;
   using typename residual_type::R;
   using typename residual_type::tangent;
+  using vector = Eigen::Matrix<R, Eigen::Dynamic, 1>;
 
 public:
   bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> elements,
               const fit_options& options)
-      : residual_type(basis, u, std::move(elements), options), options_(options),
+      : bspline_fit(basis, u, central_row(elements, R(options.length)), elements, options) {}
+
+private:
+  /// The same problem with the rows seen from one of them: rotations and shifts that are small from
+  /// row to row keep digits that products with the whole rotation would round away.
+  bspline_fit(const basis_type& basis, const std::vector<R>& u, const element& origin,
+              std::vector<element> elements, const fit_options& options)
+      : residual_type(basis, u, rows_seen_from(origin, std::move(elements)), options),
+        options_(options), basis_(&basis), u_(&u), origin_(origin),
         limits_(u.size(), R(options.outlier)) {
     if (is_robust()) {
       controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
@@ -55,23 +65,29 @@ public:
     } else {
       controls_ = elements_at_averages(basis, u, this->rows());
       const std::vector<R> sizes = residuals();
-      if (!(*std::max_element(sizes.begin(), sizes.end()) < too_far())) {
-        controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
-        fail_at_farthest();
+      if (!(*std::max_element(sizes.begin(), sizes.end()) < too_far<R>())) {
+        const auto [row, size] = farthest_from_middle();
+        raise(invalid_row(row, message("is ", size, " from the rows around it, too far for least ",
+                                       "squares: fit_options::outlier makes the fit robust")));
       }
     }
   }
 
+public:
   /// Does row i count? Outliers that are too far off do not.
   [[nodiscard]] bool counts(std::size_t i) const { return limits_[i] > 0; }
   [[nodiscard]] R outlier() const { return R(options_.outlier); }
 
   [[nodiscard]] cumulative_bspline<T, Order> curve(const basis_type& basis) const {
+    std::vector<element> controls;
+    for (const element& control : controls_) {
+      controls.push_back(origin_ * control);
+    }
     std::vector<vector3<T>> increments{vector3<T>::Zero()};
     for (std::size_t i = 1; i < controls_.size(); ++i) {
-      increments.push_back(log(conj(controls_[i - 1]) * controls_[i]).vec());
+      increments.push_back(this->increment(controls_, i));
     }
-    return {basis, controls_, std::move(increments)};
+    return {basis, std::move(controls), std::move(increments)};
   }
 
   [[nodiscard]] std::vector<R> residuals() const { return residual_type::residuals(controls_); }
@@ -98,18 +114,26 @@ private:
     for (int iteration = 1; iteration <= most; ++iteration) {
       bool is_bold = must_converge && is_robust();
       const R cost = assemble(is_bold);
+      if (iteration > 10) { // mostly Gauss's and Newton's steps are enough, and quicker at the end
+        changes_.arrive(-gradient_);
+      }
       R next(0);
       for (;;) {
         std::vector<element> moved = moved_controls(damping, step);
-        next = moved.empty() ? std::numeric_limits<R>::infinity() : cost_of(moved);
+        next = moved.empty() ? std::numeric_limits<R>::infinity() : this->cost_of(moved, limits_);
         const bool is_tiny = !moved.empty() && step <= tolerance;
         if (next <= cost * (1 + rounding) || (is_tiny && damping == 0)) {
           controls_ = std::move(moved);
+          changes_.step(last_step_, -gradient_);
           damping = damping > R(1e-9) ? R(damping / 10) : R(0);
           break;
         }
         if (is_tiny) { // as low as rounding lets it be
           return iteration;
+        }
+        if (!changes_.empty()) {
+          changes_.clear();
+          continue;
         }
         if (is_bold) {
           is_bold = false;
@@ -157,55 +181,15 @@ private:
     if (!(options_.outlier > 0)) {
       options_.outlier = double(std::max(R(3 * median_of(residuals())), least_outlier));
     }
-    set_limits();
+    static_cast<void>(set_limits());
     for (R& limit : limits_) {
       limit = std::min(limit, R(options_.outlier));
     }
   }
 
-  /// Three times the median residual around each row, at least `options.outlier`; zero for rows
-  /// that are four times as far off and more. Returns the sum of the limits.
   R set_limits() {
-    const std::vector<R> sizes = residuals();
-    const std::vector<R> medians = local_medians(sizes, first());
-    R sum(0);
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-      const R limit = std::max({R(3 * medians[i]), R(options_.outlier), least_outlier});
-      limits_[i] = sizes[i] <= 4 * limit && sizes[i] < too_far() ? limit : R(0);
-      sum += std::min(limit, too_far());
-    }
-    return sum;
-  }
-
-  /// Squares of larger residuals, and products of those, would overflow.
-  [[nodiscard]] static R too_far() {
-    using std::sqrt;
-    return sqrt(sqrt(std::numeric_limits<R>::max()));
-  }
-  [[noreturn]] void fail_at_farthest() const {
-    const std::vector<R> sizes = residuals();
-    const auto farthest = std::max_element(sizes.begin(), sizes.end());
-    raise(invalid_row(std::size_t(farthest - sizes.begin()),
-                      message("is ", *farthest, " from the rows around it, too far for least ",
-                              "squares: fit_options::outlier makes the fit robust")));
-  }
-
-  [[nodiscard]] R weight_of(std::size_t i) const {
-    return options_.weights.empty() ? R(1) : R(options_.weights[i]);
-  }
-  /// Huber's loss: ½ r² up to the limit, from there on along the tangent.
-  [[nodiscard]] static R loss(const R& r, const R& limit) {
-    return r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
-  }
-  [[nodiscard]] R cost_of(const std::vector<element>& controls) const {
-    R sum(0);
-    typename residual_type::last_span last;
-    for (std::size_t i = 0; i < rows().size(); ++i) {
-      if (counts(i)) {
-        sum += weight_of(i) * loss(size_of(residual_at(i, controls, last)), limits_[i]);
-      }
-    }
-    return sum;
+    const R least = std::max(R(options_.outlier), least_outlier);
+    return set_outlier_limits(residuals(), first(), least, limits_);
   }
 
   /// JᵀWJ and −JᵀW r at the controls, W the weights of Huber's loss; the cost there.
@@ -234,8 +218,8 @@ private:
         flush(last.first);
       }
       const auto [value, slope] = this->linearised(i, controls_, last);
-      const R length = size_of(value), given = weight_of(i);
-      cost += given * loss(length, limits_[i]);
+      const R length = size_of(value), given = this->weight_of(i);
+      cost += given * huber_loss(length, limits_[i]);
       const R weight = length <= limits_[i] ? given : R(given * (limits_[i] / length));
       gradient_.template segment<unknowns>(Eigen::Index(last.first) * dimension) -=
           weight * (slope * value);
@@ -263,8 +247,8 @@ private:
     if (!factors_.factorise()) {
       return {};
     }
-    Eigen::Matrix<R, Eigen::Dynamic, 1> delta = gradient_;
-    factors_.solve(delta);
+    vector delta = gradient_;
+    changes_.solve(factors_, delta);
     step = delta.template lpNorm<Eigen::Infinity>();
     if (!delta.allFinite()) {
       return {};
@@ -275,24 +259,40 @@ private:
     }
     const R fraction = turn > longest_turn ? R(longest_turn / turn) : R(1);
     std::vector<element> moved = controls_;
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-      const tangent d = fraction * delta.template segment<dimension>(Eigen::Index(i) * dimension);
-      moved[i] = normalized(element(manifold<element>::plus(moved[i], d, frame::body)));
-    }
-    return moved;
+    last_step_ = fraction * delta;
+    return this->moved_by(controls_, last_step_);
   }
 
+  /// The row farthest from those around it, and how far it is.
+  [[nodiscard]] std::pair<std::size_t, R> farthest_from_middle() const {
+    const std::vector<R> sizes = residual_type::residuals(
+        robust_centre<T>().controls(*basis_, *u_, rows(), R(options_.length)));
+    const auto most = std::max_element(sizes.begin(), sizes.end());
+    return {std::size_t(most - sizes.begin()), *most};
+  }
+
+  /// In plain least squares the cause may be a row that is far from all others, which is named.
   [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
+    const auto [row, size] = farthest_from_middle();
+    std::string cause;
+    if (!is_robust() && size > 30) {
+      cause = message(": row ", row, " is ", size, " from the rows around it, and ",
+                      "fit_options::outlier makes the fit robust");
+    }
     raise(no_convergence(message("duet: fit: the iteration ", what, " after ",
-                                 iterations_ + iterations, " steps, the last one ", step)));
+                                 iterations_ + iterations, " steps, the last one ", step, cause)));
   }
 
   fit_options options_;
+  const basis_type* basis_;
+  const std::vector<R>* u_;
+  element origin_;        ///< what the rows are seen from
   std::vector<R> limits_; ///< of Huber's loss, row by row; zero: does not count
   std::vector<element> controls_;
   int iterations_ = 0;
   block_band_matrix<R, dimension, std::size_t(Order) - 1> normal_, factors_;
-  Eigen::Matrix<R, Eigen::Dynamic, 1> gradient_;
+  vector gradient_, last_step_; ///< the gradient downwards
+  gradient_changes<R> changes_;
 };
 
 } // namespace duet::detail

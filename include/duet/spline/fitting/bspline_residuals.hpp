@@ -13,6 +13,8 @@
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/fit_options.hpp>
+#include <duet/spline/fitting/fit_start.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -43,7 +45,7 @@ protected:
 
   bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> rows,
                     const fit_options& options)
-      : rows_(std::move(rows)), length_(R(options.length)),
+      : rows_(std::move(rows)), length_(R(options.length)), given_weights_(options.weights),
         whitening_(inverse_roots(options.covariances)) {
     first_.reserve(u.size());
     weights_.reserve(u.size());
@@ -72,6 +74,37 @@ protected:
       result.push_back(size_of(residual_at(i, controls, last)));
     }
     return result;
+  }
+
+  /// The half-angle vector from control element i − 1 to i.
+  [[nodiscard]] static vector3<T> increment(const std::vector<element>& controls, std::size_t i) {
+    return log_vector(turn_between(controls[i - 1], controls[i]), "fit");
+  }
+
+  /// Control elements moved by tangent vectors in their own body axes, one after the other.
+  [[nodiscard]] static std::vector<element>
+  moved_by(std::vector<element> controls, const Eigen::Matrix<R, Eigen::Dynamic, 1>& step) {
+    for (std::size_t i = 0; i < controls.size(); ++i) {
+      const tangent d = step.template segment<dimension>(Eigen::Index(i) * dimension);
+      controls[i] = normalized(element(manifold<element>::plus(controls[i], d, frame::body)));
+    }
+    return controls;
+  }
+
+  [[nodiscard]] R weight_of(std::size_t i) const {
+    return given_weights_.empty() ? R(1) : R(given_weights_[i]);
+  }
+  /// Σ wᵢ ρ(rᵢ) with a limit of Huber's loss for each row; rows of limit 0 do not count.
+  [[nodiscard]] R cost_of(const std::vector<element>& controls,
+                          const std::vector<R>& limits) const {
+    R sum(0);
+    last_span last;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (limits[i] > 0) {
+        sum += weight_of(i) * huber_loss(size_of(residual_at(i, controls, last)), limits[i]);
+      }
+    }
+    return sum;
   }
 
   /// What rows on one span have in common: the control element at its start, the increments, and
@@ -148,7 +181,7 @@ private:
     last.has_rates = false;
     last.shared.start = controls[first];
     for (std::size_t j = 0; j < factors; ++j) {
-      last.shared.increments[j] = log(conj(controls[first + j]) * controls[first + j + 1]).vec();
+      last.shared.increments[j] = increment(controls, first + j + 1);
     }
   }
   static void add_rates(last_span& last) {
@@ -166,8 +199,8 @@ private:
 
   /// log(S* Q), the shorter way.
   [[nodiscard]] vector3<T> residual(const element& value, std::size_t i) const {
-    const element error = conj(value) * rows_[i];
-    return log(innermost(error.w()) < 0 ? element(-error) : error).vec();
+    const bool is_opposite = innermost(dot(value, rows_[i])) < 0;
+    return log_vector(turn_between(value, is_opposite ? element(-rows_[i]) : rows_[i]), "fit");
   }
 
   [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return R(2) * components(half); }
@@ -232,6 +265,7 @@ private:
 
   std::vector<element> rows_;
   R length_;
+  std::vector<double> given_weights_;
   std::vector<square> whitening_; ///< none, one for all or one for each row
   std::vector<std::size_t> first_;
   std::vector<std::array<R, factors>> weights_;

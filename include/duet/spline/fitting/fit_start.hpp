@@ -8,6 +8,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/basis.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <Eigen/Core>
 
@@ -94,6 +95,29 @@ template <Real R>
   return result;
 }
 
+/// Squares of larger residuals, and products of those, would overflow.
+template <Real R>
+[[nodiscard]] R too_far() {
+  using std::sqrt;
+  return sqrt(sqrt(std::numeric_limits<R>::max()));
+}
+
+/// The limits of Huber's loss: three times the median residual around each row, at least `least`;
+/// zero for rows that are four times as far off and more. Returns the sum of the limits.
+template <Real R>
+[[nodiscard]] R set_outlier_limits(const std::vector<R>& sizes,
+                                   const std::vector<std::size_t>& piece, const R& least,
+                                   std::vector<R>& limits) {
+  const std::vector<R> medians = local_medians(sizes, piece);
+  R sum(0);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const R limit = std::max(R(3 * medians[i]), least);
+    limits[i] = sizes[i] <= 4 * limit && sizes[i] < too_far<R>() ? limit : R(0);
+    sum += std::min(limit, too_far<R>());
+  }
+  return sum;
+}
+
 /// Rows in coordinates that have medians: the matrix of a rotation, whatever the sign of its
 /// quaternion, and of a pose its shift as a multiple of the length that counts as much as 1 rad.
 template <class T>
@@ -131,6 +155,43 @@ public:
     return sum;
   }
 };
+
+/// One of nine rows spread over all, that with the least median separation from the others.
+template <class T>
+[[nodiscard]] quaternion<T> central_row(const std::vector<quaternion<T>>& rows,
+                                        const real_type_t<T>& length) {
+  using R = real_type_t<T>;
+  using coordinates = median_coordinates<T>;
+  constexpr std::size_t count = 9;
+  std::array<typename coordinates::point, count> points;
+  for (std::size_t k = 0; k < count; ++k) {
+    points[k] = coordinates::of(rows[k * (rows.size() - 1) / (count - 1)], length);
+  }
+  std::vector<R> medians, separations(count);
+  for (const auto& point : points) {
+    std::transform(points.begin(), points.end(), separations.begin(),
+                   [&](const auto& other) { return coordinates::separation(point, other); });
+    medians.push_back(median_within(separations));
+  }
+  const auto best = std::min_element(medians.begin(), medians.end()) - medians.begin();
+  return rows[std::size_t(best) * (rows.size() - 1) / (count - 1)];
+}
+
+/// Rows relative to one of them, with all digits of small differences.
+template <class T>
+[[nodiscard]] std::vector<quaternion<T>> rows_seen_from(const quaternion<T>& origin,
+                                                        std::vector<quaternion<T>> rows) {
+  for (quaternion<T>& each : rows) {
+    each = turn_between(origin, innermost(dot(origin, each)) < 0 ? quaternion<T>(-each) : each);
+  }
+  return rows;
+}
+
+/// Huber's loss: ½ r² up to the limit, from there on along the tangent.
+template <Real R>
+[[nodiscard]] R huber_loss(const R& r, const R& limit) {
+  return r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
+}
 
 /// The middle of rows of which up to half are anywhere: coordinate by coordinate the median, and
 /// the row that is nearest to that.
