@@ -71,6 +71,12 @@ TEST_CASE("binary STL, also with a header as text has it, and however it is spel
     CHECK(m.corners[5] == std::array<double, 3>{1, 2, .5});
     CHECK(m.corners[8] == std::array<double, 3>{2, 2, .5});
   }
+  for (const std::string& rest :
+       {std::string("\n"), std::string(49, 'x'), std::string(428, '\0')}) {
+    CHECK(read_mesh(write(".stl", binary(3) + rest)).corners.size() == 9);
+  }
+  // More than padding: the number of triangles is wrong.
+  CHECK(fault(".stl", binary(3) + std::string(50, 'x')) == "1: the file ends before \"endsolid\"");
   std::string bad = binary(2);
   bad.replace(84 + 50 + 12 + 4, 4, bytes(std::numeric_limits<float>::infinity()));
   CHECK(fault(".stl", bad) == " triangle 1 has a corner that is not finite");

@@ -47,8 +47,8 @@ TEST_CASE("a whole file: kinds, followers, masses, lines") {
       "<link name=\"tip\"/>\n"
       "<link name=\"base\"><inertial><mass value=\"2\"/></inertial></link>\n"
       "<link name=\"arm\"><inertial><origin xyz=\"0 0 .5\" rpy=\".1 0 0\"/><mass value=\"3\"/>"
-      "<inertia ixx=\"1\" ixy=\".1\" ixz=\".2\" iyy=\"2\" iyz=\".3\" "
-      "izz=\"3\"/></inertial></link>\n"
+      "<inertia ixx=\"1e7\" ixy=\".1\" ixz=\".2\" iyx=\".1\" iyy=\"2e7\" iyz=\".3\" "
+      "izx=\".2\" izy=\".3\" izz=\"3e9\"/></inertial></link>\n"
       "<link name=\"finger\"/><link name=\"thumb\"/><link name=\"cart\"/>\n" +
       joint_of("thumbs", "prismatic", "tip", "thumb",
                "<axis xyz=\"0 1 0\"/><limit lower=\"-1\" upper=\".5\" velocity=\"2\"/>"
@@ -71,7 +71,7 @@ TEST_CASE("a whole file: kinds, followers, masses, lines") {
   CHECK(tree.description().unknown.size() == 1);
   const auto& inertia = *tree.links()[2].inertia;
   CHECK(inertia.mass == 3);
-  CHECK(inertia.moments == std::array<double, 6>{1, .1, .2, 2, .3, 3});
+  CHECK(inertia.moments == std::array<double, 6>{1e7, .1, .2, 2e7, .3, 3e9});
   CHECK(gap(rotation_vector(inertia.frame.rotation), Eigen::Vector3d(.1, 0, 0)) < 1e-16);
   CHECK(!tree.links()[0].inertia);
   Eigen::VectorXd q(10);
@@ -127,6 +127,17 @@ TEST_CASE("mistakes, with file, line and element") {
        a + "<mass>: unknown attribute \"unit\": there are \"value\"");
   says(weighs("<mass value=\"1\"/><mass value=\"1\"/>"),
        a + "<mass>: is there twice, first in line 4");
+  const auto moments = [&](const std::string& more) {
+    return weighs(
+        "<mass value=\"1\"/><inertia ixx=\"1\" ixy=\".1\" ixz=\".2\" iyy=\"2\" iyz=\".3\" "
+        "izz=\"3\" " +
+        more + "/>");
+  };
+  says(moments("iyx=\".1\" izx=\".2\" izy=\"-.3\""),
+       a + "<inertia>: izy=\"-.3\" is not iyz=\".3\": the matrix of inertia must be symmetric");
+  says(moments("iyx=\"x\""), a + "<inertia>: iyx=\"x\" is not a finite number");
+  says(weighs("<mass value=\"1e9\"/>"), "");
+  says(weighs("<mass value=\"1e400\"/>"), a + "<mass>: value=\"1e400\" is not a finite number");
   says(weighs("<mass value=\"1\"/><inertia ixx=\"1\"/>"), a + "<inertia>: no attribute \"ixy\"");
   says(weighs("<mass value=\"1\"/><origin xyz=\"1 2\"/>"),
        a + "<origin>: xyz=\"1 2\" is not three numbers");

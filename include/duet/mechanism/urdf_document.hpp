@@ -50,7 +50,7 @@ inline constexpr std::array<urdf_element_kind, 20> urdf_element_kinds{
      {"mesh", {"filename", "scale"}},
      {"inertial", {}, {"origin", "mass", "inertia"}},
      {"mass", {"value"}},
-     {"inertia", {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}},
+     {"inertia", {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}, {}, {"iyx", "izx", "izy"}},
      {"joint",
       {"name", "type"},
       {"origin", "parent", "child", "axis", "limit", "mimic", "safety_controller", "dynamics",
@@ -145,8 +145,13 @@ public:
     return text == nullptr ? otherwise : number(*text, place, key);
   }
 
+  /// A mass or moment of inertia, which must be there and may be of any size.
+  [[nodiscard]] double measure(const urdf_place& place, std::string_view key) const {
+    return number(attribute(place, key), place, key, std::numeric_limits<double>::max());
+  }
+
 private:
-  static constexpr double most = 1e6;
+  static constexpr double most = 1e6; ///< of lengths (m) and angles (rad), which lose digits
 
   [[nodiscard]] static std::string name_of(const urdf_place& place) {
     const std::string* const name = place.element.attribute("name");
@@ -158,10 +163,11 @@ private:
   }
 
   [[nodiscard]] double number(const std::string& text, const urdf_place& place,
-                              std::string_view key) const {
+                              std::string_view key, double limit = most) const {
     const auto value = parse_number(text);
-    if (!value || !(std::abs(*value) <= most)) {
-      fail(place, std::string(key) + "=\"" + text + "\" is no number up to 1e6");
+    if (!value || !(std::abs(*value) <= limit)) {
+      fail(place, std::string(key) + "=\"" + text +
+                      (limit > most ? "\" is not a finite number" : "\" is no number up to 1e6"));
     }
     return *value;
   }

@@ -112,14 +112,33 @@ private:
     if (mass == nullptr) {
       document_.fail({*inertial, &element}, "no element <mass>");
     }
-    inertia.mass = document_.number({*mass, &element}, "value");
+    inertia.mass = document_.measure({*mass, &element}, "value");
     if (inertia.mass < 0) {
       document_.fail_negative({*mass, &element}, "value");
     }
     if (const xml_element* const moments = inertial->child("inertia")) {
-      constexpr std::array<const char*, 6> keys = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
-      for (std::size_t i = 0; i < keys.size(); ++i) {
-        inertia.moments[i] = document_.number({*moments, &element}, keys[i]);
+      inertia.moments = read_moments({*moments, &element});
+    }
+    return result;
+  }
+
+  /// The upper half of a matrix, whose lower half may be there too.
+  [[nodiscard]] std::array<double, 6> read_moments(const urdf_place& place) const {
+    constexpr std::array<const char*, 6> keys = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
+    constexpr std::array<const char*, 6> below = {"", "iyx", "izx", "", "izy", ""};
+    std::array<double, 6> result{};
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      result[i] = document_.measure(place, keys[i]);
+      if (place.element.attribute(below[i]) == nullptr) {
+        continue;
+      }
+      const double other = document_.measure(place, below[i]);
+      const double largest = std::max(std::abs(result[i]), std::abs(other));
+      if (!(std::abs(result[i] / 2 - other / 2) <= 1e-6 * (largest / 2))) { // few digits, maybe
+        document_.fail(place, std::string(below[i]) + "=\"" + document_.attribute(place, below[i]) +
+                                  "\" is not " + keys[i] + "=\"" +
+                                  document_.attribute(place, keys[i]) +
+                                  "\": the matrix of inertia must be symmetric");
       }
     }
     return result;

@@ -57,14 +57,55 @@ template <class T>
   }
 }
 
-/// The largest distance from f at the quarters of an interval.
+/// f(u), a unit.
+/// \throws invalid_input
+template <class T, class F, class R>
+[[nodiscard]] quaternion<T> sample_of(const F& f, const R& u) {
+  using std::abs;
+  const quaternion<T> q = f(u);
+  const bool is_finite = is_all_finite(q);
+  require(is_finite, "duet: adaptive_table: the function is not finite at ", all_digits(u));
+  const auto length = norm(innermost_of(q));
+  require(abs(length - 1) <= unit_norm_tolerance, "duet: adaptive_table: the function at ",
+          all_digits(u), " has norm ", length, ", not 1");
+  return q;
+}
+
+/// The largest distance from f inside an interval, as far as it matters to a tolerance: at eight
+/// places, and if one of them is not far below the tolerance, at 24 more, the largest of which is
+/// refined. Places are spread unevenly, because a ripple may vanish at even ones.
 template <class Spline, class F, class R>
 [[nodiscard]] double miss_between(const Spline& s, const F& f, const R& low, const R& high,
-                                  double length) {
+                                  double tolerance, double length) {
+  const auto miss_at = [&](const R& u) {
+    return double(miss(s(u), sample_of<typename Spline::scalar_type>(f, u), length));
+  };
   double largest = 0;
-  for (const int quarter : {1, 2, 3}) {
-    const R u = low + (high - low) * R(quarter) / R(4);
-    largest = std::max(largest, double(miss(s(u), f(u), length)));
+  R worst = low;
+  const auto look = [&](int count, double seed) {
+    for (int k = 0; k < count; ++k) {
+      const double spread = seed + 0.6180339887498949 * k;
+      const R u = low + (high - low) * R((k + spread - std::floor(spread)) / count);
+      if (const double here = miss_at(u); here > largest) {
+        largest = here;
+        worst = u;
+      }
+    }
+  };
+  look(8, .25);
+  if (largest <= tolerance && largest > tolerance / 16) {
+    look(24, .75);
+    R step = (high - low) / R(24);
+    for (int k = 0; k < 6; ++k, step /= R(2)) {
+      for (const R& u : {R(worst - step), R(worst + step)}) {
+        const double here = u > low && u < high ? miss_at(u) : 0;
+        if (here > largest) {
+          largest = here;
+          worst = u;
+          break;
+        }
+      }
+    }
   }
   return largest;
 }
@@ -74,12 +115,13 @@ template <class Spline, class F, class R>
 /// The table of f over [first, last] through which the curve of type `Spline` is no farther from f
 /// than the tolerance: intervals are halved where it is.
 ///
-/// The distance is looked at in the quarters of each interval, so f must not have detail that nine
-/// rows (`options.first_rows`) never meet.
+/// The distance is sampled at eight places of each interval, and at more where it is near the
+/// tolerance, so f must not have detail that these never meet.
 /// \param f          the rotation or pose at a parameter
 /// \param tolerance  radians, of poses as `distance` with `options.length`
-/// \throws invalid_input for a tolerance that is not positive or a range that is empty;
-///         no_convergence where `options.most_rows` do not reach the tolerance; as `interpolate`
+/// \throws invalid_input for a tolerance that is not positive, a range that is empty, and a
+///         function that is not finite or not a unit somewhere, with the parameter; no_convergence
+///         where `options.most_rows` do not reach the tolerance; as `interpolate`
 template <CurveType Spline, class F>
 [[nodiscard]] table_result<Spline>
 adaptive_table(const F& f, typename Spline::real_type first, typename Spline::real_type last,
@@ -102,7 +144,7 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
   for (std::size_t i = 0; i < rows; ++i) {
     const R u = i + 1 < rows ? R(first + (last - first) * R(i) / R(rows - 1)) : last;
     table.parameters.push_back(u);
-    table.elements.push_back(f(u));
+    table.elements.push_back(detail::sample_of<T>(f, u));
   }
   for (;;) {
     Spline s = interpolate<Spline>(table.parameters, table.elements, ends);
@@ -113,15 +155,15 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
       const R& high = table.parameters[i + 1];
       finer.parameters.push_back(low);
       finer.elements.push_back(table.elements[i]);
-      const double error = detail::miss_between(s, f, low, high, options.length);
+      const double error = detail::miss_between(s, f, low, high, tolerance, options.length);
       worst = std::max(worst, error);
-      if (!(error <= tolerance)) {
+      if (!(error <= 0.99 * tolerance)) { // samples miss the last part of a maximum
         const R middle = low + (high - low) / R(2);
         finer.parameters.push_back(middle);
-        finer.elements.push_back(f(middle));
+        finer.elements.push_back(detail::sample_of<T>(f, middle));
       }
     }
-    if (worst <= tolerance) {
+    if (finer.parameters.size() + 1 == table.parameters.size()) {
       return {std::move(table), std::move(s), worst};
     }
     finer.parameters.push_back(table.parameters.back());

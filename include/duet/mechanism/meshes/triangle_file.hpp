@@ -68,7 +68,8 @@ private:
     return "\"" + std::string(text) + "\"";
   }
 
-  // STL: the length tells binary from text, which may both begin with "solid".
+  // STL: the length tells binary from text, which may both begin with "solid". The number of
+  // triangles in a binary file is beyond its length if read from text.
 
   [[nodiscard]] std::uint32_t word(std::size_t at) const { // least byte first
     std::uint32_t result = 0;
@@ -78,10 +79,19 @@ private:
     return result;
   }
   [[nodiscard]] bool is_binary_stl() const {
-    return text_.size() >= head && text_.size() - head == bytes_of_triangle * word(80);
+    if (text_.size() < head || (text_.size() - head) / bytes_of_triangle < word(80)) {
+      return false;
+    }
+    // Padding may follow, and anything that is less than a triangle.
+    const std::string_view rest = std::string_view(text_).substr(end_of_triangles());
+    return rest.size() < bytes_of_triangle ||
+           rest.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == rest.npos;
+  }
+  [[nodiscard]] std::size_t end_of_triangles() const {
+    return head + bytes_of_triangle * std::size_t(word(80));
   }
   void read_binary_stl() {
-    for (std::size_t at = head; at < text_.size(); at += bytes_of_triangle) {
+    for (std::size_t at = head; at < end_of_triangles(); at += bytes_of_triangle) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
         point x;
         for (std::size_t i = 0; i < 3; ++i) {
