@@ -4,6 +4,7 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/look_up_table.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
 
@@ -93,6 +94,87 @@ TEST_CASE("the error of a table is estimated from the table alone") {
     const auto worst = std::max_element(errors.begin(), errors.end()) - errors.begin() + 1;
     CHECK(std::abs(table.parameters[std::size_t(worst)] - 1) < 0.15);
   }
+}
+
+TEST_CASE_TEMPLATE("estimated_errors: never below the error, with steps of every kind", Spline,
+                   rotation_curve, duet::rotation_vector_spline<double, 4>) {
+  const auto rotated = [](double x, double y, double z) {
+    return duet::from_rotation_vector(vector3<double>(x, y, z));
+  };
+  const auto motion = [&](int kind, double u) {
+    return kind == 0   ? rotated(0, 0, std::sin(2 * u))
+           : kind == 1 ? rotated(std::cos(u), std::sin(u), 0)
+           : kind == 2 ? rotated(0, .3 * std::sin(6 * u), 0) * rotated(u, 0, 0)
+           : kind == 3 ? rotated(.1 * u * u, 0, .02 * u * u * u)
+           : kind == 4 ? rotated(0, 0, std::exp(-8 * (u - 1.5) * (u - 1.5)))
+                       : rotated(0, .2 * std::exp(u), 0) * rotated(0, 0, u);
+  };
+  for (const int rows : {60, 61}) {
+    for (int steps = 0; steps < 4; ++steps) {
+      for (int kind = 0; kind < 6; ++kind) {
+        duet::look_up_table<double> table;
+        for (int i = 0; i <= rows; ++i) {
+          const double x = double(i) / rows;
+          const double u = steps == 0   ? x
+                           : steps == 1 ? x + .0267 * std::sin(18.85 * x)
+                           : steps == 2 ? (i % 2 == 0 ? i : i + .4) / double(rows + 1)
+                                        : (std::exp(2 * x) - 1) / (std::exp(2.) - 1);
+          table.parameters.push_back(3 * u);
+          table.elements.push_back(motion(kind, 3 * u));
+        }
+        const auto errors = duet::estimated_errors<Spline>(table);
+        const auto s =
+            duet::interpolate<Spline>(table.parameters, table.elements, duet::not_a_knot{});
+        double truth = 0;
+        for (int i = 0; i <= 1000; ++i) {
+          const double u = table.parameters.back() * i / 1000;
+          truth = std::max(truth, duet::detail::miss(s(u), motion(kind, u), 1.0));
+        }
+        CAPTURE(rows);
+        CAPTURE(steps);
+        CAPTURE(kind);
+        const double estimate = *std::max_element(errors.begin(), errors.end());
+        CHECK_GE(estimate, truth);
+        CHECK_LE(estimate, (steps == 2 ? 18 : 6) * truth);
+      }
+    }
+  }
+}
+
+TEST_CASE("adaptive_table: ripples stay within the bound, what is not finite is named") {
+  for (const double size : {1e-2, 1e-4}) {
+    for (const double frequency : {8., 16., 12.566, 50.26}) {
+      const auto ripple = [&](double u) {
+        return duet::from_rotation_vector(vector3<double>(
+            .3 * u, .2 * std::sin(u), size * std::sin(frequency * 3.141592653589793 * u)));
+      };
+      for (const double tolerance : {1e-3, 1e-5}) {
+        const auto result = duet::adaptive_table<rotation_curve>(ripple, 0.0, 1.0, tolerance);
+        double largest = 0;
+        for (int i = 0; i <= 5000; ++i) {
+          largest = std::max(largest,
+                             duet::detail::miss(result.curve(i / 5000.), ripple(i / 5000.), 1.0));
+        }
+        CHECK_LE(largest, tolerance);
+        CHECK_LE(largest, 1.01 * result.error);
+      }
+    }
+  }
+  const auto message = [](double bad, const rotation& there) {
+    try {
+      static_cast<void>(duet::adaptive_table<rotation_curve>(
+          [&](double u) { return std::abs(u - bad) < .01 ? there : rotation(1.0); }, 0.0, 1.0,
+          1e-3));
+    } catch (const duet::invalid_input& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  const double nan = std::nan("");
+  CHECK(message(.3, rotation(nan, 0, 0, 0))
+            .starts_with("duet: adaptive_table: the function is not finite at 0.29"));
+  CHECK(message(.25, rotation(nan, 0, 0, 0)).find("is not finite at 0.25") != std::string::npos);
+  CHECK(message(.3, rotation(.5, 0, 0, 0)).ends_with(" has norm 0.5, not 1"));
 }
 
 TEST_CASE("bad bounds are named") {
