@@ -289,6 +289,50 @@ TEST_CASE("more waypoints of the same path take no longer, and more parts less t
   CHECK(few < 1.1 * many);
 }
 
+TEST_CASE("limits hold to rounding between waypoints that nearly repeat") {
+  const vector v(1, 2, .5), a(3, 5, 2);
+  random_source random(11);
+  const auto direction = [&] {
+    const auto d = random.direction<3>();
+    return vector(d[0], d[1], d[2]);
+  };
+  for (const double tiny : {1e-6, 1e-7, 1e-9}) {
+    for (const joint_curve curve : {joint_curve::monotone, joint_curve::smooth}) {
+      for (int kind = 0; kind < 4; ++kind) {
+        std::vector<vector> waypoints{vector(.1, .2, .3)};
+        for (int k = 0; k < 5; ++k) {
+          const vector d = kind == 2 ? vector(.3, .4, 0) : direction();
+          waypoints.push_back(waypoints.back() + d);
+          if (kind == 1) {
+            waypoints.push_back(waypoints.back());
+          }
+          waypoints.push_back(waypoints.back() + tiny * (kind == 0 || kind == 3 ? direction() : d));
+        }
+        time_options options;
+        options.curve = curve;
+        const double speed = kind == 3 ? .1 : 0;
+        const vector last = waypoints[1] - waypoints[0];
+        options.initial_rates = {speed * last[0], speed * last[1], speed * last[2]};
+        const auto q = time_parametrised(waypoints, v, a, options);
+        double largest = 0;
+        for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
+          const double from = q.times()[i], to = q.times()[i + 1];
+          for (int k = 0; k <= 100; ++k) {
+            const auto now = q(std::min(from + (to - from) * k / 100, q.duration()));
+            largest = std::max({largest, now.velocity.cwiseQuotient(v).cwiseAbs().maxCoeff(),
+                                now.acceleration.cwiseQuotient(a).cwiseAbs().maxCoeff()});
+          }
+          CHECK((q(from).value - waypoints[i]).norm() < 1e-9);
+        }
+        CAPTURE(tiny);
+        CAPTURE(kind);
+        CHECK_LE(largest, 1 + 1e-12);
+        CHECK_LT(std::abs(q(0).velocity.norm() - speed * last.norm()), 1e-12);
+      }
+    }
+  }
+}
+
 TEST_CASE("along a plan; a plan that stays; bad input") {
   motion_plan<3> plan;
   plan.joints = {vector(0, 1, 2), vector(1, 1, 3)};

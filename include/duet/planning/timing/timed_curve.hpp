@@ -21,13 +21,16 @@
 namespace duet::detail {
 
 /// The parts of a curve that have an s̈ of their own: in proportion to the length, but sixteen on
-/// each edge; there shorter towards the ends, where the second derivative or its slope jumps.
+/// each edge; there shorter towards the ends, where the second derivative or its slope jumps. On an
+/// edge between nearly equal waypoints eight are enough: s̈ = (y − x)/(2h) loses digits in short
+/// ones.
 template <class V>
 [[nodiscard]] std::vector<joint_cubic<V>> parts_of(const std::vector<joint_cubic<V>>& curve,
                                                    double length, int parts) {
   std::vector<joint_cubic<V>> result;
   for (const auto& edge : curve) {
-    const double count = std::max(16.0, std::ceil(edge.length / length * parts));
+    const double share = edge.length / length;
+    const double count = share < 1e-6 ? 8 : std::max(16.0, std::ceil(share * parts));
     const auto place = [&](double k) {
       const double u = k / count;
       return edge.length * (u * u * (3 - 2 * u));
@@ -77,7 +80,25 @@ template <class V>
   return result;
 }
 
-/// The fastest motion along a curve with constant s̈ in each part.
+/// The largest share of a limit of acceleration that a motion takes, by Bernstein coefficients.
+template <class V>
+[[nodiscard]] double largest_share(const timed_path<V>& motion, const V& limits) {
+  double result = 0;
+  for (const auto& [law, q] : motion.pieces) {
+    const double x = law.speed * law.speed, y = x + 2 * q.length * law.acceleration;
+    const V second = q.second(0), last = q.second(q.length);
+    for (const V& coefficient :
+         {V(law.acceleration * q.first(0) + x * second),
+          V(law.acceleration * (q.c1 + q.length * q.c2) + x / 2 * last + y / 2 * second),
+          V(law.acceleration * q.first(q.length) + y * last)}) {
+      result = std::max(result, coefficient.cwiseQuotient(limits).cwiseAbs().maxCoeff());
+    }
+  }
+  return result;
+}
+
+/// The fastest motion along a curve with constant s̈ in each part. Where parts are so short that
+/// rounding takes accelerations beyond their limits, it is found again with smaller ones.
 /// \throws invalid_input for rates at ends that are too fast
 template <int N>
 [[nodiscard]] auto
@@ -85,12 +106,24 @@ timed_by_accelerations(const timing_problem<N>& problem,
                        const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
   const double first = problem.initial_speed, last = problem.final_speed;
-  speed_refusal refusal;
-  const std::vector<double> squares =
-      path_speeds(bounds_of(parts, problem.velocity, problem.acceleration), first * first,
-                  last * last, refusal);
-  require_rates(refusal, first, last);
-  return timed_by_squares(parts, squares);
+  joint_vector<double, N> limits = problem.acceleration;
+  std::optional<timed_path<joint_vector<double, N>>> result;
+  for (int round = 0; round < 8; ++round) {
+    speed_refusal refusal;
+    const std::vector<double> squares = path_speeds(bounds_of(parts, problem.velocity, limits),
+                                                    first * first, last * last, refusal);
+    if (result && (refusal.at_start || refusal.at_end)) {
+      break; // rates that are at the limits
+    }
+    require_rates(refusal, first, last);
+    result = timed_by_squares(parts, squares);
+    const double excess = largest_share(*result, problem.acceleration) - 1;
+    if (!(excess > 1e-13)) {
+      break;
+    }
+    limits /= 1 + 2 * excess;
+  }
+  return *result;
 }
 
 /// A motion with about the given rates at its ends that needs the least accelerations for them, in
