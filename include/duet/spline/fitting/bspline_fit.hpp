@@ -52,7 +52,7 @@ public:
       : bspline_fit(basis, u, central_row(elements, R(options.length)), elements, options) {}
 
 private:
-  /// The same problem with the rows seen from one of them: rotations and shifts that are small from
+  /// The problem with the rows seen from one of them: rotations and shifts that are small from
   /// row to row keep digits that products with the whole rotation would round away.
   bspline_fit(const basis_type& basis, const std::vector<R>& u, const element& origin,
               std::vector<element> elements, const fit_options& options)
