@@ -6,4 +6,4 @@
 
 #include <duet/planning/branches/branch_solver.hpp>
 #include <duet/planning/branches/chain_loop_units.hpp>
-#include <duet/planning/branches/curve_tracer.hpp>
+#include <duet/planning/branches/component_search.hpp>

@@ -29,21 +29,28 @@ struct self_motion_options {
   double resolution = .1;
 };
 
-/// A curve of joint coordinates on which the tip stays at its pose.
+/// A curve of joint coordinates on which the tip stays at its pose; at singular poses also a
+/// component of another dimension, which is told by `dimension`.
 ///
 /// \tparam N  as of `serial_chain`
 template <int N>
 struct self_motion_curve {
-  /// One after the other, without jumps of whole turns.
+  /// Configurations one after the other, without jumps of full turns; a sample in no order if
+  /// `dimension` is not 1.
   std::vector<detail::joint_vector<double, N>> joints;
-  /// Does the last point lead to the first, but for whole turns? Else the curve ends at
+  /// True if the last point leads to the first, except for full turns. Otherwise the curve ends at
   /// singularities.
   bool is_closed = false;
+  /// Dimension of the component. 1: a curve. 0: an isolated configuration, the only one in
+  /// `joints`. 2 or more: a surface or more, of which `joints` is a sample, up to 64 configurations
+  /// far from each other.
+  int dimension = 1;
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("joints", joints);
     f("is_closed", is_closed);
+    f("dimension", dimension);
   }
 };
 
@@ -122,6 +129,7 @@ self_motion_curves(const C& chain, const dual_quaternion<double>& goal,
   for (const detail::traced_curve& curve : detail::all_curves(arm, options.resolution)) {
     self_motion_curve<C::joints> own;
     own.is_closed = curve.is_closed;
+    own.dimension = curve.dimension;
     for (const auto& x : curve.points) {
       own.joints.push_back(detail::own_joints(chain, x));
     }

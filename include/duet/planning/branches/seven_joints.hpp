@@ -31,18 +31,20 @@ struct seven_joints {
   std::function<chain_axes(int, double)> axes_beside;
 };
 
-/// Points of a curve, one after the other.
+/// Points of a curve, one after the other, or a sample of a component of another dimension.
 struct traced_curve {
   std::vector<seven_coordinates> points;
   bool is_closed = false;
+  int dimension = 1;
+  int kernel = 1; ///< dimension of the Jacobian's null space at almost all points
 };
 
-/// The curves on which the tip is at the goal.
+/// The curves on which the tip is at the goal, and the components of other dimensions.
 [[nodiscard]] DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& arm,
                                                                           double resolution);
 
 } // namespace duet::detail
 
 #ifndef DUET_COMPILED
-#include <duet/planning/branches/curve_tracer.hpp>
+#include <duet/planning/branches/component_search.hpp>
 #endif

@@ -1,0 +1,167 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiled.hpp>
+#include <duet/planning/branches/branch_search.hpp>
+#include <duet/planning/branches/chain_loop.hpp>
+#include <duet/planning/branches/curve_tracer.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/self_motion_set.hpp>
+#include <duet/planning/branches/seven_joints.hpp>
+#include <duet/planning/branches/surface_sampler.hpp>
+#include <duet/planning/split_mix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Search for all components of the self-motion of seven joints. Compiled into duet::compiled.
+
+namespace duet::detail {
+
+/// Collects the components of the self-motion of one arm at one goal.
+class component_search {
+public:
+  component_search(const seven_joints& arm, double resolution)
+      : arm_(arm), set_(arm), tracer_(set_, resolution), sampler_(set_), resolution_(resolution) {}
+
+  [[nodiscard]] std::vector<traced_curve> operator()() {
+    add_slices();
+    if (is_degenerate_ || seeds_[1].empty()) {
+      add_random_points();
+    }
+    // Those with the fewest dimensions of the null space first: a component has them at almost all
+    // of its points, and more at some.
+    for (std::size_t kernel = 1; kernel < seeds_.size(); ++kernel) {
+      for (const seven_coordinates& x : seeds_[kernel]) {
+        add(x, int(kernel));
+      }
+    }
+    return std::move(found_);
+  }
+
+private:
+  /// All solutions of the other six joints, with each joint in turn held at values a resolution
+  /// apart.
+  void add_slices() {
+    const int count = int(std::ceil(2 * std::numbers::pi / resolution_));
+    for (int held = 0; held < 7; ++held) {
+      for (int k = 0; k < count && arm_.turns[std::size_t(held)]; ++k) {
+        // not at a table's round numbers, where arms are singular
+        add_slice(held, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
+      }
+    }
+  }
+  void add_slice(int held, double value) {
+    const chain_axes axes = arm_.axes_beside(held, value);
+    const branch_search search(axes.loop_to(arm_.goal));
+    for (const loop_solution& x : search.answer().solutions) {
+      seven_coordinates theta;
+      for (int i = 0, k = 0; i < 7; ++i) {
+        theta[i] = i == held ? value : x.theta[k] * (arm_.turns[std::size_t(i)] ? 1 : axes.size);
+        k += i != held;
+      }
+      // Where other joints move while this one is held it is at a singular value, or the set has
+      // more dimensions.
+      is_degenerate_ = is_degenerate_ || !search.answer().is_complete;
+      if (const auto on_set = set_.projected(theta, .1, self_motion_set::accurate)) {
+        add_seed(*on_set);
+      }
+    }
+  }
+
+  /// Points of components on which no joint can be held alone: where the search from random
+  /// configurations leads.
+  void add_random_points() {
+    constexpr int count = 256;
+    for (int k = 0; k < count; ++k) {
+      if (const auto x = set_.any_point(random_)) {
+        add_seed(*x);
+      }
+    }
+  }
+
+  void add_seed(const seven_coordinates& x) {
+    const auto kernel = std::size_t(set_.kernel(x).cols());
+    is_degenerate_ = is_degenerate_ || kernel > 1;
+    seeds_[kernel].push_back(x);
+  }
+
+  [[nodiscard]] bool is_on(const traced_curve& component, const seven_coordinates& x) const {
+    return component.dimension > 1 ? sampler_.is_on(component, x) : tracer_.is_on(component, x);
+  }
+  [[nodiscard]] bool is_known(const seven_coordinates& x) const {
+    return std::any_of(found_.begin(), found_.end(),
+                       [&](const traced_curve& component) { return is_on(component, x); });
+  }
+
+  void add(const seven_coordinates& x, int kernel) {
+    if (is_known(x)) {
+      return;
+    }
+    if (kernel == 1) {
+      found_.push_back(tracer_.trace(x, set_.kernel(x).col(0), 1));
+    } else if (set_.dimension(x, step, random_) == 0) {
+      found_.push_back({{x}, false, 0, kernel});
+    } else {
+      add_beside(x);
+    }
+  }
+
+  /// Components near a singular point, which may be where several of them cross.
+  void add_beside(const seven_coordinates& singular) {
+    struct place {
+      seven_coordinates x;
+      int kernel;
+    };
+    const auto basis = set_.kernel(singular);
+    std::vector<place> beside;
+    for (int k = 0; k < 4 * basis.cols(); ++k) {
+      const auto x = set_.neighbour(singular, step, basis, random_);
+      if (x && set_.difference(*x, singular).norm() > small_step) {
+        beside.push_back({*x, int(set_.kernel(*x).cols())});
+      }
+    }
+    std::sort(beside.begin(), beside.end(),
+              [](const place& a, const place& b) { return a.kernel < b.kernel; });
+    for (const auto& [x, kernel] : beside) {
+      if (is_known(x)) {
+        continue;
+      }
+      const int dimension = set_.dimension(x, small_step, random_);
+      if (dimension > 1) {
+        found_.push_back(sampler_.sample(x, dimension, kernel, random_));
+      } else if (dimension == 1) {
+        const seven_coordinates along = set_.difference(x, singular).normalized();
+        found_.push_back(tracer_.trace(x, along, kernel));
+      }
+    }
+  }
+
+  static constexpr double step = .05, small_step = .005; ///< from a singular point to others
+
+  const seven_joints& arm_;
+  self_motion_set set_;
+  curve_tracer tracer_;
+  surface_sampler sampler_;
+  double resolution_;
+  split_mix random_{1};
+  bool is_degenerate_ = false; ///< is the tip's pose singular, as far as is known?
+  std::array<std::vector<seven_coordinates>, 8> seeds_; ///< by the null space's dimension
+  std::vector<traced_curve> found_;
+};
+
+#ifdef DUET_DEFINES_COMPILED
+DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& arm,
+                                                            double resolution) {
+  return component_search(arm, resolution)();
+}
+#endif
+
+} // namespace duet::detail

@@ -1,0 +1,182 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/seven_joints.hpp>
+#include <duet/planning/split_mix.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+/// \file
+/// The set of configurations of seven joints that hold the tip at a pose: projection onto it, the
+/// Jacobian's null space, and the set's dimension at a point.
+
+namespace duet::detail {
+
+/// Levels of closeness in the set of self-motions of one arm at one goal.
+struct self_motion_tolerance {
+  static constexpr double on_set = 1e-12;    ///< error of the pose
+  static constexpr double singular = 1e-5;   ///< singular value, relative to the largest
+  static constexpr double same = 1e-6;       ///< points of regular curves that coincide
+  static constexpr double same_rough = 1e-4; ///< points at which the Jacobian is singular
+};
+
+/// M = {θ : the tip is at the goal}, with angles modulo full turns.
+///
+/// At a regular point M is a curve along the Jacobian's null space. Where the null space has more
+/// dimensions, M may be a curve still (two that coincide, as of a straight elbow), curves that
+/// cross, an isolated point, or of as many dimensions: the points of M beside tell.
+class self_motion_set {
+public:
+  using null_space = Eigen::Matrix<double, 7, Eigen::Dynamic, Eigen::ColMajor, 7, 7>;
+
+  explicit self_motion_set(const seven_joints& arm) : arm_(arm) {}
+
+  /// b − a, the short way round; lengths in parts of the arm's size.
+  [[nodiscard]] seven_coordinates difference(const seven_coordinates& b,
+                                             const seven_coordinates& a) const {
+    seven_coordinates d = b - a;
+    for (int i = 0; i < 7; ++i) {
+      d[i] = arm_.turns[std::size_t(i)] ? turned_back(d[i]) : d[i] / arm_.size;
+    }
+    return d;
+  }
+  [[nodiscard]] seven_coordinates moved(seven_coordinates x, const seven_coordinates& d) const {
+    for (int i = 0; i < 7; ++i) {
+      x[i] += arm_.turns[std::size_t(i)] ? d[i] : arm_.size * d[i];
+    }
+    return x;
+  }
+
+  [[nodiscard]] double error(const seven_coordinates& x) const {
+    seven_columns j;
+    return arm_.gap(x, j).norm();
+  }
+
+  /// The point of M that Levenberg and Marquardt's method leads to from x. Where the Jacobian is
+  /// singular on M it converges linearly, by a half at every step.
+  /// \param most    as far as it may lead
+  /// \param enough  error of the pose at which it stops
+  [[nodiscard]] std::optional<seven_coordinates>
+  projected(const seven_coordinates& from, double most,
+            double enough = self_motion_tolerance::on_set) const {
+    constexpr int iterations = 60;
+    constexpr double rounding = 1e-15;
+    seven_coordinates x = from, best = from;
+    double least = std::numeric_limits<double>::infinity();
+    int since = 0; // the error last fell
+    for (int k = 0; k < iterations && since < 8; ++k) {
+      seven_columns j;
+      const six_coordinates e = arm_.gap(x, j);
+      const double size = e.norm();
+      ++since;
+      if (size < .9 * least) {
+        since = 0;
+      }
+      if (size < least) {
+        least = size;
+        best = x;
+      }
+      if (size < enough) {
+        break;
+      }
+      Eigen::Matrix<double, 6, 6> gram = j * j.transpose();
+      gram.diagonal().array() += std::min(.02 * size * size, .08) + rounding;
+      x = moved(x, j.transpose() * gram.llt().solve(e));
+      if (!(difference(x, from).norm() < most)) {
+        return {};
+      }
+    }
+    return least < self_motion_tolerance::on_set ? std::optional(best) : std::nullopt;
+  }
+
+  /// An orthonormal basis of the Jacobian's null space.
+  [[nodiscard]] null_space kernel(const seven_coordinates& x) const {
+    seven_columns j;
+    static_cast<void>(arm_.gap(x, j));
+    square rows = square::Zero();
+    rows.topRows<6>() = j;
+    const decomposition svd(rows, Eigen::ComputeFullV);
+    const auto& sizes = svd.singularValues();
+    Eigen::Index rank = 0;
+    while (rank < 6 && sizes[rank] > self_motion_tolerance::singular * sizes[0]) {
+      ++rank;
+    }
+    return svd.matrixV().rightCols(7 - rank);
+  }
+
+  /// A unit vector of a null space.
+  [[nodiscard]] static seven_coordinates any_direction(const null_space& kernel,
+                                                       split_mix& random) {
+    seven_coordinates result;
+    do {
+      result.setZero();
+      for (Eigen::Index k = 0; k < kernel.cols(); ++k) {
+        result += (2 * random() - 1) * kernel.col(k);
+      }
+    } while (!(result.norm() > .1));
+    return result.normalized();
+  }
+
+  /// The dimension of M at a point, from the points that are projections of those at a distance
+  /// `step` in the directions of the Jacobian's null space. (At crossings it is that of the span of
+  /// all that meet there.)
+  [[nodiscard]] int dimension(const seven_coordinates& x, double step, split_mix& random) const {
+    const null_space basis = kernel(x);
+    if (basis.cols() == 1) {
+      return 1;
+    }
+    constexpr double least = .01; // of the mean square; curvature leaves step²
+    square spread = square::Zero();
+    const int count = 4 * int(basis.cols());
+    for (int k = 0; k < count; ++k) {
+      const auto beside = neighbour(x, step, basis, random);
+      if (beside) {
+        const seven_coordinates d = difference(*beside, x) / step;
+        spread += d * d.transpose() / count;
+      }
+    }
+    const auto sizes = decomposition(spread).singularValues();
+    return int((sizes.array() > least).count());
+  }
+
+  /// Another point of M at about the distance `step`, or nearer.
+  [[nodiscard]] std::optional<seven_coordinates> neighbour(const seven_coordinates& x, double step,
+                                                           const null_space& basis,
+                                                           split_mix& random) const {
+    return projected(moved(x, step * any_direction(basis, random)), 3 * step, accurate);
+  }
+
+  /// A random point of M: nothing where the search from a random configuration fails.
+  [[nodiscard]] std::optional<seven_coordinates> any_point(split_mix& random) const {
+    seven_coordinates x;
+    for (int i = 0; i < 7; ++i) {
+      const double part = 2 * random() - 1;
+      x[i] = part * (arm_.turns[std::size_t(i)] ? std::numbers::pi : arm_.size);
+    }
+    return projected(x, std::numeric_limits<double>::infinity(), accurate);
+  }
+
+  /// Error at which `projected` stops where the Jacobian may be singular: half of the digits of
+  /// coordinates are lost there.
+  static constexpr double accurate = 2e-15;
+
+private:
+  using square = Eigen::Matrix<double, 7, 7>;
+  using decomposition = Eigen::JacobiSVD<square>;
+
+  const seven_joints& arm_;
+};
+
+} // namespace duet::detail

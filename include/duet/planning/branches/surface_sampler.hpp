@@ -1,0 +1,127 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/planning/branches/self_motion_set.hpp>
+#include <duet/planning/branches/seven_joints.hpp>
+#include <duet/planning/split_mix.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+/// \file
+/// Samples of components of self-motion of two and more dimensions, and whether points are on them.
+
+namespace duet::detail {
+
+/// Walks on components of two and more dimensions of the set of one arm and goal.
+class surface_sampler {
+public:
+  explicit surface_sampler(const self_motion_set& set) : set_(set) {}
+
+  /// Points of the component that x is on, as far from each other as 64 can be found.
+  [[nodiscard]] traced_curve sample(const seven_coordinates& x, int dimension, int kernel,
+                                    split_mix& random) const {
+    constexpr std::size_t count = 64;
+    constexpr int tries = 32;
+    traced_curve result{{x}, false, dimension, kernel};
+    auto& points = result.points;
+    for (double apart = 2; apart > .05 && points.size() < count; apart *= .7) {
+      for (int failed = 0; failed < tries && points.size() < count; ++failed) {
+        const auto& from = points[std::size_t(random() * double(points.size()))];
+        const auto end = wander(from, std::numbers::pi * random(), random);
+        const auto is_near = [&](const auto& p) {
+          return set_.difference(end, p).norm() < apart;
+        };
+        if (std::none_of(points.begin(), points.end(), is_near)) {
+          points.push_back(end);
+          failed = 0;
+        }
+      }
+    }
+    return result;
+  }
+
+  /// True if a walk on the component leads from x to one of the sample's points.
+  [[nodiscard]] bool is_on(const traced_curve& component, const seven_coordinates& x) const {
+    constexpr std::size_t most = 8;
+    std::vector<seven_coordinates> nearest = component.points;
+    std::sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) {
+      return set_.difference(a, x).norm() < set_.difference(b, x).norm();
+    });
+    nearest.resize(std::min(most, nearest.size()));
+    return std::any_of(nearest.begin(), nearest.end(),
+                       [&](const auto& s) { return is_straight(x, s); }) ||
+           std::any_of(nearest.begin(), nearest.end(),
+                       [&](const auto& s) { return leads(x, s); });
+  }
+
+private:
+  static constexpr double stride = .2;
+
+  /// True if the straight line between two points is on the set.
+  [[nodiscard]] bool is_straight(const seven_coordinates& x, const seven_coordinates& end) const {
+    constexpr std::array parts{.07, .19, .31, .5, .62, .74, .83, .93};
+    constexpr double close = 1e-9;
+    const seven_coordinates way = set_.difference(end, x);
+    return std::all_of(parts.begin(), parts.end(), [&](double part) {
+      return set_.error(set_.moved(x, part * way)) < close;
+    });
+  }
+
+  /// A step on the component towards where `way` points, or none.
+  [[nodiscard]] std::optional<seven_coordinates>
+  step(const seven_coordinates& x, const seven_coordinates& way, double most) const {
+    const auto basis = set_.kernel(x);
+    const seven_coordinates along = basis * (basis.transpose() * way);
+    const double size = along.norm();
+    if (!(size > .1 * way.norm())) {
+      return {};
+    }
+    return set_.projected(set_.moved(x, std::min(1., most / size) * along), 2 * stride,
+                          self_motion_set::accurate);
+  }
+
+  /// Does a walk towards `end` get there?
+  [[nodiscard]] bool leads(seven_coordinates x, const seven_coordinates& end) const {
+    constexpr int steps = 100;
+    for (int k = 0; k < steps; ++k) {
+      const seven_coordinates way = set_.difference(end, x);
+      const double left = way.norm();
+      if (left < self_motion_tolerance::same_rough) {
+        return true;
+      }
+      const auto next = step(x, way, stride);
+      if (!next || !(set_.difference(end, *next).norm() < .95 * left)) {
+        return false;
+      }
+      x = *next;
+    }
+    return false;
+  }
+
+  /// Where a walk of a length in a random direction leads.
+  [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length, split_mix& random) const {
+    seven_coordinates way = self_motion_set::any_direction(set_.kernel(x), random);
+    for (; length > 0; length -= stride) {
+      const auto next = step(x, way, std::min(length, stride));
+      const seven_coordinates moved = next ? set_.difference(*next, x) : seven_coordinates::Zero();
+      if (!(moved.norm() > 0)) {
+        break;
+      }
+      x = *next;
+      way = moved.normalized();
+    }
+    return x;
+  }
+
+  const self_motion_set& set_;
+};
+
+} // namespace duet::detail
