@@ -70,7 +70,7 @@ private:
       // Where other joints move while this one is held it is at a singular value, or the set has
       // more dimensions.
       is_degenerate_ = is_degenerate_ || !search.answer().is_complete;
-      if (const auto on_set = set_.projected(theta, .1, self_motion_set::accurate)) {
+      if (const auto on_set = set_.projected(theta, .1)) {
         add_seed(*on_set);
       }
     }
@@ -93,16 +93,15 @@ private:
     seeds_[kernel].push_back(x);
   }
 
-  [[nodiscard]] bool is_on(const traced_curve& component, const seven_coordinates& x) const {
-    return component.dimension > 1 ? sampler_.is_on(component, x) : tracer_.is_on(component, x);
-  }
-  [[nodiscard]] bool is_known(const seven_coordinates& x) const {
-    return std::any_of(found_.begin(), found_.end(),
-                       [&](const traced_curve& component) { return is_on(component, x); });
+  [[nodiscard]] bool is_known(const seven_coordinates& x, int kernel) {
+    return std::any_of(found_.begin(), found_.end(), [&](const traced_curve& component) {
+      return component.dimension > 1 ? kernel > 1 && sampler_.is_on(component, x, random_)
+                                     : tracer_.is_on(component, x, kernel);
+    });
   }
 
   void add(const seven_coordinates& x, int kernel) {
-    if (is_known(x)) {
+    if (is_known(x, kernel)) {
       return;
     }
     if (kernel == 1) {
@@ -131,10 +130,11 @@ private:
     std::sort(beside.begin(), beside.end(),
               [](const place& a, const place& b) { return a.kernel < b.kernel; });
     for (const auto& [x, kernel] : beside) {
-      if (is_known(x)) {
+      if (is_known(x, kernel)) {
         continue;
       }
-      const int dimension = set_.dimension(x, small_step, random_);
+      const int dimension = std::min(set_.dimension(x, small_step, random_),
+                                     set_.dimension(x, small_step / 8, random_));
       if (dimension > 1) {
         found_.push_back(sampler_.sample(x, dimension, kernel, random_));
       } else if (dimension == 1) {

@@ -30,7 +30,7 @@ public:
   [[nodiscard]] traced_curve trace(const seven_coordinates& start, const seven_coordinates& leaving,
                                    int kernel) const {
     traced_curve result{{start}, false, 1, kernel};
-    const auto first = direction(start, leaving, kernel);
+    const auto first = direction(set_.kernel(start), leaving);
     if (!first || follow(result, *first)) {
       return result;
     }
@@ -40,9 +40,11 @@ public:
   }
 
   /// True if a point of the set is on a curve.
-  [[nodiscard]] bool is_on(const traced_curve& curve, const seven_coordinates& x) const {
-    const double same =
-        curve.kernel == 1 ? self_motion_tolerance::same : self_motion_tolerance::same_rough;
+  /// \param kernel  dimension of the Jacobian's null space at x
+  [[nodiscard]] bool is_on(const traced_curve& curve, const seven_coordinates& x,
+                           int kernel) const {
+    const double same = curve.kernel == 1 && kernel == 1 ? self_motion_tolerance::same
+                                                         : self_motion_tolerance::same_rough;
     const std::size_t n = curve.points.size(), pieces = curve.is_closed ? n : n - 1;
     for (std::size_t k = 0; k < pieces; ++k) {
       const seven_coordinates& a = curve.points[k];
@@ -69,39 +71,72 @@ public:
   }
 
 private:
-  /// The unit vector of the null space that is nearest to that of a step before; none where the
-  /// null space has not the dimension that it has on the curve.
-  [[nodiscard]] std::optional<seven_coordinates>
-  direction(const seven_coordinates& x, const seven_coordinates& before, int kernel) const {
-    const auto basis = set_.kernel(x);
-    if (basis.cols() != kernel) {
-      return {};
-    }
+  struct landing {
+    seven_coordinates x, ahead; ///< and the direction of the curve there
+    double bend, length;        ///< of the step
+    bool is_crossing;           ///< has the null space more dimensions than on the curve?
+  };
+
+  /// The unit vector of a null space that is nearest to the direction of a step before.
+  [[nodiscard]] static std::optional<seven_coordinates>
+  direction(const self_motion_set::null_space& basis, const seven_coordinates& before) {
     const seven_coordinates along = basis * (basis.transpose() * before);
     const double size = along.norm();
     return size > .1 ? std::optional<seven_coordinates>(along / size) : std::nullopt;
   }
 
+  /// A step along the curve, if there the curve goes on in about the same direction.
+  [[nodiscard]] std::optional<landing> land(const seven_coordinates& x,
+                                            const seven_coordinates& along, double step,
+                                            int kernel) const {
+    const auto next = set_.projected(set_.moved(x, step * along), step_);
+    if (!next) {
+      return {};
+    }
+    const seven_coordinates way = set_.difference(*next, x);
+    const auto basis = set_.kernel(*next);
+    const auto ahead = direction(basis, basis.cols() == 1 ? along : way.normalized());
+    if (basis.cols() < kernel || !ahead || way.norm() > step_) {
+      return {};
+    }
+    const double bend = (*ahead - along).norm();
+    return bend < .3 ? std::optional<landing>({*next, *ahead, bend, way.norm(),
+                                               basis.cols() > kernel})
+                     : std::nullopt;
+  }
+
+  /// A step past points where curves cross, if they are not too near to each other for that.
+  [[nodiscard]] std::optional<landing> land_past(const seven_coordinates& x,
+                                                 const seven_coordinates& along, double step,
+                                                 int kernel) const {
+    auto result = land(x, along, step, kernel);
+    for (const double part : {.62, .81, .38}) {
+      if (!result || !result->is_crossing) {
+        break;
+      }
+      const auto other = land(x, along, part * step, kernel);
+      result = other && !other->is_crossing ? other : result;
+    }
+    return result;
+  }
+
   /// Adds points until the curve is back at its first one.
   /// \return did it get there?
   bool follow(traced_curve& curve, seven_coordinates along) const {
-    constexpr int most = 100000;
-    constexpr double smallest = 1e-5;
-    const bool is_regular = curve.kernel == 1;
-    const double enough =
-        is_regular ? self_motion_tolerance::on_set : self_motion_set::accurate;
+    constexpr double smallest = 1e-5, longest_crossing = .6;
+    const int most = int(400 / step_);
     const seven_coordinates home = curve.points.front(), leaving = along;
-    double step = step_ / 2;
+    double step = step_ / 2, crossing = 0;
     for (int k = 0; k < most && step > smallest; ++k) {
-      const seven_coordinates& last = curve.points.back();
-      const auto next = set_.projected(set_.moved(last, step * along), step_, enough);
-      const seven_coordinates way = next ? set_.difference(*next, last) : along;
-      const auto ahead = next ? direction(*next, is_regular ? along : way.normalized(), curve.kernel)
-                              : std::nullopt;
-      const double bend = ahead ? (*ahead - along).norm() : 1;
-      if (!(bend < .3) || way.norm() > step_) {
+      const seven_coordinates last = curve.points.back();
+      const auto next = land_past(last, along, step, curve.kernel);
+      if (!next) {
         step *= .6; // not a half: structured curves have their crossings at such parts
         continue;
+      }
+      crossing = next->is_crossing ? crossing + next->length : 0;
+      if (crossing > longest_crossing) {
+        return false; // it has come to a component of more dimensions
       }
       const seven_coordinates back = set_.difference(home, last);
       const double left = back.dot(along);
@@ -111,9 +146,9 @@ private:
         curve.is_closed = true;
         return true;
       }
-      curve.points.push_back(*next);
-      along = *ahead;
-      step = std::min(step_ / 2, bend < .1 ? 2 * step : step);
+      curve.points.push_back(next->x);
+      along = next->ahead;
+      step = std::min(step_ / 2, next->bend < .1 ? 2 * step : step);
     }
     return false;
   }

@@ -66,13 +66,12 @@ public:
 
   /// The point of M that Levenberg and Marquardt's method leads to from x. Where the Jacobian is
   /// singular on M it converges linearly, by a half at every step.
-  /// \param most    as far as it may lead
-  /// \param enough  error of the pose at which it stops
-  [[nodiscard]] std::optional<seven_coordinates>
-  projected(const seven_coordinates& from, double most,
-            double enough = self_motion_tolerance::on_set) const {
+  /// \param most  as far as it may lead
+  [[nodiscard]] std::optional<seven_coordinates> projected(const seven_coordinates& from,
+                                                           double most) const {
     constexpr int iterations = 60;
     constexpr double rounding = 1e-15;
+    constexpr double enough = 2e-15; // beside a double point half of the digits are lost
     seven_coordinates x = from, best = from;
     double least = std::numeric_limits<double>::infinity();
     int since = 0; // the error last fell
@@ -155,7 +154,7 @@ public:
   [[nodiscard]] std::optional<seven_coordinates> neighbour(const seven_coordinates& x, double step,
                                                            const null_space& basis,
                                                            split_mix& random) const {
-    return projected(moved(x, step * any_direction(basis, random)), 3 * step, accurate);
+    return projected(moved(x, step * any_direction(basis, random)), 3 * step);
   }
 
   /// A random point of M: nothing where the search from a random configuration fails.
@@ -165,12 +164,8 @@ public:
       const double part = 2 * random() - 1;
       x[i] = part * (arm_.turns[std::size_t(i)] ? std::numbers::pi : arm_.size);
     }
-    return projected(x, std::numeric_limits<double>::infinity(), accurate);
+    return projected(x, std::numeric_limits<double>::infinity());
   }
-
-  /// Error at which `projected` stops where the Jacobian may be singular: half of the digits of
-  /// coordinates are lost there.
-  static constexpr double accurate = 2e-15;
 
 private:
   using square = Eigen::Matrix<double, 7, 7>;

@@ -49,7 +49,21 @@ public:
   }
 
   /// True if a walk on the component leads from x to one of the sample's points.
-  [[nodiscard]] bool is_on(const traced_curve& component, const seven_coordinates& x) const {
+  [[nodiscard]] bool is_on(const traced_curve& component, const seven_coordinates& x,
+                           split_mix& random) const {
+    constexpr int detours = 4;
+    bool result = leads_there(component, x);
+    for (int k = 0; k < detours && !result; ++k) {
+      result = leads_there(component, wander(x, std::numbers::pi * random(), random));
+    }
+    return result;
+  }
+
+private:
+  static constexpr double stride = .2;
+
+  /// Does a walk lead to one of the nearest points of a sample?
+  [[nodiscard]] bool leads_there(const traced_curve& component, const seven_coordinates& x) const {
     constexpr std::size_t most = 8;
     std::vector<seven_coordinates> nearest = component.points;
     std::sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) {
@@ -58,17 +72,13 @@ public:
     nearest.resize(std::min(most, nearest.size()));
     return std::any_of(nearest.begin(), nearest.end(),
                        [&](const auto& s) { return is_straight(x, s); }) ||
-           std::any_of(nearest.begin(), nearest.end(),
-                       [&](const auto& s) { return leads(x, s); });
+           std::any_of(nearest.begin(), nearest.end(), [&](const auto& s) { return leads(x, s); });
   }
-
-private:
-  static constexpr double stride = .2;
 
   /// True if the straight line between two points is on the set.
   [[nodiscard]] bool is_straight(const seven_coordinates& x, const seven_coordinates& end) const {
     constexpr std::array parts{.07, .19, .31, .5, .62, .74, .83, .93};
-    constexpr double close = 1e-9;
+    constexpr double close = 1e-7;
     const seven_coordinates way = set_.difference(end, x);
     return std::all_of(parts.begin(), parts.end(), [&](double part) {
       return set_.error(set_.moved(x, part * way)) < close;
@@ -84,8 +94,7 @@ private:
     if (!(size > .1 * way.norm())) {
       return {};
     }
-    return set_.projected(set_.moved(x, std::min(1., most / size) * along), 2 * stride,
-                          self_motion_set::accurate);
+    return set_.projected(set_.moved(x, std::min(1., most / size) * along), 2 * stride);
   }
 
   /// Does a walk towards `end` get there?
