@@ -105,10 +105,10 @@ private:
           x[i] = middle + std::remainder(x[i] - middle, 2 * std::numbers::pi);
         }
         const bool is_inside = is_within_limits(x);
-        if (result.points.size() > first) {
+        if (result.points.size() > first && curve.dimension == 1) {
           result.points.back().next = std::ptrdiff_t(result.points.size());
         }
-        const bool goes_on = is_inside && result.points.size() > first &&
+        const bool goes_on = is_inside && curve.dimension == 1 && result.points.size() > first &&
                              result.points.back().piece != none &&
                              (result.points.back().x - x).norm() < 1;
         result.points.push_back({x, number,

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -91,6 +92,84 @@ TEST_CASE("a general arm; finer curves are as many") {
   check_curves(arm, theta, curves, .4);
   const auto finer = self_motion_curves(arm, arm.pose(theta), {.resolution = .3});
   CHECK(finer.size() == curves.size());
+}
+
+/// A component is what it says: closed curves without jumps, or samples; all hold the tip, and the
+/// sample of a surface is on no plane of fewer dimensions.
+void check_component(const chain& arm, const self_motion_curve<7>& part,
+                     const dual_quaternion<double>& goal, double resolution) {
+  for (const auto& x : part.joints) {
+    const pose_deviation left = deviation_between(arm.pose(x), goal);
+    CHECK(left.length < 1e-10);
+    CHECK(left.angle < 1e-10);
+  }
+  if (part.dimension == 1) {
+    CHECK(part.is_closed);
+    for (std::size_t k = 0; k < part.joints.size(); ++k) {
+      const auto& next = part.joints[(k + 1) % part.joints.size()];
+      CHECK(difference(next, part.joints[k]).norm() <= resolution * (1 + 1e-9));
+    }
+  } else {
+    CHECK(!part.is_closed);
+    CHECK((part.dimension == 0 ? part.joints.size() == 1 : part.joints.size() > 20));
+  }
+}
+
+/// Dimensions of the components, in order.
+std::vector<int> dimensions(const chain& arm, const vector& theta, double resolution) {
+  const auto goal = arm.pose(theta);
+  std::vector<int> result;
+  for (const auto& part : self_motion_curves(arm, goal, {.resolution = resolution})) {
+    check_component(arm, part, goal, resolution);
+    result.push_back(part.dimension);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// Where the elbow is straight axes 3 and 5 are one line, where shoulder or wrist is, 1 and 3 or 5
+/// and 7 are: their angles matter by their sum. Else the elbow turns about the line from shoulder to
+/// wrist, and what is straight only at a point of that circle is where two curves cross.
+TEST_CASE("straight elbows, shoulders and wrists: curves and tori of iiwa") {
+  const chain arm = robots::iiwa14().table();
+  const vector bent = (vector() << .3, .6, -.2, -1.3, .4, .9, .1).finished();
+  const auto straight = [&](std::initializer_list<int> joints) {
+    vector result = bent;
+    for (const int i : joints) {
+      result[i] = 0;
+    }
+    return dimensions(arm, result, .3);
+  };
+  using list = std::vector<int>;
+  CHECK(straight({3}) == list{1, 1, 1, 1});
+  CHECK(straight({1}) == list{1, 1, 1, 1, 1, 1, 1, 1});
+  CHECK(straight({5}) == list{1, 1, 1, 1, 1, 1, 1, 1});
+  CHECK(straight({1, 5}) == list{1, 1, 1, 1, 2, 2});
+  CHECK(straight({1, 3}) == list{2, 2});
+  CHECK(straight({3, 5}) == list{2, 2});
+  CHECK(straight({1, 3, 5}) == list{3});
+  // Quarter turns, with everything in a plane.
+  CHECK(dimensions(arm, pi / 2 * (vector() << 0, 1, 0, 1, 0, 1, 0).finished(), .3) ==
+        list{1, 1, 1, 1, 1, 1, 1, 1});
+}
+
+TEST_CASE("the upright iiwa moves with three degrees of freedom, and the sample is spread") {
+  const chain arm = robots::iiwa14().table();
+  const vector zero = vector::Zero(), moved = (vector() << .3, 0, -.3, 0, .4, 0, -.4).finished();
+  CHECK(deviation_between(arm.pose(moved), arm.pose(zero)).length < 1e-12);
+  const auto parts = self_motion_curves(arm, arm.pose(zero));
+  REQUIRE(parts.size() == 1);
+  CHECK(parts[0].dimension == 3);
+  CHECK(parts[0].joints.size() == 64);
+  CHECK(distance(parts[0], moved) < 2.5);
+  for (const auto& x : parts[0].joints) {
+    CHECK(std::abs(std::remainder(x[0] + x[2] + x[4] + x[6], 2 * pi)) < 1e-5);
+    CHECK(std::abs(std::remainder(x[3], 2 * pi)) < 1e-5);
+  }
+}
+
+TEST_CASE("Panda at zero: axes 1, 3 and 5 on one line, and curves beside that torus") {
+  CHECK(dimensions(robots::panda().table(), vector::Zero(), .3) == std::vector<int>{1, 1, 2});
 }
 
 TEST_CASE("what is refused") {

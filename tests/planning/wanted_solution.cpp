@@ -8,6 +8,7 @@
 #include <duet/mechanism/denavit_hartenberg.hpp>
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/limits.hpp>
+#include <duet/planning/all_inverse_kinematics.hpp>
 #include <duet/planning/equation_goal.hpp>
 #include <duet/planning/goals.hpp>
 
@@ -292,6 +293,69 @@ TEST_CASE("joints that turn all round are turned to where the objective is lower
       inverse_kinematics(arm, arm.pose(known), known, {.candidates = 1}, preferred_posture{wish});
   CHECK(found.reason == stop_reason::reached);
   CHECK((found.joints - wish).cwiseAbs().maxCoeff() < 1e-5);
+}
+
+/// The least of a preferred posture's values among all solutions, whatever full turns limits allow.
+double least_value(const chain& arm, const dual_quaternion<double>& goal, const vector& posture) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& each : all_inverse_kinematics(arm, goal).solutions) {
+    double sum = 0;
+    for (int i = 0; i < 6; ++i) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (int turns = -3; turns <= 3; ++turns) {
+        const double x = each.joints[i] + 2 * pi * turns, d = x - posture[i];
+        if (x >= arm.limits(i).lower - 1e-9 && x <= arm.limits(i).upper + 1e-9) {
+          nearest = std::min(nearest, d * d);
+        }
+      }
+      sum += nearest / 2;
+    }
+    least = std::min(least, sum);
+  }
+  return least;
+}
+
+TEST_CASE("six joints: the posture nearest among all solutions, full turns included") {
+  duet_test::random_source random(88);
+  const chain ur5e = robots::ur5e().table();
+  const vector far = vector::Constant(6, 3 * pi);
+  for (const chain& arm : {ur5e, chain(with_limits(ur5e, vector(-far), far))}) {
+    int nearest = 0;
+    const int count = 60;
+    for (int k = 0; k < count; ++k) {
+      vector known = configuration(arm, random), posture = configuration(arm, random);
+      if (k % 3 == 0) { // multiples of 15 degrees, but for the wrist's singularity
+        known = known.unaryExpr([](double x) { return pi / 12 * std::round(12 / pi * x); });
+        posture = posture.unaryExpr([](double x) { return pi / 2 * std::round(2 / pi * x); });
+        known[4] = known[4] < 0 ? -pi / 3 : pi / 3;
+        known[2] = known[2] < 0 ? -pi / 3 : pi / 3;
+      }
+      const preferred_posture wish{posture};
+      const auto goal = arm.pose(known);
+      const auto found = inverse_kinematics(arm, goal, posture, {}, wish);
+      CHECK(is_within_limits(arm, found.joints));
+      nearest += found.reason == stop_reason::reached &&
+                 wish(found.joints) <= least_value(arm, goal, posture) + 1e-6;
+    }
+    CHECK(nearest == count);
+  }
+}
+
+TEST_CASE("six joints: a solution at a limit, and several turns beyond it") {
+  const chain ur5e = robots::ur5e().table();
+  vector known = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+  vector lower = vector::Constant(6, -2 * pi), upper = vector::Constant(6, 2 * pi);
+  lower[0] = known[0] + 4 * pi; // the only turn, at the limit
+  upper[0] = lower[0] + 1;
+  lower[5] = -std::numeric_limits<double>::infinity();
+  upper[5] = std::numeric_limits<double>::infinity();
+  const chain arm = with_limits(ur5e, lower, upper);
+  vector wish = known;
+  wish[0] += 4 * pi;
+  wish[5] += 22 * pi;
+  const auto found = inverse_kinematics(arm, ur5e.pose(known), wish, {}, preferred_posture{wish});
+  CHECK(found.reason == stop_reason::reached);
+  CHECK((found.joints - wish).cwiseAbs().maxCoeff() < 1e-9);
 }
 
 TEST_CASE("where joints slide solutions do not depend on the unit of length") {

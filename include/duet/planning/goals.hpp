@@ -15,6 +15,7 @@
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/pose_region.hpp>
 #include <duet/planning/solution_search.hpp>
+#include <duet/planning/solutions_within_limits.hpp>
 #include <duet/planning/tip_goal.hpp>
 #include <duet/quaternion/norm.hpp>
 
@@ -95,6 +96,8 @@ class wanted_solutions {
   static constexpr bool is_among_obstacles = std::same_as<Scene, scene>;
   using model = std::conditional_t<is_among_obstacles, chain_among_obstacles<C>, chain_model<C>>;
   using result = inverse_kinematics_result<C::joints>;
+  using known_solutions = typename solution_search<room>::known_solutions;
+  static constexpr bool has_objective = !std::same_as<Objective, no_objective>;
 
 public:
   /// \throws invalid_input for a start or a wish of another size, a scene that is none
@@ -109,9 +112,11 @@ public:
   /// \param name  which goal it is, called for messages
   /// \throws invalid_input where the goal, or the objective, is nan wherever it was looked at
   template <TipGoal G, class Name>
-  [[nodiscard]] result operator()(const G& goal, const Name& name) const {
-    constexpr bool has_wishes = !std::same_as<Objective, no_objective> || is_among_obstacles;
-    const auto x = search_(tip_goal_of<G>(goal, model_.length), has_wishes ? &wishes_ : nullptr);
+  [[nodiscard]] result operator()(const G& goal, const Name& name,
+                                  const known_solutions& known = {}) const {
+    constexpr bool has_wishes = has_objective || is_among_obstacles;
+    const auto x =
+        search_(tip_goal_of<G>(goal, model_.length), has_wishes ? &wishes_ : nullptr, known);
     require_numbers(x, name);
     return {own_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
             model_.given_deviation(x.left), x.iterations, x.restarts, x.reason};
@@ -121,10 +126,25 @@ public:
     if (model_.reach.is_beyond(model_.place(goal), model_.tolerance(options_.tolerance))) {
       return inverse_kinematics(model_.chain(), goal, start_, options_);
     }
-    return (*this)(whole_pose{place_of(normalized(goal))}, name);
+    return (*this)(whole_pose{place_of(normalized(goal))}, name, all_solutions(goal));
   }
 
 private:
+  /// Of six joints all, for an objective to choose from.
+  [[nodiscard]] known_solutions all_solutions(const dual_quaternion<double>& goal) const {
+    known_solutions known;
+    if constexpr (has_objective) {
+      if (is_algebraic(model_.chain(), 6)) {
+        const auto all = solutions_within_limits(model_.chain(), goal, options_.tolerance);
+        known.is_complete = all.is_complete;
+        for (const auto& theta : all.joints) {
+          known.joints.push_back(model_.joints(theta));
+        }
+      }
+    }
+    return known;
+  }
+
   /// The best that was found is nan only where all is.
   template <class Name>
   void require_numbers(const typename solution_search<room>::attempt& x, const Name& name) const {

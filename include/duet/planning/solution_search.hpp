@@ -11,7 +11,10 @@
 #include <duet/planning/split_mix.hpp>
 #include <duet/planning/tip_goal.hpp>
 
+#include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 /// \file
 /// The search among the solutions of a goal for one that is wanted.
@@ -30,24 +33,43 @@ public:
       : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
         search_(model, start, options) {}
 
+  /// Solutions within the limits that are known before the search, up to full turns.
+  struct known_solutions {
+    std::vector<small_vector<Room>> joints;
+    bool is_complete = false; ///< are there no others?
+  };
+
   /// \param wishes  none: the first solution is as good as any
-  [[nodiscard]] attempt operator()(const tip_goal& goal, const solution_wishes<Room>* wishes) const;
+  [[nodiscard]] attempt operator()(const tip_goal& goal, const solution_wishes<Room>* wishes,
+                                   const known_solutions& known = {}) const;
 
 private:
-  /// Joints turned by whole turns where that lowers the objective.
+  /// Joints changed by full turns, as many as limits allow, while that lowers the objective.
   [[nodiscard]] small_vector<Room> turned(small_vector<Room> theta,
                                           const solution_wishes<Room>& wishes) const {
+    constexpr double most = 0x1p20;
     double least = wishes.objective(theta);
+    const auto is_lower_by = [&](int i, double way) {
+      small_vector<Room> other = theta;
+      other[i] += way;
+      const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
+      const double value = is_within ? wishes.objective(other) : least;
+      const bool result = is_within && is_less(value, least);
+      if (result) {
+        theta = other;
+        least = value;
+      }
+      return result;
+    };
     for (int i = 0; i < model_.size; ++i) {
       const double turn = search_.turn()[i];
-      for (const double way : {-turn, turn}) {
-        small_vector<Room> other = theta;
-        other[i] += way;
-        const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
-        const double value = turn > 0 && is_within ? wishes.objective(other) : least;
-        if (is_less(value, least)) {
-          theta = other;
-          least = value;
+      bool is_lower = turn > 0;
+      while (is_lower) { // by 1, 2, 4 … turns, and back
+        is_lower = false;
+        for (const double side : {-turn, turn}) {
+          for (double way = side; std::abs(way) < most && is_lower_by(i, way); way *= 2) {
+            is_lower = true;
+          }
         }
       }
     }
@@ -62,7 +84,8 @@ private:
 
 template <int Room>
 typename solution_search<Room>::attempt
-solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Room>* wishes) const {
+solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Room>* wishes,
+                                  const known_solutions& known) const {
   if (wishes == nullptr || is_beyond(model_.reach, goal, tolerance_)) {
     return search_(goal);
   }
@@ -70,21 +93,39 @@ solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Ro
   attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
   double least = std::numeric_limits<double>::infinity(); // of the objective
   int iterations = 0, candidates = 0, restarts = 0;
+  const auto consider = [&](small_vector<Room> theta) {
+    constexpr int rounds = 4; // where joints have moved in place other turns may be nearer
+    std::optional<typename solution_refinement<Room>::point> refined;
+    for (int k = 0; k < rounds; ++k) {
+      const auto other = wishes->has_objective() ? turned(theta, *wishes) : theta;
+      if (refined && norm(other - theta) == 0) {
+        break;
+      }
+      refined = refine(other, options_.iterations);
+      if (!refined || !wishes->has_objective()) {
+        break;
+      }
+      theta = refined->theta;
+    }
+    if (refined && (best.reason != stop_reason::reached || is_less(refined->value, least))) {
+      best = {refined->theta, refined->left, 0, 0, 0, stop_reason::reached};
+      least = refined->value;
+    }
+    return refined.has_value();
+  };
+  for (const small_vector<Room>& theta : known.joints) {
+    consider(theta);
+  }
+  if (known.is_complete && best.reason == stop_reason::reached) {
+    return best;
+  }
   split_mix random(options_.seed);
   for (;; ++restarts) {
     attempt next =
         search_.approach(restarts == 0 ? search_.start() : search_.configuration(random), goal);
     iterations += next.iterations;
     if (next.reason == stop_reason::reached) {
-      if (wishes->has_objective()) {
-        next.joints = turned(next.joints, *wishes);
-      }
-      const auto refined = refine(next.joints, options_.iterations);
-      if (refined && (best.reason != stop_reason::reached || is_less(refined->value, least))) {
-        best = {refined->theta, refined->left, 0, 0, 0, stop_reason::reached};
-        least = refined->value;
-      }
-      candidates += refined.has_value();
+      candidates += consider(next.joints);
       next.reason = stop_reason::obstacle;
     }
     if (best.reason != stop_reason::reached && (restarts == 0 || is_less(next.error, best.error))) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/all_inverse_kinematics.hpp>
 #include <duet/planning/clearance.hpp>
@@ -25,20 +24,6 @@
 /// In which ways a chain can begin a path.
 
 namespace duet::detail {
-
-/// Has the chain n joints whose equations are algebraic, as `all_inverse_kinematics` and
-/// `self_motion_curves` want them?
-template <class C>
-[[nodiscard]] bool is_algebraic(const C& chain, int n) {
-  int sliding = 0;
-  for (int i = 0; i < chain.size(); ++i) {
-    if (chain.kind(i) == joint_kind::helical) {
-      return false;
-    }
-    sliding += chain.kind(i) == joint_kind::prismatic;
-  }
-  return chain.size() == n && sliding <= (n == 6 ? 3 : 1);
-}
 
 /// The solutions for poses of the tip that a chain has among obstacles, if there are any.
 template <int Room>

@@ -1,0 +1,72 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/mechanism/joint.hpp>
+#include <duet/mechanism/serial_chain.hpp>
+#include <duet/planning/all_inverse_kinematics.hpp>
+#include <duet/planning/motion_plan.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+/// \file
+/// All solutions of six joints for a pose that are within the limits, except for full turns.
+
+namespace duet::detail {
+
+/// Has the chain n joints whose equations are algebraic, as `all_inverse_kinematics` and
+/// `self_motion_curves` want them?
+template <class C>
+[[nodiscard]] bool is_algebraic(const C& chain, int n) {
+  int sliding = 0;
+  for (int i = 0; i < chain.size(); ++i) {
+    if (chain.kind(i) == joint_kind::helical) {
+      return false;
+    }
+    sliding += chain.kind(i) == joint_kind::prismatic;
+  }
+  return chain.size() == n && sliding <= (n == 6 ? 3 : 1);
+}
+
+/// Solutions of inverse kinematics, and whether there are no others.
+template <int N>
+struct solution_list {
+  std::vector<joint_vector<double, N>> joints;
+  bool is_complete = false;
+};
+
+/// The solutions of `all_inverse_kinematics` within the limits, each joint turned into them by full
+/// turns. Joints that miss a limit by no more than the tolerance are put there.
+template <class C>
+[[nodiscard]] solution_list<C::joints> solutions_within_limits(const C& chain,
+                                                               const dual_quaternion<double>& goal,
+                                                               const pose_tolerance& tolerance) {
+  constexpr double turn = 2 * std::numbers::pi;
+  const auto all = all_inverse_kinematics(chain, goal);
+  solution_list<C::joints> result{{}, all.is_complete};
+  for (const auto& each : all.solutions) {
+    auto theta = each.joints;
+    bool is_within = true;
+    for (int i = 0; i < chain.size(); ++i) {
+      const bool slides = chain.kind(i) == joint_kind::prismatic;
+      const double slack = slides ? tolerance.length : tolerance.angle;
+      const double least = chain.limits(i).lower - slack, most = chain.limits(i).upper + slack;
+      if (!slides && theta[i] < least) {
+        theta[i] += turn * std::ceil((least - theta[i]) / turn);
+      } else if (!slides && theta[i] > most) {
+        theta[i] -= turn * std::ceil((theta[i] - most) / turn);
+      }
+      is_within = is_within && theta[i] >= least && theta[i] <= most;
+      theta[i] = std::clamp(theta[i], chain.limits(i).lower, chain.limits(i).upper);
+    }
+    if (is_within) {
+      result.joints.push_back(theta);
+    }
+  }
+  return result;
+}
+
+} // namespace duet::detail
