@@ -69,12 +69,45 @@ joints nearby(const arm_chain& arm, joints theta, double most, random_source& ra
   }
   return theta;
 }
+bool is_within_limits(const arm_chain& arm, const joints& theta) {
+  return (theta - lower_limits(arm)).minCoeff() >= 0 && (upper_limits(arm) - theta).minCoeff() >= 0;
+}
+constexpr double quarter = std::numbers::pi / 2;
+/// The nearest multiples of an angle within the limits.
+joints rounded(const arm_chain& arm, joints theta, double angle) {
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] =
+        std::clamp(angle * std::round(theta[i] / angle), arm.limits(i).lower, arm.limits(i).upper);
+  }
+  return theta;
+}
+/// Is the solution that is found for the pose of a configuration no farther from the posture than
+/// that configuration and, of six joints, than any solution with any full turns within limits?
+bool is_nearest(const arm_chain& arm, const joints& known, const preferred_posture<joints>& wish) {
+  const auto goal = arm.pose(known);
+  double least = wish(known);
+  if (arm.size() == 6) {
+    for (const auto& each : all_inverse_kinematics(arm, goal).solutions) {
+      joints nearest = joints::Constant(6, 1e6);
+      for (int i = 0; i < 6; ++i) {
+        for (int turns = -2; turns <= 2; ++turns) {
+          const double x = each.joints[i] + 4 * turns * quarter;
+          const bool is_within = x >= arm.limits(i).lower && x <= arm.limits(i).upper;
+          if (is_within && std::abs(x - wish.posture[i]) < std::abs(nearest[i] - wish.posture[i])) {
+            nearest[i] = x;
+          }
+        }
+      }
+      least = std::min(least, wish(nearest));
+    }
+  }
+  const result found = inverse_kinematics(arm, goal, wish.posture, {}, wish);
+  return found.reason == stop_reason::reached && is_within_limits(arm, found.joints) &&
+         wish(found.joints) <= least * (1 + 1e-6) + 1e-5;
+}
 vector3<double> direction(random_source& random) {
   const auto n = random.direction<3>();
   return {n[0], n[1], n[2]};
-}
-bool is_within_limits(const arm_chain& arm, const joints& theta) {
-  return (theta - lower_limits(arm)).minCoeff() >= 0 && (upper_limits(arm) - theta).minCoeff() >= 0;
 }
 
 /// One case: a configuration, and whether what was found for it is as wanted.
@@ -165,6 +198,16 @@ void wishes(int count, std::uint64_t seed) {
       preferred([](const auto& tip) { return position_goal(translation(tip)); }));
   row("pose, nearest to a posture", count / 10, seed,
       preferred([](const auto& tip) { return tip; }));
+  row("pose, nearest to a posture anywhere", count / 10, seed,
+      [](const arm_chain& arm, const joints& known, random_source& random) {
+        const preferred_posture wish{anywhere(arm, random)};
+        return is_nearest(arm, known, wish);
+      });
+  row("pose of multiples of 15°, nearest to quarter turns", count / 10, seed,
+      [](const arm_chain& arm, const joints& known, random_source& random) {
+        const preferred_posture wish{rounded(arm, anywhere(arm, random), quarter)};
+        return is_nearest(arm, rounded(arm, known, quarter / 6), wish);
+      });
   row("pose, clear of obstacles", count, seed,
       [](const arm_chain& arm, const joints& known, random_source& random) {
         const auto goal = arm.pose(known);
@@ -192,9 +235,11 @@ void wishes(int count, std::uint64_t seed) {
 
 void starts(int count, std::uint64_t seed) {
   // The tip's path while the joints go half the way to another configuration.
-  const auto solve = [](bool is_any) {
-    return [=](const arm_chain& arm, const joints& known, random_source& random) {
-      const joints way = .5 * (anywhere(arm, random) - known);
+  const auto solve = [](bool is_any, bool is_structured = false) {
+    return [=](const arm_chain& arm, const joints& given, random_source& random) {
+      const joints other = anywhere(arm, random);
+      const joints known = is_structured ? rounded(arm, given, quarter / 6) : given;
+      const joints way = .5 * ((is_structured ? rounded(arm, other, quarter / 6) : other) - known);
       const auto path = [&](double u) { return arm.pose(joints(known + u * way)); };
       if (is_any) {
         const result start =
@@ -207,6 +252,7 @@ void starts(int count, std::uint64_t seed) {
   };
   row("path, from any solution", count, seed, solve(true));
   row("path, from the start that is chosen", count, seed, solve(false));
+  row("path from multiples of 15°, from the start that is chosen", count, seed, solve(false, true));
 }
 
 } // namespace

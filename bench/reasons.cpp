@@ -4,7 +4,7 @@
 /// Are the reasons true that plans give which do not reach their goals? A complete search by all
 /// solutions of six joints, or by all curves of self-motion of seven, says of each whether there
 /// was a way, how far one leads, and what ends it. Arguments: the number of problems of each of
-/// five families (100), the seed (1), and anything to list what is not as it should be.
+/// six families (100), the seed (1), and anything to list what is not as it should be.
 /// build/bench/bench/duet_reasons_bench
 
 #include "planning/complete_search.hpp"

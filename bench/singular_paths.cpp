@@ -5,7 +5,7 @@
 /// many of 500 problems each are planned, and how many a plain tracker by Newton's method follows
 /// from one end or the other, in 300, 1000 or 1001 equal steps; reasons of the rest. With
 /// DUET_BENCH_MISSED set it tells what a tracker solves and the planner does not. Arguments: the
-/// number of problems of each of five families (100), the seed (1).
+/// number of problems of each of six families (100), the seed (1).
 /// build/bench/bench/duet_singular_paths_bench
 
 #include "planning/singular_problems.hpp"

@@ -128,8 +128,8 @@ std::vector<int> dimensions(const chain& arm, const vector& theta, double resolu
 }
 
 /// Where the elbow is straight axes 3 and 5 are one line, where shoulder or wrist is, 1 and 3 or 5
-/// and 7 are: their angles matter by their sum. Else the elbow turns about the line from shoulder to
-/// wrist, and what is straight only at a point of that circle is where two curves cross.
+/// and 7 are: their angles matter by their sum. Else the elbow turns about the line from shoulder
+/// to wrist, and what is straight only at a point of that circle is where two curves cross.
 TEST_CASE("straight elbows, shoulders and wrists: curves and tori of iiwa") {
   const chain arm = robots::iiwa14().table();
   const vector bent = (vector() << .3, .6, -.2, -1.3, .4, .9, .1).finished();

@@ -4,6 +4,7 @@
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/mechanism/denavit_hartenberg.hpp>
+#include <duet/mechanism/limits.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 
@@ -82,9 +83,10 @@ inline std::vector<arm<7>> seven_joints() {
           {"Baxter", robots::baxter_left().table()}};
 }
 
-enum class family { across, beside, past, from_elbow, from_wrist };
-constexpr std::array families{"across the wrist", "across, all joints", "beside the wrist",
-                              "from a stretched elbow", "from the wrist"};
+enum class family { across, beside, past, from_elbow, from_wrist, structured };
+constexpr std::array families{"across the wrist", "across, all joints",
+                              "beside the wrist", "from a stretched elbow",
+                              "from the wrist",   "multiples of 15 deg"};
 
 template <int N>
 struct problem {
@@ -129,14 +131,20 @@ problem<N> make(const arm<N>& a, family kind, random_source& random) {
   p.end = p.start;
   const double near = kind == family::across       ? 0
                       : kind == family::past       ? random.magnitude(1e-6, 1e-2)
-                      : kind == family::from_wrist ? 1
+                      : kind >= family::from_wrist ? 1
                                                    : .5;
   for (int i = 0; i < N; ++i) {
     p.end[i] = std::clamp(p.end[i] + near * random.uniform(-1, 1), a.chain.limits(i).lower,
                           a.chain.limits(i).upper);
   }
-  if (kind != family::from_elbow && kind != family::from_wrist) {
+  if (kind < family::from_elbow) {
     p.end[wrist] = -p.start[wrist];
+  }
+  if (kind == family::structured) {
+    const auto round = [](double x) { return pi / 12 * std::trunc(12 / pi * x); };
+    p.start =
+        p.start.unaryExpr(round).cwiseMax(lower_limits(a.chain)).cwiseMin(upper_limits(a.chain));
+    p.end = p.end.unaryExpr(round).cwiseMax(lower_limits(a.chain)).cwiseMin(upper_limits(a.chain));
   }
   return p;
 }

@@ -86,9 +86,8 @@ private:
   }
 
   /// A step along the curve, if there the curve goes on in about the same direction.
-  [[nodiscard]] std::optional<landing> land(const seven_coordinates& x,
-                                            const seven_coordinates& along, double step,
-                                            int kernel) const {
+  [[nodiscard]] std::optional<landing>
+  land(const seven_coordinates& x, const seven_coordinates& along, double step, int kernel) const {
     const auto next = set_.projected(set_.moved(x, step * along), step_);
     if (!next) {
       return {};
@@ -100,9 +99,9 @@ private:
       return {};
     }
     const double bend = (*ahead - along).norm();
-    return bend < .3 ? std::optional<landing>({*next, *ahead, bend, way.norm(),
-                                               basis.cols() > kernel})
-                     : std::nullopt;
+    return bend < .3
+               ? std::optional<landing>({*next, *ahead, bend, way.norm(), basis.cols() > kernel})
+               : std::nullopt;
   }
 
   /// A step past points where curves cross, if they are not too near to each other for that.

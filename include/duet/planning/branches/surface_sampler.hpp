@@ -36,9 +36,7 @@ public:
       for (int failed = 0; failed < tries && points.size() < count; ++failed) {
         const auto& from = points[std::size_t(random() * double(points.size()))];
         const auto end = wander(from, std::numbers::pi * random(), random);
-        const auto is_near = [&](const auto& p) {
-          return set_.difference(end, p).norm() < apart;
-        };
+        const auto is_near = [&](const auto& p) { return set_.difference(end, p).norm() < apart; };
         if (std::none_of(points.begin(), points.end(), is_near)) {
           points.push_back(end);
           failed = 0;
@@ -80,9 +78,8 @@ private:
     constexpr std::array parts{.07, .19, .31, .5, .62, .74, .83, .93};
     constexpr double close = 1e-7;
     const seven_coordinates way = set_.difference(end, x);
-    return std::all_of(parts.begin(), parts.end(), [&](double part) {
-      return set_.error(set_.moved(x, part * way)) < close;
-    });
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](double part) { return set_.error(set_.moved(x, part * way)) < close; });
   }
 
   /// A step on the component towards where `way` points, or none.
@@ -116,7 +113,8 @@ private:
   }
 
   /// Where a walk of a length in a random direction leads.
-  [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length, split_mix& random) const {
+  [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length,
+                                         split_mix& random) const {
     seven_coordinates way = self_motion_set::any_direction(set_.kernel(x), random);
     for (; length > 0; length -= stride) {
       const auto next = step(x, way, std::min(length, stride));

@@ -1,0 +1,181 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+/// \file
+/// Components of the self-motion of seven joints at random and at structured poses, against random
+/// restarts: solutions of inverse kinematics from 100 random configurations without limits that are
+/// on no component. Arguments: the number of poses of each family (50), the seed (1), and anything
+/// to list the poses at which something is not as it should be.
+/// build/bench/bench/duet_self_motion_bench
+
+#include <duet/core/random_source.hpp>
+#include <duet/mechanism/denavit_hartenberg.hpp>
+#include <duet/mechanism/limits.hpp>
+#include <duet/mechanism/robots.hpp>
+#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/planning/self_motion_curves.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace {
+
+using namespace duet;
+using std::numbers::pi;
+using arm_chain = serial_chain<7>;
+using joints = Eigen::Matrix<double, 7, 1>;
+using component = self_motion_curve<7>;
+
+struct robot {
+  const char* name;
+  arm_chain arm;
+};
+
+/// Shoulder and wrist spherical, or not: `shoulder` between axes 1 and 3, `elbow` and `wrist`
+/// across.
+arm_chain seven_joints(double shoulder, double elbow, double wrist) {
+  constexpr double quarter = pi / 2;
+  const std::array<dh_row<>, 7> rows{{{.d = .3, .alpha = -quarter},
+                                      {.d = shoulder, .alpha = quarter},
+                                      {.a = elbow, .d = .4, .alpha = quarter},
+                                      {.a = -elbow, .alpha = -quarter},
+                                      {.d = .35, .alpha = -quarter},
+                                      {.a = wrist, .alpha = quarter},
+                                      {.d = .1}}};
+  return from_dh(rows);
+}
+
+joints difference(const joints& a, const joints& b) {
+  return (a - b).unaryExpr([](double x) { return std::remainder(x, 2 * pi); });
+}
+
+constexpr double resolution = .1;
+
+bool is_on_curve(const component& curve, const joints& x) {
+  const std::size_t n = curve.joints.size();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < n; ++k) {
+    const joints to_x = difference(x, curve.joints[k]),
+                 way = difference(curve.joints[(k + 1) % n], curve.joints[k]);
+    const bool is_piece = way.norm() > 0 && (k + 1 < n || curve.is_closed);
+    const double part = is_piece ? std::clamp(to_x.dot(way) / way.squaredNorm(), 0., 1.) : 0;
+    least = std::min(least, (to_x - part * way).norm());
+  }
+  return least < resolution * resolution; // a chord is nearer, and what singularities leave as well
+}
+
+/// Straight lines between angles are on the tori of coaxial joints; of others it is not tried.
+bool is_on_torus(const arm_chain& arm, const component& torus, const joints& x) {
+  const auto goal = arm.pose(x);
+  return std::any_of(torus.joints.begin(), torus.joints.end(), [&](const joints& s) {
+    const joints way = difference(s, x);
+    return [&] {
+      for (const double part : {.13, .37, .5, .71, .91}) {
+        const auto left = deviation_between(arm.pose(joints(x + part * way)), goal);
+        if (left.length > 1e-5 || left.angle > 1e-5) {
+          return false;
+        }
+      }
+      return true;
+    }();
+  });
+}
+
+struct family {
+  const char* name;
+  double grid;               ///< multiples of it, 0: any
+  std::vector<int> straight; ///< joints at 0
+};
+const std::array families{family{"random", 0, {}},
+                          family{"quarter turns", pi / 2, {}},
+                          family{"multiples of 15 deg", pi / 12, {}},
+                          family{"multiples of 1/8 rad", .125, {}},
+                          family{"straight elbow", 0, {3}},
+                          family{"straight shoulder", 0, {1}},
+                          family{"straight wrist", 0, {5}},
+                          family{"shoulder and elbow", 0, {1, 3}},
+                          family{"elbow and wrist", 0, {3, 5}},
+                          family{"shoulder and wrist", 0, {1, 5}},
+                          family{"all straight", 0, {1, 3, 5}},
+                          family{"zero", 0, {0, 1, 2, 3, 4, 5, 6}}};
+
+void row(const robot& each, const family& kind, int count, std::uint64_t seed, bool is_listed) {
+  random_source random(seed);
+  const joints far = joints::Constant(std::numeric_limits<double>::infinity());
+  const arm_chain arm = with_limits(each.arm, joints(-far), far);
+  int curves = 0, points = 0, surfaces = 0, open = 0, none = 0, missed = 0;
+  const int poses = kind.straight.size() == 7 ? 1 : count;
+  std::clock_t time = 0;
+  for (int k = 0; k < poses; ++k) {
+    joints theta;
+    for (double& x : theta) {
+      x = random.uniform(-pi, pi);
+      x = kind.grid > 0 ? kind.grid * std::round(x / kind.grid) : x;
+    }
+    for (const int i : kind.straight) {
+      theta[i] = 0;
+    }
+    const auto goal = arm.pose(theta);
+    const std::clock_t before = std::clock();
+    const auto all = self_motion_curves(arm, goal, {.resolution = resolution});
+    time += std::clock() - before;
+    int open_here = 0, missed_here = 0;
+    for (const component& each_of : all) {
+      curves += each_of.dimension == 1;
+      points += each_of.dimension == 0;
+      surfaces += each_of.dimension > 1;
+      open_here += each_of.dimension == 1 && !each_of.is_closed;
+    }
+    for (int start = 0; start < 100; ++start) {
+      joints from;
+      for (double& x : from) {
+        x = random.uniform(-pi, pi);
+      }
+      const auto found = inverse_kinematics(arm, goal, from, {.tolerance = 1e-12, .restarts = 0});
+      missed_here += found.reason == stop_reason::reached &&
+                     std::none_of(all.begin(), all.end(), [&](const component& part) {
+                       return part.dimension > 1 ? is_on_torus(arm, part, found.joints)
+                                                 : is_on_curve(part, found.joints);
+                     });
+    }
+    open += open_here;
+    missed += missed_here > 0;
+    none += all.empty();
+    if (is_listed && (open_here + missed_here > 0 || all.empty())) {
+      std::printf("  pose %d: %zu components, %d open, %d solutions on none\n", k, all.size(),
+                  open_here, missed_here);
+    }
+  }
+  std::printf("%-16s %-22s %5d %6d %6d %8d %5d %5d %6d %8.3f\n", each.name, kind.name, poses,
+              curves, points, surfaces, open, none, missed, double(time) / CLOCKS_PER_SEC / poses);
+  std::fflush(stdout);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  const int count = argc > 1 ? std::atoi(argv[1]) : 50;
+  const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
+  const std::vector<robot> robots{
+      {"iiwa 14", robots::iiwa14().table()},          {"Panda", robots::panda().table()},
+      {"Baxter", robots::baxter_left().table()},      {"no offsets", seven_joints(0, 0, 0)},
+      {"elbow, wrist", seven_joints(0, .0525, .076)}, {"shoulder 12 mm", seven_joints(.012, 0, 0)},
+      {"all offsets", seven_joints(.1, .05, .05)}};
+  std::printf("%-16s %-22s %5s %6s %6s %8s %5s %5s %6s %8s\n", "arm", "poses at", "poses", "curves",
+              "points", "surfaces", "open", "none", "missed", "s each");
+  for (const robot& each : robots) {
+    for (const family& kind : families) {
+      row(each, kind, count, seed, argc > 3);
+    }
+  }
+}
