@@ -230,6 +230,11 @@ inverse_kinematics(const C& chain, const G& goal, const Start& start,
 
 /// Joint coordinates that take the tip of a chain to a pose, with an objective or among obstacles
 /// as for goals in part.
+///
+/// Of six joints, revolute or up to three of them prismatic, an objective is lowered from all
+/// solutions within the limits, `all_inverse_kinematics`, with any full turns that limits allow: a
+/// `preferred_posture` gives the nearest of all where these are complete. At singular poses that
+/// joints can move at, the search from random configurations is added.
 template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,

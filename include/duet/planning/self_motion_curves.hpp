@@ -18,7 +18,7 @@
 #include <vector>
 
 /// \file
-/// All ways in which an arm of seven joints reaches a pose: curves of joint coordinates.
+/// Self-motion of arms of seven joints: all configurations for a pose, as curves.
 
 namespace duet {
 
@@ -106,12 +106,19 @@ template <class C>
 } // namespace detail
 
 /// All curves of joint coordinates on which an arm of seven joints holds its tip at the pose
-/// `goal`, within limits or not; their number is that of the components of its self-motion.
+/// `goal`, within limits or not, and at singular poses the components of other dimensions.
 ///
-/// Each joint that turns is held in turn at values a `resolution` apart, where all solutions of the
+/// Each revolute joint is held in turn at values a `resolution` apart, where the solutions of the
 /// other six are found as by `all_inverse_kinematics`; from these the curves are followed by steps
-/// along the Jacobian's kernel and Newton's method. A component on which every joint moves less
-/// than `resolution` may be missed.
+/// along the Jacobian's null space and projections by Levenberg and Marquardt's method. Curves that
+/// cross are followed straight on and are as many as cross. A component on which every joint moves
+/// less than `resolution` may be missed.
+///
+/// At a singular pose, as with a straight elbow, wrist or shoulder, solutions from 256 random
+/// configurations are added. The dimension at a solution is that of the span of the solutions
+/// beside it. Curves on which the Jacobian is singular everywhere are followed like the others;
+/// there joint coordinates have half of the digits. A component of two or more dimensions is one
+/// element with that `dimension` and a sample of it.
 ///
 /// \param chain  seven joints that turn, or one of which slides
 /// \return a vector of `self_motion_curve`
