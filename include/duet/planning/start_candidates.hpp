@@ -10,6 +10,7 @@
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/objective.hpp>
 #include <duet/planning/self_motion_curves.hpp>
+#include <duet/planning/solutions_within_limits.hpp>
 #include <duet/planning/split_mix.hpp>
 
 #include <algorithm>

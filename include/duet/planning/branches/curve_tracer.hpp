@@ -4,7 +4,6 @@
 #include <duet/core/config.hpp>
 #include <duet/planning/branches/self_motion_set.hpp>
 #include <duet/planning/branches/seven_joints.hpp>
-#include <duet/planning/split_mix.hpp>
 
 #include <Eigen/Core>
 

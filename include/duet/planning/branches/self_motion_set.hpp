@@ -75,7 +75,8 @@ public:
     seven_coordinates x = from, best = from;
     double least = std::numeric_limits<double>::infinity();
     int since = 0; // the error last fell
-    for (int k = 0; k < iterations && since < 8; ++k) {
+    for (int k = 0; k < iterations && since < (least < self_motion_tolerance::on_set ? 2 : 8);
+         ++k) {
       seven_columns j;
       const six_coordinates e = arm_.gap(x, j);
       const double size = e.norm();
@@ -104,6 +105,19 @@ public:
   [[nodiscard]] null_space kernel(const seven_coordinates& x) const {
     seven_columns j;
     static_cast<void>(arm_.gap(x, j));
+    // The product of the singular values bounds the smallest: the mean of squares of the others is
+    // not below their geometric mean. Where it is far from 0 normal equations will do.
+    constexpr double regular = 1e-3;
+    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> gram(j * j.transpose());
+    const double product = gram.matrixLLT().diagonal().prod(), squares = j.squaredNorm();
+    if (gram.info() == Eigen::Success &&
+        product > regular * std::sqrt(squares) * std::pow(squares / 5, 2.5)) {
+      const square projector = square::Identity() - j.transpose() * gram.solve(j);
+      Eigen::Index longest = 0;
+      projector.diagonal().maxCoeff(&longest);
+      const seven_coordinates column = projector.col(longest);
+      return (column - j.transpose() * gram.solve(j * column)).normalized();
+    }
     square rows = square::Zero();
     rows.topRows<6>() = j;
     const decomposition svd(rows, Eigen::ComputeFullV);
