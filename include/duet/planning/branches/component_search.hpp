@@ -8,6 +8,7 @@
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/loop_answer.hpp>
 #include <duet/planning/branches/self_motion_set.hpp>
+#include <duet/planning/branches/seven_joint_arm.hpp>
 #include <duet/planning/branches/seven_joints.hpp>
 #include <duet/planning/branches/surface_sampler.hpp>
 #include <duet/planning/split_mix.hpp>

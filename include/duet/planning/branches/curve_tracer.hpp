@@ -3,7 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/planning/branches/self_motion_set.hpp>
-#include <duet/planning/branches/seven_joints.hpp>
+#include <duet/planning/branches/seven_joint_arm.hpp>
 
 #include <Eigen/Core>
 

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/loop_answer.hpp>
-#include <duet/planning/branches/seven_joints.hpp>
+#include <duet/planning/branches/seven_joint_arm.hpp>
 #include <duet/planning/split_mix.hpp>
 
 #include <Eigen/Cholesky>

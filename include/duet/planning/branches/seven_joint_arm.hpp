@@ -1,0 +1,41 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/planning/branches/chain_loop.hpp>
+#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/planning_model.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <functional>
+#include <vector>
+
+/// \file
+/// An arm of seven joints with a goal, whatever their types, and components of its self-motion.
+
+namespace duet::detail {
+
+using seven_coordinates = Eigen::Matrix<double, 7, 1>;
+using seven_columns = Eigen::Matrix<double, 6, 7>;
+
+/// An arm of seven joints, and where its tip is to stay.
+struct seven_joints {
+  std::array<bool, 7> turns{};
+  double size = 1; ///< of the arm
+  tip_place goal{};
+  /// How far the tip is from the goal, and the Jacobian; lengths in parts of the arm's size.
+  std::function<six_coordinates(const seven_coordinates&, seven_columns&)> gap;
+  /// The axes of the other joints, with one held at a coordinate.
+  std::function<chain_axes(int, double)> axes_beside;
+};
+
+/// Points of a curve, one after the other, or a sample of a component of another dimension.
+struct traced_curve {
+  std::vector<seven_coordinates> points;
+  bool is_closed = false;
+  int dimension = 1;
+  int kernel = 1; ///< dimension of the Jacobian's null space at almost all points
+};
+
+} // namespace duet::detail
