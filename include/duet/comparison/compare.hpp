@@ -32,8 +32,9 @@ namespace duet {
 
 /// Settings of `compare`.
 struct comparison_options {
-  std::size_t samples = 1000;    ///< random points, half of them anywhere and half beside special
-                                 ///< ones; those and the caller's come on top
+  /// Random points, half of them anywhere and half beside special ones; those and the caller's come
+  /// on top.
+  std::size_t samples = 1000;
   std::uint64_t seed = 1;        ///< of the random points; the same seed gives the same result
   double tolerance = 100;        ///< in units of the last place
   progress_callback report = {}; ///< told after every input, may end the run: see `progress_line`

@@ -20,12 +20,12 @@ namespace duet {
 template <class T>
 struct proximity {
   T distance = T(0); ///< negative where they overlap: by how much
-  vector3<T> on_body = detail::zero_initialized<vector3<T>>(); ///< the point of the body's surface
-  vector3<T> on_obstacle =
-      detail::zero_initialized<vector3<T>>(); ///< the point of the obstacle's surface
-  vector3<T> normal =
-      detail::zero_initialized<vector3<T>>(); ///< unit, out of the obstacle: on_body = on_obstacle
-                                              ///< + distance · normal
+  /// The point of the body's surface.
+  vector3<T> on_body = detail::zero_initialized<vector3<T>>();
+  /// The point of the obstacle's surface.
+  vector3<T> on_obstacle = detail::zero_initialized<vector3<T>>();
+  /// Unit, out of the obstacle: on_body = on_obstacle + distance · normal.
+  vector3<T> normal = detail::zero_initialized<vector3<T>>();
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

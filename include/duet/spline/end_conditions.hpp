@@ -21,17 +21,19 @@ struct natural {};
 /// Given angular velocities, or twists: zero, at rest, unless given.
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct clamped {
-  V start =
-      detail::zero_initialized<V>(); ///< ω or [v; ω] at the first row, spatial axes, per unit of u
-  V end = detail::zero_initialized<V>(); ///< likewise, at the last row
+  /// ω or [v; ω] at the first data point, spatial axes, per unit of u.
+  V start = detail::zero_initialized<V>();
+  /// Likewise, at the last data point.
+  V end = detail::zero_initialized<V>();
 };
 
 /// Given angular accelerations, or derivatives of twists: zero unless given.
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct end_acceleration {
-  V start =
-      detail::zero_initialized<V>(); ///< ω̇ or [v̇; ω̇] at the first row, spatial axes, per unit of u²
-  V end = detail::zero_initialized<V>(); ///< likewise, at the last row
+  /// ω̇ or [v̇; ω̇] at the first data point, spatial axes, per unit of u².
+  V start = detail::zero_initialized<V>();
+  /// Likewise, at the last data point.
+  V end = detail::zero_initialized<V>();
 };
 
 /// Given angular velocities and accelerations, or twists and their derivatives: all that the
