@@ -339,6 +339,75 @@ TEST_CASE("zeros that crowd in one order") {
   }
 }
 
+/// Arms of right angles at quarter turns, where many solutions agree in each of the angles.
+TEST_CASE("goals made of quarter turns") {
+  constexpr double q = pi / 2;
+  const chain a = from_dh(std::array<dh_row<>, 6>{{{.a = .36, .d = .01, .alpha = q},
+                                                   {.a = -.36, .d = .42, .alpha = q},
+                                                   {.a = -.46, .d = .27, .alpha = -q},
+                                                   {.a = .3, .d = .42},
+                                                   {.a = .22, .d = -.12, .alpha = -q},
+                                                   {.a = .29, .d = -.29, .alpha = -q}}});
+  const chain b = from_dh(std::array<dh_row<>, 6>{{{.d = -.42, .alpha = q},
+                                                   {.a = .12, .d = .41},
+                                                   {.a = -.2, .d = -.41, .alpha = q},
+                                                   {.d = -.24, .alpha = q},
+                                                   {.a = .41, .d = -.28, .alpha = -q},
+                                                   {.a = .11, .d = -.47, .alpha = q}}});
+  const auto check = [](const chain& arm, const std::array<double, 6>& at, double unit,
+                        std::size_t count) {
+    const vector theta = unit * vector(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(at.data()));
+    const auto goal = arm.pose(theta);
+    const result found = all_inverse_kinematics(arm, goal);
+    CHECK(found.is_complete);
+    CHECK(found.solutions.size() == count);
+    CHECK(holds(arm, found, theta));
+    check_solutions(arm, found, goal);
+  };
+  check(a, {1, 2, -1, 2, 2, 1}, q, 10);
+  check(b, {2, 1, 1, 2, -1, -1}, q, 6);
+  std::array<joint<>, 6> xarm6;
+  const std::array<std::array<double, 6>, 6> axes{{{0, 0, 1, 0, 0, 0},
+                                                   {0, 1, 0, 0, 0, .267},
+                                                   {0, 1, 0, .0535, 0, .2845},
+                                                   {0, 0, -1, .0775, 0, -.3425},
+                                                   {0, 1, 0, 0, 0, 0},
+                                                   {0, 0, -1, .076, 0, -.097}}};
+  for (std::size_t i = 0; i < 6; ++i) { // each point from the one before
+    const auto& [x, y, z, px, py, pz] = axes[i];
+    xarm6[i].axis = {x, y, z};
+    xarm6[i].origin = {quaternion<double>(1), {px, py, pz}};
+  }
+  check(serial_chain<6>(xarm6), {1, 24, -24, -1, 25, 19}, .125, 8);
+}
+
+/// What a goal is made of is found where that is singular, or it is not certain that nothing is.
+TEST_CASE("singular goals are not called unreachable") {
+  constexpr double q = pi / 2;
+  const chain arm = from_dh(std::array<dh_row<>, 6>{{{.d = .4, .alpha = q},
+                                                     {.a = .35},
+                                                     {.alpha = q},
+                                                     {.d = .3, .alpha = -q},
+                                                     {.a = .003, .alpha = q},
+                                                     {.d = .1}}});
+  const auto check = [&](int number) {
+    CAPTURE(number);
+    vector theta(6);
+    for (int i = 0, rest = number; i < 6; ++i, rest /= 4) {
+      theta[i] = (rest % 4 - 1) * q;
+    }
+    const result found = all_inverse_kinematics(arm, arm.pose(theta));
+    CHECK_FALSE((found.solutions.empty() && found.is_complete));
+    for (const auto& s : found.solutions) {
+      CHECK(s.residual <= 1e-12);
+    }
+  };
+  check(3 + 4 * (3 + 4 * (2 + 4 * (2 + 4 * (3 + 4 * 1)))));
+  for (int k = 0; k < 4096; k += 41) {
+    check(k);
+  }
+}
+
 TEST_CASE("angles within a turn") {
   const double turn = 2 * pi;
   for (const double start : {0., .3, -2., pi, 3 * pi, 5 * pi, 1e5}) {

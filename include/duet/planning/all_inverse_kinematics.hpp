@@ -70,12 +70,12 @@ template <int N>
 struct all_inverse_kinematics_result {
   /// In the order of their first coordinates, those that agree there of the second …
   std::vector<inverse_kinematics_branch<N>> solutions;
-  /// How many more the equations have that are complex. (For arms of special geometry, but not in
-  /// closed form, from above.)
+  /// How many more the equations have that are complex: 16 at most in all. (For arms of special
+  /// geometry, but not in closed form, from above.)
   int complex_solutions = 0;
   branch_method method = branch_method::elimination; ///< how they were found
-  /// Is it certain, but for rounding, that there are no others? Where joints can move with the tip
-  /// in place it is not.
+  /// Is it certain, but for rounding, that there are no others that are regular? Where joints can
+  /// move with the tip in place it is not, nor where such a curve might pass and nothing was found.
   bool is_complete = false;
 
   /// For those who extend duet: for `to_text`.
@@ -247,12 +247,12 @@ void fill_singular_values(const C& chain, std::vector<inverse_kinematics_branch<
 ///
 /// Spherical wrists, three parallel axes one after the other and three sliding joints are
 /// recognised, by 1e-9 of the arm's size, and solved in closed form. Two sliding joints: zeros of a
-/// polynomial of degree 8. Any other arm: elimination
-/// after Raghavan and Roth, the determinant's zeros on the unit circle, Newton's method from there
-/// (docs/all_inverse_kinematics.md). Joints beyond their limits are told by `within_limits`. Where
-/// joints can move with the tip in place, some of these configurations are returned: of two that
-/// slide along each other wherever the others are, one for each way in which these make it, in the
-/// middle of what the limits of both allow.
+/// polynomial of degree 8. Any other arm: elimination after Raghavan and Roth for two loops whose
+/// axes are displaced from the given ones by 1e-4 and less of the arm's size, so that no solutions
+/// coincide, and Newton's method from there (docs/all_inverse_kinematics.md). Joints beyond their
+/// limits are told by `within_limits`. Where joints can move with the tip in place, some of these
+/// configurations are returned: of two that slide along each other wherever the others are, one for
+/// each way in which these make it, in the middle of what the limits of both allow.
 ///
 /// \param chain  six joints that turn or slide, at most three of them sliding
 /// \throws invalid_input for other chains, and for a goal that is no pose

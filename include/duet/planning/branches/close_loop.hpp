@@ -16,9 +16,10 @@ namespace duet::detail {
 #ifdef DUET_DEFINES_COMPILED
 DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& theta,
                                        double size_of_angles) {
-  constexpr double rounding = 2e-15, good = 1e-13;
+  constexpr double rounding = 2e-15, good = 1e-13, hopeful = 1e-6, singular = 1e-7;
   double before = HUGE_VAL;
-  for (int k = 0; k < 40; ++k) {
+  six_coordinates last = six_coordinates::Zero(), measured = theta;
+  for (int k = 0; k < 60; ++k) {
     const loop_gap gap(loop, theta);
     const double to_angle = gap.size / std::min(gap.size, size_of_angles);
     const double left = std::sqrt(gap.twist.head<3>().squaredNorm() +
@@ -27,15 +28,36 @@ DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& 
     if (left <= rounding || (left <= good && left >= before / 2)) {
       return true;
     }
-    before = left;
-    const six_coordinates step = least_solution(gap.jacobian, gap.twist);
-    const double length = step.norm();
-    if (!(length < 1e6)) {
+    if ((k >= 20 && !(left < .1)) || (k >= 40 && !(left < hopeful))) {
       return false;
     }
-    theta += std::min(1.0, .5 / length) * step;
+    before = left;
+    measured = theta;
+    six_coordinates step = least_solution(gap.jacobian, gap.twist);
+    if (left <= good && !(step.norm() < singular)) {
+      return true; // what is left is rounding that would be made larger
+    }
+    // A gap of fourth order is closed by steps as long as that.
+    const double longest = std::min(.5, 2 * gap.size * std::sqrt(std::sqrt(left)));
+    if (!(step.norm() < longest)) { // beside a singularity: the least |J x − e|² + |e|² |x|²
+      Eigen::Matrix<double, 6, 12> damped;
+      damped << gap.jacobian, left * six_columns::Identity();
+      step = least_solution(damped, gap.twist).head<6>();
+      step *= std::min(1.0, longest / step.norm());
+      if (!step.allFinite()) {
+        return false;
+      }
+    }
+    // In a singularity steps become shorter by one factor q: 1 + q + q² + … of them at once.
+    const double lengths = last.norm() * step.norm(), q = step.norm() / last.norm();
+    if (k % 3 == 2 && q < .95 && last.dot(step) > .9 * lengths) {
+      theta += q / (1 - q) * step;
+    }
+    theta += step;
+    last = step;
   }
-  return false;
+  theta = measured;
+  return before <= 5 * good; // where many solutions coincide rounding is in the way
 }
 #endif
 

@@ -1,22 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/planning/branches/circle_roots.hpp>
-#include <duet/planning/branches/complex_eigenvectors.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/line_coordinates.hpp>
-#include <duet/planning/branches/orthonormalise.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <numbers>
 
 /// \file
 /// A loop of six joints as the zeros of a determinant in the angle of the third, which must turn,
@@ -35,7 +32,6 @@ class elimination {
 
 public:
   using matrix = Eigen::Matrix<double, 12, 12>;
-  using decomposition = Eigen::PartialPivLU<matrix>;
 
   explicit elimination(const joint_loop& loop) : loop_(loop) {
     const auto& joints = loop.joints;
@@ -65,9 +61,7 @@ public:
       }
     }
     arm_.col(0) -= goal.col(0);
-    Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 14, 8>> factors;
-    factors.setThreshold(1e-10);
-    factors.compute(goal.rightCols<8>());
+    const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 14, 8>> factors(goal.rightCols<8>());
     const auto& r = factors.matrixQR();
     // One by one: by blocks, as Eigen applies them by itself, compilers take longer.
     Eigen::Matrix<double, 27, 1> workspace;
@@ -76,32 +70,22 @@ public:
                                                         workspace.data());
     }
     const auto& order = factors.colsPermutation().indices();
-    rank_ = factors.rank();
-    for (Eigen::Index k = rank_; k-- > 0;) {
+    for (Eigen::Index k = 8; k-- > 0;) {
       auto row = eliminated_.row(order[k]) = arm_.row(k);
-      for (Eigen::Index j = k + 1; j < rank_; ++j) {
+      for (Eigen::Index j = k + 1; j < 8; ++j) {
         row -= r(k, j) * eliminated_.row(order[j]);
       }
       row /= r(k, k);
-    }
-    if (rank_ == 8) {
-      left_ = arm_.bottomRows<6>();
-    } else { // more equations than needed: six sums of them
-      left_.setZero();
-      for (Eigen::Index i = rank_; i < 14; ++i) {
-        for (Eigen::Index k = 0; k < 6; ++k) {
-          left_.row(k) += std::cos(double((i + 1) * (i + 1) * (k + 1))) * arm_.row(i);
-        }
-      }
     }
   }
 
   /// The matrix at an angle θ₃. Columns: cos θ₄/2, sin θ₄/2, cos 3θ₄/2, sin 3θ₄/2, or 1, d₄, d₄²,
   /// d₄³, each times 1, cos θ₅, sin θ₅, or 1, d₅, d₅².
   [[nodiscard]] matrix at(double theta) const {
-    const Eigen::Matrix<double, 6, 9> a = left_.leftCols<9>() +
-                                          std::cos(theta) * left_.middleCols<9>(9) +
-                                          std::sin(theta) * left_.rightCols<9>();
+    const auto left = arm_.bottomRows<6>();
+    const Eigen::Matrix<double, 6, 9> a = left.leftCols<9>() +
+                                          std::cos(theta) * left.middleCols<9>(9) +
+                                          std::sin(theta) * left.rightCols<9>();
     const auto one = a.leftCols<3>(), cosine = a.middleCols<3>(3), sine = a.rightCols<3>();
     matrix m;
     if (loop_.joints[3].turns) {
@@ -121,140 +105,103 @@ public:
     return m;
   }
 
-  /// The determinant's degree in e^{iθ₃}, not 12: each of the rows that are left has that with only
-  /// four products of the others.
-  using roots = circle_roots<8>;
+  static constexpr int most = 16;  ///< solutions
+  static constexpr int hidden = 2; ///< the joint whose angle the determinant depends on
 
-  /// Determinants at the angles of `roots`; nothing but zeros where they vanish for all θ₃.
-  [[nodiscard]] roots::values determinants() const {
-    roots::values result;
-    double best = 0;
-    for (int k = 0; k < roots::samples; ++k) {
-      const decomposition lu(at(roots::angle(k)));
-      const auto pivots = lu.matrixLU().diagonal().cwiseAbs();
-      best = std::max(best, pivots.minCoeff() / pivots.maxCoeff());
-      result[std::size_t(k)] = lu.determinant();
-    }
-    if (!(best > 1e-12)) {
-      result.fill(0);
+  struct zeros {
+    std::array<complex, 24> values; ///< e^{iθ₃}, eight of them not on account of solutions
+    double regularity = 0;          ///< near 0 if the determinant vanishes for all angles
+  };
+
+  /// Where the determinant vanishes.
+  ///
+  /// With x the tangent of half of what θ₃ is beyond an angle where no known arm has a solution,
+  /// the matrix is M₀ + 2 x M₁ + x² M₂ but for a factor: x is an eigenvalue of a matrix of 24 rows,
+  /// as precise as solutions are regular, also where these have θ₃ in common. (Zeros of a
+  /// polynomial of which m coincide have an error of ε^{1/m}.)
+  [[nodiscard]] zeros roots() const {
+    constexpr double start = .7345;
+    const matrix here = at(start), opposite = at(start + std::numbers::pi),
+                 slope = at(start + std::numbers::pi / 2) - .5 * (here + opposite);
+    const Eigen::PartialPivLU<matrix> lu(opposite);
+    Eigen::Matrix<double, 24, 24> companion;
+    companion.topRows<12>() << matrix::Zero(), matrix::Identity();
+    companion.bottomLeftCorner<12, 12>() = -lu.solve(here);
+    companion.bottomRightCorner<12, 12>() = -2 * lu.solve(slope);
+    const Eigen::RealSchur<Eigen::Matrix<double, 24, 24>> schur(companion, false);
+    const auto& t = schur.matrixT();
+    zeros result;
+    const auto pivots = lu.matrixLU().diagonal().cwiseAbs().eval();
+    result.regularity = pivots.minCoeff() / pivots.maxCoeff();
+    const auto add = [&](Eigen::Index i, complex x) {
+      const complex i_x(-x.imag(), x.real());
+      result.values[std::size_t(i)] = std::polar(1., start) * (1. + i_x) / (1. - i_x);
+    };
+    for (Eigen::Index i = 0; i < 24; ++i) {
+      if (i + 1 < 24 && t(i + 1, i) != 0) {
+        const double half = (t(i, i) - t(i + 1, i + 1)) / 2,
+                     height = std::sqrt(std::abs(half * half + t(i + 1, i) * t(i, i + 1)));
+        add(i, {t(i + 1, i + 1) + half, height});
+        add(i + 1, {t(i + 1, i + 1) + half, -height});
+        ++i;
+      } else {
+        add(i, t(i, i));
+      }
     }
     return result;
   }
 
-  /// Calls visit(θ) with coordinates near the real solutions that have this θ₃, of which there are
-  /// `count`, complex ones included.
-  /// \return the number of real ones
+  /// Calls visit(θ) with coordinates near the real solution that has this θ₃, if there is one.
   template <class Visit>
-  int solutions_at(double theta, int count, const Visit& visit) const {
-    Eigen::Matrix<double, 12, Eigen::Dynamic, Eigen::ColMajor, 12, 12> kernel(12, count);
-    for (int j = 0; j < count; ++j) {
-      for (int i = 0; i < 12; ++i) {
-        kernel(i, j) = std::cos(double(3 * i + 1) * (j + 1));
-      }
+  void solution_at(double theta3, const Visit& visit) const {
+    Eigen::Matrix<double, 12, 1> kernel;
+    for (int i = 0; i < 12; ++i) {
+      kernel[i] = std::cos(double(3 * i + 1));
     }
-    const decomposition lu(at(theta + 1e-10)); // no pivot is zero
-    for (int k = 0; k < 3; ++k) {              // inverse iteration on the products of the matrix
-      kernel = lu.transpose().solve(kernel).eval();
-      orthonormalise(kernel);
-      kernel = lu.solve(kernel).eval();
-      orthonormalise(kernel);
+    const Eigen::PartialPivLU<matrix> lu(at(theta3 + 1e-10)); // no pivot is zero
+    for (int k = 0; k < 3; ++k) {                             // inverse iteration
+      kernel = lu.transpose().solve(kernel).eval().normalized();
+      kernel = lu.solve(kernel).eval().normalized();
     }
     // The products of a solution times e^{iθ₄}, or d₄, are products of the same solution.
     const complex i(0, 1);
-    Eigen::Matrix<complex, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 12> low(9, count), high(9, count);
-    if (loop_.joints[3].turns) {
-      low.topRows(3) = kernel.middleRows(6, 3) - i * kernel.bottomRows(3);
-      low.middleRows(3, 3) = kernel.topRows(3) - i * kernel.middleRows(3, 3);
-      low.bottomRows(3) = kernel.topRows(3) + i * kernel.middleRows(3, 3);
-      high.topRows(6) = low.bottomRows(6);
-      high.bottomRows(3) = kernel.middleRows(6, 3) + i * kernel.bottomRows(3);
+    Eigen::Matrix<complex, 9, 1> low, high;
+    const bool turns = loop_.joints[3].turns;
+    if (turns) {
+      low.head<3>() = kernel.segment<3>(6) - i * kernel.tail<3>();
+      low.segment<3>(3) = kernel.head<3>() - i * kernel.segment<3>(3);
+      low.tail<3>() = kernel.head<3>() + i * kernel.segment<3>(3);
+      high.head<6>() = low.tail<6>();
+      high.tail<3>() = kernel.segment<3>(6) + i * kernel.tail<3>();
     } else {
-      low = kernel.topRows(9).template cast<complex>();
-      high = kernel.bottomRows(9).template cast<complex>();
+      low = kernel.head<9>().cast<complex>();
+      high = kernel.tail<9>().cast<complex>();
     }
-    orthonormalise(low, high);
-    const small_square right = low.adjoint().lazyProduct(high);
-    if (count == 1) {
-      return visit_factors(theta, right(0, 0), low.col(0), visit);
+    const complex z = low.dot(high) / low.squaredNorm();
+    if (!(turns ? std::abs(std::log(std::abs(z))) < nearly_real
+                : std::abs(z.imag()) < nearly_real * (1 + std::abs(z)))) {
+      return;
     }
-    const complex_eigenvectors eigen(right);
-    const auto& z = eigen.values;
-    const auto products = low.lazyProduct(eigen.vectors).eval();
-    int real = 0;
-    for (int k = 0; k < count; ++k) {
-      int other = -1; // a solution with the same θ₄
-      for (int j = 0; j < count; ++j) {
-        if (j != k && std::abs(z[j] - z[k]) < 1e-3 * (1 + std::abs(z[k]))) {
-          other = j;
-        }
-      }
-      if (other < 0) {
-        real += visit_factors(theta, z[k], products.col(k), visit);
-      } else if (other > k) {
-        Eigen::Matrix<complex, 9, 2> both;
-        both << products.col(k), products.col(other);
-        real += visit_factors(theta, z[k], both, visit);
-      }
+    // Products of 1, cos θ₅, sin θ₅, or 1, d₅, d₅², which are real but for a common factor.
+    Eigen::Vector3cd factor = Eigen::Vector3cd::Zero();
+    for (int k = 0; k < 3; ++k) { // of phases −3θ₄/2, −θ₄/2, θ₄/2; or weights 1, d₄, d₄²
+      const complex weight =
+          turns ? std::polar(1., (1.5 - k) * std::arg(z)) : complex(std::pow(z.real(), k));
+      factor += weight * low.segment<3>(3 * k);
     }
-    return real;
+    const complex phase = std::sqrt(factor.cwiseProduct(factor).sum());
+    visit_factor(theta3, turns ? std::arg(z) : z.real(), (factor * std::conj(phase)).real(), visit);
   }
 
 private:
-  [[nodiscard]] bool is_real(complex z) const {
-    return loop_.joints[3].turns ? std::abs(std::log(std::abs(z))) < .1
-                                 : std::abs(z.imag()) < .1 * (1 + std::abs(z));
-  }
+  static constexpr double nearly_real = .3;
 
-  /// Of products of powers of e^{iθ₄}, or d₄, with 1, cos θ₅, sin θ₅, or 1, d₅, d₅², the latter.
-  /// Two solutions with the same θ₃ and θ₄ are mixed: of the sums of these those whose squares are
-  /// as they should be, c² + s² = 1, or d² = 1 d².
-  template <class Products, class Visit>
-  int visit_factors(double theta, complex z, const Products& products, const Visit& visit) const {
-    if (!is_real(z)) {
-      return 0;
-    }
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (Eigen::Index j = 0; j < products.cols(); ++j) {
-      Eigen::Vector3cd sum = Eigen::Vector3cd::Zero();
-      for (int k = 0; k < 3; ++k) { // of phases −3θ₄/2, −θ₄/2, θ₄/2; or weights 1, d₄, d₄²
-        const complex weight = loop_.joints[3].turns ? std::polar(1., (1.5 - k) * std::arg(z))
-                                                     : complex(std::pow(z.real(), k));
-        sum += weight * products.col(j).template segment<3>(3 * k);
-      }
-      squares += (sum * sum.adjoint()).real();
-    }
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> span;
-    span.computeDirect(squares);
-    const Eigen::Vector3d a = span.eigenvectors().col(2), b = span.eigenvectors().col(1);
-    if (products.cols() == 1) {
-      return visit_factor(theta, z, a, visit);
-    }
-    const auto form = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
-      return loop_.joints[4].turns ? x[1] * y[1] + x[2] * y[2] - x[0] * y[0]
-                                   : x[1] * y[1] - (x[0] * y[2] + x[2] * y[0]) / 2;
-    };
-    // Zeros of the form at a cos φ + b sin φ, where it is m + r cos(2φ − φ₀).
-    const double aa = form(a, a), ab = form(a, b), bb = form(b, b);
-    const double r = std::hypot((aa - bb) / 2, ab), start = std::atan2(ab, (aa - bb) / 2);
-    const double cosine = -(aa + bb) / 2 / r;
-    if (!(std::abs(cosine) < 1.01)) {
-      return std::abs(cosine) < 2 ? 2 : 0;
-    }
-    const double turn = std::acos(std::clamp(cosine, -1., 1.));
-    int real = 0;
-    for (const double sign : {-1., 1.}) {
-      const double phi = (start + sign * turn) / 2;
-      real += visit_factor(theta, z, std::cos(phi) * a + std::sin(phi) * b, visit);
-    }
-    return real;
-  }
-
-  /// \return does it solve all 14 equations, not only the sums of them that are left?
   template <class Visit>
-  bool visit_factor(double theta3, complex z, Eigen::Vector3d factor, const Visit& visit) const {
+  void visit_factor(double theta3, double theta4, Eigen::Vector3d factor,
+                    const Visit& visit) const {
     six_coordinates theta;
     theta[2] = theta3;
-    theta[3] = loop_.joints[3].turns ? std::arg(z) : z.real();
+    theta[3] = theta4;
     if (loop_.joints[4].turns) {
       factor *= std::copysign(1., factor[0]);
       theta[4] = std::atan2(factor[2], factor[1]);
@@ -282,19 +229,14 @@ private:
     const three_vector<double>& n = loop_.joints[5].axis;
     const quaternion<double>& q = rest.rotation;
     theta[5] = 2 * std::atan2(n.x * q.x() + n.y * q.y() + n.z * q.z(), q.w());
-    if (!theta.allFinite()) {
-      return false;
+    if (theta.allFinite()) {
+      visit(theta);
     }
-    visit(theta);
-    const Eigen::Matrix<double, 14, 1> right = arm_ * all;
-    return right.tail(14 - rank_).norm() < 1e-3 * (1 + right.norm());
   }
 
   joint_loop loop_;
-  Eigen::Index rank_;                 // of the products that are eliminated
-  Eigen::Matrix<double, 14, 27> arm_; // all equations, the first `rank_` with those products
-  Eigen::Matrix<double, 8, 27> eliminated_ = Eigen::Matrix<double, 8, 27>::Zero(); // the products
-  Eigen::Matrix<double, 6, 27> left_;
+  Eigen::Matrix<double, 14, 27> arm_; // all equations, the last six without the eliminated products
+  Eigen::Matrix<double, 8, 27> eliminated_; // the products
 };
 
 } // namespace duet::detail

@@ -3,8 +3,14 @@
 
 #include <duet/planning/branches/elimination.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_answer.hpp>
 #include <duet/planning/branches/loop_solutions.hpp>
+#include <duet/planning/branches/middle_turn.hpp>
 #include <duet/planning/branches/two_slides.hpp>
+#include <duet/planning/split_mix.hpp>
+#include <duet/planning/tip_place.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <algorithm>
@@ -12,6 +18,8 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
@@ -26,10 +34,12 @@ struct loop_order {
   bool is_reversed = false;
   double quality = 0; ///< how well equations can be solved that way; 0 if not at all
 
+  /// The number in the loop of the k-th joint of this order.
+  [[nodiscard]] Eigen::Index joint(int k) const { return ((is_reversed ? 5 - k : k) + first) % 6; }
   [[nodiscard]] six_coordinates in_loop(const six_coordinates& theta) const {
     six_coordinates result;
     for (int k = 0; k < 6; ++k) {
-      result[(k + first) % 6] = theta[is_reversed ? 5 - k : k];
+      result[joint(k)] = theta[k];
     }
     return result;
   }
@@ -79,94 +89,179 @@ template <class System>
     add(from.reversed(), first, true);
     from = from.shifted();
   }
-  constexpr double usable = 1e-6; // worse ones lose solutions, and serve where there is no other
-  const auto is_usable = [](const loop_order& o) { return o.quality > usable; };
-  const auto worse = std::find_if_not(result.begin(), result.end(), is_usable);
-  if (worse != result.begin()) {
-    result.erase(worse, result.end());
-  }
+  const auto is_worse = [&](const loop_order& o) { return o.quality < .01 * result[0].quality; };
+  result.erase(std::find_if(result.begin(), result.end(), is_worse), result.end());
   return result;
 }
 
-/// What one order of a loop says of the number of its solutions.
-struct solution_count {
-  int real = 0; ///< zeros that are real, but for rounding
-  int all = 0;  ///< complex ones included
+/// A loop with axes that are in general position, close to the given ones: by up to about `by`,
+/// always the same.
+[[nodiscard]] inline joint_loop disturbed(joint_loop loop, double by, std::uint64_t seed) {
+  split_mix random(seed);
+  const vector3d far = .1 * loop.closing.translation; // of slides that are long
+  by /= std::max(1., dot(far, far));
+  const auto any = [&] {
+    const double x = random(), y = random(), z = random();
+    return by * vector3d{2 * x - 1, 2 * y - 1, 2 * z - 1};
+  };
+  for (loop_joint& j : loop.joints) {
+    const vector3d axis = j.axis + any();
+    j.axis = 1 / length_of(axis) * axis;
+    j.point = j.point + any();
+  }
+  const vector3d turn = any(), way = any();
+  loop.closing =
+      tip_place{normalized(quaternion<double>(1, turn.x, turn.y, turn.z)), way} * loop.closing;
+  return loop;
+}
+
+/// Whether there may be solutions near a zero e^{iθ} of a system's determinant.
+struct zero_on_circle {
+  double angle = 0;
+  bool is_real = false;  ///< but for rounding
+  bool is_single = true; ///< has no other one beside it
 };
 
-/// Adds the solutions that one order of a loop leads to.
-template <class System>
-[[nodiscard]] solution_count solve_in_order(const loop_order& order, loop_solutions& solutions) {
-  solution_count result;
-  const System system(order.loop);
-  const auto determinants = system.determinants();
-  if (determinants[0] == 0) {
-    return result;
-  }
-  using all_roots = typename System::roots;
-  const all_roots roots(all_roots::interpolated(determinants));
-  constexpr double rounding = 1e-13, farthest = .05;
-  std::vector<int> candidates;
-  candidates.reserve(std::size_t(all_roots::count));
-  const auto error_of = [&](int i) { return std::min(.03, rounding * roots.sensitivity(i)); };
-  const auto from_circle = [&](int i) { return std::abs(std::log(std::abs(roots[i]))); };
-  for (int i = 0; i < all_roots::count; ++i) {
-    const double distance = from_circle(i);
-    result.all += distance < 9; // others are at infinity
-    if (distance < farthest) {
-      candidates.push_back(i);
+[[nodiscard]] inline std::vector<zero_on_circle>
+zeros_on_circle(std::span<const std::complex<double>> roots) {
+  constexpr double real = 1e-9, nearly_real = .2, beside = .02;
+  std::vector<zero_on_circle> result;
+  for (const std::complex<double>& z : roots) {
+    const double off = std::log(std::abs(z)); // the other one of a complex pair has −off
+    if (off > -real && off < nearly_real) {
+      result.push_back({std::arg(z), off < real});
     }
   }
-  std::sort(candidates.begin(), candidates.end(),
-            [&](int i, int j) { return std::arg(roots[i]) < std::arg(roots[j]); });
-  const auto add = [&](const six_coordinates& theta) { solutions.add(order.in_loop(theta)); };
-  // Solutions with one θ₃ are a zero of higher order, which rounding takes apart.
-  for (std::size_t i = 0, end = 0; i < candidates.size(); i = end) {
-    std::complex<double> sum = 0;
-    int real = 0;
-    bool is_one = true;
-    for (end = i; end < candidates.size() && is_one; end += is_one) {
-      is_one = end == i || std::abs(roots[candidates[end]] - roots[candidates[end - 1]]) <
-                               1e-4 + error_of(candidates[end]);
-      if (is_one) {
-        real = system.solutions_at(std::arg(roots[candidates[end]]), 1, add);
-        sum += roots[candidates[end]];
-      }
-    }
-    if (end > i + 1) {
-      real = system.solutions_at(std::arg(sum), int(end - i), add);
-    }
-    if (from_circle(candidates[i]) < 1e-8 + 10 * error_of(candidates[i])) {
-      result.real += real;
-    }
+  for (zero_on_circle& one : result) {
+    one.is_single = std::count_if(result.begin(), result.end(), [&](const zero_on_circle& other) {
+                      return std::abs(turned_back(other.angle - one.angle)) < beside;
+                    }) == 1;
   }
   return result;
 }
 
-/// All solutions of a loop by a system of equations. They are complete where as many are found as
-/// there are real zeros, and a second order of the joints finds no others: axes that meet or are
-/// parallel may hide solutions from an order, and rounding a pair in some 1e6.
+/// The solutions of a loop, from those of loops close to it.
 template <class System>
-[[nodiscard]] loop_answer solve_general_loop(const joint_loop& loop) {
-  loop_solutions found(loop);
-  loop_answer result;
-  int expected = 0, all = 0, agreeing = 0;
-  for (const loop_order& order : orders_of<System>(loop)) {
-    const int before = found.count();
-    const solution_count count = solve_in_order<System>(order, found);
-    if (count.all == 0) {
-      continue;
-    }
-    expected = std::max(expected, count.real);
-    all = all == 0 ? count.all : std::min(all, count.all);
-    agreeing = found.count() == before ? agreeing + 1 : 1;
-    if (found.count() >= expected && found.count() % 2 == 0 && agreeing >= 2) {
-      result.is_complete = true;
-      break;
+class general_solver {
+public:
+  explicit general_solver(const joint_loop& loop) : found_(loop) {}
+
+  [[nodiscard]] const loop_solutions& found() const { return found_; }
+  /// Might solutions be on curves of which no point was found?
+  [[nodiscard]] bool is_doubtful() const { return is_doubtful_; }
+
+  /// Did the last loop that was solved have real zeros alone near the circle, away from each other?
+  [[nodiscard]] bool is_certain() const { return is_certain_; }
+
+  /// On curves of solutions those of a loop close by may all be complex.
+  void add_from_anywhere() {
+    constexpr int starts = 12;
+    split_mix random(1);
+    for (int k = 0; k < starts; ++k) {
+      six_coordinates theta;
+      for (double& x : theta) {
+        x = 6 * random() - 3;
+      }
+      static_cast<void>(found_.add(theta));
     }
   }
+
+  /// Adds the solutions that one order leads to, disturbed.
+  /// \return has every real zero led to a solution of its own?
+  bool add(const loop_order& order, double by, std::uint64_t seed) {
+    constexpr double singular = 1e-4, sound = .05;
+    const System system(disturbed(order.loop, by, seed));
+    const auto roots = system.roots();
+    if (!is_doubtful_ && !(roots.regularity > singular)) {
+      is_doubtful_ = true;
+      add_from_anywhere();
+    }
+    std::vector<std::size_t> led_to;
+    bool is_clear = true;
+    is_certain_ = roots.regularity > 100 * singular && order.quality > sound;
+    for (const zero_on_circle& zero : zeros_on_circle(roots.values)) {
+      std::size_t at = zero.is_real && zero.is_single ? known(order, zero.angle) : nowhere;
+      if (at == nowhere) {
+        system.solution_at(zero.angle, [&](const six_coordinates& theta) {
+          at = found_.add(order.in_loop(theta));
+        });
+      }
+      is_certain_ = is_certain_ && zero.is_real && zero.is_single;
+      if (zero.is_real) {
+        is_clear = is_clear && at != nowhere &&
+                   std::count(led_to.begin(), led_to.end(), at) < found_.all()[at].multiplicity;
+        led_to.push_back(at);
+      }
+    }
+    return is_clear;
+  }
+
+private:
+  static constexpr std::size_t nowhere = loop_solutions::nowhere;
+
+  /// The only solution near an angle that the determinant vanishes at, if it was found.
+  [[nodiscard]] std::size_t known(const loop_order& order, double angle) const {
+    constexpr double beside = .02, near = 1e-3;
+    std::size_t result = nowhere;
+    for (std::size_t i = 0; i < found_.all().size(); ++i) {
+      const double theta = found_.all()[i].theta[order.joint(System::hidden)];
+      const double off = std::abs(turned_back(theta - angle));
+      if (off < beside) {
+        if (result != nowhere || off > near) {
+          return nowhere;
+        }
+        result = i;
+      }
+    }
+    return result;
+  }
+
+  loop_solutions found_;
+  bool is_doubtful_ = false, is_certain_ = false;
+};
+
+/// All solutions of a loop by a system of equations.
+///
+/// Axes at right angles and goals that are made of round numbers let zeros coincide, hide solutions
+/// from an order of the joints, or let the determinant vanish for all angles. So loops are solved
+/// whose axes are disturbed, always in the same ways, by 1e-6 to 1e-3 of the loop's size, in more
+/// than one order; and Newton's method leads from their solutions to those of the loop itself.
+/// These are complete where two such loops, one after the other, have as many real zeros as
+/// solutions were found, three where one is nearly singular, or where three add no others; not
+/// where some are on a curve.
+template <class System>
+[[nodiscard]] loop_answer solve_general_loop(const joint_loop& loop) {
+  constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-3, 1e-5, 1e-4, 1e-5};
+  const auto orders = orders_of<System>(disturbed(loop, by[0], 1));
+  general_solver<System> solver(loop);
+  const loop_solutions& found = solver.found();
+  const auto needed = [&] {
+    const double sigma = found.smallest_singular_value();
+    return sigma < .01 ? 3 : sigma < .04 || !solver.is_certain() || found.count() == 0 ? 2 : 1;
+  };
+  int agreeing = 0, quiet = 0;
+  for (std::size_t k = 0; k < by.size() && agreeing < needed(); ++k) {
+    const int before = found.count();
+    const bool is_clear =
+        solver.add(orders[k % orders.size()], by[k], k + 2) && found.count() % 2 == 0;
+    const bool is_news = found.count() != before;
+    quiet = is_news ? 0 : quiet + 1;
+    agreeing = is_news ? int(is_clear) : agreeing + is_clear;
+  }
+  const bool agree = agreeing >= needed() || quiet >= 3;
+  if (found.all().empty()) {
+    solver.add_from_anywhere(); // a singular solution, or a curve of them?
+  }
+  double reach = 0; // of the joints, at most
+  for (const loop_joint& j : loop.joints) {
+    reach += j.turns ? 2 * length_of(j.point) : HUGE_VAL;
+  }
+  const bool may_be_lost =
+      solver.is_doubtful() && found.all().empty() && length_of(loop.closing.translation) < reach;
+  loop_answer result;
   result.solutions = found.all();
-  result.complex_solutions = std::max(0, all - found.count());
+  result.complex_solutions = std::max(0, System::most - found.count());
+  result.is_complete = agree && found.on_curves() == 0 && !may_be_lost;
   return result;
 }
 

@@ -23,25 +23,27 @@ public:
   explicit loop_solutions(const joint_loop& loop) : loop_(loop) {}
 
   [[nodiscard]] const std::vector<loop_solution>& all() const { return all_; }
-  /// How many there are, each as often as it counts.
+  /// How many there are that stand alone, each as often as it counts.
   [[nodiscard]] int count() const {
-    int result = 0;
+    int result = -on_curves_;
     for (const loop_solution& x : all_) {
       result += x.multiplicity;
     }
     return result;
   }
 
-  /// Refines θ and adds what it is near to, and the solution beside that near a singularity.
-  void add(six_coordinates theta) { static_cast<void>(place_of_added(theta)); }
-
-private:
   static constexpr std::size_t nowhere = std::size_t(-1);
-  static constexpr double close_together = 1e-3; // half of how far what is one may be apart
 
-  /// Where the solution that θ is near to stands, or `nowhere` if there is none.
-  std::size_t place_of_added(six_coordinates theta) {
-    if (!close_loop(loop_, theta)) {
+  /// Of all, but for those that are far from 0.
+  [[nodiscard]] double smallest_singular_value() const { return least_sigma_; }
+  /// How many are on curves on which all others are solutions, too.
+  [[nodiscard]] int on_curves() const { return on_curves_; }
+
+  /// Refines θ and adds what it is near to, and the solution beside that near a singularity.
+  /// \return where that stands, or `nowhere` if there is none
+  std::size_t add(six_coordinates theta) {
+    constexpr std::size_t enough = 64; // of points on curves
+    if (all_.size() >= enough || !close_loop(loop_, theta)) {
       return nowhere;
     }
     for (Eigen::Index i = 0; i < 6; ++i) {
@@ -60,6 +62,9 @@ private:
     return last;
   }
 
+private:
+  static constexpr double close_together = 1e-3; // half of how far what is one may be apart
+
   /// Are two solutions one, but for rounding? Then what is in their middle is one, too.
   [[nodiscard]] bool is_same(const six_coordinates& a, const six_coordinates& b) const {
     six_coordinates half = (b - a) / 2;
@@ -77,9 +82,9 @@ private:
   }
 
   /// Along the direction v that changes the loop least, by u σ t, it changes by u (σ t + κ t²/2) to
-  /// second order: near t = −2σ/κ is another solution.
+  /// second order: near t = −2σ/κ is another solution. Where σ is 0 it may be one of a curve.
   void look_beside(std::size_t at) {
-    constexpr double close_by = .05, h = 1e-3, nudge = 1e-9; // which leaves no pivot zero
+    constexpr double close_by = .05, singular = 1e-5, h = 1e-3, nudge = 1e-9; // of pivots from zero
     const six_coordinates theta = all_[at].theta;
     const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
     six_columns rows = loop_gap(loop_, nearby).jacobian.transpose(); // J = L Q, then Qᵀ
@@ -94,7 +99,12 @@ private:
       sigma = 1 / v.norm();
       v *= sigma;
     }
+    least_sigma_ = std::min(least_sigma_, sigma);
     if (!(sigma < close_by)) {
+      return;
+    }
+    if (sigma < singular && (is_on_curve(theta, v) || is_on_curve(theta, -v))) {
+      ++on_curves_;
       return;
     }
     const auto along = [&](double t) { return u.dot(loop_gap(loop_, theta + t * v).twist); };
@@ -105,14 +115,25 @@ private:
     }
     // That solution may be the same one once it is refined.
     const bool is_one = is_closed(theta + t / 2 * v) ||
-                        (place_of_added(theta + t * v) == at && std::abs(t) < 2 * close_together);
+                        (add(theta + t * v) == at && std::abs(t) < 2 * close_together);
     if (is_one) {
       all_[at].multiplicity = 2;
     }
   }
 
+  /// Is another solution beside a singular one, in the direction v?
+  [[nodiscard]] bool is_on_curve(const six_coordinates& theta, const six_coordinates& v) const {
+    constexpr double h = 1e-2;
+    six_coordinates other = theta + h * v;
+    const bool is_solution = close_loop(loop_, other);
+    const double way = (other - theta).norm();
+    return is_solution && way > h / 10 && way < 10 * h;
+  }
+
   joint_loop loop_;
   std::vector<loop_solution> all_;
+  int on_curves_ = 0;
+  double least_sigma_ = HUGE_VAL;
 };
 
 } // namespace duet::detail

@@ -29,6 +29,8 @@
 namespace duet::detail {
 
 class two_slides {
+  using complex = std::complex<double>;
+
 public:
   explicit two_slides(const joint_loop& loop) : loop_(loop) {
     for (std::size_t i = 0, turns = 0, slides = 0; i < 6; ++i) {
@@ -36,46 +38,47 @@ public:
     }
   }
 
-  using roots = circle_roots<4>;
+  static constexpr int most = 8;   ///< solutions
+  static constexpr int hidden = 0; ///< the joint whose angle the polynomial depends on
 
-  /// The polynomial at the angles of `roots`; nothing but zeros where it vanishes for all of them.
-  [[nodiscard]] roots::values determinants() const {
-    roots::values result;
-    double largest = 0;
-    for (int k = 0; k < roots::samples; ++k) {
-      const loop_at at(*this, roots::angle(k));
-      result[std::size_t(k)] = at.determinant();
-      largest = std::max(largest, std::abs(result[std::size_t(k)]));
+  struct zeros {
+    std::array<complex, 8> values; ///< e^{iα}
+    double regularity = 0;         ///< near 0 if the polynomial vanishes for all angles
+  };
+
+  /// Where the polynomial vanishes.
+  [[nodiscard]] zeros roots() const {
+    using all_roots = circle_roots<4>;
+    zeros result;
+    all_roots::values values;
+    for (int k = 0; k < all_roots::samples; ++k) {
+      values[std::size_t(k)] = loop_at(*this, all_roots::angle(k) + start).determinant();
+      result.regularity = std::max(result.regularity, std::abs(values[std::size_t(k)]));
     }
-    if (!(largest > 1e-20)) {
-      result.fill(0);
+    const all_roots found(all_roots::interpolated(values));
+    for (int i = 0; i < all_roots::count; ++i) {
+      result.values[std::size_t(i)] = std::polar(1., start) * found[i];
     }
     return result;
   }
 
-  /// Calls visit(θ) with coordinates near the real solutions that have the angle of a zero, which
-  /// is one of `count`.
-  /// \return the number of real ones
+  /// Calls visit(θ) with coordinates near the real solutions that have the angle of a zero.
   template <class Visit>
-  int solutions_at(double theta, int count, const Visit& visit) const {
-    const loop_at at(*this, theta);
+  void solution_at(double alpha, const Visit& visit) const {
+    const loop_at at(*this, alpha);
     const auto size = [&](std::size_t k) { return std::abs(at.ways[k].determinant); };
     const std::size_t best = size(0) < size(1) ? 0 : 1;
     constexpr double rounding = 1e-3;
     const bool both = std::max(size(0), size(1)) < rounding;
-    int real = 0;
     for (const std::size_t k : {best, 1 - best}) {
       const auto& way = at.ways[k];
       if ((k == best || both) && std::abs(std::log(std::abs(way.z))) < .1) {
-        visit(coordinates(theta, std::arg(way.z)));
-        real += both && count > 1 ? 1 : k == best ? count : 0;
+        visit(coordinates(alpha, std::arg(way.z)));
       }
     }
-    return real;
   }
 
 private:
-  using complex = std::complex<double>;
   using matrix = Eigen::Matrix3cd;
   using vector = Eigen::Vector3cd;
 
@@ -105,9 +108,8 @@ private:
     std::array<way, 2> ways;
     double across; ///< 1 − w²
 
-    loop_at(const two_slides& loop, double theta) {
+    loop_at(const two_slides& loop, double alpha) {
       const loop_joint &b = loop.turning(1), &c = loop.turning(2), &d = loop.turning(3);
-      const double alpha = theta + start;
       std::array<matrix, 4> turns;
       turns[0] = turn(loop.turning(0).axis, std::cos(alpha), std::sin(alpha));
       const matrix whole = rotation_matrix_of(loop.loop_.closing.rotation);
@@ -172,11 +174,10 @@ private:
   }
 
   /// All coordinates, of α and γ.
-  [[nodiscard]] six_coordinates coordinates(double theta, double gamma) const {
+  [[nodiscard]] six_coordinates coordinates(double alpha, double gamma) const {
     const loop_joint &a = turning(0), &b = turning(1), &c = turning(2), &d = turning(3);
     six_coordinates result = six_coordinates::Zero();
     const auto set = [&](std::size_t k, double x) { result[Eigen::Index(turning_[k])] = x; };
-    const double alpha = theta + start;
     const quaternion<double> rest =
         conj(turn_about(a.axis, std::sin(alpha / 2), std::cos(alpha / 2))) * loop_.closing.rotation;
     const double beta =
@@ -200,7 +201,7 @@ private:
     return result;
   }
 
-  const joint_loop& loop_;
+  joint_loop loop_;
   std::array<std::size_t, 4> turning_{};
   std::array<std::size_t, 2> sliding_{};
 };
