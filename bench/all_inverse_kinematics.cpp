@@ -1,11 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// All solutions of random arms of every kind, for goals made from random joint coordinates:
-/// whether these are among the solutions, how many solutions there are, and the processor's time
-/// for a goal. Arguments: the number of arms of each kind (1000), the seed (1).
+/// All solutions of random arms of every kind, for goals made from random joint coordinates, and of
+/// right-angled and public arms for goals made from round ones: whether these are among the
+/// solutions, with those that are beside the solutions of a goal next to it, how many solutions
+/// there are, and the processor's time for a goal. Arguments: the number of goals of each kind
+/// (1000), the seed (1).
 
 #include <duet/core/random_source.hpp>
+#include <duet/mechanism/denavit_hartenberg.hpp>
 #include <duet/mechanism/robots.hpp>
 #include <duet/planning/all_inverse_kinematics.hpp>
 
@@ -87,16 +90,130 @@ task random_task(const serial_chain<6>& arm, random_source& random) {
   return {arm, theta, arm.pose(theta)};
 }
 
-void report(const char* name, int count, random_source& random,
-            const std::function<serial_chain<6>(random_source&)>& make) {
+/// Quarter turns, multiples of 15 degrees, of 1/8 rad, or of these and zeros.
+task structured_task(const serial_chain<6>& arm, random_source& random) {
+  const int kind = random.integer(0, 3);
+  Eigen::Matrix<double, 6, 1> theta;
+  for (int i = 0; i < 6; ++i) {
+    const bool slides = arm.kind(i) == joint_kind::prismatic;
+    theta[i] = slides                                   ? random.integer(-8, 8) / 8.
+               : kind == 0                              ? random.integer(-1, 2) * pi / 2
+               : kind == 1                              ? random.integer(-11, 12) * pi / 12
+               : kind == 3 && random.integer(0, 1) == 0 ? 0
+                                                        : random.integer(-25, 25) / 8.;
+  }
+  return {arm, theta, arm.pose(theta)};
+}
+
+/// Rows of Denavit and Hartenberg: a, d, α.
+using table = std::array<std::array<double, 3>, 6>;
+
+serial_chain<6> arm_of(const table& rows, int sliding = -1) {
+  std::array<dh_row<>, 6> all;
+  for (std::size_t i = 0; i < 6; ++i) {
+    all[i].a = rows[i][0];
+    all[i].d = rows[i][1];
+    all[i].alpha = rows[i][2];
+    all[i].kind = int(i) == sliding ? joint_kind::prismatic : joint_kind::revolute;
+  }
+  return from_dh(all);
+}
+
+/// Arms in use whose wrists are general, and some that are not easy.
+serial_chain<6> known_arm(random_source& random) {
+  constexpr double q = pi / 2;
+  constexpr std::array<table, 10> tables{
+      {{{{.36, .01, q},
+         {-.36, .42, q},
+         {-.46, .27, -q},
+         {.3, .42},
+         {.22, -.12, -q},
+         {.29, -.29, -q}}},
+       {{{0, -.42, q}, {.12, .41}, {-.2, -.41, q}, {0, -.24, q}, {.41, -.28, -q}, {.11, -.47, q}}},
+       {{{0, .4, q}, {.35}, {0, 0, q}, {0, .3, -q}, {.003, 0, q}, {0, .1}}},
+       {{{0, .267, -q},
+         {.28949},
+         {.0775, 0, -q},
+         {0, .3425, q},
+         {.076, 0, -q},
+         {0, .097}}},                                                                    // xArm6
+       {{{0, .245, -q}, {.71, 0, pi}, {0, 0, -q}, {0, .54, q}, {0, .15, -q}, {0, .16}}}, // CRX-10iA
+       {{{0, .2755, q},
+         {.41, 0, pi},
+         {0, -.0098, q},
+         {0, -.2502, pi / 3},
+         {0, -.0858, pi / 3},
+         {0, -.2116, pi}}}, // Jaco
+       {{{0, .2433, q},
+         {.28, .03, pi},
+         {0, .02, q},
+         {0, .245, q},
+         {0, .057, q},
+         {0, .235}}}, // Gen3 lite
+       {{{.3, 0, q},
+         {1, 0, pi / 180},
+         {0, .2, q},
+         {1.5, 0, pi / 180},
+         {0, 0, q},
+         {0, 0, pi / 180}}},
+       {{{.15, .45, -q}, {.614, 0, pi}, {.2, 0, -q}, {0, -.64, q}, {.03, 0, -q}, {0, -.2}}},
+       {{{0, .5, -q}, {.7}, {0, 0, q}, {0, .6, pi / 3}, {0, .1, -pi / 3}, {0, .1}}}}};
+  return arm_of(tables[std::size_t(random.integer(0, int(tables.size()) - 1))]);
+}
+
+/// Angles are multiples of a part of a half turn, lengths of 1/100, one in `zeros` of either 0.
+serial_chain<6> round_arm(random_source& random, int parts, int zeros, bool slides = false) {
+  table rows;
+  for (auto& row : rows) {
+    const auto length = [&] {
+      return random.integer(1, zeros) == 1 ? 0 : random.sign() * random.integer(1, 50) / 100.;
+    };
+    const double a = length(), d = length();
+    const int angle = parts == 2
+                          ? (random.integer(1, 2 * zeros) == 1 ? 0 : random.integer(0, 1) * 2 - 1)
+                          : random.integer(1 - parts, parts);
+    row = {a, d, angle * pi / parts};
+  }
+  return arm_of(rows, slides ? random.integer(0, 5) : -1);
+}
+
+/// The solutions beside those of a goal next to it that are not among those found, but regular.
+int lost_beside(const task& t, random_source& random) {
+  const auto turn = random.direction<3>(), way = random.direction<3>();
+  constexpr double by = 1e-6;
+  const auto moved = pose(exp(vector3<double>(by * turn[0], by * turn[1], by * turn[2])),
+                          Eigen::Vector3d(by * way[0], by * way[1], by * way[2]));
+  int lost = 0;
+  const detail::branches_of_chain<serial_chain<6>> branches(t.arm, t.goal);
+  const detail::branches_of_chain<serial_chain<6>> beside(t.arm, moved * t.goal);
+  for (auto x : detail::branch_search(beside.loop()).answer().solutions) {
+    if (detail::close_loop(branches.loop(), x.theta)) {
+      const auto found = branches(x);
+      const bool is_regular =
+          detail::smallest_singular_value(jacobian(t.arm, found.joints, frame::hybrid)) > 1e-4;
+      lost += is_regular && found.residual < 1e-12 &&
+              std::none_of(t.all.solutions.begin(), t.all.solutions.end(), [&](const auto& s) {
+                return distance(t.arm, s.joints, found.joints) < 1e-6;
+              });
+    }
+  }
+  return lost;
+}
+
+using make_task = std::function<task(random_source&)>;
+
+void report(const char* name, int count, random_source& random, bool is_structured,
+            const make_task& make) {
   constexpr int together = 100; // as asking for the time takes some itself
-  int found = 0, singular = 0, complete = 0, solutions = 0, most = 0, complex = 0;
+  constexpr double singular = 1e-6;
+  int regular = 0, missed = 0, unseen = 0, uncertain = 0, in_place = 0, solutions = 0, most = 0,
+      complex = 0;
   double worst = 0, seconds = 0;
   std::vector<task> tasks;
   for (int done = 0; done < count; done += int(tasks.size())) {
     tasks.clear();
     for (int k = 0; k < std::min(together, count - done); ++k) {
-      tasks.push_back(random_task(make(random), random));
+      tasks.push_back(make(random));
     }
     const std::clock_t start = std::clock();
     for (task& t : tasks) {
@@ -104,15 +221,27 @@ void report(const char* name, int count, random_source& random,
     }
     seconds += double(std::clock() - start) / CLOCKS_PER_SEC;
     for (const task& t : tasks) {
-      if (detail::smallest_singular_value(jacobian(t.arm, t.theta, frame::hybrid)) < 1e-6) {
-        ++singular;
-        continue;
-      }
       const auto& all = t.all.solutions;
-      found += std::any_of(all.begin(), all.end(), [&](const auto& s) {
+      const bool is_reached = std::any_of(all.begin(), all.end(), [&](const auto& s) {
         return distance(t.arm, s.joints, t.theta) < 1e-6;
       });
-      complete += t.all.is_complete;
+      int lost = is_structured ? lost_beside(t, random) : 0;
+      if (detail::smallest_singular_value(jacobian(t.arm, t.theta, frame::hybrid)) >= singular) {
+        lost = std::max(lost, is_reached ? 0 : 1);
+      } else {
+        unseen += all.empty() && t.all.is_complete;
+        if (!is_structured) {
+          continue;
+        }
+      }
+      ++regular;
+      missed += lost;
+      unseen += t.all.is_complete ? lost : 0;
+      const bool is_singular = std::any_of(all.begin(), all.end(), [&](const auto& s) {
+        return s.smallest_singular_value < singular;
+      });
+      in_place += !t.all.is_complete && is_singular;
+      uncertain += !t.all.is_complete && !is_singular;
       solutions += int(all.size());
       most = std::max(most, int(all.size()));
       complex += t.all.complex_solutions;
@@ -121,10 +250,10 @@ void report(const char* name, int count, random_source& random,
       }
     }
   }
-  const int regular = count - singular;
-  std::printf("| %s | %d | %d | %d | %.2f | %d | %.2f | %.1e | %.1f |\n", name, regular,
-              regular - found, regular - complete, double(solutions) / regular, most,
+  std::printf("| %s | %d | %d | %d | %d | %d | %.2f | %d | %.2f | %.1e | %.1f |\n", name, regular,
+              missed, unseen, uncertain, in_place, double(solutions) / regular, most,
               double(complex) / regular, worst, 1e6 * seconds / count);
+  std::fflush(stdout);
 }
 
 } // namespace
@@ -191,17 +320,29 @@ int main(int argc, char** argv) {
          }
        }}};
   std::printf(
-      "| arms, seed %llu | goals | missed | not certain | solutions | most | complex | worst "
-      "residual | µs |\n|---|---|---|---|---|---|---|---|---|\n",
+      "| arms, seed %llu | goals | missed | though complete | not certain | singular | solutions | "
+      "most | complex | worst residual | µs |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
       static_cast<unsigned long long>(seed));
   for (const kind& k : kinds) {
     random_source random(seed);
-    report(k.name, count, random, [&](random_source& r) {
+    report(k.name, count, random, false, [&](random_source& r) {
       auto joints = anywhere(r);
       k.specialise(joints, r);
-      return serial_chain<6>(joints);
+      return random_task(serial_chain<6>(joints), r);
     });
   }
   random_source random(seed);
-  report("UR5e", count, random, [](random_source&) { return robots::ur5e().table(); });
+  report("UR5e", count, random, false,
+         [](random_source& r) { return random_task(robots::ur5e().table(), r); });
+  const auto structured = [&](const char* name, auto make_arm) {
+    report(name, count, random, true,
+           [&](random_source& r) { return structured_task(make_arm(r), r); });
+  };
+  structured("known arms, round goals", known_arm);
+  structured("right angles, round goals", [](auto& r) { return round_arm(r, 2, 1000); });
+  structured("right and no angles, zeros, round goals", [](auto& r) { return round_arm(r, 2, 3); });
+  structured("multiples of 30 degrees, zeros, round goals",
+             [](auto& r) { return round_arm(r, 6, 3); });
+  structured("right angles, zeros, one joint slides, round goals",
+             [](auto& r) { return round_arm(r, 2, 3, true); });
 }
