@@ -38,6 +38,12 @@
 // equation_goal holds the user's function alone.
 
 namespace test_planning_initial_values {
+
+struct anything {
+  template <class T>
+  operator T() const;
+};
+
 namespace {
 
 using namespace duet;
@@ -48,10 +54,6 @@ using curve = cumulative_bspline<double, 4>;
 
 constexpr unsigned char pattern = 0xA7;
 
-struct anything {
-  template <class T>
-  operator T() const;
-};
 template <class T, class... Field>
 consteval int field_count() {
   if constexpr (requires { T{Field{}..., anything{}}; }) {

@@ -143,11 +143,10 @@ private:
   using keeps_point = std::function<bool(const sampler&, std::span<const double>)>;
 
   template <class Predicate>
-  static constexpr bool takes_arguments = std::is_invocable_r_v<
-      bool,
-      decltype([](const auto& p, const Domains&... d) -> decltype(p(d.template make<double>(
-                                                          std::span<const double>())...)) {}),
-      const Predicate&, const Domains&...>;
+  static constexpr bool takes_arguments =
+      std::is_invocable_r_v<bool, const Predicate&,
+                            decltype(std::declval<const Domains&>().template make<double>(
+                                std::declval<std::span<const double>>()))...>;
 
   [[nodiscard]] sampler and_kept(keeps_point keeps) const {
     sampler result = *this;

@@ -8,6 +8,7 @@
 #include <duet/dual/parts.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <tuple>
 #include <utility>

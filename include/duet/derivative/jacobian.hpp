@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <type_traits>
 #include <utility>

@@ -40,7 +40,7 @@ concept LosesDerivatives = Arithmetic<A> && requires(const Iterator& i) {
                "(x), after `using std::" #function ";` where x may be a double")                   \
   double function(const X&...);
 #define DUET_REFUSED_SUM                                                                           \
-  DUET_REFUSED("std::accumulate, reduce and inner_product add up in the type of their initial "    \
+  DUET_REFUSED("accumulate, reduce and inner_product of std add up in the type of their initial "  \
                "value: where x is one of the numbers, decltype(x)(0) instead of 0.0")
 #define DUET_REFUSES_SPECIAL(function)                                                             \
   template <class... X>                                                                            \

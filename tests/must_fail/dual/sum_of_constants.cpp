@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: (a sum or product of|std::accumulate)
+// expect: duet: (a sum or product of|accumulate, reduce)
 
 #include <duet/dual/dual.hpp>
 #include <duet/dual/math.hpp>

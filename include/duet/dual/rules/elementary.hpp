@@ -113,8 +113,8 @@ struct cbrt {
   }
   template <class T>
   T slope(const T&, const T& y) const {
-    const T inverse = 1 / y; // y² would multiply its 0 by an infinite derivative
-    return inverse * inverse / 3;
+    using std::pow; // of products of y one factor would be 0 and the other's derivative infinite
+    return static_cast<T>(pow(y, -2)) / 3;
   }
 };
 

@@ -49,11 +49,16 @@ template <class Form, class... Rest>
 bool branch_search::solve(branch_method method, int first, const joint_loop& loop,
                           const Rest&... rest) {
   constexpr int most = std::same_as<Form, sliding_loop> ? 2 : 8;
-  constexpr double rounding = 1e-12;
+  constexpr double rounding = 1e-13, beside = .01;
   const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
-    if (multiplicity > 1 && loop_gap(loop, theta).twist.norm() > rounding &&
-        !close_loop(loop, theta)) {
-      return; // a complex pair that is nearly real
+    const loop_gap gap(loop, theta);
+    if (gap.twist.norm() > rounding * gap.size) { // beside a singularity
+      six_coordinates refined = theta;
+      if (close_loop(loop, refined) && (refined - theta).norm() < beside * gap.size) {
+        theta = refined;
+      } else if (multiplicity > 1) {
+        return; // a complex pair that is nearly real
+      }
     }
     loop_solution found{theta, multiplicity};
     for (int k = 0; k < 6; ++k) {
@@ -79,6 +84,14 @@ DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop) {
 }
 
 DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
+  search(loop);
+  const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop);
+  if (method_ != branch_method::two_slides) { // which knows where joints always move in place
+    answer_.is_complete = is_certain || (answer_.is_complete && !is_always_singular(loop));
+  }
+}
+
+inline void branch_search::search(const joint_loop& loop) {
   const auto& joints = loop.joints;
   const auto sliding =
       std::count_if(joints.begin(), joints.end(), [](const loop_joint& j) { return !j.turns; });

@@ -188,6 +188,7 @@ private:
     const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
     const vector3d across = in_plane(offset), goal = in_plane(to);
     middle_turn turn(n, arm, to);
+    const double error = multiplicity > 1 ? 2 * one_angle : 0; // of the other angles
     const bool has_second = visit_zeros(
         {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
          2 * dot(across, arm.across), 2 * dot(across, arm.beside)},
@@ -198,9 +199,10 @@ private:
             theta[2] = dot(n, third.axis) * (whole - theta1 - dot(n, second.axis) * theta2);
             visit(theta, multiplicity * m);
           });
-        });
+        },
+        error);
     // Angles that count as one may have put it on the first.
-    return has_second && turn.nearest() > (multiplicity > 1 ? 2 * one_angle : 0);
+    return has_second && turn.nearest() > error;
   }
 
   const joint_loop& loop_;

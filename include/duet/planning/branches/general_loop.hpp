@@ -1,11 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/planning/branches/elimination.hpp>
 #include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/loop_answer.hpp>
 #include <duet/planning/branches/loop_solutions.hpp>
 #include <duet/planning/branches/middle_turn.hpp>
+#include <duet/planning/branches/singular_value.hpp>
 #include <duet/planning/branches/two_slides.hpp>
 #include <duet/planning/split_mix.hpp>
 #include <duet/planning/tip_place.hpp>
@@ -220,6 +222,22 @@ private:
   bool is_doubtful_ = false, is_certain_ = false;
 };
 
+/// Is the goal farther away than joints can carry it?
+[[nodiscard]] inline bool is_beyond_reach(const joint_loop& loop) {
+  double reach = 0; // at most
+  for (const loop_joint& j : loop.joints) {
+    reach += j.turns ? 2 * length_of(j.point) : HUGE_VAL;
+  }
+  return length_of(loop.closing.translation) > reach;
+}
+
+/// Are there no regular solutions, whatever the goal, as where two neighbours turn about one line?
+[[nodiscard]] inline bool is_always_singular(const joint_loop& loop) {
+  six_coordinates theta;
+  theta << .3, -1.1, .7, 1.9, -.6, 2.3;
+  return smallest_singular_value(loop_gap(loop, theta).jacobian) < 1e-9;
+}
+
 /// All solutions of a loop by a system of equations.
 ///
 /// Axes at right angles and goals that are made of round numbers let zeros coincide, hide solutions
@@ -240,7 +258,10 @@ template <class System>
     return sigma < .01 ? 3 : sigma < .04 || !solver.is_certain() || found.count() == 0 ? 2 : 1;
   };
   int agreeing = 0, quiet = 0;
-  for (std::size_t k = 0; k < by.size() && agreeing < needed(); ++k) {
+  const auto is_enough = [&](std::size_t loops) {
+    return agreeing >= needed() || (found.on_curves() > 0 && loops == 5);
+  };
+  for (std::size_t k = 0; k < by.size() && !is_enough(k); ++k) {
     const int before = found.count();
     const bool is_clear =
         solver.add(orders[k % orders.size()], by[k], k + 2) && found.count() % 2 == 0;
@@ -252,16 +273,11 @@ template <class System>
   if (found.all().empty()) {
     solver.add_from_anywhere(); // a singular solution, or a curve of them?
   }
-  double reach = 0; // of the joints, at most
-  for (const loop_joint& j : loop.joints) {
-    reach += j.turns ? 2 * length_of(j.point) : HUGE_VAL;
-  }
-  const bool may_be_lost =
-      solver.is_doubtful() && found.all().empty() && length_of(loop.closing.translation) < reach;
   loop_answer result;
   result.solutions = found.all();
   result.complex_solutions = std::max(0, System::most - found.count());
-  result.is_complete = agree && found.on_curves() == 0 && !may_be_lost;
+  result.is_complete =
+      agree && found.on_curves() == 0 && !(solver.is_doubtful() && found.all().empty());
   return result;
 }
 

@@ -42,8 +42,8 @@ public:
   /// Refines θ and adds what it is near to, and the solution beside that near a singularity.
   /// \return where that stands, or `nowhere` if there is none
   std::size_t add(six_coordinates theta) {
-    constexpr std::size_t enough = 64; // of points on curves
-    if (all_.size() >= enough || !close_loop(loop_, theta)) {
+    constexpr std::size_t most = 100; // more than there are, but for those on curves
+    if (all_.size() == most || !close_loop(loop_, theta)) {
       return nowhere;
     }
     for (Eigen::Index i = 0; i < 6; ++i) {
@@ -58,8 +58,7 @@ public:
     }
     const std::size_t last = all_.size();
     all_.push_back({theta, 1});
-    look_beside(last);
-    return last;
+    return look_beside(last) ? last : nowhere;
   }
 
 private:
@@ -83,8 +82,11 @@ private:
 
   /// Along the direction v that changes the loop least, by u σ t, it changes by u (σ t + κ t²/2) to
   /// second order: near t = −2σ/κ is another solution. Where σ is 0 it may be one of a curve.
-  void look_beside(std::size_t at) {
-    constexpr double close_by = .05, singular = 1e-5, h = 1e-3, nudge = 1e-9; // of pivots from zero
+  /// \return does it stay? Some points of curves do.
+  bool look_beside(std::size_t at) {
+    constexpr double close_by = .05, closer = 2e-3, singular = 1e-5, h = 1e-3,
+                     nudge = 1e-9; // of pivots from zero
+    constexpr int enough = 24;     // singular solutions: others are on curves
     const six_coordinates theta = all_[at].theta;
     const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
     six_columns rows = loop_gap(loop_, nearby).jacobian.transpose(); // J = L Q, then Qᵀ
@@ -101,17 +103,28 @@ private:
     }
     least_sigma_ = std::min(least_sigma_, sigma);
     if (!(sigma < close_by)) {
-      return;
+      return true;
     }
-    if (sigma < singular && (is_on_curve(theta, v) || is_on_curve(theta, -v))) {
-      ++on_curves_;
-      return;
+    if (sigma < singular) {
+      if (singular_ == enough) {
+        all_.pop_back();
+        return false;
+      }
+      ++singular_;
+      if (is_on_curve(theta, v) || is_on_curve(theta, -v)) {
+        ++on_curves_;
+        return true;
+      }
+    } else if (sigma < closer) { // terms of third order may count
+      for (const double t : {-.3, -.1, -.03, -.01, .01, .03, .1, .3}) {
+        static_cast<void>(add(theta + t * v));
+      }
     }
     const auto along = [&](double t) { return u.dot(loop_gap(loop_, theta + t * v).twist); };
     const double slope = u.dot(loop_gap(loop_, theta).jacobian * v);
     const double t = 2 * slope * h * h / (along(h) + along(-h));
     if (!(std::abs(t) < 1)) {
-      return;
+      return true;
     }
     // That solution may be the same one once it is refined.
     const bool is_one = is_closed(theta + t / 2 * v) ||
@@ -119,20 +132,22 @@ private:
     if (is_one) {
       all_[at].multiplicity = 2;
     }
+    return true;
   }
 
-  /// Is another solution beside a singular one, in the direction v?
+  /// Is another solution, or what is next to one, beside a singular one, in the direction v?
   [[nodiscard]] bool is_on_curve(const six_coordinates& theta, const six_coordinates& v) const {
-    constexpr double h = 1e-2;
+    constexpr double h = 1e-2, nearly = 1e-7;
     six_coordinates other = theta + h * v;
-    const bool is_solution = close_loop(loop_, other);
+    static_cast<void>(close_loop(loop_, other));
     const double way = (other - theta).norm();
-    return is_solution && way > h / 10 && way < 10 * h;
+    const loop_gap gap(loop_, other);
+    return gap.twist.norm() < nearly * gap.size && way > h / 10 && way < 10 * h;
   }
 
   joint_loop loop_;
   std::vector<loop_solution> all_;
-  int on_curves_ = 0;
+  int on_curves_ = 0, singular_ = 0;
   double least_sigma_ = HUGE_VAL;
 };
 

@@ -51,12 +51,16 @@ struct guessed_time_unit {
                                        : digits == 3 ? "milliseconds"
                                                      : "") {}
   /// From the years 1973 to 5138 in each unit; a number with a fraction is in seconds, except one
-  /// beyond 1e17.
+  /// from 1e17 to 1e20. So what was read in seconds is never taken for another unit again.
   explicit guessed_time_unit(std::string_view cell)
       : guessed_time_unit([&]() -> std::size_t {
           const double size = std::abs(parse_number(cell).value_or(0));
           const bool is_whole = size == std::floor(size);
-          return size >= 1e17 ? 9 : !is_whole || size < 1e11 ? 0 : size >= 1e14 ? 6 : 3;
+          return size >= 1e20               ? 0
+                 : size >= 1e17             ? 9
+                 : !is_whole || size < 1e11 ? 0
+                 : size >= 1e14             ? 6
+                                            : 3;
         }()) {}
 };
 
