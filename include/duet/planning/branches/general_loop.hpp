@@ -269,7 +269,7 @@ template <class System>
     quiet = is_news ? 0 : quiet + 1;
     agreeing = is_news ? int(is_clear) : agreeing + is_clear;
   }
-  const bool agree = agreeing >= needed() || quiet >= 3;
+  const bool agree = agreeing >= needed() || (quiet >= 3 && found.count() % 2 == 0);
   if (found.all().empty()) {
     solver.add_from_anywhere(); // a singular solution, or a curve of them?
   }

@@ -137,12 +137,17 @@ private:
 
   /// Is another solution, or what is next to one, beside a singular one, in the direction v?
   [[nodiscard]] bool is_on_curve(const six_coordinates& theta, const six_coordinates& v) const {
-    constexpr double h = 1e-2, nearly = 1e-7;
+    constexpr double part = 1e-2, nearly = 1e-7, rounding = 1e-12;
+    const double size = loop_gap(loop_, theta).size;
+    double h = HUGE_VAL;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      h = std::min(h, part * (loop_.joints[std::size_t(i)].turns ? 1 : size) / std::abs(v[i]));
+    }
     six_coordinates other = theta + h * v;
     static_cast<void>(close_loop(loop_, other));
     const double way = (other - theta).norm();
-    const loop_gap gap(loop_, other);
-    return gap.twist.norm() < nearly * gap.size && way > h / 10 && way < 10 * h;
+    return loop_gap(loop_, other).twist.norm() < std::max(nearly, rounding * size) &&
+           way > h / 10 && way < 10 * h;
   }
 
   joint_loop loop_;
