@@ -64,8 +64,8 @@ struct expected {
 };
 expected expected_of(const four_bar& bar, double theta) {
   const long double a = bar.crank, b = bar.coupler, c = bar.rocker, d = bar.ground;
-  const long double k = a * std::cos((long double)(theta)) - d,
-                    s = a * std::sin((long double)(theta));
+  const long double k = a * std::cos(static_cast<long double>(theta)) - d,
+                    s = a * std::sin(static_cast<long double>(theta));
   const long double diagonal = std::hypot(k, s);
   if (diagonal < 1e-9L) {
     return {0, false};
