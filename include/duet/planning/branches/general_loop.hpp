@@ -100,8 +100,8 @@ template <class System>
 /// always the same.
 [[nodiscard]] inline joint_loop disturbed(joint_loop loop, double by, std::uint64_t seed) {
   split_mix random(seed);
-  const vector3d far = .1 * loop.closing.translation; // of slides that are long
-  by /= std::max(1., dot(far, far));
+  const vector3d offset = .1 * loop.closing.translation; // of slides that are long
+  by /= std::max(1., dot(offset, offset));
   const auto any = [&] {
     const double x = random(), y = random(), z = random();
     return by * vector3d{2 * x - 1, 2 * y - 1, 2 * z - 1};
@@ -203,13 +203,13 @@ private:
 
   /// The only solution near an angle that the determinant vanishes at, if it was found.
   [[nodiscard]] std::size_t known(const loop_order& order, double angle) const {
-    constexpr double beside = .02, near = 1e-3;
+    constexpr double beside = .02, close = 1e-3;
     std::size_t result = nowhere;
     for (std::size_t i = 0; i < found_.all().size(); ++i) {
       const double theta = found_.all()[i].theta[order.joint(System::hidden)];
       const double off = std::abs(turned_back(theta - angle));
       if (off < beside) {
-        if (result != nowhere || off > near) {
+        if (result != nowhere || off > close) {
           return nowhere;
         }
         result = i;
