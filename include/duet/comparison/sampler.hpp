@@ -161,8 +161,8 @@ private:
         [&](const coordinates& point) { return describe(point); });
   }
 
-  [[nodiscard]] std::vector<detail::argument> arguments(random_source& random) const {
-    std::vector<detail::argument> result;
+  [[nodiscard]] std::vector<detail::sampled_argument> arguments(random_source& random) const {
+    std::vector<detail::sampled_argument> result;
     std::size_t first = 0;
     std::apply(
         [&](const auto&... domain) {

@@ -20,7 +20,7 @@ namespace duet::detail {
 
 /// An argument at its place among the coordinates of all; an array is as many as it has elements.
 /// What is common to all samplers does not know its domain's type, so that compilers make it once.
-struct argument {
+struct sampled_argument {
   const void* kind;                 ///< the same for two that may be equal
   std::size_t first, size;          ///< its coordinates
   std::vector<coordinates> special; ///< special points, the first the one to be near most often
@@ -36,9 +36,10 @@ inline constexpr char kind_of = 0;
 /// Appends the arguments that stand for one of this domain.
 /// \param first  the place of its first coordinate
 template <class Domain>
-void append_arguments(std::vector<argument>& arguments, const Domain& domain, std::size_t first,
-                      random_source& random) {
-  argument made{&kind_of<Domain>, first, domain.size(), domain.special_points(), 0, {}, {}, {}};
+void append_arguments(std::vector<sampled_argument>& arguments, const Domain& domain,
+                      std::size_t first, random_source& random) {
+  sampled_argument made{
+      &kind_of<Domain>, first, domain.size(), domain.special_points(), 0, {}, {}, {}};
   made.random_point = [&domain](random_source& r) { return domain.random_point(r); };
   made.contains = [&domain](std::span<const double> point) { return domain.contains(point); };
   if constexpr (requires(const coordinates& c) { domain.related_points(c, random); }) {
@@ -54,7 +55,7 @@ void append_arguments(std::vector<argument>& arguments, const Domain& domain, st
   arguments.push_back(std::move(made));
 }
 template <std::size_t N, class Domain>
-void append_arguments(std::vector<argument>& arguments, const arrays<N, Domain>& domain,
+void append_arguments(std::vector<sampled_argument>& arguments, const arrays<N, Domain>& domain,
                       std::size_t first, random_source& random) {
   for (std::size_t i = 0; i < N; ++i) {
     append_arguments(arguments, domain.element, first + i * domain.element.size(), random);
@@ -62,7 +63,7 @@ void append_arguments(std::vector<argument>& arguments, const arrays<N, Domain>&
 }
 /// What is excluded is known to the sampler, which asks for every point whether it is contained.
 template <class Domain>
-void append_arguments(std::vector<argument>& arguments, const restricted<Domain>& domain,
+void append_arguments(std::vector<sampled_argument>& arguments, const restricted<Domain>& domain,
                       std::size_t first, random_source& random) {
   append_arguments(arguments, domain.domain(), first, random);
 }
@@ -70,7 +71,7 @@ void append_arguments(std::vector<argument>& arguments, const restricted<Domain>
 /// Makes such inputs out of random ones.
 class structured_points {
 public:
-  structured_points(std::vector<argument> arguments, random_source& random)
+  structured_points(std::vector<sampled_argument> arguments, random_source& random)
       : arguments_(std::move(arguments)), random_(random) {
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       add({&structured_points::put_near_special, {i}});
@@ -183,12 +184,12 @@ private:
     }
   }
 
-  [[nodiscard]] static std::span<double> part(coordinates& point, const argument& a) {
+  [[nodiscard]] static std::span<double> part(coordinates& point, const sampled_argument& a) {
     return std::span(point).subspan(a.first, a.size);
   }
 
   /// \return whether it is in the domain, and only then put there
-  static bool put(coordinates& point, const argument& a, std::span<const double> values) {
+  static bool put(coordinates& point, const sampled_argument& a, std::span<const double> values) {
     const bool contained = a.contains(values);
     if (contained) {
       std::copy(values.begin(), values.end(), part(point, a).begin());
@@ -197,7 +198,7 @@ private:
   }
 
   /// Puts what is at that distance from `centre`, or nearer where that is out of the domain.
-  bool put_near(coordinates& point, const argument& a, std::span<const double> centre,
+  bool put_near(coordinates& point, const sampled_argument& a, std::span<const double> centre,
                 double distance) {
     const coordinates towards = direction(a.size);
     for (int i = 0; i < 40; ++i, distance *= i % 2 == 0 ? -0.25 : -1) {
@@ -215,7 +216,7 @@ private:
   /// Every other time beside the first special point, else beside the others in turn.
   void put_near_special(coordinates& point, const recipe& r) {
     for (const std::size_t i : r.of) {
-      const argument& a = arguments_[i];
+      const sampled_argument& a = arguments_[i];
       if (!a.special.empty()) {
         const std::size_t k = r.used / 2, n = a.special.size();
         const bool first = r.used % 2 == 0;
@@ -226,7 +227,7 @@ private:
   }
 
   void put_pattern(coordinates& point, const recipe& r) {
-    const argument& a = arguments_[r.of[0]];
+    const sampled_argument& a = arguments_[r.of[0]];
     const auto old = part(point, a);
     coordinates values(old.begin(), old.end());
     shape(values);
@@ -234,9 +235,9 @@ private:
   }
 
   /// A value of both: a random one of either, or a special one.
-  [[nodiscard]] coordinates common_value(const argument& a, const argument& b) {
+  [[nodiscard]] coordinates common_value(const sampled_argument& a, const sampled_argument& b) {
     for (int i = 0; i < 20; ++i) {
-      const argument& of = i % 2 == 0 ? a : b;
+      const sampled_argument& of = i % 2 == 0 ? a : b;
       const coordinates value =
           random_.integer(0, 3) == 0 && !of.special.empty()
               ? of.special[std::size_t(random_.integer(0, int(of.special.size()) - 1))]
@@ -250,7 +251,7 @@ private:
 
   /// Equal or, every other time, in another special relation; exactly, or nearly.
   void put_related(coordinates& point, const recipe& r) {
-    const argument &a = arguments_[r.of[0]], &b = arguments_[r.of[1]];
+    const sampled_argument &a = arguments_[r.of[0]], &b = arguments_[r.of[1]];
     const coordinates value = common_value(a, b);
     if (value.empty()) {
       return;
@@ -275,7 +276,7 @@ private:
     }
   }
 
-  std::vector<argument> arguments_;
+  std::vector<sampled_argument> arguments_;
   random_source& random_;
   std::vector<recipe> recipes_;
   std::size_t count_ = 0;
