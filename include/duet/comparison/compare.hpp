@@ -67,7 +67,8 @@ public:
   [[nodiscard]] virtual std::string describe(const coordinates& point) const = 0;
   /// In every precision.
   virtual void measure_at(const coordinates& point, std::span<difference> out) const = 0;
-  /// Of a component, in the first and the last precision; NaN where one result is not finite.
+  /// Errors of a component, in the first and the last precision; NaN where one result is not
+  /// finite.
   [[nodiscard]] virtual std::array<double, 2> errors_at(const coordinates& point,
                                                         std::size_t component) const = 0;
   [[nodiscard]] virtual counterexample values_at(const coordinates& point) const = 0;

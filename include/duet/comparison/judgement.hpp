@@ -57,8 +57,8 @@ struct suspect {
                      [](const difference& d) { return d.is_finite; });
 }
 
-/// What the differences in several precisions, the least precise first, say of the components that
-/// are finite.
+/// The verdict on the finite components, from the differences in several precisions, the least
+/// precise first.
 ///
 /// Rounding errors shrink with ε. A slip is seen in every scalar, and stays what it is.
 [[nodiscard]] inline verdict judged(std::span<const difference> differences, double tolerance) {
@@ -72,7 +72,7 @@ struct suspect {
 /// Is the error of a component at a point a slip? It may be rounding that leaves no digit in any
 /// precision, as that of 1 − cos x at 1e-12, or that is by chance the same in two.
 ///
-/// On the way to another point, at distances that grow from 2e-16 on, errors are the same in the
+/// Towards another point, at distances that grow from 2e-16 on, errors are the same in the
 /// first and the last precision for a while. Where it is rounding, the last precision then begins
 /// to have digits, and its error shrinks little by little. That of a slip goes at once, or stays to
 /// the end.

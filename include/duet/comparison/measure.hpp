@@ -35,7 +35,7 @@ struct shape {
   [[nodiscard]] bool is_matrix() const { return columns > 1; }
 };
 
-/// What a result is made of: the least decimal digits of its numbers, the ε of those, and its
+/// The makeup of a result: the least decimal digits of its numbers, the ε of those, and its
 /// shapes, in the order of its components.
 struct makeup {
   int digits = 0;
@@ -54,8 +54,8 @@ struct makeup {
   }
 };
 
-/// Are there the same matrices at the same places? What is no matrix at all, nor a vector of Eigen,
-/// has any shape.
+/// Do the matrices of both results agree in position and shape? What is no matrix at all, nor a
+/// vector of Eigen, has any shape.
 [[nodiscard]] inline bool fit(const makeup& a, const makeup& b) {
   const auto has_any = [](const makeup& m) {
     return m.shapes.empty() || (m.shapes.size() == 1 && m.shapes[0].columns == 0);
@@ -157,7 +157,7 @@ struct difference {
   /// How many of them are one of the shorter result, and the decimal digits of both.
   double ulps_in_shorter = 1;
   std::array<int, 2> digits{};
-  /// Where one is more than the tolerance: those of every component, and what they may be.
+  /// Errors of all components if one exceeds the tolerance, and what they may be.
   std::vector<double> errors{};
   double allowed = 0;
 

@@ -101,7 +101,7 @@ public:
 
   // For those who extend duet: what an `InputDomain` is asked.
 
-  /// What is restricted.
+  /// The domain that is restricted.
   [[nodiscard]] const Domain& domain() const { return domain_; }
   [[nodiscard]] std::size_t size() const { return domain_.size(); }
   [[nodiscard]] bool contains(std::span<const double> point) const {

@@ -14,7 +14,7 @@
 
 namespace duet::detail {
 
-/// How much there is to read in numbers: their digits, points and signs, the zero before a point
+/// Length of numbers as text: their digits, points and signs, the zero before a point
 /// and zeros aside. Of those with as much the simplest are nearest to 1 in size, as a ratio, and
 /// then positive: 0, 1, 2, 3 … 9, −1, ½, −2, …
 struct complexity {

@@ -18,8 +18,9 @@
 
 namespace duet::detail {
 
-/// An argument at its place among the coordinates of all; an array is as many as it has elements.
-/// What is common to all samplers does not know its domain's type, so that compilers make it once.
+/// An argument and the index of its first coordinate among those of all; an array is as many as it
+/// has elements. The code common to all samplers does not know the domain's type, so it is compiled
+/// once.
 struct sampled_argument {
   const void* kind;                 ///< the same for two that may be equal
   std::size_t first, size;          ///< its coordinates
@@ -34,7 +35,7 @@ template <class Domain>
 inline constexpr char kind_of = 0;
 
 /// Appends the arguments that stand for one of this domain.
-/// \param first  the place of its first coordinate
+/// \param first  index of its first coordinate
 template <class Domain>
 void append_arguments(std::vector<sampled_argument>& arguments, const Domain& domain,
                       std::size_t first, random_source& random) {
@@ -61,7 +62,7 @@ void append_arguments(std::vector<sampled_argument>& arguments, const arrays<N, 
     append_arguments(arguments, domain.element, first + i * domain.element.size(), random);
   }
 }
-/// What is excluded is known to the sampler, which asks for every point whether it is contained.
+/// The sampler knows the excluded points and asks for every point whether it is contained.
 template <class Domain>
 void append_arguments(std::vector<sampled_argument>& arguments, const restricted<Domain>& domain,
                       std::size_t first, random_source& random) {
@@ -103,7 +104,7 @@ public:
     }
   }
 
-  /// How many there are at least: four of each kind.
+  /// The least number of them: four of each kind.
   [[nodiscard]] std::size_t least_count() const {
     return std::min<std::size_t>(4 * recipes_.size(), 256);
   }

@@ -20,7 +20,7 @@ struct progress {
   std::size_t done = 0;  ///< elements that are done
   std::size_t count = 0; ///< of the whole range
 
-  /// From 0 to exactly 1, which an empty range is.
+  /// Fraction that is done, from 0 to exactly 1; 1 for an empty range.
   [[nodiscard]] double share() const { return count == 0 ? 1.0 : double(done) / double(count); }
 };
 

@@ -12,10 +12,7 @@ namespace duet::detail {
 /// uninitialized.
 template <class T>
 [[nodiscard]] constexpr T zero_initialized() {
-  if constexpr (requires {
-                  requires T::SizeAtCompileTime >
-                  0;
-                }) {
+  if constexpr (requires { requires(T::SizeAtCompileTime > 0); }) {
     return T::Zero();
   } else {
     return T();

@@ -29,7 +29,7 @@ struct value_and_derivative {
     f("value", value);
     f("derivative", derivative);
   }
-  /// For those who extend duet: what is returned is no derivative alone.
+  /// For those who extend duet: rejects `double slope = derivative(f, x)`.
   template <class M>
     requires(Arithmetic<M> || std::derived_from<M, Eigen::MatrixBase<M>>)
   DUET_REFUSED("derivative returns value and derivative: const auto [y, dy] = derivative(f, x); or "

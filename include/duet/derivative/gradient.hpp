@@ -39,7 +39,7 @@ struct value_and_gradient {
     f("value", value);
     f("gradient", gradient);
   }
-  /// For those who extend duet: what is returned is no gradient alone.
+  /// For those who extend duet: rejects `VectorXd g = gradient(f, x)`.
   template <class M>
     requires std::derived_from<M, Eigen::MatrixBase<M>>
         DUET_REFUSED("gradient returns value and gradient: const auto [y, g] = gradient(f, x); or "
@@ -60,7 +60,7 @@ struct value_gradient_and_hessian {
     f("gradient", gradient);
     f("hessian", hessian);
   }
-  /// For those who extend duet: what is returned is no hessian alone.
+  /// For those who extend duet: rejects `MatrixXd H = hessian(f, x)`.
   template <class M>
     requires std::derived_from<M, Eigen::MatrixBase<M>> DUET_REFUSED(
         "hessian returns value, gradient and Hessian: const auto [y, g, H] = hessian(f, x); or "
@@ -237,13 +237,13 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
   return result;
 }
 
-/// Of a point in braces, `gradient(f, {1, 2})`.
+/// The gradient at a point in braces, `gradient(f, {1, 2})`.
 template <class Tag = void, detail::FunctionOfAny F, std::size_t N>
 [[nodiscard]] auto gradient(F&& f, const double (&x)[N]) {
   return gradient<Tag>(std::forward<F>(f), std::to_array(x));
 }
 
-/// Of a point in braces, `hessian(f, {1, 2})`.
+/// The Hessian at a point in braces, `hessian(f, {1, 2})`.
 template <class Tag = void, detail::FunctionOfAny F, std::size_t N>
 [[nodiscard]] auto hessian(F&& f, const double (&x)[N]) {
   return hessian<Tag>(std::forward<F>(f), std::to_array(x));

@@ -35,7 +35,7 @@ struct value_and_jacobian {
     f("value", value);
     f("jacobian", jacobian);
   }
-  /// For those who extend duet: what is returned is no jacobian alone.
+  /// For those who extend duet: rejects `MatrixXd J = jacobian(f, x)`.
   template <class M>
     requires std::derived_from<M, Eigen::MatrixBase<M>>
         DUET_REFUSED("jacobian returns value and Jacobian: const auto [y, J] = jacobian(f, x); or "
@@ -143,7 +143,7 @@ template <class Tag = void, detail::FunctionOfAny F, class X, class V>
   return value_and_derivative{detail::parts<tag>(y, 0), detail::parts<tag>(y, 1)};
 }
 
-/// Of a point in braces, `jacobian(f, {1, 2})`.
+/// The Jacobian at a point in braces, `jacobian(f, {1, 2})`.
 template <class Tag = void, detail::FunctionOfAny F, std::size_t N>
 [[nodiscard]] auto jacobian(F&& f, const double (&x)[N]) {
   return jacobian<Tag>(std::forward<F>(f), std::to_array(x));

@@ -24,7 +24,7 @@ template <class A>
   return a.cwiseAbs().colwise().sum().maxCoeff();
 }
 
-/// How often A has to be halved until its powers shrink as those of 1/2 do.
+/// The number of halvings of A until its powers shrink as those of 1/2 do.
 ///
 /// α = max(‖A^p‖^{1/p}, ‖A^{p+1}‖^{1/(p+1)}) bounds ‖A^k‖^{1/k} for k ≥ p(p − 1); of a matrix that
 /// is far from normal it is much less than ‖A‖, and halving it more often would lose digits.
@@ -53,7 +53,8 @@ template <class A>
   return least > 0 ? std::max(0, exponent + more + 1) : 0;
 }
 
-/// How many terms of the series of exp at 1/2 are exact to R, its derivatives of `order` too.
+/// The number of terms that make the series of exp at 1/2, and its derivatives up to `order`,
+/// exact to R.
 template <class R>
 [[nodiscard]] int terms_of_exponential(int order) {
   int count = 0;
@@ -96,7 +97,7 @@ template <class S, class A>
 ///
 /// \param a  A, n × n, of any scalars, complex ones and batches among them
 ///
-/// By scaling and squaring: exp A = (exp(A/2^s))^(2^s), s chosen for the values of A by the norms
+/// Scaling and squaring: exp A = (exp(A/2^s))^(2^s), s chosen for the values of A by the norms
 /// of its powers (A. H. Al-Mohy, N. J. Higham, SIAM J. Matrix Anal. Appl. 31 (2009) 970–989), and
 /// the series of A/2^s in the algebra of the infinitesimals, which nothing is divided by: so every
 /// derivative is right at every A, also at 0 and at equal eigenvalues,

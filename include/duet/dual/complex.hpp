@@ -32,7 +32,7 @@
 /// overloaded, for those of the standard library branch on values or, as a quotient by |z|²,
 /// overflow.
 ///
-/// Where f′ is infinite, at least one part of the derivative is; zero partials stay zero.
+/// If f′ is infinite, at least one part of the derivative is infinite; zero partials stay zero.
 
 namespace duet::detail {
 

@@ -86,7 +86,7 @@ public:
 
   constexpr complex(const D& real = D(), const D& imaginary = D())
       : real_(real), imaginary_(imaginary) {}
-  /// Of other parts; implicit where no precision or level is lost.
+  /// Conversion from other parts; implicit where no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, D> && std::constructible_from<D, U>)
   constexpr explicit(!std::convertible_to<U, D>) complex(const complex<U>& other)

@@ -22,7 +22,7 @@ using quiet_policy = policies::policy<policies::domain_error<policies::ignore_er
                                       policies::overflow_error<policies::ignore_error>,
                                       policies::evaluation_error<policies::ignore_error>>;
 
-/// What the rules below have in common: `plain(x)` is the value of a plain number.
+/// Base of the rules below: `plain(x)` is the value of a plain number.
 template <class Rule>
 struct rule_by_boost {
   template <class T>
@@ -39,7 +39,7 @@ enum class bessel { j, y, i, k };
 
 /// 2 C_ν′ = ±C_{ν−1} ± C_{ν+1}, without a division by x.
 ///
-/// Where x² vanishes beside 1, one of the two is all of it: what is left of the other, and of its
+/// If x² vanishes beside 1, one of the two is all of it: what is left of the other, and of its
 /// derivatives, would be ∞ − ∞.
 template <bessel Kind>
 struct cylinder : rule_by_boost<cylinder<Kind>> {

@@ -70,11 +70,11 @@ template <int N>
 struct all_inverse_kinematics_result {
   /// In the order of their first coordinates, those that agree there of the second …
   std::vector<inverse_kinematics_branch<N>> solutions;
-  /// How many more the equations have that are complex: 16 at most in all. (For arms of special
+  /// The number of complex solutions: 16 at most in all. (For arms of special
   /// geometry, but not in closed form, from above.)
   int complex_solutions = 0;
   branch_method method = branch_method::elimination; ///< how they were found
-  /// Is it certain, but for rounding, that there are no others that are regular? Where joints can
+  /// Is it certain, to round-off, that there are no others that are regular? Where joints can
   /// move with the tip in place it is not, nor where such a curve might pass and nothing was found.
   bool is_complete = false;
 

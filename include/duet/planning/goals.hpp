@@ -130,7 +130,7 @@ public:
   }
 
 private:
-  /// Of six joints all, for an objective to choose from.
+  /// All solutions of six joints, for an objective to choose from.
   [[nodiscard]] known_solutions all_solutions(const dual_quaternion<double>& goal) const {
     known_solutions known;
     if constexpr (has_objective) {

@@ -115,7 +115,7 @@ template <class Spline, class F, class R>
 /// The table of f over [first, last] through which the curve of type `Spline` is no farther from f
 /// than the tolerance: intervals are halved where it is.
 ///
-/// The distance is sampled at eight places of each interval, and at more where it is near the
+/// The distance is sampled at eight points of each interval, and at more where it is near the
 /// tolerance, so f must not have detail that these never meet.
 /// \param f          the rotation or pose at a parameter
 /// \param tolerance  radians, of poses as `distance` with `options.length`

@@ -53,7 +53,7 @@ struct periodic {};
 
 namespace detail {
 
-/// What numbers given for angular velocities or twists become.
+/// Type of numbers given as angular velocities or twists, which is rejected.
 struct rate_of_number {
   constexpr rate_of_number() = default;
   DUET_REFUSED("rates at the ends are vectors, angular velocities (3) or twists (6): "

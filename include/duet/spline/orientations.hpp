@@ -103,8 +103,8 @@ template <class T>
 
 } // namespace detail
 
-/// Quaternions that are units but for few digits, normalised; those that are units to rounding stay
-/// as they are.
+/// Quaternions that are units except for a few digits, normalised; those that are units to rounding
+/// stay as they are.
 ///
 /// \throws invalid_row for a quaternion that is not finite, its infinitesimal parts included, or
 /// whose norm is not 1

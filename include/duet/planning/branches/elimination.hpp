@@ -113,11 +113,11 @@ public:
     double regularity = 0;          ///< near 0 if the determinant vanishes for all angles
   };
 
-  /// Where the determinant vanishes.
+  /// Zeros of the determinant.
   ///
   /// With x the tangent of half of what θ₃ is beyond an angle where no known arm has a solution,
-  /// the matrix is M₀ + 2 x M₁ + x² M₂ but for a factor: x is an eigenvalue of a matrix of 24 rows,
-  /// as precise as solutions are regular, also where these have θ₃ in common. (Zeros of a
+  /// the matrix is M₀ + 2 x M₁ + x² M₂ except for a factor: x is an eigenvalue of a matrix of 24
+  /// rows, as precise as solutions are regular, also where these have θ₃ in common. (Zeros of a
   /// polynomial of which m coincide have an error of ε^{1/m}.)
   [[nodiscard]] zeros roots() const {
     constexpr double start = .7345;
@@ -182,7 +182,7 @@ public:
                 : std::abs(z.imag()) < nearly_real * (1 + std::abs(z)))) {
       return;
     }
-    // Products of 1, cos θ₅, sin θ₅, or 1, d₅, d₅², which are real but for a common factor.
+    // Products of 1, cos θ₅, sin θ₅, or 1, d₅, d₅², which are real except for a common factor.
     Eigen::Vector3cd factor = Eigen::Vector3cd::Zero();
     for (int k = 0; k < 3; ++k) { // of phases −3θ₄/2, −θ₄/2, θ₄/2; or weights 1, d₄, d₄²
       const complex weight =

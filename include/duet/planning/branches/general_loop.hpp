@@ -100,7 +100,7 @@ template <class System>
 /// always the same.
 [[nodiscard]] inline joint_loop disturbed(joint_loop loop, double by, std::uint64_t seed) {
   split_mix random(seed);
-  const vector3d offset = .1 * loop.closing.translation; // of slides that are long
+  const vector3d offset = .1 * loop.closing.translation; // long travels of prismatic joints
   by /= std::max(1., dot(offset, offset));
   const auto any = [&] {
     const double x = random(), y = random(), z = random();
@@ -120,7 +120,7 @@ template <class System>
 /// Whether there may be solutions near a zero e^{iθ} of a system's determinant.
 struct zero_on_circle {
   double angle = 0;
-  bool is_real = false;  ///< but for rounding
+  bool is_real = false;  ///< to round-off
   bool is_single = true; ///< has no other one beside it
 };
 
@@ -242,7 +242,7 @@ private:
 ///
 /// Axes at right angles and goals that are made of round numbers let zeros coincide, hide solutions
 /// from an order of the joints, or let the determinant vanish for all angles. So loops are solved
-/// whose axes are disturbed, always in the same ways, by 1e-6 to 1e-3 of the loop's size, in more
+/// whose axes are disturbed, always identically, by 1e-6 to 1e-3 of the loop's size, in more
 /// than one order; and Newton's method leads from their solutions to those of the loop itself.
 /// These are complete where two such loops, one after the other, have as many real zeros as
 /// solutions were found, three where one is nearly singular, or where three add no others; not

@@ -23,7 +23,7 @@ public:
   explicit loop_solutions(const joint_loop& loop) : loop_(loop) {}
 
   [[nodiscard]] const std::vector<loop_solution>& all() const { return all_; }
-  /// How many there are that stand alone, each as often as it counts.
+  /// The number of isolated solutions, with multiplicity.
   [[nodiscard]] int count() const {
     int result = -on_curves_;
     for (const loop_solution& x : all_) {
@@ -34,15 +34,15 @@ public:
 
   static constexpr std::size_t nowhere = std::size_t(-1);
 
-  /// Of all, but for those that are far from 0.
+  /// The smallest singular value of all solutions found.
   [[nodiscard]] double smallest_singular_value() const { return least_sigma_; }
-  /// How many are on curves on which all others are solutions, too.
+  /// The number of solutions on curves of solutions.
   [[nodiscard]] int on_curves() const { return on_curves_; }
 
   /// Refines θ and adds what it is near to, and the solution beside that near a singularity.
   /// \return where that stands, or `nowhere` if there is none
   std::size_t add(six_coordinates theta) {
-    constexpr std::size_t most = 100; // more than there are, but for those on curves
+    constexpr std::size_t most = 100; // more than are isolated
     if (all_.size() == most || !close_loop(loop_, theta)) {
       return nowhere;
     }

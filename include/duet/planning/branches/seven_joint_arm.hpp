@@ -24,7 +24,7 @@ struct seven_joints {
   std::array<bool, 7> turns{};
   double size = 1; ///< of the arm
   tip_place goal{};
-  /// How far the tip is from the goal, and the Jacobian; lengths in parts of the arm's size.
+  /// Pose error of the tip, and the Jacobian; lengths in parts of the arm's size.
   std::function<six_coordinates(const seven_coordinates&, seven_columns&)> gap;
   /// The axes of the other joints, with one held at a coordinate.
   std::function<chain_axes(int, double)> axes_beside;

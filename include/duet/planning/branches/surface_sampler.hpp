@@ -112,7 +112,7 @@ private:
     return false;
   }
 
-  /// Where a walk of a length in a random direction leads.
+  /// End of a walk of a given length in a random direction.
   [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length,
                                          split_mix& random) const {
     seven_coordinates way = self_motion_set::any_direction(set_.kernel(x), random);

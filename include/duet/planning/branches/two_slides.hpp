@@ -46,7 +46,7 @@ public:
     double regularity = 0;         ///< near 0 if the polynomial vanishes for all angles
   };
 
-  /// Where the polynomial vanishes.
+  /// Zeros of the polynomial.
   [[nodiscard]] zeros roots() const {
     using all_roots = circle_roots<4>;
     zeros result;

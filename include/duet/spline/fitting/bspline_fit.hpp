@@ -271,7 +271,7 @@ private:
     return {std::size_t(most - sizes.begin()), *most};
   }
 
-  /// In plain least squares the cause may be a row that is far from all others, which is named.
+  /// Plain least squares may fail for a data point far from all others, which is named.
   [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
     const auto [row, size] = farthest_from_middle();
     std::string cause;

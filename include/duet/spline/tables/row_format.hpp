@@ -50,8 +50,8 @@ struct guessed_time_unit {
                                        : digits == 6 ? "microseconds"
                                        : digits == 3 ? "milliseconds"
                                                      : "") {}
-  /// From the years 1973 to 5138 in each unit; a number with a fraction is in seconds, except one
-  /// from 1e17 to 1e20. So what was read in seconds is never taken for another unit again.
+  /// Times from the years 1973 to 5138 in each unit; a number with a fraction is in seconds, except
+  /// one from 1e17 to 1e20. So what was read in seconds is never taken for another unit again.
   explicit guessed_time_unit(std::string_view cell)
       : guessed_time_unit([&]() -> std::size_t {
           const double size = std::abs(parse_number(cell).value_or(0));
