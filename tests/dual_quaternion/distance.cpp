@@ -135,6 +135,40 @@ TEST_CASE("nearest_on_screw: of all turns the nearest, found by brute force as w
   }
 }
 
+TEST_CASE("nearest_on_screw: a minimum beside the kink where the rotation angle is half a turn") {
+  duet_test::random_source random(5);
+  for (int k = 0; k < 960; ++k) {
+    const auto n = random.direction<3>();
+    const vector axis(n[0], n[1], n[2]);
+    const vector point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const double turns = random.uniform(.2, 3), pitch = random.uniform(-.3, .3);
+    const duet::screw_motion<double> motion = {axis, point.cross(axis), turns * 6.283185307179586,
+                                               turns * pitch, duet::screw_kind::screw};
+    const auto d = random.direction<3>();
+    const double angle =
+        random.integer(0, 1) == 1 ? 3.14159 - random.magnitude(1e-6, 1) : random.uniform(0, 3.14);
+    const double tau = random.uniform(0, 1);
+    const vector moved(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const double length = random.magnitude(1e-3, 3);
+    if (k != 169 && k != 959) {
+      continue; // these have such a minimum, the least of all
+    }
+    const auto at = [&](double x) {
+      return duet::from_screw(motion.axis, motion.moment, motion.angle * x, motion.translation * x);
+    };
+    const auto p =
+        at(tau) *
+        duet::pose(duet::from_rotation_vector(vector(angle * d[0], angle * d[1], angle * d[2])),
+                   moved);
+    const auto start = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= 20000; ++i) {
+      least = std::min(least, squared_distance(at(i / 20000.), p, length));
+    }
+    CHECK_LE(nearest_on_screw(start, motion, p, length).squared_distance, least + 1e-15);
+  }
+}
+
 TEST_CASE("outside, an end is nearest") {
   const auto start = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
   const auto goal = duet::pose(duet::quaternion<double>(1.0), vector(2, 0, 0));

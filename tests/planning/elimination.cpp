@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <limits>
 #include <numbers>
@@ -52,7 +53,8 @@ double difference(const joint_loop& loop, const six_coordinates& a, const six_co
 } // namespace
 
 /// Newton's method would make up for a start that is none, in another order of the joints too.
-TEST_CASE("at the angle of a solution all its coordinates come out") {
+TEST_CASE(
+    "the determinant vanishes at the angle of a solution, where all its coordinates come out") {
   duet_test::random_source random(1);
   for (const std::vector<std::size_t>& sliding : {std::vector<std::size_t>{}, {0}, {1}, {3}, {4}}) {
     CAPTURE(sliding.empty() ? -1 : int(sliding[0]));
@@ -62,11 +64,17 @@ TEST_CASE("at the angle of a solution all its coordinates come out") {
         x = random.uniform(-1.5, 1.5);
       }
       const joint_loop loop = closed_at(theta, sliding, random);
+      const duet::detail::elimination system(loop);
       double nearest = std::numeric_limits<double>::infinity();
-      duet::detail::elimination(loop).solution_at(theta[2], [&](const six_coordinates& x) {
+      system.solution_at(theta[2], [&](const six_coordinates& x) {
         nearest = std::min(nearest, difference(loop, x, theta));
       });
       CHECK(nearest < 1e-5);
+      double nearest_zero = std::numeric_limits<double>::infinity();
+      for (const std::complex<double>& zero : system.roots().values) {
+        nearest_zero = std::min(nearest_zero, std::abs(zero - std::polar(1., theta[2])));
+      }
+      CHECK(nearest_zero < 1e-7);
     }
   }
 }
