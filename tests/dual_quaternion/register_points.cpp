@@ -93,6 +93,10 @@ TEST_CASE("the pose and scale that made the points, of any size and far away") {
       const Eigen::Matrix4d m = duet::transform_matrix(found.pose);
       CHECK((m.topLeftCorner<3, 3>() - r).norm() <= 1e-12);
       CHECK((m.topRightCorner<3, 1>() / size - t / size).norm() <= 1e-11);
+      const Eigen::Matrix4d rigid =
+          duet::transform_matrix(register_points(p, MatrixXd((r * p).colwise() + t)));
+      CHECK((rigid.topLeftCorner<3, 3>() - r).norm() <= 1e-12);
+      CHECK((rigid.topRightCorner<3, 1>() / size - t / size).norm() <= 1e-11);
     }
   }
 }
