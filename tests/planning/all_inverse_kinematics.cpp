@@ -408,6 +408,61 @@ TEST_CASE("singular goals are not called unreachable") {
   }
 }
 
+struct dh_task {
+  std::array<std::array<double, 3>, 6> rows; ///< a, d, α
+  std::array<double, 6> theta;
+};
+struct arm_at {
+  chain arm;
+  vector theta;
+};
+arm_at arm_of(const dh_task& task, double alpha, double theta) {
+  std::array<dh_row<>, 6> rows;
+  for (std::size_t i = 0; i < 6; ++i) {
+    rows[i].a = task.rows[i][0];
+    rows[i].d = task.rows[i][1];
+    rows[i].alpha = alpha * task.rows[i][2];
+  }
+  return {from_dh(rows),
+          theta * vector(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(task.theta.data()))};
+}
+
+TEST_CASE("closed forms do not call a singular goal unreachable") {
+  const std::array<dh_task, 3> tasks{
+      {{{{{-.48, .47, -6}, {.48, 0, -6}, {-.27, -.43, -6}, {.2}, {-.18, -.2}, {-.28, 0, -6}}},
+        {-3, 0, -7, -4, -2, 4}},
+       {{{{-.42, .47, -6}, {0, .4, -6}, {0, 0, -6}, {0, .41, -6}, {0, -.5, -6}, {0, .38, 6}}},
+        {5, -2, 10, 6, 12, 7}},
+       {{{{-.32, -.45, -2}, {.26, .3, -8}, {0, 0, 8}, {0, 0, 10}, {.15, -.11, -2}, {.3, .1, -4}}},
+        {12, -6, 0, 12, -6, -6}}}};
+  for (const dh_task& task : tasks) {
+    const auto [arm, theta] = arm_of(task, pi / 12, pi / 12);
+    const result found = all_inverse_kinematics(arm, arm.pose(theta));
+    CHECK_FALSE((found.solutions.empty() && found.is_complete));
+  }
+}
+
+/// Of loops that are displaced by 1e-5 these pairs are complex.
+TEST_CASE("pairs of solutions beside singular ones") {
+  const auto check = [](const arm_at& at, std::size_t count) {
+    const result found = all_inverse_kinematics(at.arm, at.arm.pose(at.theta));
+    CHECK(found.is_complete);
+    CHECK(found.solutions.size() == count);
+    CHECK(holds(at.arm, found, at.theta));
+  };
+  const dh_task crx{{{{0, .245, -1}, {.71, 0, 2}, {0, 0, -1}, {0, .54, 1}, {0, .15, -1}, {0, .16}}},
+                    {-20, 9, -21, 25, -7, 0}};
+  check(arm_of(crx, pi / 2, .125), 8);
+  const dh_task folded{
+      {{{.29, .27, 1}, {0, 0, 1}, {.42, 0, -1}, {0, -.11, 1}, {.09, 0, 1}, {.31, 0, -1}}},
+      {1.542912, .002972, -1.598413, -1.481084, -.002983, -3.051963}};
+  auto at = arm_of(folded, pi / 2, 1);
+  const vector singular = pi / 2 * (vector(6) << 1, 0, -1, -1, 0, 2).finished();
+  const result found = all_inverse_kinematics(at.arm, at.arm.pose(singular));
+  CHECK(holds(at.arm, found, singular, 1e-5));
+  CHECK(holds(at.arm, found, at.theta, 1e-5));
+}
+
 TEST_CASE("angles within a turn") {
   const double turn = 2 * pi;
   for (const double start : {0., .3, -2., pi, 3 * pi, 5 * pi, 1e5}) {

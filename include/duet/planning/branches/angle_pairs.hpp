@@ -36,10 +36,11 @@ inline constexpr double one_angle = 3e-7;
 /// of zeros there may be complex by rounding alone, of a, b and c by angles that were
 /// ill-conditioned.
 /// \param error  of a, b and c, if that is more than rounding
-/// \return false where all of it is zero but for rounding, or an error decides if there are zeros
+/// \return false if all of it is zero to round-off, if an error decides whether there are zeros, or
+///   if there would be some but for 1e-5 of what varies: `f` may be known no better
 template <class Visit>
 bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
-  constexpr double rounding = 1e-12, nearly = 1e-9;
+  constexpr double rounding = 1e-12, nearly = 1e-9, not_quite = 1e-5;
   const double r = std::sqrt(f.b * f.b + f.c * f.c);
   if (!(r > rounding)) {
     return std::abs(f.a) > rounding;
@@ -51,6 +52,8 @@ bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
     visit(middle - turn, 1);
   } else if (std::abs(cosine) <= 1 + std::max(nearly, error / r)) {
     visit(cosine > 0 ? middle : middle + std::acos(-1.), 2);
+  } else if (std::abs(cosine) <= 1 + not_quite) {
+    return false;
   }
   return std::abs(std::abs(cosine) - 1) * r >= error;
 }
@@ -72,11 +75,9 @@ struct angle_pairs {
     constexpr double singular = 1e-9;
     if (std::min(by_theta, by_phi) > singular) {
       if (by_theta >= by_phi) {
-        by_both(f, g, visit);
-      } else {
-        by_both(g, f, swapped);
+        return by_both(f, g, visit);
       }
-      return true;
+      return by_both(g, f, swapped);
     }
     return by_theta < by_phi ? by_one(f, g, visit) : by_one(g, f, swapped);
   }
@@ -131,8 +132,9 @@ private:
   }
 
   /// (cos θ, sin θ) = u + V (cos φ, sin φ), whose square is 1.
+  /// \return false if all of it is zero to round-off, or if zeros are nearly real but not visited
   template <class Visit>
-  static void by_both(const two_values& f, const two_values& g, const Visit& visit) {
+  static bool by_both(const two_values& f, const two_values& g, const Visit& visit) {
     const double d = determinant(f);
     const auto solved = [&](double r0, double r1) {
       return std::array{(r0 * f[1].c - r1 * f[0].c) / d, (f[0].b * r1 - f[1].b * r0) / d};
@@ -144,12 +146,17 @@ private:
     const complex q0(v[0] / 2, -w[0] / 2), q1(v[1] / 2, -w[1] / 2);
     const double squares = u[0] * u[0] + u[1] * u[1] + 2 * (std::norm(q0) + std::norm(q1));
     const std::array<complex, 3> left{squares - 1, 2. * (u[0] * q0 + u[1] * q1), q0 * q0 + q1 * q1};
-    const circle_roots<2> roots(left);
     // How much larger rounding is than that of coefficients of which the largest is 1.
     const double noise =
         (squares + 1) /
         std::sqrt(std::max({std::norm(left[0]), std::norm(left[1]), std::norm(left[2])}));
+    constexpr double nearly_real = 1e-3, vanishing = 1e12;
+    if (noise > vanishing) {
+      return false; // for every φ there is a θ
+    }
+    const circle_roots<2> roots(left);
     std::array<bool, 4> is_done{};
+    bool is_determined = true;
     for (int i = 0; i < 4; ++i) {
       const complex z = roots[i];
       const double off = std::sqrt(std::norm(z)) - 1, sensitivity = noise * roots.sensitivity(i),
@@ -163,6 +170,8 @@ private:
       if (off > error && off < std::min(1e-2, 1e-11 * sensitivity)) {
         visit_at(std::arg(z) - off, 1);
         visit_at(std::arg(z) + off, 1);
+      } else if (off > error && off < nearly_real) {
+        is_determined = false;
       }
       if (is_done[std::size_t(i)] || !(std::abs(off) < error)) {
         continue;
@@ -176,6 +185,7 @@ private:
       }
       visit_at(std::arg(z), multiplicity);
     }
+    return is_determined;
   }
 };
 

@@ -40,7 +40,10 @@ public:
   [[nodiscard]] branch_method method() const { return method_; }
 
 private:
+  branch_search() = default;
+
   void search(const joint_loop& loop);
+  void search_beside(const joint_loop& loop);
   /// Solves the loop that begins with its joint number `first` as a loop of the type `Form`.
   template <class Form, class... Rest>
   bool solve(branch_method method, int first, const joint_loop& loop, const Rest&... rest);

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 /// \file
@@ -85,9 +86,29 @@ DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop) {
 
 DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
   search(loop);
+  if (answer_.solutions.empty() && method_ != branch_method::elimination) {
+    search_beside(loop);
+  }
   const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop);
   if (method_ != branch_method::two_slides) { // which knows where joints always move in place
     answer_.is_complete = is_certain || (answer_.is_complete && !is_always_singular(loop));
+  }
+}
+
+/// Round-off may have made a double solution complex. Of a goal next to it, it is so or two real
+/// ones.
+inline void branch_search::search_beside(const joint_loop& loop) {
+  constexpr int times = 6;
+  constexpr double by = 1e-7;
+  for (int k = 0; k < times && answer_.solutions.empty(); ++k) {
+    branch_search beside;
+    beside.search(with_disturbed_goal(loop, by, std::uint64_t(k) + 1));
+    for (loop_solution x : beside.answer_.solutions) {
+      answer_.is_complete = false;
+      if (answer_.solutions.empty() && close_loop(loop, x.theta)) {
+        answer_.solutions.push_back(x);
+      }
+    }
   }
 }
 

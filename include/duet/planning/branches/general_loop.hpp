@@ -73,53 +73,74 @@ struct loop_order {
 }
 
 /// The orders of a loop in which a system of equations can be solved, the best first.
+///
+/// \param general  the loop in general position, by which orders are judged
 template <class System>
-[[nodiscard]] std::vector<loop_order> orders_of(const joint_loop& loop) {
+[[nodiscard]] std::vector<loop_order> orders_of(const joint_loop& loop, const joint_loop& general) {
   std::vector<loop_order> result;
   result.reserve(12);
-  const auto add = [&](const joint_loop& l, int first, bool is_reversed) {
-    const double quality = quality_of(l, static_cast<const System*>(nullptr));
+  const auto add = [&](const joint_loop& l, const joint_loop& judged, int first, bool is_reversed) {
+    const double quality = quality_of(judged, static_cast<const System*>(nullptr));
     if (quality > 0) {
       const loop_order next{l, first, is_reversed, quality};
       const auto is_better = [](const auto& a, const auto& b) { return a.quality > b.quality; };
       result.insert(std::upper_bound(result.begin(), result.end(), next, is_better), next);
     }
   };
-  joint_loop from = loop;
+  joint_loop from = loop, judged = general;
   for (int first = 0; first < 6; ++first) {
-    add(from, first, false);
-    add(from.reversed(), first, true);
+    add(from, judged, first, false);
+    add(from.reversed(), judged.reversed(), first, true);
     from = from.shifted();
+    judged = judged.shifted();
   }
   const auto is_worse = [&](const loop_order& o) { return o.quality < .01 * result[0].quality; };
   result.erase(std::find_if(result.begin(), result.end(), is_worse), result.end());
   return result;
 }
 
-/// A loop with axes that are in general position, close to the given ones: by up to about `by`,
-/// always the same.
+/// Pseudo-random vectors of a size up to about `by`, the same for the same seed; less for loops
+/// with long travels of prismatic joints.
+class small_vectors {
+public:
+  small_vectors(const joint_loop& loop, double by, std::uint64_t seed)
+      : random_(seed), by_(by / squared_travel(loop)) {}
+  [[nodiscard]] vector3d operator()() {
+    const double x = random_(), y = random_(), z = random_();
+    return by_ * vector3d{2 * x - 1, 2 * y - 1, 2 * z - 1};
+  }
+  [[nodiscard]] tip_place place() {
+    const vector3d turn = (*this)(), way = (*this)();
+    return {normalized(quaternion<double>(1, turn.x, turn.y, turn.z)), way};
+  }
+
+private:
+  split_mix random_;
+  double by_;
+};
+
+/// A loop with a goal close to the given one.
+[[nodiscard]] inline joint_loop with_disturbed_goal(joint_loop loop, double by,
+                                                    std::uint64_t seed) {
+  loop.closing = small_vectors(loop, by, seed).place() * loop.closing;
+  return loop;
+}
+/// A loop with a goal and axes that are in general position, close to the given ones.
 [[nodiscard]] inline joint_loop disturbed(joint_loop loop, double by, std::uint64_t seed) {
-  split_mix random(seed);
-  const vector3d offset = .1 * loop.closing.translation; // long travels of prismatic joints
-  by /= std::max(1., dot(offset, offset));
-  const auto any = [&] {
-    const double x = random(), y = random(), z = random();
-    return by * vector3d{2 * x - 1, 2 * y - 1, 2 * z - 1};
-  };
+  small_vectors any(loop, by, seed);
   for (loop_joint& j : loop.joints) {
     const vector3d axis = j.axis + any();
     j.axis = 1 / length_of(axis) * axis;
     j.point = j.point + any();
   }
-  const vector3d turn = any(), way = any();
-  loop.closing =
-      tip_place{normalized(quaternion<double>(1, turn.x, turn.y, turn.z)), way} * loop.closing;
+  loop.closing = any.place() * loop.closing;
   return loop;
 }
 
 /// Whether there may be solutions near a zero e^{iθ} of a system's determinant.
 struct zero_on_circle {
   double angle = 0;
+  double off = 0;        ///< logarithm of the distance from the origin
   bool is_real = false;  ///< to round-off
   bool is_single = true; ///< has no other one beside it
 };
@@ -131,7 +152,7 @@ zeros_on_circle(std::span<const std::complex<double>> roots) {
   for (const std::complex<double>& z : roots) {
     const double off = std::log(std::abs(z)); // the other one of a complex pair has −off
     if (off > -real && off < nearly_real) {
-      result.push_back({std::arg(z), off < real});
+      result.push_back({std::arg(z), off, off < real});
     }
   }
   for (zero_on_circle& one : result) {
@@ -155,6 +176,9 @@ public:
   /// Did the last loop that was solved have real zeros alone near the circle, away from each other?
   [[nodiscard]] bool is_certain() const { return is_certain_; }
 
+  /// Did a displaced loop have two complex solutions that may be real without the displacement?
+  [[nodiscard]] bool has_close_pair() const { return has_close_pair_; }
+
   /// On curves of solutions those of a loop close by may all be complex.
   void add_from_anywhere() {
     constexpr int starts = 12;
@@ -171,7 +195,8 @@ public:
   /// Adds the solutions that one order leads to, disturbed.
   /// \return has every real zero led to a solution of its own?
   bool add(const loop_order& order, double by, std::uint64_t seed) {
-    constexpr double singular = 1e-4, sound = .05;
+    constexpr double singular = 1e-4, vanishing = 1e-6, sound = .05, nearly_real = .05;
+    constexpr int most_coinciding = 4;
     const System system(disturbed(order.loop, by, seed));
     const auto roots = system.roots();
     if (!is_doubtful_ && !(roots.regularity > singular)) {
@@ -179,7 +204,7 @@ public:
       add_from_anywhere();
     }
     std::vector<std::size_t> led_to;
-    bool is_clear = true;
+    bool is_clear = roots.regularity * squared_travel(order.loop) > vanishing;
     is_certain_ = roots.regularity > 100 * singular && order.quality > sound;
     for (const zero_on_circle& zero : zeros_on_circle(roots.values)) {
       std::size_t at = zero.is_real && zero.is_single ? known(order, zero.angle) : nowhere;
@@ -189,9 +214,12 @@ public:
         });
       }
       is_certain_ = is_certain_ && zero.is_real && zero.is_single;
+      has_close_pair_ = has_close_pair_ || (!zero.is_real && zero.off < nearly_real);
       if (zero.is_real) {
-        is_clear = is_clear && at != nowhere &&
-                   std::count(led_to.begin(), led_to.end(), at) < found_.all()[at].multiplicity;
+        const auto times = at == nowhere ? 0 : std::count(led_to.begin(), led_to.end(), at);
+        is_clear =
+            is_clear && at != nowhere &&
+            times < (found_.is_singular(at) ? most_coinciding : found_.all()[at].multiplicity);
         led_to.push_back(at);
       }
     }
@@ -219,7 +247,7 @@ private:
   }
 
   loop_solutions found_;
-  bool is_doubtful_ = false, is_certain_ = false;
+  bool is_doubtful_ = false, is_certain_ = false, has_close_pair_ = false;
 };
 
 /// Is the goal farther away than joints can carry it?
@@ -242,42 +270,45 @@ private:
 ///
 /// Axes at right angles and goals that are made of round numbers let zeros coincide, hide solutions
 /// from an order of the joints, or let the determinant vanish for all angles. So loops are solved
-/// whose axes are disturbed, always identically, by 1e-6 to 1e-3 of the loop's size, in more
+/// whose axes are disturbed, always identically, by 1e-8 to 1e-3 of the loop's size, in more
 /// than one order; and Newton's method leads from their solutions to those of the loop itself.
 /// These are complete where two such loops, one after the other, have as many real zeros as
 /// solutions were found, three where one is nearly singular, or where three add no others; not
-/// where some are on a curve.
+/// where some are on a curve, nor beside what nearly is one.
 template <class System>
 [[nodiscard]] loop_answer solve_general_loop(const joint_loop& loop) {
-  constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-3, 1e-5, 1e-4, 1e-5};
-  const auto orders = orders_of<System>(disturbed(loop, by[0], 1));
+  constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-5};
+  const auto orders = orders_of<System>(loop, disturbed(loop, by[0], 1));
   general_solver<System> solver(loop);
   const loop_solutions& found = solver.found();
   const auto needed = [&] {
     const double sigma = found.smallest_singular_value();
-    return sigma < .01 ? 3 : sigma < .04 || !solver.is_certain() || found.count() == 0 ? 2 : 1;
+    return found.all().empty()                      ? 5 // each may make two of a double one complex
+           : sigma < .01 || solver.has_close_pair() ? 3
+           : sigma < .04 || !solver.is_certain()    ? 2
+                                                    : 1;
   };
   int agreeing = 0, quiet = 0;
+  const auto is_even = [&] { return !found.is_count_certain() || found.count() % 2 == 0; };
   const auto is_enough = [&](std::size_t loops) {
     return agreeing >= needed() || (found.on_curves() > 0 && loops == 5);
   };
   for (std::size_t k = 0; k < by.size() && !is_enough(k); ++k) {
-    const int before = found.count();
-    const bool is_clear =
-        solver.add(orders[k % orders.size()], by[k], k + 2) && found.count() % 2 == 0;
-    const bool is_news = found.count() != before;
+    const auto before = found.all().size();
+    const bool is_clear = solver.add(orders[k % orders.size()], by[k], k + 2) && is_even();
+    const bool is_news = found.all().size() != before;
     quiet = is_news ? 0 : quiet + 1;
     agreeing = is_news ? int(is_clear) : agreeing + is_clear;
   }
-  const bool agree = agreeing >= needed() || (quiet >= 3 && found.count() % 2 == 0);
+  const bool agree = agreeing >= needed() || (quiet >= 3 && agreeing > 0 && is_even());
   if (found.all().empty()) {
     solver.add_from_anywhere(); // a singular solution, or a curve of them?
   }
   loop_answer result;
   result.solutions = found.all();
   result.complex_solutions = std::max(0, System::most - found.count());
-  result.is_complete =
-      agree && found.on_curves() == 0 && !(solver.is_doubtful() && found.all().empty());
+  result.is_complete = agree && found.on_curves() == 0 && !found.is_near_curve() &&
+                       !(found.all().empty() && (solver.is_doubtful() || solver.has_close_pair()));
   return result;
 }
 

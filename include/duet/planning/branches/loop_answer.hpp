@@ -17,6 +17,7 @@ namespace duet::detail {
 struct loop_solution {
   six_coordinates theta;
   int multiplicity = 1;
+  double sigma = 1; ///< smallest singular value of the loop's Jacobian, if it was computed
 };
 
 /// Two joints that slide along each other wherever the others are: the first by x and the second by

@@ -6,6 +6,7 @@
 #include <duet/planning/branches/orthonormalise.hpp>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,12 @@
 /// Solutions of a loop of six joints as they are gathered: each once, with those beside it.
 
 namespace duet::detail {
+
+/// How much longer than the loop travels of prismatic joints are, squared; at least 1.
+[[nodiscard]] inline double squared_travel(const joint_loop& loop) {
+  const vector3d offset = .1 * loop.closing.translation;
+  return std::max(1., dot(offset, offset));
+}
 
 /// The solutions of a loop that were found so far.
 class loop_solutions {
@@ -39,8 +46,14 @@ public:
   /// The number of solutions on curves of solutions.
   [[nodiscard]] int on_curves() const { return on_curves_; }
 
-  /// Refines θ and adds what it is near to, and the solution beside that near a singularity.
-  /// \return where that stands, or `nowhere` if there is none
+  /// True if a singular solution is on what would be a curve of solutions but for 1e-5 of the size.
+  [[nodiscard]] bool is_near_curve() const { return is_near_curve_; }
+  /// False if a singular solution may be more than double.
+  [[nodiscard]] bool is_count_certain() const { return degenerate_ == 0; }
+  [[nodiscard]] bool is_singular(std::size_t i) const { return all_[i].sigma < nearly_singular; }
+
+  /// Refines θ and adds the solution it leads to, and the one beside that near a singularity.
+  /// \return the index of the solution, or `nowhere` if there is none
   std::size_t add(six_coordinates theta) {
     constexpr std::size_t most = 100; // more than are isolated
     if (all_.size() == most || !close_loop(loop_, theta)) {
@@ -58,21 +71,37 @@ public:
     }
     const std::size_t last = all_.size();
     all_.push_back({theta, 1});
-    return look_beside(last) ? last : nowhere;
+    return look_beside(last);
   }
 
 private:
   static constexpr double close_together = 1e-3; // half of how far what is one may be apart
+  static constexpr double nearly_singular = 1e-5;
 
-  /// Are two solutions one, but for rounding? Then what is in their middle is one, too.
-  [[nodiscard]] bool is_same(const six_coordinates& a, const six_coordinates& b) const {
-    six_coordinates half = (b - a) / 2;
+  /// b − a, revolute joints by the shorter arc.
+  [[nodiscard]] six_coordinates difference(const six_coordinates& a,
+                                           const six_coordinates& b) const {
+    six_coordinates result = b - a;
     for (Eigen::Index i = 0; i < 6; ++i) {
       if (loop_.joints[std::size_t(i)].turns) {
-        half[i] = turned_back(2 * half[i]) / 2;
+        result[i] = turned_back(result[i]);
       }
     }
+    return result;
+  }
+  /// True if two solutions are one to round-off: then the configuration halfway is one, too.
+  [[nodiscard]] bool is_same(const six_coordinates& a, const six_coordinates& b) const {
+    const six_coordinates half = difference(a, b) / 2;
     return half.cwiseAbs().maxCoeff() < close_together && is_closed(a + half);
+  }
+  /// True if two singular solutions are one to round-off. Where more than two coincide, the closure
+  /// error vanishes to round-off on a curve; of two separate ones σ would be as large as their
+  /// distance.
+  [[nodiscard]] bool is_same_singularity(std::size_t a, std::size_t b) const {
+    constexpr double singular = 1e-8, part = 1e-3;
+    const double sigma = std::max(all_[a].sigma, all_[b].sigma),
+                 apart = difference(all_[a].theta, all_[b].theta).cwiseAbs().maxCoeff();
+    return sigma < singular && apart < 2 * close_together && sigma < part * apart;
   }
   [[nodiscard]] bool is_closed(const six_coordinates& theta) const {
     constexpr double rounding = 3e-13;
@@ -82,11 +111,11 @@ private:
 
   /// Along the direction v that changes the loop least, by u σ t, it changes by u (σ t + κ t²/2) to
   /// second order: near t = −2σ/κ is another solution. Where σ is 0 it may be one of a curve.
-  /// \return does it stay? Some points of curves do.
-  bool look_beside(std::size_t at) {
-    constexpr double close_by = .05, closer = 2e-3, singular = 1e-5, h = 1e-3,
-                     nudge = 1e-9; // of pivots from zero
-    constexpr int enough = 24;     // singular solutions: others are on curves
+  /// \return the index of the solution; `nowhere` for most points of curves
+  std::size_t look_beside(std::size_t at) {
+    constexpr double close_by = .05, closer = 1e-2, h = 1e-3, fold = 1e-4,
+                     nudge = 1e-9;     // of pivots from zero
+    constexpr std::size_t enough = 24; // singular solutions: others are on curves
     const six_coordinates theta = all_[at].theta;
     const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
     six_columns rows = loop_gap(loop_, nearby).jacobian.transpose(); // J = L Q, then Qᵀ
@@ -101,30 +130,40 @@ private:
       sigma = 1 / v.norm();
       v *= sigma;
     }
+    all_[at].sigma = sigma;
     least_sigma_ = std::min(least_sigma_, sigma);
     if (!(sigma < close_by)) {
-      return true;
+      return at;
     }
-    if (sigma < singular) {
+    if (sigma < nearly_singular) {
+      for (std::size_t i = 0; i < at; ++i) {
+        if (is_same_singularity(i, at)) {
+          all_.pop_back();
+          return i;
+        }
+      }
       if (singular_ == enough) {
         all_.pop_back();
-        return false;
+        return nowhere;
       }
       ++singular_;
       if (is_on_curve(theta, v) || is_on_curve(theta, -v)) {
         ++on_curves_;
-        return true;
+        return at;
       }
-    } else if (sigma < closer) { // terms of third order may count
-      for (const double t : {-.3, -.1, -.03, -.01, .01, .03, .1, .3}) {
-        static_cast<void>(add(theta + t * v));
-      }
+    }
+    if (sigma < closer) { // terms of third order may count
+      const double almost_none = 1e-5 / squared_travel(loop_);
+      const double forwards = look_along(theta, u, v), backwards = look_along(theta, -u, -v);
+      is_near_curve_ = is_near_curve_ ||
+                       (sigma < nearly_singular && std::max(forwards, backwards) < almost_none);
     }
     const auto along = [&](double t) { return u.dot(loop_gap(loop_, theta + t * v).twist); };
     const double slope = u.dot(loop_gap(loop_, theta).jacobian * v);
-    const double t = 2 * slope * h * h / (along(h) + along(-h));
+    const double curvature = (along(h) + along(-h)) / (h * h), t = 2 * slope / curvature;
+    degenerate_ += sigma < nearly_singular && !(std::abs(curvature) > fold);
     if (!(std::abs(t) < 1)) {
-      return true;
+      return at;
     }
     // That solution may be the same one once it is refined.
     const bool is_one = is_closed(theta + t / 2 * v) ||
@@ -132,7 +171,42 @@ private:
     if (is_one) {
       all_[at].multiplicity = 2;
     }
-    return true;
+    return at;
+  }
+
+  /// Adds the solutions beside a nearly singular one by a Lyapunov–Schmidt reduction: with v·(x −
+  /// θ) held at t, all of the closure error but μ(t) u is made 0; solutions are zeros of μ.
+  /// \return the largest |μ|, as far as it was looked at
+  double look_along(const six_coordinates& theta, const six_coordinates& u,
+                    const six_coordinates& v) {
+    six_coordinates x = theta, x_before = theta;
+    double largest = 0, ratio_before = 0; // of μ to t, which has the zero at t = 0 no more
+    for (const double t : {.004, .01, .02, .04, .07, .1, .15, .22, .33, .5}) {
+      double mu = 0;
+      for (int k = 0; k < 2; ++k) {
+        const loop_gap gap(loop_, x);
+        Eigen::Matrix<double, 7, 7> bordered;
+        bordered << gap.jacobian, u, v.transpose(), 0;
+        Eigen::Matrix<double, 7, 1> left;
+        left << gap.twist, t - v.dot(x - theta);
+        const Eigen::Matrix<double, 7, 1> step =
+            Eigen::PartialPivLU<Eigen::Matrix<double, 7, 7>>(bordered).solve(left);
+        x += step.head<6>();
+        mu = step[6];
+      }
+      if (!((x - theta).norm() < 3 * t)) {
+        return largest;
+      }
+      largest = std::max(largest, std::abs(mu));
+      const double ratio = mu / t;
+      if (ratio * ratio_before < 0) {
+        const double part = ratio / (ratio - ratio_before);
+        static_cast<void>(add(x + part * (x_before - x)));
+      }
+      x_before = x;
+      ratio_before = ratio;
+    }
+    return largest;
   }
 
   /// Is another solution, or what is next to one, beside a singular one, in the direction v?
@@ -152,7 +226,9 @@ private:
 
   joint_loop loop_;
   std::vector<loop_solution> all_;
-  int on_curves_ = 0, singular_ = 0;
+  int on_curves_ = 0, degenerate_ = 0;
+  std::size_t singular_ = 0;
+  bool is_near_curve_ = false;
   double least_sigma_ = HUGE_VAL;
 };
 
