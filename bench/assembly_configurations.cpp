@@ -16,8 +16,9 @@
 #include <vector>
 
 // Assembly configurations of planar four-bars, one, two or four of them on one crank, by
-// `all_positions`, compared with Freudenstein's equation in long double: random lengths, and
-// structured ones (parallelograms, kites, rhombi, whole numbers, cranks at multiples of 15°).
+// `find_assembly_configurations`, compared with Freudenstein's equation in long double: random
+// lengths, and structured ones (parallelograms, kites, rhombi, whole numbers, cranks at multiples
+// of 15°).
 
 namespace {
 
@@ -38,11 +39,11 @@ duet::tree_joint hinge(const std::string& name, const std::string& parent, doubl
 }
 
 /// Four-bars with the same crank.
-duet::closed_tree mechanism_of(const std::vector<four_bar>& bars) {
+duet::closed_chain_mechanism mechanism_of(const std::vector<four_bar>& bars) {
   duet::robot_description robot;
   robot.links = {{"ground"}, {"crank"}};
   robot.joints = {hinge("crank", "ground", 0)};
-  std::vector<duet::tree_loop> loops;
+  std::vector<duet::loop_constraint> loops;
   for (std::size_t i = 0; i < bars.size(); ++i) {
     const std::string coupler = "coupler" + std::to_string(i),
                       rocker = "rocker" + std::to_string(i);
@@ -50,11 +51,11 @@ duet::closed_tree mechanism_of(const std::vector<four_bar>& bars) {
     robot.links.push_back({rocker});
     robot.joints.push_back(hinge(coupler, "crank", bars[i].crank));
     robot.joints.push_back(hinge(rocker, "ground", bars[i].ground));
-    loops.push_back({duet::loop_kind::hinge,
+    loops.push_back({duet::constraint_kind::revolute,
                      {coupler, at_point(bars[i].coupler)},
                      {rocker, at_point(bars[i].rocker)}});
   }
-  return duet::closed_tree(duet::kinematic_tree(robot), {loops});
+  return duet::closed_chain_mechanism(duet::kinematic_tree(robot), {loops});
 }
 
 /// How many positions a four-bar has, and whether it is regular: not flat, and not a whole circle.
@@ -114,13 +115,13 @@ int main(int argc, char** argv) {
           ++singular;
           continue;
         }
-        const auto found =
-            all_positions(mechanism_of(bars), {0}, Eigen::VectorXd::Constant(1, theta));
+        const auto found = find_assembly_configurations(mechanism_of(bars), {0},
+                                                        Eigen::VectorXd::Constant(1, theta));
         ++regular;
         exist += expects;
         const int lost = std::max(0, expects - int(found.positions.size()));
         missing += lost;
-        unflagged += found.chance_of_more() == 0 ? lost : 0;
+        unflagged += found.missing_probability() == 0 ? lost : 0;
         spurious += std::max(0, int(found.positions.size()) - expects);
       }
       std::printf(

@@ -75,10 +75,11 @@ constexpr symbol<"t20"> t20;
 
 /// The arm of workloads.hpp.
 auto panda() {
-  return slide(axis::z, .333) * screw(axis::z, t1) * screw(axis::y, t2) * slide(axis::z, .316) *
-         screw(axis::z, t3) * slide(axis::x, .0825) * screw(axis::y, -t4) * slide(axis::x, -.0825) *
-         slide(axis::z, .384) * screw(axis::z, t5) * screw(axis::y, -t6) * slide(axis::x, .088) *
-         screw(axis::z, -t7) * slide(axis::z, -.107);
+  return translation_along(axis::z, .333) * screw(axis::z, t1) * screw(axis::y, t2) *
+         translation_along(axis::z, .316) * screw(axis::z, t3) * translation_along(axis::x, .0825) *
+         screw(axis::y, -t4) * translation_along(axis::x, -.0825) *
+         translation_along(axis::z, .384) * screw(axis::z, t5) * screw(axis::y, -t6) *
+         translation_along(axis::x, .088) * screw(axis::z, -t7) * translation_along(axis::z, -.107);
 }
 
 template <class Jacobian>
@@ -90,7 +91,7 @@ void add_arm() {
   using angles = std::array<double, 7>;
   const auto joints = wrt(t1, t2, t3, t4, t5, t6, t7);
   const auto formula = jacobian(panda(), joints, duet::frame::spatial);
-  const auto library = jacobian(with_library_sines(panda()), joints, duet::frame::spatial);
+  const auto library = jacobian(with_std_sincos(panda()), joints, duet::frame::spatial);
   const auto by_hand = [](const angles& x) {
     pose_jacobian jacobian;
     const pose<double> a = fk7_by_hand(x, jacobian);
@@ -108,13 +109,16 @@ void add_arm() {
 
 /// The arm of twenty joints: from the eighth on upside down, from the fifteenth on upright again.
 auto twenty_joints() {
-  return panda() * slide(axis::z, -.333) * screw(axis::z, -t8) * screw(axis::y, -t9) *
-         slide(axis::z, -.316) * screw(axis::z, -t10) * slide(axis::x, .0825) *
-         screw(axis::y, t11) * slide(axis::x, -.0825) * slide(axis::z, -.384) *
-         screw(axis::z, -t12) * screw(axis::y, t13) * slide(axis::x, .088) * screw(axis::z, t14) *
-         slide(axis::z, .107) * slide(axis::z, .333) * screw(axis::z, t15) * screw(axis::y, t16) *
-         slide(axis::z, .316) * screw(axis::z, t17) * slide(axis::x, .0825) * screw(axis::y, -t18) *
-         slide(axis::x, -.0825) * slide(axis::z, .384) * screw(axis::z, t19) * screw(axis::y, -t20);
+  return panda() * translation_along(axis::z, -.333) * screw(axis::z, -t8) * screw(axis::y, -t9) *
+         translation_along(axis::z, -.316) * screw(axis::z, -t10) *
+         translation_along(axis::x, .0825) * screw(axis::y, t11) *
+         translation_along(axis::x, -.0825) * translation_along(axis::z, -.384) *
+         screw(axis::z, -t12) * screw(axis::y, t13) * translation_along(axis::x, .088) *
+         screw(axis::z, t14) * translation_along(axis::z, .107) * translation_along(axis::z, .333) *
+         screw(axis::z, t15) * screw(axis::y, t16) * translation_along(axis::z, .316) *
+         screw(axis::z, t17) * translation_along(axis::x, .0825) * screw(axis::y, -t18) *
+         translation_along(axis::x, -.0825) * translation_along(axis::z, .384) *
+         screw(axis::z, t19) * screw(axis::y, -t20);
 }
 
 template <class Jacobian>
@@ -130,7 +134,7 @@ void add_long_arm() {
   const auto joints = wrt(t1, t2, t3, t4, t5, t6, t7, t8, t9, t10, t11, t12, t13, t14, t15, t16,
                           t17, t18, t19, t20);
   const auto formula = jacobian(twenty_joints(), joints, duet::frame::spatial);
-  const auto library = jacobian(with_library_sines(twenty_joints()), joints, duet::frame::spatial);
+  const auto library = jacobian(with_std_sincos(twenty_joints()), joints, duet::frame::spatial);
   const auto by_hand = [](const angles& x) {
     long_pose_jacobian<20> jacobian;
     const pose<double> a = long_arm_by_hand(x, jacobian);
@@ -192,7 +196,7 @@ std::array<double, 7> call_gradient(const Gradient& gradient, const six& u) {
 void add_gradient() {
   const auto variables = wrt(u0, u1, u2, u3, u4, u5);
   const auto formula = gradient(twenty_operations(), variables);
-  const auto library = gradient(with_library_sines(twenty_operations()), variables);
+  const auto library = gradient(with_std_sincos(twenty_operations()), variables);
   const six at = {.1, .7, .3, .4, .5, .9};
   expect_agreement("formula_gradient", "duet", gradient_by_hand(at), call_gradient(formula, at));
   add<6>("formula_gradient", "duet", 0, 1, [=](const six& u) { return call_gradient(formula, u); });

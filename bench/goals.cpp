@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Goals in part and the solution one wants of them, for goals made from random joint coordinates:
+/// Partial goals and the solution one wants of them, for goals made from random joint coordinates:
 /// how many are found, and the processor's time for one. Arguments: the number of goals of each
 /// kind (1000), the seed (1).
 
@@ -27,7 +27,7 @@ namespace {
 
 using namespace duet;
 /// Of any number of joints: all is compiled once.
-using arm_chain = serial_chain<-16>;
+using arm_chain = bounded_chain<16>;
 using joints = detail::joint_vector<double, -16>;
 using result = inverse_kinematics_result<-16>;
 
@@ -164,13 +164,13 @@ void goals_in_part(int count, std::uint64_t seed) {
            [](const auto& tip, random_source& random) {
              const vector3<double> shift = .01 * direction(random), turn = .04 * direction(random);
              const vector3<double> n = direction(random);
-             return pose_region{.frame = tip * pose(exp(turn), shift),
-                                .lower = {-.01, -.01, -.01},
-                                .upper = {.01, .01, .01},
-                                .axis = {n[0], n[1], n[2]},
-                                .tilt = .1,
-                                .turn_lower = -.2,
-                                .turn_upper = .2};
+             return task_space_region{.frame = tip * pose(exp(turn), shift),
+                                      .lower = {-.01, -.01, -.01},
+                                      .upper = {.01, .01, .01},
+                                      .axis = {n[0], n[1], n[2]},
+                                      .max_tilt = .1,
+                                      .rotation_lower = -.2,
+                                      .rotation_upper = .2};
            });
   goal_row("the whole pose", count, seed, [](const auto& tip, random_source&) { return tip; });
 }
@@ -247,7 +247,7 @@ void starts(int count, std::uint64_t seed) {
         return start.reason == stop_reason::reached &&
                follow_path(arm, start.joints, path, 0, 1).reason == stop_reason::reached;
       }
-      return choose_start(arm, path, 0, 1).reason == stop_reason::reached;
+      return find_start_configuration(arm, path, 0, 1).reason == stop_reason::reached;
     };
   };
   row("path, from any solution", count, seed, solve(true));

@@ -23,7 +23,7 @@ using hessian = std::array<double, N * N>;
 
 template <std::size_t N>
 hessian<N> by_second_dual(const inputs<double, N>& at) {
-  using number = duet::second_dual<double, int(N)>;
+  using number = duet::second_order_dual<double, int(N)>;
   inputs<number, N> x;
   for (std::size_t i = 0; i < N; ++i) {
     x[i] = number::variable(at[i], int(i));

@@ -62,7 +62,7 @@ std::vector<problem<C::joints>> problems(const C& chain, start from) {
 /// Is the tip there, the joints within limits?
 template <class C, class X>
 bool is_solution(const C& chain, const X& theta, const dual_quaternion<double>& goal) {
-  const pose_deviation left = deviation_between(chain.pose(theta), goal);
+  const pose_error left = pose_error_between(chain.pose(theta), goal);
   const bool is_inside = (theta - lower_limits(chain)).minCoeff() >= 0 &&
                          (upper_limits(chain) - theta).minCoeff() >= 0;
   return is_inside && std::max(left.length, left.angle) <= 1e-6 * (1 + 1e-9);

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// How near `time_parametrised` with limits of jerk comes to the quickest motion. Durations are
-/// compared with the closed form on straight lines, and on curves with those of a search of another
-/// kind: over time in 300 equal steps of constant s⃛, limits at three moments of each.
+/// How near `time_optimal_trajectory` with limits of jerk comes to the quickest motion. Durations
+/// are compared with the closed form on straight lines, and on curves with those of a search of
+/// another kind: over time in 300 equal steps of constant s⃛, limits at three moments of each.
 /// Prints the table of docs/time_parametrisation.md; how many seeds of each family may be said:
 /// build/bench/bench/duet_jerk_limits_bench 10
 
@@ -198,19 +198,21 @@ void compare(unsigned seeds) {
       random_source random(seed + 1000);
       vector jerk(p.velocity.size());
       for (double& each : jerk) {
-        each = random.magnitude(3, 300);
+        each = random.log_uniform(3, 300);
       }
       const std::vector<double> limits(jerk.begin(), jerk.end());
       const auto timed = [&](const auto& waypoints) {
-        return duet::time_parametrised(waypoints, p.velocity, p.acceleration, {.jerk = limits});
+        return duet::time_optimal_trajectory(waypoints, p.velocity, p.acceleration,
+                                             {.jerk = limits});
       };
       const auto motion = watch.of([&] { return timed(p.waypoints); });
-      const auto without = duet::time_parametrised(p.waypoints, p.velocity, p.acceleration,
-                                                   {.curve = duet::joint_curve::smooth});
+      const auto without = duet::time_optimal_trajectory(
+          p.waypoints, p.velocity, p.acceleration, {.curve = duet::waypoint_interpolation::smooth});
       longer.add(motion.duration() / without.duration(), seed);
       // Where both are at equal times is where the searches start.
-      const auto problem = duet::detail::timing_problem_of(p.waypoints, p.velocity, p.acceleration,
-                                                           duet::time_options{.jerk = limits});
+      const auto problem =
+          duet::detail::timing_problem_of(p.waypoints, p.velocity, p.acceleration,
+                                          duet::time_parametrisation_options{.jerk = limits});
       const curve path = duet::detail::hermite_curve(problem.polygon,
                                                      duet::detail::smooth_slopes(problem.polygon));
       const auto start = duet::detail::timed_by_accelerations(problem, path);
@@ -220,8 +222,8 @@ void compare(unsigned seeds) {
         best = std::min(best, reference(path, p, jerk, places).time());
       }
       sampled.add(motion.duration() / best, seed);
-      const auto fine = duet::time_parametrised(p.waypoints, p.velocity, p.acceleration,
-                                                {.parts = 2400, .jerk = limits});
+      const auto fine = duet::time_optimal_trajectory(p.waypoints, p.velocity, p.acceleration,
+                                                      {.min_intervals = 2400, .jerk = limits});
       finer.add(motion.duration() / fine.duration(), seed);
       const std::vector<vector> ends{p.waypoints[0], p.waypoints[1]};
       const vector way = ends[1] - ends[0];

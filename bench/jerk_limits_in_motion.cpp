@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Whether `time_parametrised` with limits of jerk finds motions that are known to exist, with
-/// rates at both ends: along middle pieces of motions from rest to rest, with the rates that these
-/// have there. Prints the table of docs/time_parametrisation.md; how many seeds of each family, of
-/// four pieces each, may be said: build/bench/bench/duet_jerk_limits_in_motion_bench 50
+/// Whether `time_optimal_trajectory` with limits of jerk finds motions that are known to exist,
+/// with rates at both ends: along middle pieces of motions from rest to rest, with the rates that
+/// these have there. Prints the table of docs/time_parametrisation.md; how many seeds of each
+/// family, of four pieces each, may be said: build/bench/bench/duet_jerk_limits_in_motion_bench 50
 
 #include "timing_families.hpp"
 
@@ -83,17 +83,18 @@ void compare(unsigned seeds) {
       random_source random(seed + 1000);
       std::vector<double> jerk;
       for (Eigen::Index i = 0; i < p.velocity.size(); ++i) {
-        jerk.push_back(random.magnitude(3, 300));
+        jerk.push_back(random.log_uniform(3, 300));
       }
-      const timing problem = duet::detail::timing_problem_of(
-          p.waypoints, p.velocity, p.acceleration, duet::time_options{.jerk = jerk});
+      const timing problem =
+          duet::detail::timing_problem_of(p.waypoints, p.velocity, p.acceleration,
+                                          duet::time_parametrisation_options{.jerk = jerk});
       const curve path = duet::detail::hermite_curve(problem.polygon,
                                                      duet::detail::smooth_slopes(problem.polygon));
       const motion whole = duet::detail::timed_within_jerks(problem, path);
       for (int k = 0; k < 4; ++k) {
         double from = random.uniform(0, .99), to = random.uniform(from + .01, 1);
         if (k == 1) { // short
-          to = std::min(1.0, from + random.magnitude(1e-3, .1));
+          to = std::min(1.0, from + random.log_uniform(1e-3, .1));
         } else if (k == 2) {
           (seed % 2 == 0 ? from : to) = seed % 2 == 0 ? 0 : 1;
         }

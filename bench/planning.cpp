@@ -79,10 +79,10 @@ double largest_deviation(const duet::motion_plan<7>& plan, const dual_quaternion
           return std::numeric_limits<double>::infinity();
         }
       }
-      const auto d = duet::deviation_between(
+      const auto d = duet::pose_error_between(
           arm.pose(theta),
           duet::sclerp(plan.poses[0], goal, (1 - x) * plan.tau[k - 1] + x * plan.tau[k]));
-      result = std::max({result, d.length, d.angle});
+      result = std::max({result, d.translation, d.rotation});
     }
   }
   return result;
@@ -179,7 +179,7 @@ void plan_all(benchmark::State& state, const std::vector<family>& kinds, unsigne
   fine.smallest_step /= 10;
   fine.search_step /= 10;
   fine.self_motion_step /= 10;
-  fine.iterations = std::numeric_limits<int>::max();
+  fine.max_iterations = std::numeric_limits<int>::max();
   stopwatch times;
   int reached = 0, reached_finely = 0;
   double largest = 0;

@@ -81,8 +81,8 @@ bool is_on_torus(const arm_chain& arm, const component& torus, const joints& x) 
     const joints way = difference(s, x);
     return [&] {
       for (const double part : {.13, .37, .5, .71, .91}) {
-        const auto left = deviation_between(arm.pose(joints(x + part * way)), goal);
-        if (left.length > 1e-5 || left.angle > 1e-5) {
+        const auto left = pose_error_between(arm.pose(joints(x + part * way)), goal);
+        if (left.translation > 1e-5 || left.rotation > 1e-5) {
           return false;
         }
       }
@@ -141,7 +141,8 @@ void row(const robot& each, const family& kind, int count, std::uint64_t seed, b
       for (double& x : from) {
         x = random.uniform(-pi, pi);
       }
-      const auto found = inverse_kinematics(arm, goal, from, {.tolerance = 1e-12, .restarts = 0});
+      const auto found =
+          inverse_kinematics(arm, goal, from, {.tolerance = 1e-12, .max_restarts = 0});
       missed_here += found.reason == stop_reason::reached &&
                      std::none_of(all.begin(), all.end(), [&](const component& part) {
                        return part.dimension > 1 ? is_on_torus(arm, part, found.joints)

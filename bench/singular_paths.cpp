@@ -41,8 +41,8 @@ bool is_within(const serial_chain<N>& chain, const joints_of<N>& theta) {
 }
 
 double apart(const goal_pose& a, const goal_pose& b) {
-  const auto d = deviation_between(a, b);
-  return std::max(d.length, d.angle);
+  const auto d = pose_error_between(a, b);
+  return std::max(d.translation, d.rotation);
 }
 
 /// Newton's method to a pose by least steps; singular values below 1e-7 are left out.

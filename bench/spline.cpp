@@ -108,7 +108,8 @@ public:
     constexpr auto b1 = (c<5> + c<3> * x - c<3> * x * x + x * x * x) / c<6>;
     constexpr auto b2 = (c<1> + c<3> * x + c<3> * x * x - c<2> * x * x * x) / c<6>;
     constexpr auto b3 = x * x * x / c<6>;
-    constexpr auto curve = q * turn(n1, a1 * b1) * turn(n2, a2 * b2) * turn(n3, a3 * b3);
+    constexpr auto curve =
+        q * rotation_about(n1, a1 * b1) * rotation_about(n2, a2 * b2) * rotation_about(n3, a3 * b3);
 
     constexpr double r = 1 / knot_distance;
     const auto segment = std::size_t(u * r);

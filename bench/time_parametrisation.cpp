@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// How near `time_parametrised` comes to the quickest motion. Durations are compared with those
-/// that sampled limits allow on 20 000 parts and more of the same curve, and of natural splines.
-/// Prints the table of docs/time_parametrisation.md; how many seeds of each family may be said:
-/// build/bench/bench/duet_time_parametrisation_bench 10
+/// How near `time_optimal_trajectory` comes to the quickest motion. Durations are compared with
+/// those that sampled limits allow on 20 000 parts and more of the same curve, and of natural
+/// splines. Prints the table of docs/time_parametrisation.md; how many seeds of each family may be
+/// said: build/bench/bench/duet_time_parametrisation_bench 10
 
 #include "timing_families.hpp"
 
@@ -141,14 +141,15 @@ void compare(unsigned seeds) {
     stopwatch watch;
     for (unsigned seed = 1; seed <= seeds; ++seed) {
       const problem p = problem_of(kind, seed);
-      const auto timed = [&](const duet::time_options& options) {
-        return duet::time_parametrised(p.waypoints, p.velocity, p.acceleration, options).duration();
+      const auto timed = [&](const duet::time_parametrisation_options& options) {
+        return duet::time_optimal_trajectory(p.waypoints, p.velocity, p.acceleration, options)
+            .duration();
       };
       const double by_natural = reference(natural(p), p.velocity, p.acceleration);
       const double time = watch.of([&] { return timed({}); });
       same.add(time / reference(monotone(p), p.velocity, p.acceleration), seed);
       spline.add(time / by_natural, seed);
-      smooth.add(timed({.curve = duet::joint_curve::smooth}) / by_natural, seed);
+      smooth.add(timed({.curve = duet::waypoint_interpolation::smooth}) / by_natural, seed);
     }
     std::printf("| %s ", kind.name);
     for (const statistics& each : {same, spline, smooth}) {

@@ -93,18 +93,18 @@ inline const std::array families{
     family{"nearly straight",
            [](random_source& r) {
              const vector way = normal(r);
-             const double off = r.magnitude(1e-9, 1e-2);
+             const double off = r.log_uniform(1e-9, 1e-2);
              return walk(r.integer(3, 20),
                          [&](int) { return vector(r.uniform(.01, 1) * way + off * normal(r)); });
            }},
     family{"unequal, 1e-5 to 1",
            [](random_source& r) {
              return walk(r.integer(3, 20),
-                         [&](int) { return vector(r.magnitude(1e-5, 1) * normal(r)); });
+                         [&](int) { return vector(r.log_uniform(1e-5, 1) * normal(r)); });
            }},
     family{"tiny, 1e-6 to 1e-3",
            [](random_source& r) {
-             const double size = r.magnitude(1e-6, 1e-3);
+             const double size = r.log_uniform(1e-6, 1e-3);
              return walk(r.integer(2, 20), [&](int) { return vector(size * normal(r)); });
            }},
     family{"closed curves",
@@ -121,7 +121,7 @@ inline const std::array families{
     family{"small steps aside", [](random_source& r) {
              const vector way = normal(r);
              return walk(r.integer(4, 15), [&](int k) {
-               return k % 3 == 2 ? vector(r.magnitude(1e-4, 1e-1) * normal(r))
+               return k % 3 == 2 ? vector(r.log_uniform(1e-4, 1e-1) * normal(r))
                                  : vector(r.uniform(.3, 1) * way);
              });
            }}};

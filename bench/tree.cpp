@@ -196,7 +196,7 @@ void register_jacobian(const std::string& workload, const duet::kinematic_tree& 
     return duet::jacobian(robot, x, duet::frame::hybrid, hand);
   };
   contest(workload, "duet", q, by_tree);
-  const duet::serial_chain<-16> chain = robot.chain("base", "left_hand");
+  const duet::bounded_chain<16> chain = robot.chain("base", "left_hand");
   const auto by_chain = [chain](const coordinates& x) {
     return duet::jacobian(chain, x, duet::frame::hybrid);
   };

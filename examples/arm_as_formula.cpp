@@ -26,12 +26,14 @@ constexpr symbol<"theta7"> theta7;
 
 /// From the base to the flange, in metres; at θ = 0 the arm stands upright.
 auto panda() {
-  const auto shoulder =
-      slide(axis::z, .333) * screw(axis::z, theta1) * screw(axis::y, theta2) * slide(axis::z, .316);
-  const auto elbow = screw(axis::z, theta3) * slide(axis::x, .0825) * screw(axis::y, -theta4) *
-                     slide(axis::x, -.0825) * slide(axis::z, .384);
-  const auto wrist = screw(axis::z, theta5) * screw(axis::y, -theta6) * slide(axis::x, .088) *
-                     screw(axis::z, -theta7) * screw(axis::x, pi) * slide(axis::z, .107);
+  const auto shoulder = translation_along(axis::z, .333) * screw(axis::z, theta1) *
+                        screw(axis::y, theta2) * translation_along(axis::z, .316);
+  const auto elbow = screw(axis::z, theta3) * translation_along(axis::x, .0825) *
+                     screw(axis::y, -theta4) * translation_along(axis::x, -.0825) *
+                     translation_along(axis::z, .384);
+  const auto wrist = screw(axis::z, theta5) * screw(axis::y, -theta6) *
+                     translation_along(axis::x, .088) * screw(axis::z, -theta7) *
+                     screw(axis::x, pi) * translation_along(axis::z, .107);
   return shoulder * elbow * wrist;
 }
 

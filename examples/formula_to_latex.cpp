@@ -34,7 +34,7 @@ int run() {
   constexpr quaternion_symbol<"q"> q;
   constexpr vector_symbol<"n"> n;
   constexpr vector_symbol<"p"> p;
-  const auto turning = q * turn(n, u * u);
+  const auto turning = q * rotation_about(n, u * u);
   std::cout << "a turn about n, after q\n";
   print("Q", turning);
   print("Q'", derivative(turning, u));

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Goals in part: a tool of a Panda is to be at a place and point down, however it is turned about
+// Partial goals: a tool of a Panda is to be at a place and point down, however it is turned about
 // itself. Ways of doing that from different starts, the one nearest to a posture, and one that
 // keeps clear of a ball, as a table and drawn over each other.
 

@@ -63,7 +63,7 @@ struct goal {
 [[nodiscard]] std::string why_not(const goal& wanted, const solution& found) {
   std::ostringstream text;
   text << wanted.name << ": not reached (" << to_text(found.reason) << "), "
-       << found.deviation.length << " m and " << found.deviation.angle
+       << found.deviation.translation << " m and " << found.deviation.rotation
        << " rad from it with the nearest joints found";
   return text.str();
 }
@@ -76,8 +76,8 @@ void write_joints(const std::string& path, const std::vector<solution>& found) {
   text += "is_reached,length,angle\n";
   for (const solution& s : found) {
     std::vector<double> row(s.joints.begin(), s.joints.end());
-    row.insert(row.end(), {s.reason == stop_reason::reached ? 1.0 : 0.0, s.deviation.length,
-                           s.deviation.angle});
+    row.insert(row.end(), {s.reason == stop_reason::reached ? 1.0 : 0.0, s.deviation.translation,
+                           s.deviation.rotation});
     text += csv_line(row);
   }
   write_file(path, text);
@@ -92,8 +92,8 @@ void solve(const example::command_line& given) {
   const Eigen::VectorXd start = example::coordinates(arm, given, "start");
   const std::vector<goal> goals = goals_of(given, arm);
   inverse_kinematics_options options;
-  options.tolerance = given.get<double>("tolerance").value_or(options.tolerance.length);
-  options.restarts = given.get<int>("restarts").value_or(options.restarts);
+  options.tolerance = given.get<double>("tolerance").value_or(options.tolerance.translation);
+  options.max_restarts = given.get<int>("restarts").value_or(options.max_restarts);
   options.seed = given.get<std::uint64_t>("seed").value_or(options.seed);
 
   std::vector<dual_quaternion<double>> poses;
@@ -119,7 +119,7 @@ void solve(const example::command_line& given) {
       continue;
     }
     ++reached;
-    deviation = std::max({deviation, s.deviation.length, s.deviation.angle});
+    deviation = std::max({deviation, s.deviation.translation, s.deviation.rotation});
     if (goals.size() == 1) {
       std::printf("joints  ");
       for (const double x : s.joints) {

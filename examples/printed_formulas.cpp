@@ -100,7 +100,7 @@ void basis() {
   const auto automatic = [](const auto& u) {
     using T = std::decay_t<decltype(u)>;
     const bspline_basis<int(order), T> functions(std::vector<T>(knots.begin(), knots.end()));
-    const std::size_t span = functions.span_of(u);
+    const std::size_t span = functions.find_span(u);
     const std::size_t first = functions.first_function(span);
     const auto weights = functions.template weights<0>(span, u);
     std::array<T, controls> b{};

@@ -42,8 +42,8 @@ void single_step() {
   std::printf(" rad/s\n\n| N23: a step of | leaves |\n|---|---|\n");
   for (const double h : {.1, .01, .001}) {
     const auto next = pose(quaternion<double>(1), Eigen::Vector3d(0, 0, h)) * here;
-    const auto left = deviation_between(arm.pose(resolved_step(arm, theta, next, 1)), next);
-    std::printf("| %g m | %.3g m |\n", h, left.length);
+    const auto left = pose_error_between(arm.pose(resolved_step(arm, theta, next, 1)), next);
+    std::printf("| %g m | %.3g m |\n", h, left.translation);
   }
 }
 
@@ -113,7 +113,7 @@ void paths() {
       const auto plan = printed_path_plan(arm, gripper_down(), path, {.beta = beta});
       double largest = 0;
       for (std::size_t k = 1; k < plan.deviations.size(); ++k) {
-        largest = std::max(largest, plan.deviations[k].length);
+        largest = std::max(largest, plan.deviations[k].translation);
       }
       if (plan.reason == stop_reason::reached) {
         std::printf("| %d | %g | %s | %.3g mm | %.2g |\n", n, beta, to_text(plan.reason),

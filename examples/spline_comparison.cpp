@@ -73,7 +73,7 @@ struct rows {
       q.push_back(s.q);
       omega.push_back(s.omega);
     }
-    q = duet::aligned_orientations(q);
+    q = duet::align_quaternion_signs(q);
   }
 
   /// The interval of u, and where in it, from 0 to 1.

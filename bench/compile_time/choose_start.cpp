@@ -8,5 +8,5 @@
 #include <cstddef>
 
 std::size_t poses_reached(duet::dual_quaternion<double> (*path)(double)) {
-  return duet::choose_start(duet::robots::panda(), path, 0, 1).plan.joints.size();
+  return duet::find_start_configuration(duet::robots::panda(), path, 0, 1).plan.joints.size();
 }

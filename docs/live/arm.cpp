@@ -23,7 +23,7 @@
 namespace {
 
 /// Any of the arms, so that what is done with it is compiled once.
-using arm_chain = duet::serial_chain<-7>;
+using arm_chain = duet::bounded_chain<7>;
 using joints = duet::detail::joint_vector<double, -7>;
 using pose_type = duet::dual_quaternion<double>;
 using vector3 = duet::vector3<double>;

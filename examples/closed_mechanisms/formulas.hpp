@@ -74,7 +74,7 @@ inline constexpr auto four_bar = [](const auto& u) {
   const auto k = .2 * cos(u[0]) - .55, s = .2 * sin(u[0]);
   const auto q = (.4 * .4 + k * k + s * s - .5 * .5) / .8;
   const auto psi = atan2(s, k) - atan2(sqrt(k * k + s * s - q * q), q);
-  return duet::column(.55 + .4 * cos(psi), .4 * sin(psi), 0 * psi);
+  return duet::make_vector(.55 + .4 * cos(psi), .4 * sin(psi), 0 * psi);
 };
 
 /// Where the circles about the cranks' ends meet, the upper point.
@@ -85,7 +85,7 @@ inline constexpr auto five_bar = [](const auto& u) {
   const auto ax = -.15 + .25 * cos(u[0]), ay = .25 * sin(u[0]);
   const auto dx = .15 + .25 * cos(u[1]) - ax, dy = .25 * sin(u[1]) - ay;
   const auto up = sqrt(.16 / (dx * dx + dy * dy) - .25);
-  return duet::column(ax + dx / 2 - up * dy, ay + dy / 2 + up * dx, 0 * up);
+  return duet::make_vector(ax + dx / 2 - up * dy, ay + dy / 2 + up * dx, 0 * up);
 };
 
 /// The lower point where the spheres about the ends of the arms, moved inwards by what the plate

@@ -75,7 +75,8 @@ std::optional<options> parse_options(int argc, char** argv) {
 const std::array colours{"#0072b2", "#d55e00", "#00805d", "#a8497c",
                          "#b37700", "#56b4e9", "#6e7781", "#24292f"};
 
-std::string names(const duet::closed_tree& mechanism, const std::vector<int>& coordinates) {
+std::string names(const duet::closed_chain_mechanism& mechanism,
+                  const std::vector<int>& coordinates) {
   std::string result;
   for (const int i : coordinates) {
     result += " " + mechanism.tree().coordinate_names()[std::size_t(i)];
@@ -83,10 +84,10 @@ std::string names(const duet::closed_tree& mechanism, const std::vector<int>& co
   return result;
 }
 
-void print(const duet::loop_positions& found) {
+void print(const duet::assembly_search_result& found) {
   std::printf("%zu ways to close from %d starts, of which %d closed; chance of more %.2g:\n",
-              found.positions.size(), found.starts, found.closed, found.chance_of_more());
-  for (const duet::loop_position& each : found.positions) {
+              found.positions.size(), found.starts, found.closed, found.missing_probability());
+  for (const duet::assembly_configuration& each : found.positions) {
     for (const double x : each.coordinates) {
       std::printf(" %9.5f", std::abs(x) < 5e-6 ? 0 : x);
     }
@@ -95,9 +96,9 @@ void print(const duet::loop_positions& found) {
 }
 
 /// Along the way of the drives, beside what is known by hand.
-void follow(const options& given, const mechanism& known, duet::loop_motion motion,
+void follow(const options& given, const mechanism& known, duet::driven_motion motion,
             example::drawing& picture) {
-  const duet::closed_tree mechanism = motion.mechanism();
+  const duet::closed_chain_mechanism mechanism = motion.mechanism();
   const auto at = mechanism.tree().link(known.link).at_point(known.point);
   const VectorXd way = known.to - known.from;
   std::string table = "part,x,y,z,dx,dy,dz,ddx,ddy,ddz\n";
@@ -105,7 +106,7 @@ void follow(const options& given, const mechanism& known, duet::loop_motion moti
   std::vector<example::point> curve;
   for (int i = 0; i < given.samples; ++i) {
     const double part = double(i) / (given.samples - 1);
-    motion = motion.moved_to(known.from + part * way);
+    motion = motion.warm_started_at(known.from + part * way);
     const path x =
         along_way([&](const auto& u) { return translation(mechanism.tree().pose(motion(u), at)); },
                   known.from, way, part);
@@ -131,7 +132,7 @@ void follow(const options& given, const mechanism& known, duet::loop_motion moti
 }
 
 /// The whole motion by one drive, and where joints are dead.
-void print(const duet::closed_tree& mechanism, const duet::loop_trace_result& whole) {
+void print(const duet::closed_chain_mechanism& mechanism, const duet::motion_trace& whole) {
   std::printf("the whole motion: %zu positions, %s\n", whole.positions.size(),
               whole.is_closed        ? "comes back"
               : whole.meets_branches ? "ends where branches touch"
@@ -164,15 +165,16 @@ void run(const options& given) {
   }
   example::require_folder(given.out);
   const std::string file = given.files + "/" + known->name;
-  const duet::closed_tree mechanism(duet::read_urdf_tree(file + ".urdf"),
-                                    duet::read_loops(file + ".loops"));
+  const duet::closed_chain_mechanism mechanism(duet::read_urdf_tree(file + ".urdf"),
+                                               duet::read_loops(file + ".loops"));
   std::vector<int> drives;
   for (const std::string& name : known->drives) {
     drives.push_back(mechanism.tree().coordinate(name));
   }
   std::printf("%s: %d coordinates, %d equations\n", known->name.c_str(), mechanism.size(),
               mechanism.equations());
-  const auto found = duet::all_positions(mechanism, drives, known->from, {.starts = given.starts});
+  const auto found = duet::find_assembly_configurations(mechanism, drives, known->from,
+                                                        {.random_starts = given.starts});
   if (found.positions.empty()) {
     throw std::runtime_error("no position found: more --starts");
   }
@@ -191,7 +193,7 @@ void run(const options& given) {
       add_lines(picture, mechanism, found.positions[i].coordinates, colours[i % colours.size()]);
     }
   } else {
-    const duet::loop_motion motion(mechanism, q, drives);
+    const duet::driven_motion motion(mechanism, q, drives);
     follow(given, *known, motion, picture);
     if (drives.size() == 1) {
       print(mechanism, duet::trace(motion));

@@ -22,8 +22,8 @@ namespace closed_mechanisms {
 /// Calls bar(from, to) for all links, between their joints and loops, rod(from, to) for rods, and
 /// fixed(point) for what of them is on the root.
 template <class Bar, class Rod, class Fixed>
-void for_each_part(const duet::closed_tree& mechanism, const Eigen::VectorXd& q, const Bar& bar,
-                   const Rod& rod, const Fixed& fixed) {
+void for_each_part(const duet::closed_chain_mechanism& mechanism, const Eigen::VectorXd& q,
+                   const Bar& bar, const Rod& rod, const Fixed& fixed) {
   const duet::kinematic_tree& tree = mechanism.tree();
   const auto poses = tree.poses(q);
   const auto number = [&](const std::string& link) { return std::size_t(tree.link(link).link); };
@@ -46,17 +46,17 @@ void for_each_part(const duet::closed_tree& mechanism, const Eigen::VectorXd& q,
       part(each.parent, each.motion.origin);
     }
   }
-  for (const duet::tree_loop& each : mechanism.loops()) {
+  for (const duet::loop_constraint& each : mechanism.loops()) {
     part(each.first.link, each.first.offset);
     part(each.second.link, each.second.offset);
-    if (each.kind == duet::loop_kind::rod) {
+    if (each.kind == duet::constraint_kind::distance) {
       rod(at(each.first.link, each.first.offset), at(each.second.link, each.second.offset));
     }
   }
 }
 
 /// As solids.
-inline void add(example::drawing& picture, const duet::closed_tree& mechanism,
+inline void add(example::drawing& picture, const duet::closed_chain_mechanism& mechanism,
                 const Eigen::VectorXd& q, const std::string& colour) {
   using example::point;
   const double radius = .012 * mechanism.length();
@@ -68,7 +68,7 @@ inline void add(example::drawing& picture, const duet::closed_tree& mechanism,
 }
 
 /// Its links as lines.
-inline void add_lines(example::drawing& picture, const duet::closed_tree& mechanism,
+inline void add_lines(example::drawing& picture, const duet::closed_chain_mechanism& mechanism,
                       const Eigen::VectorXd& q, const std::string& colour) {
   using example::point;
   for_each_part(

@@ -31,7 +31,7 @@ void print_faults(const recording& r, const std::string& path) {
   }
   constexpr std::size_t most = 20;
   for (std::size_t i = 0; i < r.faults.size() && i < most; ++i) {
-    const duet::recording_fault& each = r.faults[i];
+    const duet::recording_issue& each = r.faults[i];
     std::cerr << duet::printable(path + ":" + std::to_string(each.line) + ": " + each.reason)
               << "\n";
   }
@@ -73,8 +73,8 @@ void run(const options& given) {
   }
   std::printf("fit trajectory: rows=%zu left_out=%zu controls=%zu outliers=%zu "
               "median_residual=%.3g rms=%.3g\n",
-              rows, r.left_out, s.fit.curve.controls().size(), outliers(s), median(s.fit.residuals),
-              s.fit.rms);
+              rows, r.left_out, s.fit.curve.control_points().size(), outliers(s),
+              median(s.fit.residuals), s.fit.rms);
 }
 
 } // namespace

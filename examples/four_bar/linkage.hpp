@@ -23,13 +23,13 @@ using angles = Eigen::Vector2d;
 struct linkage {
   double crank, coupler, rocker, ground;
 
-  /// a e^{iθ} + b e^{iβ} = d + c e^{iψ}: the constraints of a `closed_loop` driven by θ.
+  /// a e^{iθ} + b e^{iβ} = d + c e^{iψ}: the constraints of a `constrained_mechanism` driven by θ.
   template <class X, class T>
   [[nodiscard]] auto operator()(const X& x, const T& theta) const {
     using std::cos;
     using std::sin;
-    return duet::column(crank * cos(theta) + coupler * cos(x[0]) - ground - rocker * cos(x[1]),
-                        crank * sin(theta) + coupler * sin(x[0]) - rocker * sin(x[1]));
+    return duet::make_vector(crank * cos(theta) + coupler * cos(x[0]) - ground - rocker * cos(x[1]),
+                             crank * sin(theta) + coupler * sin(x[0]) - rocker * sin(x[1]));
   }
 
   /// By Grashof: the shortest and the longest link against the other two.
@@ -84,8 +84,8 @@ template <class X, class T>
                                  const T& theta) {
   using std::cos;
   using std::sin;
-  return duet::column(l.crank * cos(theta) + place[0] * cos(x[0]) - place[1] * sin(x[0]),
-                      l.crank * sin(theta) + place[0] * sin(x[0]) + place[1] * cos(x[0]));
+  return duet::make_vector(l.crank * cos(theta) + place[0] * cos(x[0]) - place[1] * sin(x[0]),
+                           l.crank * sin(theta) + place[0] * sin(x[0]) + place[1] * cos(x[0]));
 }
 
 } // namespace four_bar

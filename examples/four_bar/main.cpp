@@ -109,13 +109,13 @@ std::vector<sample> run_through(const options& given) {
     throw std::runtime_error("the links cannot close at a crank angle of " +
                              duet::to_text(given.from) + " degrees");
   }
-  duet::closed_loop loop(given.links, start, first);
+  duet::constrained_mechanism loop(given.links, start, first);
   std::vector<sample> samples;
   for (int i = 0; i < given.samples; ++i) {
     const double theta = (given.from + (given.to - given.from) * i / (given.samples - 1)) * degree;
     try {
-      loop = loop.moved_to(theta);
-    } catch (const duet::cannot_close& error) {
+      loop = loop.warm_started_at(theta);
+    } catch (const duet::loop_closure_failure& error) {
       char text[100];
       std::snprintf(text, sizeof text,
                     "the links cannot close beyond a crank angle of %.6g degrees: a dead point",

@@ -67,13 +67,15 @@ bool run(const problem& p) {
   example::require_folder(p.out);
   const plan_type found = plan(p);
   const Eigen::VectorXd acceleration = Eigen::VectorXd::Constant(p.arm.size(), p.acceleration);
-  duet::time_options options{.curve =
-                                 p.jerk ? duet::joint_curve::smooth : duet::joint_curve::monotone};
-  const auto without = duet::time_parametrised(found, velocities(p), acceleration, options);
+  duet::time_parametrisation_options options{.curve = p.jerk
+                                                          ? duet::waypoint_interpolation::smooth
+                                                          : duet::waypoint_interpolation::monotone};
+  const auto without = duet::time_optimal_trajectory(found, velocities(p), acceleration, options);
   if (p.jerk) {
     options.jerk.assign(std::size_t(p.arm.size()), *p.jerk);
   }
-  const auto trajectory = duet::time_parametrised(found, velocities(p), acceleration, options);
+  const auto trajectory =
+      duet::time_optimal_trajectory(found, velocities(p), acceleration, options);
   std::filesystem::create_directories(p.out);
   std::string deviations;
   const worst_case worst = deviations_csv(p, found, deviations);
@@ -88,8 +90,8 @@ bool run(const problem& p) {
 
   std::printf("%s: %zu waypoints, %d iterations\n", duet::to_text(found.reason),
               found.joints.size(), found.iterations);
-  std::printf("from the screw motion        %.2g m and %.2g rad at most\n", worst.deviation.length,
-              worst.deviation.angle);
+  std::printf("from the screw motion        %.2g m and %.2g rad at most\n",
+              worst.deviation.translation, worst.deviation.rotation);
   std::printf("smallest singular value      %.3g\n", found.smallest_singular_value);
   std::printf("nearest to a joint's limit   %.3g\n", found.smallest_limit_margin);
   if (p.has_margins()) {
@@ -120,7 +122,7 @@ bool run(const problem& p) {
   std::printf("motion plan: reason=%s tau=%.4f waypoints=%zu deviation_m=%.2g deviation_rad=%.2g "
               "duration=%.4g\n",
               duet::to_text(found.reason), found.tau.back(), found.joints.size(),
-              worst.deviation.length, worst.deviation.angle, trajectory.duration());
+              worst.deviation.translation, worst.deviation.rotation, trajectory.duration());
   if (found.reason != duet::stop_reason::reached) {
     std::fflush(stdout);
     std::cerr << "motion_plan: the goal is not reached: " << duet::to_text(found.reason)

@@ -66,7 +66,7 @@ inline std::optional<std::vector<double>> usual_posture(const std::string& robot
 
 /// A capsule along each link, from its frame to that of the next one; along the next one where its
 /// frame is at its far end, as in the first of Denavit and Hartenberg's conventions.
-inline std::vector<duet::link_body> bodies(const example::arm_chain& arm, double radius) {
+inline std::vector<duet::collision_body> bodies(const example::arm_chain& arm, double radius) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.size());
   const Eigen::VectorXd moved = Eigen::VectorXd::Constant(arm.size(), .5);
   const auto pose_at = [&](const Eigen::VectorXd& theta, int link) -> pose_type {
@@ -77,7 +77,7 @@ inline std::vector<duet::link_body> bodies(const example::arm_chain& arm, double
     return duet::transform_point(conj(pose_at(theta, from)),
                                  point(duet::translation(pose_at(theta, link))));
   };
-  std::vector<duet::link_body> result;
+  std::vector<duet::collision_body> result;
   for (int link = 1; link <= arm.size(); ++link) {
     const bool turns_next =
         (seen(zero, link, link + 1) - seen(moved, link, link + 1)).norm() > 1e-9;
@@ -92,7 +92,7 @@ inline std::vector<duet::link_body> bodies(const example::arm_chain& arm, double
 /// in a hundred random configurations are left out, and told.
 inline void leave_out_what_always_touches(duet::scene& around, const example::arm_chain& arm) {
   using std::numbers::pi;
-  std::vector<duet::body_pair> touching = around.pairs;
+  std::vector<duet::collision_pair> touching = around.pairs;
   duet::random_source random(1);
   for (int k = 0; k < 100; ++k) {
     Eigen::VectorXd theta(arm.size());
@@ -100,14 +100,14 @@ inline void leave_out_what_always_touches(duet::scene& around, const example::ar
       const auto& limits = arm.limits(i);
       theta[i] = random.uniform(std::max(limits.lower, -pi), std::min(limits.upper, pi));
     }
-    std::erase_if(touching, [&](const duet::body_pair& each) {
+    std::erase_if(touching, [&](const duet::collision_pair& each) {
       return closest_points(arm, theta, around.bodies[each.first], around.bodies[each.second])
                  .distance >= around.margin;
     });
   }
-  for (const duet::body_pair& each : touching) {
+  for (const duet::collision_pair& each : touching) {
     std::printf("bodies %zu and %zu always touch: left out of --self\n", each.first, each.second);
-    std::erase_if(around.pairs, [&](const duet::body_pair& other) {
+    std::erase_if(around.pairs, [&](const duet::collision_pair& other) {
       return other.first == each.first && other.second == each.second;
     });
   }
@@ -123,16 +123,16 @@ inline void add_bodies(duet::scene& around, const example::arm_chain& arm,
     const auto read =
         duet::read_urdf(*file, given.text("base").value_or(""), given.text("tip").value_or(""));
     const std::filesystem::path folder = std::filesystem::path(*file).parent_path();
-    const auto fitted = duet::capsules_of(read, folder.string());
+    const auto fitted = duet::bounding_capsules(read, folder.string());
     if (!fitted.bodies.empty()) {
       around.bodies = fitted.bodies;
     }
   }
   const auto srdf = given.text("srdf");
   if (given.has("self")) {
-    around.pairs = duet::pairs_apart(arm, around.bodies,
-                                     srdf ? duet::read_disabled_collisions(*srdf)
-                                          : std::vector<duet::link_pair>{});
+    around.pairs = duet::self_collision_pairs(arm, around.bodies,
+                                              srdf ? duet::read_disabled_collisions(*srdf)
+                                                   : std::vector<duet::link_pair>{});
     leave_out_what_always_touches(around, arm);
   } else if (srdf) {
     throw std::runtime_error("--srdf is for --self");

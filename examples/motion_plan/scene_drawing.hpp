@@ -46,7 +46,7 @@ inline std::optional<closest_approach> closest(const problem& p, const plan_type
 inline void add_arm(example::drawing& d, const problem& p, const Eigen::VectorXd& theta,
                     const std::string& colour, double shift = 0) {
   d.capsule(point::Zero(), duet::translation(p.arm.pose(theta, 1)), .03, "#9aa5b1", shift);
-  for (const duet::link_body& each : p.around.bodies) {
+  for (const duet::collision_body& each : p.around.bodies) {
     const auto body = duet::transformed(p.arm.pose(theta, each.link), each.shape);
     d.capsule(body.from, body.to, body.radius, colour, shift);
   }
@@ -62,16 +62,16 @@ inline void add_obstacle(example::drawing& d, const duet::obstacle& each, double
           d.circle(o.centre, o.radius + margin, "#24292f", "lw 1.5 dt 2");
         } else if constexpr (requires { o.radius; }) {
           d.capsule(o.from, o.to, o.radius, "#e69f00");
-        } else if constexpr (requires { o.placed; }) {
+        } else if constexpr (requires { o.pose; }) {
           for (int axis = 0; axis < 3; ++axis) {
             for (const int side : {-1, 1}) {
               std::vector<point> corners;
               for (const auto& [a, b] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}, {-1, -1}}) {
-                point x = o.half_sizes;
+                point x = o.half_extents;
                 x[axis] *= side;
                 x[(axis + 1) % 3] *= a;
                 x[(axis + 2) % 3] *= b;
-                corners.push_back(duet::transform_point(o.placed, x));
+                corners.push_back(duet::transform_point(o.pose, x));
               }
               d.face(corners, axis == 2 ? "#f5c95c" : axis == 1 ? "#e69f00" : "#c98a00");
             }

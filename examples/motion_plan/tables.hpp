@@ -22,7 +22,7 @@ namespace motion_plan_example {
 using plan_type = duet::motion_plan<-16>;
 
 struct worst_case {
-  duet::pose_deviation deviation;
+  duet::pose_error deviation;
   double clearance = std::numeric_limits<double>::infinity();
 };
 
@@ -36,13 +36,13 @@ inline worst_case deviations_csv(const problem& p, const plan_type& plan, std::s
       const double x = part / 10.0;
       const Eigen::VectorXd theta = (1 - x) * plan.joints[k - 1] + x * plan.joints[k];
       const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
-      const auto d =
-          duet::deviation_between(p.arm.pose(theta), duet::sclerp(plan.poses.front(), p.goal, tau));
+      const auto d = duet::pose_error_between(p.arm.pose(theta),
+                                              duet::sclerp(plan.poses.front(), p.goal, tau));
       const double apart = duet::clearance(p.arm, theta, p.around).distance;
-      worst.deviation.length = std::max(worst.deviation.length, d.length);
-      worst.deviation.angle = std::max(worst.deviation.angle, d.angle);
+      worst.deviation.translation = std::max(worst.deviation.translation, d.translation);
+      worst.deviation.rotation = std::max(worst.deviation.rotation, d.rotation);
       worst.clearance = std::min(worst.clearance, apart);
-      text += duet::csv_line({tau, d.length, d.angle, std::min(apart, 1e9)});
+      text += duet::csv_line({tau, d.translation, d.rotation, std::min(apart, 1e9)});
     }
   }
   return worst;

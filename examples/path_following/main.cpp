@@ -41,14 +41,15 @@ void run(const options& given) {
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
-  duet::pose_deviation largest;
-  for (const duet::pose_deviation& d : plan.deviations) {
-    largest = {std::max(largest.length, d.length), std::max(largest.angle, d.angle)};
+  duet::pose_error largest;
+  for (const duet::pose_error& d : plan.deviations) {
+    largest = {std::max(largest.translation, d.translation),
+               std::max(largest.rotation, d.rotation)};
   }
   std::printf("path following: reason=%s turns=%.4g waypoints=%zu length=%.1e angle=%.1e "
               "limit_margin=%.4g singular_value=%.4g\n",
-              to_text(plan.reason), plan.tau.back(), plan.tau.size(), largest.length, largest.angle,
-              plan.smallest_limit_margin, plan.smallest_singular_value);
+              to_text(plan.reason), plan.tau.back(), plan.tau.size(), largest.translation,
+              largest.rotation, plan.smallest_limit_margin, plan.smallest_singular_value);
   if (plan.reason != duet::stop_reason::reached) {
     std::cout << "The arm cannot draw all of it: it stops after " << plan.tau.back() << " of "
               << given.turns << " turns\n";

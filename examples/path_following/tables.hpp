@@ -32,7 +32,7 @@ std::string path_csv(const duet::motion_plan<N>& plan) {
     const auto gamma = duet::pose_coordinates(plan.poses[k]);
     std::vector<double> row = {plan.tau[k]};
     row.insert(row.end(), gamma.begin(), gamma.end());
-    row.insert(row.end(), {plan.deviations[k].length, plan.deviations[k].angle});
+    row.insert(row.end(), {plan.deviations[k].translation, plan.deviations[k].rotation});
     row.insert(row.end(), plan.joints[k].begin(), plan.joints[k].end());
     text += duet::csv_line(row);
   }
@@ -80,9 +80,9 @@ template <int N>
 std::string picture_script(const example::drawing& d, const duet::motion_plan<N>& plan) {
   const example::joint_curves curves(plan.joints);
   const std::size_t last = plan.joints.size() - 1;
-  duet::pose_deviation off;
-  for (const duet::pose_deviation& each : plan.deviations) {
-    off = {std::max(off.length, each.length), std::max(off.angle, each.angle)};
+  duet::pose_error off;
+  for (const duet::pose_error& each : plan.deviations) {
+    off = {std::max(off.translation, each.translation), std::max(off.rotation, each.rotation)};
   }
   const auto within = [](const char* left, const char* right, const char* bottom, const char* top) {
     return std::string("set lmargin at screen ") + left + "\nset rmargin at screen " + right +
@@ -91,8 +91,8 @@ std::string picture_script(const example::drawing& d, const duet::motion_plan<N>
   using enum example::beside;
   return "set multiplot title " +
          example::title("The tip stays on the helix, within " +
-                        example::two_digits(1e9 * off.length) + " nm and " +
-                        example::two_digits(1e9 * off.angle) + " nrad") +
+                        example::two_digits(1e9 * off.translation) + " nm and " +
+                        example::two_digits(1e9 * off.rotation) + " nrad") +
          "\n" + within(".53", ".9", ".56", ".91") +
          "set xrange [*:*] noextend\nset format x ''\nset xtics .5\nset ytics 1\n"
          "set ylabel 'coordinate / (rad or m)'\n" +

@@ -96,7 +96,7 @@ private:
       }
       return;
     default:
-      arrow(to, turn * axis, joint.motion.slides() ? "#b37700" : "#d55e00");
+      arrow(to, turn * axis, joint.motion.is_translational() ? "#b37700" : "#d55e00");
     }
   }
   void arrow(const point& at, const point& along, const std::string& colour) {

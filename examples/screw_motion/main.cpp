@@ -22,7 +22,8 @@ namespace {
 void run(const options& given) {
   example::require_folder(given.out);
   const auto [from, to] = poses(given);
-  const duet::way round = given.is_long_way ? duet::way::longest : duet::way::shortest;
+  const duet::slerp_arc round =
+      given.is_long_way ? duet::slerp_arc::longest : duet::slerp_arc::shortest;
   const screw between = screw_between(from, to, given.is_long_way);
   std::cout << in_words(between);
   if (is_half_turn_apart(from, to)) {

@@ -88,8 +88,8 @@ struct sample {
   vector6<double> rates; ///< the same, hybrid: of the pose's own origin, in fixed axes
 };
 
-inline std::vector<sample> samples(const pose_type& from, const pose_type& to, duet::way round,
-                                   int steps) {
+inline std::vector<sample> samples(const pose_type& from, const pose_type& to,
+                                   duet::slerp_arc round, int steps) {
   std::vector<sample> result;
   for (int i = 0; i <= steps; ++i) {
     const double tau = double(i) / steps;

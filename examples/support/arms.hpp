@@ -21,7 +21,7 @@
 namespace example {
 
 /// Any of the arms, so that what is done with it is compiled once.
-using arm_chain = duet::serial_chain<-16>;
+using arm_chain = duet::bounded_chain<16>;
 
 /// The options --robot, --urdf, --base and --tip.
 inline void add_arm_options(example::option_list& description) {

@@ -112,7 +112,7 @@ private:
                                                 const errors& e) {
     try {
       return mechanism.angles(row, e);
-    } catch (const duet::cannot_close&) {
+    } catch (const duet::loop_closure_failure&) {
       throw std::runtime_error("the rods of sample " + std::to_string(sample) +
                                " cannot close at u = " + duet::to_text(mechanism.height(row)) +
                                " m: the tolerance is too large");

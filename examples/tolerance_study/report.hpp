@@ -143,7 +143,7 @@ inline void print(const results& r, const hardpoints& points) {
     for (const sensitivity& s : r.sensitivities) {
       numbers.insert(numbers.end(), {s(0, j), s(1, j)});
     }
-    text += duet::csv_name(coordinate_name(points, j)) + "," + duet::csv_line(numbers);
+    text += duet::csv_sanitized(coordinate_name(points, j)) + "," + duet::csv_line(numbers);
   }
   return text;
 }

@@ -90,9 +90,9 @@ public:
       const loop start(toleranced_constraints{points}, design,
                        parameters_at(points.wheel_centre[2], errors::Zero()));
       for (const double u : heights) {
-        loops_.push_back(start.moved_to(parameters_at(u, errors::Zero())));
+        loops_.push_back(start.warm_started_at(parameters_at(u, errors::Zero())));
       }
-    } catch (const duet::cannot_close& error) {
+    } catch (const duet::loop_closure_failure& error) {
       throw std::runtime_error(
           "the rods cannot close beyond u = " + duet::to_text(error.parameter().front()) + " m");
     }
@@ -102,7 +102,7 @@ public:
   [[nodiscard]] double height(std::size_t row) const { return loops_[row].parameter()[0]; }
 
   /// Toe-in and camber, rad.
-  /// \throws duet::cannot_close where the rods cannot
+  /// \throws duet::loop_closure_failure where the rods cannot
   [[nodiscard]] vector2 angles(std::size_t row, const errors& e) const {
     return angles_of(loops_[row](parameters_at(height(row), e)));
   }
@@ -117,7 +117,7 @@ public:
 private:
   using parameters = Eigen::Matrix<double, 1 + coordinate_count, 1>;
   using unknowns = std::tuple<vector2, rotation>;
-  using loop = duet::closed_loop<toleranced_constraints, unknowns, parameters>;
+  using loop = duet::constrained_mechanism<toleranced_constraints, unknowns, parameters>;
 
   [[nodiscard]] static parameters parameters_at(double u, const errors& e) {
     parameters p;

@@ -107,7 +107,7 @@ public:
   [[nodiscard]] const hardpoints& points() const { return points_; }
 
   /// Position, orientation and their first two derivatives.
-  /// \throws duet::cannot_close where the rods cannot
+  /// \throws duet::loop_closure_failure where the rods cannot
   [[nodiscard]] state at(double u) const {
     const auto x = duet::derivatives<2>(loop_, u);
     const auto centre = [&](std::size_t order, double height) {
@@ -127,7 +127,7 @@ private:
   using unknowns = std::tuple<vector2, rotation>;
 
   hardpoints points_;
-  duet::closed_loop<constraints, unknowns> loop_;
+  duet::constrained_mechanism<constraints, unknowns> loop_;
 };
 
 } // namespace wheel_carrier

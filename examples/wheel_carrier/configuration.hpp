@@ -68,7 +68,7 @@ public:
 
   /// W, W′, W″.
   [[nodiscard]] std::array<vector3, 3> at(double u) const {
-    const std::size_t span = basis_.span_of(u);
+    const std::size_t span = basis_.find_span(u);
     const std::size_t first = basis_.first_function(span);
     const auto weights = basis_.weights<2>(span, u);
     std::array<vector3, 3> result{controls_[first], vector3::Zero(), vector3::Zero()};

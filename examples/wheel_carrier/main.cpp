@@ -48,7 +48,7 @@ std::vector<state> solve(const carrier& mechanism, const std::vector<double>& sa
   for (const double u : samples) {
     try {
       states.push_back(mechanism.at(u));
-    } catch (const duet::cannot_close& error) {
+    } catch (const duet::loop_closure_failure& error) {
       throw std::runtime_error(
           "the rods cannot close beyond u = " + duet::to_text(error.parameter().front()) + " m");
     }

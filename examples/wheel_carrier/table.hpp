@@ -26,8 +26,8 @@ inline table read_table(const std::string& path) {
     throw file_error(path, "needs two rows or more");
   }
   try {
-    q = duet::aligned_orientations(q);
-  } catch (const duet::invalid_row& error) {
+    q = duet::align_quaternion_signs(q);
+  } catch (const duet::invalid_sample& error) {
     throw file_error(path, "row " + std::to_string(error.row() + 1) + ": " + error.reason());
   }
   return {std::move(u), std::move(q)};

@@ -9,7 +9,7 @@
 /// mechanism/loop_trace.hpp, mechanism/mobility.hpp), arms in many
 /// configurations (mechanism/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
 /// inverse kinematics and what moves along them (planning/all_inverse_kinematics.hpp,
-/// planning/differentiable_branch.hpp, planning/self_motion_curves.hpp), goals in part, wishes and
+/// planning/differentiable_branch.hpp, planning/self_motion_curves.hpp), partial goals, wishes and
 /// the start of a path (planning/goals.hpp, planning/equation_goal.hpp, planning/choose_start.hpp),
 /// what keeps links apart from each other and the capsules that their shapes are in
 /// (planning/pairs_apart.hpp, planning/capsules_of.hpp, planning/enclosing_capsule.hpp,

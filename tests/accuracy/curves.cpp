@@ -37,7 +37,7 @@ hard_knots some_knots(int n, std::size_t order, random_source& random) {
     knots.values.push_back(u);
     const bool is_span = i + 1 == order;
     u += kind == 0   ? 1
-         : kind == 1 ? random.magnitude(1e-3, 1e3)
+         : kind == 1 ? random.log_uniform(1e-3, 1e3)
          : kind == 2 ? (is_span ? 0.7 : 0)
          : kind == 3 ? 1e-3
          : kind == 4 ? (is_span ? 1e-6 : 1)
@@ -121,7 +121,7 @@ row cumulative_row(const std::string& name, int count) {
     const spline s(typename spline::basis_type(knots), controls, increments);
     increments.erase(increments.begin());
     const input at = input_of(std::string(knots_name) + ", " + short_text(size) + " rad", u,
-                              s.controls()[0], increments);
+                              s.control_points()[0], increments);
     judge(result, at, {}, oracle::cumulative_motion(knots, what), measured_motion(s, {u}));
   }
   return result;

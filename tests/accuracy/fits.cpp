@@ -68,7 +68,7 @@ row fit_row(const std::string& name, int count) {
       at.direction.push_back(1);
     }
     numbers start;
-    for (const auto& q : s.controls()) {
+    for (const auto& q : s.control_points()) {
       append_components(start, q);
     }
     const auto what = is_pose<T> ? oracle::over::poses : oracle::over::rotations;

@@ -88,7 +88,7 @@ std::vector<double> start_of(const Curve& s) {
       }
     }
   } else {
-    for (const auto& q : s.controls()) {
+    for (const auto& q : s.control_points()) {
       append_components(result, q);
     }
   }

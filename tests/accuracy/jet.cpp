@@ -270,7 +270,9 @@ jet_quaternion operator*(const jet_quaternion& p, const jet& factor) {
   return {p[0] * factor, p[1] * factor, p[2] * factor, p[3] * factor};
 }
 jet_quaternion conj(const jet_quaternion& q) { return {q[0], -q[1], -q[2], -q[3]}; }
-jet norm2(const jet_quaternion& q) { return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]; }
+jet squared_norm(const jet_quaternion& q) {
+  return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+}
 
 jet_quaternion exp(const jet_quaternion& q) {
   const jet s = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
@@ -281,7 +283,7 @@ jet_quaternion exp(const jet_quaternion& q) {
 jet_quaternion log(const jet_quaternion& q) {
   const jet s = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   jet_quaternion r = q * angle_over_root(s, q[0]);
-  r[0] = log(norm2(q)) * jet(real(1) / 2);
+  r[0] = log(squared_norm(q)) * jet(real(1) / 2);
   return r;
 }
 jet_quaternion slerp(const jet_quaternion& a, const jet_quaternion& b, const jet& tau) {

@@ -87,7 +87,7 @@ using jet_quaternion = std::array<jet, 4>;
 jet_quaternion operator*(const jet_quaternion& p, const jet_quaternion& q);
 jet_quaternion operator*(const jet_quaternion& p, const jet& factor);
 jet_quaternion conj(const jet_quaternion& q);
-jet norm2(const jet_quaternion& q);
+jet squared_norm(const jet_quaternion& q);
 jet_quaternion exp(const jet_quaternion& q);
 jet_quaternion log(const jet_quaternion& q);
 /// a (a* b)^τ with a* b made a unit.

@@ -24,7 +24,7 @@ jet_quaternion operator+(const jet_quaternion& a, const jet_quaternion& b) {
 jet_quaternion operator-(const jet_quaternion& a, const jet_quaternion& b) {
   return a + b * jet(-1);
 }
-jet_quaternion unit(const jet_quaternion& q) { return q * (jet(1) / sqrt(norm2(q))); }
+jet_quaternion unit(const jet_quaternion& q) { return q * (jet(1) / sqrt(squared_norm(q))); }
 /// t^n taken for n!: what stays of the n-th derivative at t = 0.
 jet_quaternion at_zero(jet_quaternion q, int n) {
   for (; n > 0; --n) {
@@ -440,7 +440,7 @@ least_squares_fit::least_squares_fit(over what, std::vector<double> knots, std::
     : what_(what), knots_(std::move(knots)), u_(std::move(u)), length_(length),
       start_(std::move(start)), unknowns_(start_.size() / size() * numbers(), real(0)) {}
 
-std::size_t least_squares_fit::span_of(double u) const {
+std::size_t least_squares_fit::find_span(double u) const {
   std::size_t span = 0;
   while (span + 8 < knots_.size() && knots_[span + 4] <= u) {
     ++span;
@@ -470,7 +470,7 @@ jet_quaternion least_squares_fit::at(const reals& unknowns, std::size_t span, co
 real least_squares_fit::cost(const reals& rows, const reals& unknowns, std::size_t i) const {
   const jets x(rows.begin() + std::ptrdiff_t(i * size()),
                rows.begin() + std::ptrdiff_t((i + 1) * size()));
-  const jet_quaternion s = at(unknowns, span_of(u_[i]), jet(real(u_[i])));
+  const jet_quaternion s = at(unknowns, find_span(u_[i]), jet(real(u_[i])));
   const jet_quaternion between = conj(s) * unit(element_at(x, 0, what_));
   const jet_quaternion r = log(between * jet(between[0].c[0] < 0 ? -1 : 1)) * jet(2);
   real sum = 0;
@@ -487,7 +487,7 @@ void least_squares_fit::solve(const reals& rows) {
   jet_shape::current = &numbers_alone;
   const std::size_t n = unknowns_.size(), local = 4 * numbers();
   // The unknowns that row i depends on begin here.
-  const auto first = [&](std::size_t i) { return span_of(u_[i]) * numbers(); };
+  const auto first = [&](std::size_t i) { return find_span(u_[i]) * numbers(); };
   // Shifts are measured by the length.
   const auto scale = [&](std::size_t k) { return real(k % numbers() < 3 ? real(1) : length_); };
   if (inverse_.empty()) {
@@ -552,7 +552,7 @@ jets least_squares_fit::operator()(const jets& x) {
   solve(rows);
   jets result;
   for (std::size_t i = given; i < x.size(); ++i) {
-    const jets here = motion(at(unknowns_, span_of(double(x[i].c[0])), x[i]), what_);
+    const jets here = motion(at(unknowns_, find_span(double(x[i].c[0])), x[i]), what_);
     result.insert(result.end(), here.begin(), here.end());
   }
   return result;

@@ -79,7 +79,7 @@ private:
 
   [[nodiscard]] std::size_t numbers() const { return what_ == over::poses ? 6 : 3; }
   [[nodiscard]] std::size_t size() const { return what_ == over::poses ? 8 : 4; }
-  [[nodiscard]] std::size_t span_of(double u) const;
+  [[nodiscard]] std::size_t find_span(double u) const;
   [[nodiscard]] jet_quaternion at(const reals& unknowns, std::size_t span, const jet& u) const;
   /// ½ |2 log(S(u_i)* Q_i)|²
   [[nodiscard]] real cost(const reals& rows, const reals& unknowns, std::size_t i) const;

@@ -16,7 +16,7 @@ jets list_of(const jet_quaternion& q) { return {q[0], q[1], q[2], q[3]}; }
 jets vector_of(const jet_quaternion& q, const jet& factor) {
   return {q[1] * factor, q[2] * factor, q[3] * factor};
 }
-jet length_of(const jet_quaternion& q) { return sqrt(norm2(q)); }
+jet length_of(const jet_quaternion& q) { return sqrt(squared_norm(q)); }
 
 /// The matrix of v ↦ q v q*, in columns.
 jets matrix_of(const jet_quaternion& q) {

@@ -132,7 +132,7 @@ template <class T>
 }
 /// A motion, and a place of any distance.
 [[nodiscard]] inline input motion_and_point(int n, random_source& random) {
-  const double far = random.magnitude(1e-8, 1e8);
+  const double far = random.log_uniform(1e-8, 1e8);
   input point{"a point", {}, {}, {3}};
   for (const double c : some_direction(random, n)) {
     point.x.push_back(c * far);
@@ -158,7 +158,7 @@ template <class T>
   for (const double c : some_direction(random, n)) {
     result.x.push_back(c);
   }
-  const double far = random.magnitude(1e-3, 1e3);
+  const double far = random.log_uniform(1e-3, 1e3);
   for (const double c : some_direction(random, n / 3)) {
     result.x.push_back(c * far);
   }
@@ -192,14 +192,14 @@ template <class T>
       {"sclerp",
        {4, 4},
        [](const list& x) {
-         return list_of(sclerp(pose_at(x), pose_at(x, 8), x[16], duet::way::as_given));
+         return list_of(sclerp(pose_at(x), pose_at(x, 8), x[16], duet::slerp_arc::as_given));
        },
        oracle::sclerp,
        two_unit_poses},
       {"sclerp, norms that change",
        {4, 4},
        [](const list& x) {
-         return list_of(sclerp(pose_at(x), pose_at(x, 8), x[16], duet::way::as_given));
+         return list_of(sclerp(pose_at(x), pose_at(x, 8), x[16], duet::slerp_arc::as_given));
        },
        oracle::sclerp,
        two_poses},

@@ -75,7 +75,7 @@ void judge(row& r, const input& at, const numbers& d2, const oracle_function& ex
            const computed_results& computed);
 
 using line = duet::taylor<double, 4>;
-using plane = duet::second_dual<double, 2>;
+using plane = duet::second_order_dual<double, 2>;
 
 /// A function of lists of numbers, and where to probe it.
 template <class T>

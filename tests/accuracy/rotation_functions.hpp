@@ -84,19 +84,19 @@ template <class T, int C>
   return result;
 }
 [[nodiscard]] inline input turn_and_vector(int n, random_source& random) {
-  return joined(turn(n, random), vector_of_length(random.magnitude(1e-8, 1e8), n / 2, random));
+  return joined(turn(n, random), vector_of_length(random.log_uniform(1e-8, 1e8), n / 2, random));
 }
 [[nodiscard]] inline input axis_and_angle(int n, random_source& random) {
   const named angle = hard_angles[std::size_t(n) % std::size(hard_angles)];
-  input result = joined(vector_of_length(random.magnitude(1e-8, 1e8), n, random), angle.value,
+  input result = joined(vector_of_length(random.log_uniform(1e-8, 1e8), n, random), angle.value,
                         n % 2 == 0 ? random.normal() : angle.value);
   result.where = angle.name;
   return result;
 }
 /// Nearly parallel every so often, never opposite.
 [[nodiscard]] inline input two_vectors(int n, random_source& random) {
-  const input a = vector_of_length(random.magnitude(1e-4, 1e4), n, random);
-  input b = vector_of_length(random.magnitude(1e-4, 1e4), n / 2, random);
+  const input a = vector_of_length(random.log_uniform(1e-4, 1e4), n, random);
+  input b = vector_of_length(random.log_uniform(1e-4, 1e4), n / 2, random);
   const double apart = n % 3 == 0 ? 1e-9 : n % 3 == 1 ? 1e-3 : 1;
   b.where = apart < 1 ? "nearly parallel" : "another";
   for (std::size_t i = 0; i < 3; ++i) {
@@ -173,14 +173,16 @@ template <class T>
       {"slerp",
        {4},
        [](const list& x) {
-         return numbers_of(slerp(rotation_at(x), rotation_at(x, 4), x[8], duet::way::as_given));
+         return numbers_of(
+             slerp(rotation_at(x), rotation_at(x, 4), x[8], duet::slerp_arc::as_given));
        },
        oracle::slerp,
        two_unit_rotations},
       {"slerp, norms that change",
        {4},
        [](const list& x) {
-         return numbers_of(slerp(rotation_at(x), rotation_at(x, 4), x[8], duet::way::as_given));
+         return numbers_of(
+             slerp(rotation_at(x), rotation_at(x, 4), x[8], duet::slerp_arc::as_given));
        },
        oracle::slerp,
        two_rotations},

@@ -70,7 +70,7 @@ TEST_CASE("as many digits as show where the sides differ") {
       "in double", [](auto x) { return x; },
       [](auto x) { return decltype(x)(x * (1 + decltype(x)(1e-13))); },
       duet::sampler(duet::real_numbers{1, 3}));
-  CHECK(found.outcome == verdict::loses_digits);
+  CHECK(found.outcome == verdict::loses_precision);
   CHECK(to_text(found).ends_with("    automatic:   1\n    closed form: 1.0000000000001\n"));
   CHECK(found.simplest->difference == doctest::Approx(1e-13).epsilon(1e-2));
 }

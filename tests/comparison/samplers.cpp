@@ -81,8 +81,8 @@ TEST_CASE("special points") {
 TEST_CASE("arguments are made in the precision they are asked for") {
   const coordinates point = {0.3, -1.1, 0.7};
   const auto q = rotations{}.make<real_50>(point);
-  CHECK(abs(real_50(norm2(q) - 1)) < real_50(1e-49));
-  CHECK(std::abs(norm2(rotations{}.make<float>(point)) - 1) < 3e-7f);
+  CHECK(abs(real_50(squared_norm(q) - 1)) < real_50(1e-49));
+  CHECK(std::abs(squared_norm(rotations{}.make<float>(point)) - 1) < 3e-7f);
   CHECK(rotations{}.make<double>(coordinates{0, 0, 0}).w() == 1);
   CHECK(vectors<3>{2}.make<double>(point) == Eigen::Vector3d(0.3, -1.1, 0.7));
   const auto pair = arrays<2, real_numbers>{}.make<double>(coordinates{0.25, 0.5});

@@ -147,12 +147,12 @@ TEST_CASE("digits lost by cancellation are told from a slip") {
     return (1 - cos(x)) / x;
   };
   const auto inputs = sampler(real_numbers{1e-8, 3});
-  CHECK(compare("1 - cos", stable, cancelling, inputs).outcome == verdict::loses_digits);
+  CHECK(compare("1 - cos", stable, cancelling, inputs).outcome == verdict::loses_precision);
   CHECK(compare<double, real_50>("1 - cos", stable, cancelling, inputs).outcome ==
-        verdict::loses_digits);
+        verdict::loses_precision);
   const auto constant_of_few_digits = [&](auto x) { return stable(x) * 1.0000000000000002; };
   CHECK(compare<double, real_50>("few digits", stable, constant_of_few_digits, inputs).outcome ==
-        verdict::loses_digits);
+        verdict::loses_precision);
   // Away from zero nothing is lost.
   CHECK(compare("1 - cos", stable, cancelling, sampler(real_numbers{1, 3})));
 }
@@ -238,7 +238,7 @@ TEST_CASE("a slip in the series for small arguments, whatever its threshold") {
   // x²/6 is less than the last place of 1.
   CHECK(outcome({0, 1e-9}, 1) == verdict::agrees);
   CHECK(compare<double, real_50>("series", right, wrong_near_zero{0, 1e-9}, inputs).outcome ==
-        verdict::loses_digits);
+        verdict::loses_precision);
 }
 
 namespace {
@@ -342,7 +342,7 @@ TEST_CASE("a point is excluded, and the right formula agrees or loses digits bes
     // No digit is right in either precision, as for a slip: it is none.
     const comparison c =
         compare("naive", half_square_sinc{}, half_square_sinc{true}, inputs, options);
-    CHECK(c.outcome == verdict::loses_digits);
+    CHECK(c.outcome == verdict::loses_precision);
     CHECK(c.errors[1].relative == 1);
     for (const bool is_naive : {false, true}) {
       CHECK(compare("slip", half_square_sinc{}, half_square_sinc{is_naive, 1e-4}, inputs, options)
@@ -358,7 +358,7 @@ TEST_CASE("rounding is never taken for a slip, whatever the seed") {
   const auto amplified = [](auto x) { return (x + 1000000) - 1000000; };
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CHECK(compare("amplified", plain, amplified, sampler(real_numbers{}), {.seed = seed}).outcome ==
-          verdict::loses_digits);
+          verdict::loses_precision);
   }
 }
 
@@ -593,15 +593,15 @@ TEST_CASE("a slip and lost digits are found beside a derivative at a constant of
   CHECK(slip.note.starts_with("the first function returned float"));
   // What leaves more than half of the digits may be rounding: nothing has more digits to tell.
   CHECK(compare<float, double>("small", at_zero, off_by(0x1p-15), inputs).outcome ==
-        verdict::loses_digits);
+        verdict::loses_precision);
   CHECK(compare<float, double>("in T", off_by(0), off_by(0x1p-15), inputs).outcome ==
         verdict::disagrees);
 
   const auto cancelling = [](auto w) { return ((1 + w) - 1) / 3; };
   const comparison lost = compare<float, double>("lost", at_zero, cancelling, inputs);
-  CHECK(lost.outcome == verdict::loses_digits);
+  CHECK(lost.outcome == verdict::loses_precision);
   CHECK(lost.counts[std::size_t(verdict::disagrees)] == 0);
-  CHECK(lost.counts[std::size_t(verdict::loses_digits)] > 0);
+  CHECK(lost.counts[std::size_t(verdict::loses_precision)] > 0);
   // Where it is the shorter side that loses them.
   const auto cancelling_at_zero = [](auto w) {
     return derivative([&](const auto& t) { return ((1 + w * (t + 1)) - (1 + w * 0.5)) / 3; }, 0.0F)
@@ -610,7 +610,7 @@ TEST_CASE("a slip and lost digits are found beside a derivative at a constant of
   const auto half = [](auto w) { return w / 6; };
   const comparison shorter = compare<float, double>("shorter", cancelling_at_zero, half, inputs);
   CHECK(!shorter);
-  CHECK(shorter.counts[std::size_t(verdict::loses_digits)] > 0);
+  CHECK(shorter.counts[std::size_t(verdict::loses_precision)] > 0);
   CHECK(shorter.note.starts_with("the first function returned float"));
 }
 
@@ -636,7 +636,7 @@ TEST_CASE("constants are judged as they are, without a word on their type where 
   CHECK(compare<double, real_50>(
             "1 + 1e-18", [](auto x) { return decltype(x)(x * 0 + 1 + decltype(x)(1e-18)); },
             [](auto) { return 1; }, inputs)
-            .outcome == verdict::loses_digits);
+            .outcome == verdict::loses_precision);
 }
 
 } // namespace test_comparison_verdicts

@@ -58,7 +58,7 @@ TEST_CASE("the shortest text that reads back") {
 TEST_CASE("what is written reads back bit by bit") {
   duet_test::random_source random(1);
   for (int i = 0; i < 2000; ++i) {
-    const double x = random.signed_magnitude(1e-307, 1e307);
+    const double x = random.signed_log_uniform(1e-307, 1e307);
     const auto back = parse_number(to_text(x));
     REQUIRE(back.has_value());
     CHECK(std::bit_cast<std::uint64_t>(*back) == std::bit_cast<std::uint64_t>(x));

@@ -78,7 +78,7 @@ TEST_CASE("rotations and poses by themselves and in results") {
                             duet::make_dual_quaternion(quarter, rotation(std::nan("")))}) {
     CHECK(to_text(other) == duet::detail::message(other));
   }
-  duet::look_up_table<duet::screw_dual<double>> table{{0, 1}, {a, a}};
+  duet::lookup_table<duet::screw_dual<double>> table{{0, 1}, {a, a}};
   CHECK(to_text(table) ==
         "parameters: (0, 1)\nelements: (" + to_text(a) + ", " + to_text(a) + ")\n");
   const auto moved = duet::derivative(
@@ -104,7 +104,7 @@ TEST_CASE("enumerations, lists of results, results in results") {
   CHECK(to_text(plan) == "joints: ((1, 2), ... (5, 6)) of 3\n"
                          "poses: ()\n"
                          "tau: (0, 1, 2)\n"
-                         "deviations: ({length 1, angle 2}, {length 3, angle 4})\n"
+                         "deviations: ({translation 1, rotation 2}, {translation 3, rotation 4})\n"
                          "smallest_singular_value: inf\n"
                          "smallest_limit_margin: inf\n"
                          "smallest_clearance: inf\n"
@@ -112,7 +112,7 @@ TEST_CASE("enumerations, lists of results, results in results") {
                          "reason: singular\n");
   const auto found = duet::inverse_kinematics_result<2>{
       Eigen::Vector2d(1, 2), {0.25, 0.5}, 3, 1, duet::stop_reason::reached};
-  CHECK(to_text(found) == "joints: (1, 2)\ndeviation.length: 0.25\ndeviation.angle: 0.5\n"
+  CHECK(to_text(found) == "joints: (1, 2)\ndeviation.translation: 0.25\ndeviation.rotation: 0.5\n"
                           "iterations: 3\nrestarts: 1\nreason: reached\n");
 }
 

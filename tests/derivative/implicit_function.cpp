@@ -75,7 +75,7 @@ TEST_CASE("a scalar, in 100 digits: Kepler's equation to third order") {
 TEST_CASE("residuals as a scalar, an array, a fixed and a dynamic vector") {
   const auto scalar = [](const auto& x, const auto& p) { return x * x * x - p; };
   const auto array = [](const auto& x, const auto& p) { return std::array{x * x * x - p}; };
-  const auto fixed = [](const auto& x, const auto& p) { return duet::column(x * x * x - p); };
+  const auto fixed = [](const auto& x, const auto& p) { return duet::make_vector(x * x * x - p); };
   const auto dynamic = [](const auto& x, const auto& p) {
     using T = std::decay_t<decltype(x * p)>;
     Eigen::Matrix<T, Eigen::Dynamic, 1> r(1);
@@ -102,7 +102,7 @@ TEST_CASE("residuals as a scalar, an array, a fixed and a dynamic vector") {
 TEST_CASE("a vector and a tuple, in closed form") {
   const auto by_vector = implicit_function<2>(
       [](const auto& x, const auto& p) {
-        return duet::column(x[0] * x[0] + x[1] * x[1] - p * p, x[1] - 2 * x[0]);
+        return duet::make_vector(x[0] * x[0] + x[1] * x[1] - p * p, x[1] - 2 * x[0]);
       },
       Eigen::Vector2d(1, 1), 3.0);
   static_assert(std::is_same_v<decltype(by_vector), const std::array<Eigen::Vector2d, 3>>);
@@ -114,7 +114,7 @@ TEST_CASE("a vector and a tuple, in closed form") {
   const auto by_tuple = implicit_function<2>(
       [](const auto& unknown, const auto& p) {
         const auto& [x, v] = unknown;
-        return duet::column(x * x + v[0] * v[0] - p * p, v[0] - 2 * x, v[1] - x * v[0]);
+        return duet::make_vector(x * x + v[0] * v[0] - p * p, v[0] - 2 * x, v[1] - x * v[0]);
       },
       std::tuple(1.0, Eigen::Vector2d(1, 1)), 3.0);
   CHECK(std::get<0>(by_tuple[1]) == doctest::Approx(direction[0]).epsilon(1e-15));
@@ -127,8 +127,8 @@ TEST_CASE("units do not matter") {
   for (const double unit : {1e-12, 1e-9, 1.0, 1e9}) {
     const auto x = implicit_function<1>(
         [=](const auto& v, const auto& p) {
-          return duet::column(1e12 * (v[0] * v[0] * v[0] - p * unit * unit * unit),
-                              1e-12 * (v[1] * v[0] - unit * unit));
+          return duet::make_vector(1e12 * (v[0] * v[0] * v[0] - p * unit * unit * unit),
+                                   1e-12 * (v[1] * v[0] - unit * unit));
         },
         Eigen::Vector2d(3 * unit, 7 * unit), 8.0);
     CHECK(x[0][0] == doctest::Approx(2 * unit).epsilon(1e-14).scale(unit));
@@ -161,7 +161,7 @@ TEST_CASE("parameters of any shape, and captured variables") {
   const auto solve = [](const auto& p) {
     return duet::implicit_solution(
         [](const auto& x, const auto& q) {
-          return duet::column(x[0] + x[1] - q[0], x[0] * x[1] - q[1]);
+          return duet::make_vector(x[0] + x[1] - q[0], x[0] * x[1] - q[1]);
         },
         Eigen::Vector2d(0.5, 5), p);
   };
@@ -191,7 +191,7 @@ TEST_CASE("what has no solution, or a singular one, is refused") {
   CHECK(message([](const auto& x, const auto& p) { return log(x - 5) + p; }, 1.0) != "");
 
   const auto dependent = [](const auto& x, const auto& p) {
-    return duet::column(x[0] + x[1] - p, 2 * x[0] + 2 * x[1] - 2 * p);
+    return duet::make_vector(x[0] + x[1] - p, 2 * x[0] + 2 * x[1] - 2 * p);
   };
   CHECK_THROWS_AS(static_cast<void>(implicit_function<1>(dependent, Eigen::Vector2d(1, 2), 5.0)),
                   duet::no_convergence);

@@ -40,8 +40,8 @@ struct orientation {
   auto operator()(const Q& q, const P& p) const {
     const auto goal = rotation_matrix(motion(p));
     const auto actual = rotation_matrix(q);
-    return duet::column(actual.col(0).dot(goal.col(1)), actual.col(1).dot(goal.col(2)),
-                        actual.col(2).dot(goal.col(0)));
+    return duet::make_vector(actual.col(0).dot(goal.col(1)), actual.col(1).dot(goal.col(2)),
+                             actual.col(2).dot(goal.col(0)));
   }
 };
 
@@ -52,8 +52,8 @@ struct contact {
     const auto& [height, q, slip] = unknown;
     const auto aligned = orientation()(q, p);
     const auto tip = rotate(q, vector3<double>(0.3, -0.2, 1));
-    return duet::column(aligned[0], aligned[1], aligned[2], height + tip[2], slip[0] - tip[0],
-                        slip[1] - tip[0] * tip[1]);
+    return duet::make_vector(aligned[0], aligned[1], aligned[2], height + tip[2], slip[0] - tip[0],
+                             slip[1] - tip[0] * tip[1]);
   }
 };
 
@@ -68,9 +68,9 @@ TEST_CASE("a rotation, to third order") {
       CHECK(norm(sign * solved[k] - expected[k]) <= 1e-14 * (1 + norm(expected[k])));
     }
     // To every order a unit: |q|² is constant.
-    CHECK(std::abs(norm2(solved[0]) - 1) <= 1e-15);
+    CHECK(std::abs(squared_norm(solved[0]) - 1) <= 1e-15);
     CHECK(std::abs(dot(solved[0], solved[1])) <= 1e-15);
-    CHECK(std::abs(dot(solved[0], solved[2]) + norm2(solved[1])) <= 1e-13);
+    CHECK(std::abs(dot(solved[0], solved[2]) + squared_norm(solved[1])) <= 1e-13);
   }
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("a tuple of a number, a rotation and a vector") {
       [](const auto& t) {
         const auto q = motion(t);
         const auto tip = rotate(q, vector3<double>(0.3, -0.2, 1));
-        return std::tuple(-tip[2], q, duet::column(tip[0], tip[0] * tip[1]));
+        return std::tuple(-tip[2], q, duet::make_vector(tip[0], tip[0] * tip[1]));
       },
       p);
   for (std::size_t k = 0; k <= 2; ++k) {
@@ -110,7 +110,7 @@ TEST_CASE("a crank, in 100 digits to third order") {
         const auto arm = rotate(q, vector3<double>(1, 0, 0));
         // Two residuals keep the axis, the third is the height.
         const auto axis = rotate(q, vector3<double>(0, 0, 1));
-        return duet::column(axis[0], axis[1], height(arm[1], arm[0]) - goal);
+        return duet::make_vector(axis[0], axis[1], height(arm[1], arm[0]) - goal);
       },
       duet::from_axis_angle(vector3<double>(0, 0, 1), 0.3), p);
   const auto angle = [&](const real_100& goal) {
@@ -149,7 +149,7 @@ TEST_CASE("a crank, in 100 digits to third order") {
 TEST_CASE("an orientation that cannot be reached") {
   const auto f = [](const auto& q, const auto& p) {
     const auto x = rotate(q, vector3<double>(1, 0, 0));
-    return duet::column(x[0] - p, x[1], x[2] * x[1]);
+    return duet::make_vector(x[0] - p, x[1], x[2] * x[1]);
   };
   CHECK_THROWS_AS(
       static_cast<void>(implicit_function<1>(f, quaternion<double>(0.9, 0.1, 0.3, 0.3), 2.0)),

@@ -43,7 +43,7 @@ TEST_CASE("a scalar") {
 }
 
 TEST_CASE("an Eigen vector, matrix and expression") {
-  const auto fixed = [](const auto& x) { return duet::column(x * x, sin(x), 1.0); };
+  const auto fixed = [](const auto& x) { return duet::make_vector(x * x, sin(x), 1.0); };
   const auto [y, dy] = derivative(fixed, 2.0);
   static_assert(std::is_same_v<decltype(y), const Eigen::Vector3d>);
   CHECK(y == Eigen::Vector3d(4, std::sin(2.0), 1));
@@ -125,7 +125,7 @@ TEST_CASE("higher derivatives of a scalar and of a vector") {
   for (int k = 0; k <= 6; ++k) {
     CHECK(ys[std::size_t(k)] == doctest::Approx(sine(k, 0.4)).epsilon(1e-14));
   }
-  const auto vs = derivatives<2>([](auto x) { return duet::column(x * x * x, 1 / x); }, 2.0);
+  const auto vs = derivatives<2>([](auto x) { return duet::make_vector(x * x * x, 1 / x); }, 2.0);
   CHECK(vs[1] == Eigen::Vector2d(12, -0.25));
   CHECK(vs[2] == Eigen::Vector2d(12, 0.25));
 }
@@ -162,7 +162,7 @@ TEST_CASE("auto, the conditional operator and lambdas with two returns") {
 }
 
 TEST_CASE("directional derivatives") {
-  const auto f = [](const auto& x) { return duet::column(x[0] * x[1], sin(x[0])); };
+  const auto f = [](const auto& x) { return duet::make_vector(x[0] * x[1], sin(x[0])); };
   const Eigen::Vector2d x(0.5, 2), v(3, -1);
   const auto [y, dy] = directional_derivative(f, x, v);
   CHECK(y == Eigen::Vector2d(1, std::sin(0.5)));

@@ -206,7 +206,7 @@ TEST_CASE("nearest_rotation: at the identity its derivative is the skew part") {
     a(0, 1) += x[0];
     a(2, 2) += x[1];
     const auto r = nearest_rotation(a);
-    return duet::column(r(0, 1), r(1, 0), r(2, 2));
+    return duet::make_vector(r(0, 1), r(1, 0), r(2, 2));
   };
   const auto [value, j] = duet::jacobian(f, Eigen::Vector2d(0, 0));
   CHECK(j == Eigen::Matrix<double, 3, 2>{{.5, 0}, {-.5, 0}, {0, 0}});

@@ -212,7 +212,7 @@ TEST_CASE("inside a differentiated function: the stretch of a symmetric tensor")
     using T = std::decay_t<decltype(p[0])>;
     Eigen::Matrix<T, 3, 3> a;
     a << p[0], p[2], 0.0, p[2], p[1], 0.0, 0.0, 0.0, -7.0;
-    return duet::column(symmetric_eigen(a).values[2]);
+    return duet::make_vector(symmetric_eigen(a).values[2]);
   };
   // λ = (a + c)/2 + √((a − c)²/4 + b²) at a = 4, c = 1, b = 2: 5, with ∂λ = v vᵀ, v = (2, 1)/√5.
   const auto [value, J] = duet::jacobian(largest, Eigen::Vector3d(4, 1, 2));

@@ -30,14 +30,14 @@ auto values(const M& m) {
   return m.unaryExpr([](const D& x) { return x.value(); }).eval();
 }
 
-Matrix3d cross_matrix(const Vector3d& v) {
+Matrix3d skew(const Vector3d& v) {
   return (Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
 }
 
 const Vector3d axis = Vector3d(1, 2, -2) / 3;
 const D angle = D(0.7, 1);
 const Matrix3d rotation = Eigen::AngleAxisd(0.7, axis).toRotationMatrix();
-const Matrix3d rate = cross_matrix(axis) * rotation;
+const Matrix3d rate = skew(axis) * rotation;
 
 bool near(const auto& a, const auto& b) { return (a - b).norm() <= 1e-14 * (1 + b.norm()); }
 
@@ -75,7 +75,7 @@ TEST_CASE("quaternions") {
   // Halfway between identity and q the rate is half.
   const auto half = Eigen::Quaternion<D>::Identity().slerp(0.5, q);
   CHECK(near(slopes(half.toRotationMatrix()),
-             (cross_matrix(axis) * Eigen::AngleAxisd(0.35, axis).toRotationMatrix() / 2).eval()));
+             (skew(axis) * Eigen::AngleAxisd(0.35, axis).toRotationMatrix() / 2).eval()));
   const Eigen::Quaterniond plain(rotation);
   CHECK(near(slopes(plain.cast<D>().toRotationMatrix()), Matrix3d::Zero().eval()));
 }

@@ -53,7 +53,7 @@ void check(const std::string& name, const F& f, double at) {
   CHECK((raised(f, dual<double>(x)) & ~expected) == 0);
   CHECK((raised(f, dual<double, 9>::variable(x, 3)) & ~expected) == 0);
   CHECK((raised(f, duet::taylor<double, 3>::variable(x)) & ~expected) == 0);
-  CHECK((raised(f, duet::second_dual<double, 2>::variable(x, 0)) & ~expected) == 0);
+  CHECK((raised(f, duet::second_order_dual<double, 2>::variable(x, 0)) & ~expected) == 0);
 }
 template <class F>
 void check(const std::string& name, const F& f, double a, double b) {

@@ -131,13 +131,13 @@ namespace test_dual_level {
 using duet::batch;
 using duet::dual;
 using duet::quaternion;
-using duet::second_dual;
+using duet::second_order_dual;
 using duet::taylor;
 
 static_assert(duet::Level<sloped<double>> && duet::Level<sloped<batch<double>>>);
 static_assert(duet::Level<dual<double>> && duet::Level<dual<dual<float, 3>, 2, slope_tag>>);
 static_assert(duet::Level<duet::dynamic_dual<double, 4>> && duet::Level<taylor<double, 3>>);
-static_assert(duet::Level<second_dual<double, 2>> && !duet::Level<double>);
+static_assert(duet::Level<second_order_dual<double, 2>> && !duet::Level<double>);
 
 /// Functions of everything that asks levels what they are.
 template <class D>
@@ -176,7 +176,7 @@ TEST_CASE("a level that duet does not know has all functions of duals") {
 TEST_CASE("its lanes, limits, matrices and parts follow") {
   using lanes = sloped<batch<double, 4>>;
   const auto joined =
-      duet::joined_lanes<4>([](std::size_t i) { return sloped<double>(0.3 + double(i), 1); });
+      duet::from_lanes<4>([](std::size_t i) { return sloped<double>(0.3 + double(i), 1); });
   static_assert(std::is_same_v<std::remove_const_t<decltype(joined)>, lanes>);
   const lanes results = tried(joined);
   for (int i = 0; i < 4; ++i) {

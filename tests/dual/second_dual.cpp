@@ -25,7 +25,7 @@
 namespace test_dual_second_dual {
 
 using duet::dual;
-using duet::second_dual;
+using duet::second_order_dual;
 
 namespace {
 
@@ -48,7 +48,7 @@ bool close(double a, double b, double scale) {
 }
 
 template <int N, class T>
-void check_same(const second_dual<T, N>& y, const nested<N, T>& expected) {
+void check_same(const second_order_dual<T, N>& y, const nested<N, T>& expected) {
   CHECK(y.value() == expected.value().value());
   double scale = std::abs(double(y.value()));
   for (int i = 0; i < N; ++i) {
@@ -83,11 +83,11 @@ D everything(const std::array<D, N>& x) {
 
 template <class T, int N>
 void check_everything() {
-  std::array<second_dual<T, N>, std::size_t(N)> x;
+  std::array<second_order_dual<T, N>, std::size_t(N)> x;
   std::array<nested<N, T>, std::size_t(N)> y;
   for (int i = 0; i < N; ++i) {
     const T value = T(0.3) * T(i % 5) - T(0.7);
-    x[std::size_t(i)] = second_dual<T, N>::variable(value, i);
+    x[std::size_t(i)] = second_order_dual<T, N>::variable(value, i);
     y[std::size_t(i)] = nested_variable<N>(value, i);
   }
   check_same<N, T>(everything(x), everything(y));
@@ -96,17 +96,18 @@ void check_everything() {
 } // namespace
 
 TEST_CASE("every function of one argument") {
-  duet_test::for_each_function([](const std::string& name, auto f, auto, const duet_test::domain& d,
-                                  auto) {
-    CAPTURE(name);
-    for (const double x : d.inputs) {
-      if (std::abs(x) > 1e100 || (x != 0 && std::abs(x) < 1e-100)) {
-        continue; // where the nested slopes overflow on the way
-      }
-      CAPTURE(x);
-      check_same<1, double>(f(second_dual<double, 1>::variable(x)), f(nested_variable<1>(x, 0)));
-    }
-  });
+  duet_test::for_each_function(
+      [](const std::string& name, auto f, auto, const duet_test::domain& d, auto) {
+        CAPTURE(name);
+        for (const double x : d.inputs) {
+          if (std::abs(x) > 1e100 || (x != 0 && std::abs(x) < 1e-100)) {
+            continue; // where the nested slopes overflow on the way
+          }
+          CAPTURE(x);
+          check_same<1, double>(f(second_order_dual<double, 1>::variable(x)),
+                                f(nested_variable<1>(x, 0)));
+        }
+      });
 }
 
 TEST_CASE("sums, products, quotients and functions of several arguments") {
@@ -117,7 +118,7 @@ TEST_CASE("sums, products, quotients and functions of several arguments") {
 }
 
 TEST_CASE("structural zeros survive") {
-  using D = second_dual<double, 2>;
+  using D = second_order_dual<double, 2>;
   const D constant = 0;
   const D x = D::variable(0, 0);
   for (const D& y : {sqrt(constant), sqrt(constant * x), constant / D(0) * 0.0, pow(x, 0)}) {
@@ -132,7 +133,7 @@ TEST_CASE("structural zeros survive") {
 }
 
 TEST_CASE("the square of a norm at 0 is to be computed without the norm") {
-  using D = second_dual<double, 2>;
+  using D = second_order_dual<double, 2>;
   const D x = D::variable(0, 0), y = D::variable(0, 1);
   const D square = x * x + y * y;
   CHECK(square.second_partial(0, 0) == 2);
@@ -176,7 +177,7 @@ TEST_CASE("inside and outside other levels") {
 }
 
 TEST_CASE("in Eigen, Stumpff functions and streams") {
-  using D = second_dual<double, 4>;
+  using D = second_order_dual<double, 4>;
   Eigen::Matrix<D, 2, 2> m;
   m << D::variable(4, 0), D::variable(1, 1), D::variable(2, 2), D::variable(3, 3);
   const D determinant = m.determinant();
@@ -188,7 +189,8 @@ TEST_CASE("in Eigen, Stumpff functions and streams") {
   const D s = D::variable(0, 0);
   CHECK(duet::stumpff<2>(s).second_partial(0, 0) == doctest::Approx(2.0 / 720).epsilon(1e-15));
   std::ostringstream text;
-  text << second_dual<double, 2>::variable(3, 1) * second_dual<double, 2>::variable(3, 1);
+  text << second_order_dual<double, 2>::variable(3, 1) *
+              second_order_dual<double, 2>::variable(3, 1);
   CHECK(text.str() == "9[0, 6; 0; 0, 2]");
 }
 

@@ -128,7 +128,7 @@ TEST_CASE("what is made of motions") {
       },
       limit, std::vector<double>{0, 1e-9, 0.3, 3.1, -2}, std::vector<double>{0, 0.5, -1});
   using B = batch<double, 4>;
-  const auto unit = is_unit(joined_lanes<4>([&](std::size_t i) {
+  const auto unit = is_unit(from_lanes<4>([&](std::size_t i) {
     return i == 2 ? dual_quaternion<double>(a[2] * screw_dual<double>(1.1)) : a[i];
   }));
   for (int i = 0; i < B::lanes; ++i) {

@@ -19,9 +19,9 @@
 namespace test_dual_quaternion_curves {
 
 using duet::bezier;
+using duet::slerp_arc;
 using duet::squad;
 using duet::squad_control;
-using duet::way;
 using duet_test::gap;
 using duet_test::vector;
 using dual_quaternion = duet::dual_quaternion<double>;
@@ -109,7 +109,7 @@ TEST_CASE("the long way round, the short one, and the one the signs say") {
   const auto a = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
   const auto b = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 1.0), vector(0, 0, 2));
   for (const auto& goal : {b, -b}) {
-    const auto angle = [&](way round) {
+    const auto angle = [&](slerp_arc round) {
       const auto d = duet::derivative<duet_test::shared_tag>(
           [&](auto t) { return sclerp(a, goal, t, round); }, 0.0);
       CHECK(gap(duet::transform_matrix(sclerp(a, goal, 1.0, round)), duet::transform_matrix(b)) <
@@ -117,9 +117,9 @@ TEST_CASE("the long way round, the short one, and the one the signs say") {
       return duet::twist(d.value, d.derivative, duet::frame::body)[5];
     };
     const double long_way = 1 - 2 * 3.141592653589793;
-    CHECK(angle(way::shortest) == doctest::Approx(1.0).epsilon(1e-15));
-    CHECK(angle(way::longest) == doctest::Approx(long_way).epsilon(1e-15));
-    CHECK(angle(way::as_given) ==
+    CHECK(angle(slerp_arc::shortest) == doctest::Approx(1.0).epsilon(1e-15));
+    CHECK(angle(slerp_arc::longest) == doctest::Approx(long_way).epsilon(1e-15));
+    CHECK(angle(slerp_arc::as_given) ==
           doctest::Approx(duet::real_part(goal).w() > 0 ? 1.0 : long_way).epsilon(1e-15));
   }
   CHECK_FALSE(is_half_turn_apart(a, b));

@@ -146,10 +146,10 @@ TEST_CASE("nearest_on_screw: a minimum beside the kink where the rotation angle 
                                                turns * pitch, duet::screw_kind::screw};
     const auto d = random.direction<3>();
     const double angle =
-        random.integer(0, 1) == 1 ? 3.14159 - random.magnitude(1e-6, 1) : random.uniform(0, 3.14);
+        random.integer(0, 1) == 1 ? 3.14159 - random.log_uniform(1e-6, 1) : random.uniform(0, 3.14);
     const double tau = random.uniform(0, 1);
     const vector moved(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const double length = random.magnitude(1e-3, 3);
+    const double length = random.log_uniform(1e-3, 3);
     if (k != 169 && k != 959) {
       continue; // these have such a minimum, the least of all
     }

@@ -125,13 +125,13 @@ TEST_CASE("a million products: the drift from a unit is small, and normalising r
   for (int i = 0; i < 1000000; ++i) {
     a = steps[std::size_t(i * 37 + i / 64) % 64] * a;
   }
-  const auto unit = norm2(a);
+  const auto unit = squared_norm(a);
   const double distance = duet::translation(a).norm();
   MESSAGE("after 1e6 products |A A* - 1| = ", std::abs(unit.value() - 1), " + eps ",
           std::abs(unit.epsilon()), " at |t| = ", distance);
   CHECK(std::abs(unit.value() - 1) < 1e-10);
   CHECK(std::abs(unit.epsilon()) < 1e-10 * (1 + distance));
-  const auto restored = norm2(normalized(a));
+  const auto restored = squared_norm(normalized(a));
   CHECK(std::abs(restored.value() - 1) <= 4 * 0x1p-53);
   CHECK(std::abs(restored.epsilon()) <= 8 * 0x1p-53 * (1 + distance));
 }

@@ -23,7 +23,7 @@ TEST_CASE("the bodies of links reach from frame to frame") {
       theta[i] = .3 + .4 * i;
     }
     for (int i = 0; i < arm.size(); ++i) {
-      const duet::link_body& body = bodies[std::size_t(i)];
+      const duet::collision_body& body = bodies[std::size_t(i)];
       const auto here = duet::transformed(arm.pose(theta, body.link), body.shape);
       const Eigen::Vector3d from = duet::translation(arm.pose(theta, i + 1));
       const Eigen::Vector3d to =

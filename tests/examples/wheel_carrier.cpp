@@ -166,7 +166,7 @@ TEST_CASE("rods that cannot close are reported") {
   try {
     static_cast<void>(carrier(points).at(-0.19));
     FAIL("they close");
-  } catch (const duet::cannot_close& error) {
+  } catch (const duet::loop_closure_failure& error) {
     CHECK(error.parameter().front() == doctest::Approx(-0.1334868).epsilon(1e-6));
   }
 }

@@ -156,8 +156,8 @@ TEST_CASE("rotations over batches") {
   check(pow(q, u) * p);
   check(slerp(q, p * exp(u * v), c<1> / c<3>));
   check(rotate(f, v));
-  check(turn(vector3<double>(0, 0.6, 0.8), u * u) * q);
-  check(column(u, component<1>(v), norm(rotate(q, v) + column(u, u, u))));
+  check(rotation_about(vector3<double>(0, 0.6, 0.8), u * u) * q);
+  check(make_vector(u, component<1>(v), norm(rotate(q, v) + make_vector(u, u, u))));
 }
 
 TEST_CASE("motions over batches") {
@@ -172,12 +172,13 @@ TEST_CASE("motions over batches") {
     check_lanes<4>(value(all), 2 * limit, numbers, poses(), turned_about(poses()));
     check_lanes<4>(value(slope), 2 * limit, numbers, poses(), turned_about(poses()));
   };
-  check(A * screw(helix, u) * conj(B) * slide(axis::x, u * u));
+  check(A * screw(helix, u) * conj(B) * translation_along(axis::x, u * u));
   check(sclerp(A, B, u / 3));
   check(exp(u * vec(log(A))) * B);
   check(transform_point(A * screw(axis::y, u) * B, translation(B)));
 
-  const auto moving = A * screw(helix, u) * B * screw(axis::x, u * u) * slide(axis::y, sin(u));
+  const auto moving =
+      A * screw(helix, u) * B * screw(axis::x, u * u) * translation_along(axis::y, sin(u));
   const auto check_motion = [&](const auto& frame) {
     const auto m = motion(moving, u, frame);
     const auto j = jacobian(moving, wrt(u, A), frame);

@@ -172,7 +172,7 @@ TEST_CASE("norms of vectors") {
         [third](const auto& s, const auto& t) {
           using std::hypot;
           if constexpr (Term<std::remove_cvref_t<decltype(s)>>) {
-            return norm(column(s, third, t));
+            return norm(make_vector(s, third, t));
           } else {
             return hypot(s, third, t);
           }

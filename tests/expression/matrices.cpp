@@ -121,7 +121,7 @@ TEST_CASE("closed forms") {
 }
 
 TEST_CASE("rotations as matrices") {
-  const auto turning = q * exp(u * w) * turn(duet::vector3<double>(0, 0.6, 0.8), u * u);
+  const auto turning = q * exp(u * w) * rotation_about(duet::vector3<double>(0, 0.6, 0.8), u * u);
   const duet::vector3<double> w0(0.3, 0.7, -0.2);
   const auto q0 = duet::exp(duet::vector3<double>(-0.4, 0.1, 0.9));
   const auto at = [&](const auto& f, const auto& t) { return f(u = t, q = q0, w = w0); };
@@ -130,8 +130,8 @@ TEST_CASE("rotations as matrices") {
   CHECK(gap(at(derivative(f, u), 0.7), expected.derivative) < 2e-15);
   CHECK(gap(at(f * w, 0.7), at(rotate(turning, w), 0.7)) < 1e-15);
   CHECK(gap(at(transpose(f) * f, 0.7), matrix3::Identity()) < 1e-15);
-  CHECK(gap(at(cross_matrix(w) * rotate(q, w) + u * w - u * w, 0.7),
-            w0.cross(duet::rotate(q0, w0))) < 1e-16);
+  CHECK(gap(at(skew(w) * rotate(q, w) + u * w - u * w, 0.7), w0.cross(duet::rotate(q0, w0))) <
+        1e-16);
 }
 
 TEST_CASE("kinds of matrices, and what is known of zeros") {
@@ -188,7 +188,7 @@ TEST_CASE("matrices as text and as LaTeX") {
   CHECK(to_latex(entry<0, 1>(R) * entry<2>(x)) == R"({R_{1}}_{1,2} \vec{x}_{3})");
   CHECK(to_latex(derivative(determinant(u * B + A), u)) ==
         R"(\operatorname{tr}\left(\operatorname{adj}(u B + A) B\right))");
-  CHECK(to_latex(cross_matrix(w)) == R"(\left[\vec{w}\right]_{\times})");
+  CHECK(to_latex(skew(w)) == R"(\left[\vec{w}\right]_{\times})");
 }
 
 } // namespace test_expression_matrices

@@ -33,7 +33,7 @@ constexpr pose_symbol<"A"> A;
 constexpr pose_symbol<"B"> B;
 
 double length(const dual_quaternion<double>& a) {
-  return std::sqrt(norm2(duet::real_part(a)) + norm2(duet::dual_part(a)));
+  return std::sqrt(squared_norm(duet::real_part(a)) + squared_norm(duet::dual_part(a)));
 }
 double length(const vector3<double>& x) { return x.norm(); }
 
@@ -73,11 +73,11 @@ const auto helix = duet::make_dual_vector(
 } // namespace
 
 TEST_CASE("N14-N19: derivatives of rigid motions are those of numbers") {
-  const auto line = axis_through({.1, .2, .3}, {0, .6, .8});
+  const auto line = line_through({.1, .2, .3}, {0, .6, .8});
   check_formula("N14, N15", with_all(A * conj(screw(line, sin(u))) * B *
-                                     slide(vector3<double>(1, 0, 0), u * u)));
+                                     translation_along(vector3<double>(1, 0, 0), u * u)));
   check_formula("helical", with_all(screw(helix, u) * A));
-  check_formula("N17", with_all(pose(turn(vector3<double>(0, 0, 1), u), u * v)));
+  check_formula("N17", with_all(pose(rotation_about(vector3<double>(0, 0, 1), u), u * v)));
   check_formula("N17 back", with_all(translation(A * screw(helix, u) * B)));
   check_formula("N19", with_all(sclerp(A, B, u)));
   check_formula("points", with_all(transform_point(A * screw(line, u) * B, v)));
@@ -89,7 +89,7 @@ TEST_CASE("N10-N16: parts and conjugates of what is made of dual numbers") {
   static_assert(have_same_node(dual_part(axis::x), v - v));
   const auto l0 = duet::rotate(a0, helix);
   // The product of two lines: the cosine of their angle, and minus their distance times its sine.
-  const auto product = dot(rotate(A, l), axis_through({0, 0, 0}, {1, 0, 0}));
+  const auto product = dot(rotate(A, l), line_through({0, 0, 0}, {1, 0, 0}));
   const auto expected = (duet::rotate(b0, l0))[0];
   CHECK(real_part(product)(A = b0, l = l0) == expected.value());
   CHECK(dual_part(product)(A = b0, l = l0) == expected.epsilon());
@@ -119,12 +119,13 @@ TEST_CASE("a Jacobian by the coordinates of a screw") {
 
 TEST_CASE("a screw is the exponential of its line") {
   CHECK(length(screw(helix, u)(u = 0.7) - exp(u / c<2> * helix)(u = 0.7)) < 1e-15);
-  const auto moved = slide(axis::x, u)(u = 0.7);
+  const auto moved = translation_along(axis::x, u)(u = 0.7);
   CHECK(length(moved - duet::pose(duet::quaternion<double>(1), vector3<double>(0.7, 0, 0))) == 0);
 }
 
 TEST_CASE("N18: twists and their rates, in both frames") {
-  const auto f = A * screw(helix, u) * B * screw(axis::x, u * u) * slide(axis::y, sin(u));
+  const auto f =
+      A * screw(helix, u) * B * screw(axis::x, u * u) * translation_along(axis::y, sin(u));
   const auto rate = derivative(f, u);
   const auto check = [&](auto frame) {
     const auto twist = [&](const auto& t) {
@@ -140,7 +141,7 @@ TEST_CASE("N18: twists and their rates, in both frames") {
 
 TEST_CASE("Jacobians by scalars, vectors, rotations and poses") {
   constexpr quaternion_symbol<"q"> q;
-  const auto f = slide(axis::z, u) * A * pose(q, v) * screw(helix, u);
+  const auto f = translation_along(axis::z, u) * A * pose(q, v) * screw(helix, u);
   const auto q0 = duet::exp(vector3<double>(.5, .1, -.4));
   const auto check = [&](auto frame) {
     const auto [value, J] = jacobian(f, wrt(u, v, A, q), frame)(u = 0.3, v = v0, A = a0, q = q0);
@@ -215,11 +216,12 @@ TEST_CASE("four arms as products of exponentials") {
 }
 
 TEST_CASE("an arm of turns about coordinate axes, whose Jacobian is written in place") {
-  const auto arm = slide(axis::z, .333) * screw(axis::z, t1) * screw(axis::y, t2) *
-                   slide(axis::z, .316) * screw(axis::z, t3) * slide(axis::x, .0825) *
-                   screw(axis::y, -t4) * slide(axis::x, -.0825) * slide(axis::z, .384) *
-                   screw(axis::z, t5) * screw(axis::y, -t6) * slide(axis::x, .088) *
-                   screw(axis::z, -t7) * screw(axis::x, pi) * slide(axis::z, .107);
+  const auto arm = translation_along(axis::z, .333) * screw(axis::z, t1) * screw(axis::y, t2) *
+                   translation_along(axis::z, .316) * screw(axis::z, t3) *
+                   translation_along(axis::x, .0825) * screw(axis::y, -t4) *
+                   translation_along(axis::x, -.0825) * translation_along(axis::z, .384) *
+                   screw(axis::z, t5) * screw(axis::y, -t6) * translation_along(axis::x, .088) *
+                   screw(axis::z, -t7) * screw(axis::x, pi) * translation_along(axis::z, .107);
   const auto panda = duet::robots::panda();
   Eigen::Matrix<double, 7, 1> x;
   x << 0.3, -0.7, 1.1, -1.9, 0.4, 1.6, -0.8;
@@ -231,12 +233,13 @@ TEST_CASE("an arm of turns about coordinate axes, whose Jacobian is written in p
   CHECK(std::min(length(a - expected), length(a + expected)) < 1e-15);
   CHECK((J - duet::jacobian(panda, x, duet::frame::spatial)).norm() < 4e-15);
   CHECK(length(at(arm) - a) < 1e-15);
-  const auto plain = at(jacobian(with_library_sines(arm), all_joints, duet::frame::spatial));
+  const auto plain = at(jacobian(with_std_sincos(arm), all_joints, duet::frame::spatial));
   CHECK((plain.jacobian - J).norm() < 2e-15);
 
   // One coordinate in several joints, one in none, sliding joints and a line at run time.
-  const auto coupled = screw(axis::x, t1) * slide(axis::y, t1 * t2) * screw(helix, t1 - t2) *
-                           screw(axis::z, c<2> * t1) * slide(vector3<double>(0, 0, 1), t2) *
+  const auto coupled = screw(axis::x, t1) * translation_along(axis::y, t1 * t2) *
+                           screw(helix, t1 - t2) * screw(axis::z, c<2> * t1) *
+                           translation_along(vector3<double>(0, 0, 1), t2) *
                            (A * screw(axis::y, t2)) +
                        c<0> * t3 * A;
   const auto J2 =

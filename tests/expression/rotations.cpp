@@ -31,7 +31,7 @@ constexpr quaternion_symbol<"p"> p;
 
 double length(double x) { return std::abs(x); }
 double length(const vector3<double>& x) { return x.norm(); }
-double length(const quaternion<double>& x) { return std::sqrt(norm2(x)); }
+double length(const quaternion<double>& x) { return std::sqrt(squared_norm(x)); }
 
 /// Value and derivative by u against dual numbers, at easy and awkward inputs.
 template <class F>
@@ -75,11 +75,12 @@ TEST_CASE("N1-N9: derivatives of formulas are those of numbers") {
   check_formula("N5 of a moving one", with_all(pow(q * turning, 1.5 + u * u)), 1e-13);
   check_formula("N9 moving ends", with_all(slerp(turning * q, wobbling * q, u)), 1e-13);
   check_formula("rotated", with_all(rotate(q * turning * p * wobbling, v + u * w)));
-  check_formula("turns", with_all(rotate(turn(vector3<double>(0, 0.6, 0.8), u * u) * q, v)));
+  check_formula("turns",
+                with_all(rotate(rotation_about(vector3<double>(0, 0.6, 0.8), u * u) * q, v)));
   check_formula("vectors", with_all(cross(rotate(turning, v), u * w) / (2 + dot(w, w) * u)));
   check_formula("N3", with_all(conj(turning + p) / dot(turning + p, turning + p)));
   check_formula("lengths", norm(turning + wobbling * p) * dot(q, wobbling));
-  check_formula("column", with_all(column(u, sin(u), norm(w + u * v + rotate(q, w)))));
+  check_formula("column", with_all(make_vector(u, sin(u), norm(w + u * v + rotate(q, w)))));
   check_formula("scalar", dot(rotate(turning, v), w) * component<1>(rotate(conj(q) * wobbling, v)) +
                               c<0> * dot(vec(q), vec(p)));
 }
@@ -95,7 +96,7 @@ TEST_CASE("second derivatives") {
 }
 
 TEST_CASE("N7: velocities and accelerations of a rotation, in both frames") {
-  const auto f = q * exp(u * w) * conj(p * exp(u * u * v)) * turn(v / norm(v), sin(u));
+  const auto f = q * exp(u * w) * conj(p * exp(u * u * v)) * rotation_about(v / norm(v), sin(u));
   const auto rate = derivative(f, u);
   const vector3<double> w0(0.3, 0.7, -0.2), v0(-0.4, 0.1, 0.9);
   const auto q0 = duet::exp(v0), p0 = duet::exp(w0);

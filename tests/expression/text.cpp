@@ -181,7 +181,7 @@ TEST_CASE("LaTeX of what does not commute") {
   CHECK(
       to_latex(derivative(norm(v + x * n), x)) ==
       R"(\frac{\left(\vec{v} + x \vec{n}\right) \cdot \vec{n}}{\left|\vec{v} + x \vec{n}\right|})");
-  CHECK(to_latex(derivative(turn(n, x * x), x)) == R"(x \vec{n} e^{x^{2} \vec{n}/2})");
+  CHECK(to_latex(derivative(rotation_about(n, x * x), x)) == R"(x \vec{n} e^{x^{2} \vec{n}/2})");
   CHECK(to_latex(solve(A, 2 * A * v)) == R"(2 A^{-1} A \vec{v})");
 }
 

@@ -37,16 +37,16 @@ inline constexpr auto down = screw(duet::expression::axis::x, -quarter_turn);
 /// Where the Panda's joints stand, each before it turns, and the flange.
 inline auto panda_frames() {
   using namespace duet::expression;
-  const auto a1 = slide(axis::z, .333_c);
+  const auto a1 = translation_along(axis::z, .333_c);
   const auto a2 = a1 * screw(axis::z, theta1) * down;
-  const auto a3 = a2 * screw(axis::z, theta2) * up * slide(axis::z, .316_c);
-  const auto a4 = a3 * screw(axis::z, theta3) * slide(axis::x, .0825_c) * up;
-  const auto a5 =
-      a4 * screw(axis::z, theta4) * slide(axis::x, -.0825_c) * down * slide(axis::z, .384_c);
+  const auto a3 = a2 * screw(axis::z, theta2) * up * translation_along(axis::z, .316_c);
+  const auto a4 = a3 * screw(axis::z, theta3) * translation_along(axis::x, .0825_c) * up;
+  const auto a5 = a4 * screw(axis::z, theta4) * translation_along(axis::x, -.0825_c) * down *
+                  translation_along(axis::z, .384_c);
   const auto a6 = a5 * screw(axis::z, theta5) * up;
-  const auto a7 = a6 * screw(axis::z, theta6) * slide(axis::x, .088_c) * up;
+  const auto a7 = a6 * screw(axis::z, theta6) * translation_along(axis::x, .088_c) * up;
   return std::tuple(a1, a2, a3, a4, a5, a6, a7,
-                    a7 * screw(axis::z, theta7) * slide(axis::z, .107_c));
+                    a7 * screw(axis::z, theta7) * translation_along(axis::z, .107_c));
 }
 
 } // namespace duet_formulas

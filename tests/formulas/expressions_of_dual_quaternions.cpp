@@ -130,7 +130,7 @@ std::vector<expression_route> dual_quaternion_expressions() {
               .part(translation(placed), place),
           twists(),
           screw_interpolation(),
-          expression_route("N20", "rate_matrix, pose_coordinates_rate")
+          expression_route("N20", "quaternion_rate_matrix, pose_coordinates_rate")
               .part(v + cross(w, t), tuple(moving{t, dt, 3}, moving{v, dv, 6}, moving{w, dw, 9}))
               .part(pure(w) * exp(r / c<2>) / c<2>, tuple(moving{r, dr, 0}, moving{w, dw, 9})),
           twist_of_coordinates()};

@@ -31,8 +31,8 @@ expression_route angles(bool is_derivative) {
   constexpr symbol<"theta2"> theta2;
   constexpr symbol<"phi2"> phi2;
   const auto delta =
-      column(cos(psi) * cos(theta) * phi1 - sin(psi) * theta1,
-             sin(psi) * cos(theta) * phi1 + cos(psi) * theta1, psi1 - sin(theta) * phi1);
+      make_vector(cos(psi) * cos(theta) * phi1 - sin(psi) * theta1,
+                  sin(psi) * cos(theta) * phi1 + cos(psi) * theta1, psi1 - sin(theta) * phi1);
   const tuple moves(moving{psi, symbol<"dpsi">{}, 0}, moving{theta, symbol<"dtheta">{}, 1},
                     moving{psi1, symbol<"dpsi1">{}, 3}, moving{theta1, symbol<"dtheta1">{}, 4},
                     moving{phi1, symbol<"dphi1">{}, 5});

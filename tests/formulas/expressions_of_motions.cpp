@@ -142,22 +142,23 @@ expression_route arm(const char* label, const char* function, const Arm& f,
   const auto by_joints = jacobian(f, wrt(Joint{}...), duet::frame::spatial);
   const auto t = translation(f);
   const auto t_rate = directional_derivative(t, along(Joint{}, Rate{})...);
-  return expression_route(
-      label, function,
-      "product of the table's `screw(axis::z, theta)`, `slide(axis::z, d)`, `slide(axis::x, a)`, "
-      "`screw(axis::x, alpha)`; `translation` of it",
-      "`jacobian`, `directional_derivative`",
-      [=](const numbers<double>& x, const numbers<double>& d) {
-        const auto call = [&]<std::size_t... I>(std::index_sequence<I...>) {
-          const auto [a, J] = by_joints((Joint{} = x[I])...);
-          const duet::vector6<double> twist =
-              J * Eigen::Map<const Eigen::Matrix<double, int(sizeof...(I)), 1>>(d.data());
-          return all<double>(a, t((Joint{} = x[I])...),
-                             duet::pose_rate(a, twist, duet::frame::spatial),
-                             t_rate((Joint{} = x[I])..., (Rate{} = d[I])...));
-        };
-        return call(std::index_sequence_for<Joint...>{});
-      });
+  return expression_route(label, function,
+                          "product of the table's `screw(axis::z, theta)`, "
+                          "`translation_along(axis::z, d)`, `translation_along(axis::x, a)`, "
+                          "`screw(axis::x, alpha)`; `translation` of it",
+                          "`jacobian`, `directional_derivative`",
+                          [=](const numbers<double>& x, const numbers<double>& d) {
+                            const auto call = [&]<std::size_t... I>(std::index_sequence<I...>) {
+                              const auto [a, J] = by_joints((Joint{} = x[I])...);
+                              const duet::vector6<double> twist =
+                                  J * Eigen::Map<const Eigen::Matrix<double, int(sizeof...(I)), 1>>(
+                                          d.data());
+                              return all<double>(a, t((Joint{} = x[I])...),
+                                                 duet::pose_rate(a, twist, duet::frame::spatial),
+                                                 t_rate((Joint{} = x[I])..., (Rate{} = d[I])...));
+                            };
+                            return call(std::index_sequence_for<Joint...>{});
+                          });
 }
 
 } // namespace
@@ -168,19 +169,23 @@ std::vector<expression_route> motion_expressions() {
   const std::tuple six_rates(dtheta1, dtheta2, dtheta3, dtheta4, dtheta5, dtheta6);
   const auto seven = std::tuple_cat(six, std::tuple(theta7));
   const auto seven_rates = std::tuple_cat(six_rates, std::tuple(dtheta7));
-  const auto iiwa14 = joint(theta1) * slide(axis::z, .36_c) * down * joint(theta2) * up *
-                      joint(theta3) * slide(axis::z, .42_c) * up * joint(theta4) * down *
-                      joint(theta5) * slide(axis::z, .4_c) * down * joint(theta6) * up *
-                      joint(theta7) * slide(axis::z, .126_c);
-  const auto ur5e = joint(theta1) * slide(axis::z, .1625_c) * up * joint(theta2) *
-                    slide(axis::x, -.425_c) * joint(theta3) * slide(axis::x, -.3922_c) *
-                    joint(theta4) * slide(axis::z, .1333_c) * up * joint(theta5) *
-                    slide(axis::z, .0997_c) * down * joint(theta6) * slide(axis::z, .0996_c);
-  const auto baxter = joint(theta1) * slide(axis::z, .27035_c) * slide(axis::x, .069_c) * down *
-                      joint(theta2 + quarter_turn) * up * joint(theta3) * slide(axis::z, .36442_c) *
-                      slide(axis::x, .069_c) * down * joint(theta4) * up * joint(theta5) *
-                      slide(axis::z, .37429_c) * slide(axis::x, .01_c) * down * joint(theta6) * up *
-                      joint(theta7) * slide(axis::z, .229525_c);
+  const auto iiwa14 = joint(theta1) * translation_along(axis::z, .36_c) * down * joint(theta2) *
+                      up * joint(theta3) * translation_along(axis::z, .42_c) * up * joint(theta4) *
+                      down * joint(theta5) * translation_along(axis::z, .4_c) * down *
+                      joint(theta6) * up * joint(theta7) * translation_along(axis::z, .126_c);
+  const auto ur5e = joint(theta1) * translation_along(axis::z, .1625_c) * up * joint(theta2) *
+                    translation_along(axis::x, -.425_c) * joint(theta3) *
+                    translation_along(axis::x, -.3922_c) * joint(theta4) *
+                    translation_along(axis::z, .1333_c) * up * joint(theta5) *
+                    translation_along(axis::z, .0997_c) * down * joint(theta6) *
+                    translation_along(axis::z, .0996_c);
+  const auto baxter = joint(theta1) * translation_along(axis::z, .27035_c) *
+                      translation_along(axis::x, .069_c) * down * joint(theta2 + quarter_turn) *
+                      up * joint(theta3) * translation_along(axis::z, .36442_c) *
+                      translation_along(axis::x, .069_c) * down * joint(theta4) * up *
+                      joint(theta5) * translation_along(axis::z, .37429_c) *
+                      translation_along(axis::x, .01_c) * down * joint(theta6) * up *
+                      joint(theta7) * translation_along(axis::z, .229525_c);
   return {basis_functions(),
           cumulative_curve(),
           rate_of_curve(1),

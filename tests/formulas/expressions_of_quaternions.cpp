@@ -48,12 +48,14 @@ expression_route rate_matrices() {
                      moving{p0, symbol<"dp0">{}, 4}, moving{p1, symbol<"dp1">{}, 5},
                      moving{p2, symbol<"dp2">{}, 6}, moving{p3, symbol<"dp3">{}, 7});
   const auto e =
-      column(-q1 * p0 + q0 * p1 - q3 * p2 + q2 * p3, -q2 * p0 + q3 * p1 + q0 * p2 - q1 * p3,
-             -q3 * p0 - q2 * p1 + q1 * p2 + q0 * p3);
+      make_vector(-q1 * p0 + q0 * p1 - q3 * p2 + q2 * p3, -q2 * p0 + q3 * p1 + q0 * p2 - q1 * p3,
+                  -q3 * p0 - q2 * p1 + q1 * p2 + q0 * p3);
   const auto g =
-      column(-q1 * p0 + q0 * p1 + q3 * p2 - q2 * p3, -q2 * p0 - q3 * p1 + q0 * p2 + q1 * p3,
-             -q3 * p0 + q2 * p1 - q1 * p2 + q0 * p3);
-  return expression_route("N8", "rate_matrix").part(c<2> * e, inputs).part(c<2> * g, inputs);
+      make_vector(-q1 * p0 + q0 * p1 + q3 * p2 - q2 * p3, -q2 * p0 - q3 * p1 + q0 * p2 + q1 * p3,
+                  -q3 * p0 + q2 * p1 - q1 * p2 + q0 * p3);
+  return expression_route("N8", "quaternion_rate_matrix")
+      .part(c<2> * e, inputs)
+      .part(c<2> * g, inputs);
 }
 
 /// N9; the exponent moves.

@@ -174,12 +174,12 @@ formula velocity() {
 
 formula rate_matrices() {
   return make_formula(
-      "N8", R"(\omega^s = 2E(q)\dot q,\; \omega^b = 2G(q)\dot q)", "rate_matrix",
+      "N8", R"(\omega^s = 2E(q)\dot q,\; \omega^b = 2G(q)\dot q)", "quaternion_rate_matrix",
       "quaternion/rate.hpp", {quaternion, quaternion},
       []<class T>(const numbers<T>& x) {
         const Eigen::Matrix<T, 4, 1> p(x[4], x[5], x[6], x[7]);
-        const duet::vector3<T> s = rate_matrix(q_of(x, 0), duet::frame::spatial) * p;
-        const duet::vector3<T> b = rate_matrix(q_of(x, 0), duet::frame::body) * p;
+        const duet::vector3<T> s = quaternion_rate_matrix(q_of(x, 0), duet::frame::spatial) * p;
+        const duet::vector3<T> b = quaternion_rate_matrix(q_of(x, 0), duet::frame::body) * p;
         return all<T>(duet::vector3<T>(s * T(2)), duet::vector3<T>(b * T(2)));
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {

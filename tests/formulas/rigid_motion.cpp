@@ -123,7 +123,7 @@ formula screw_interpolation() {
 formula rates_of_coordinates() {
   return make_formula(
       "N20", R"(\omega^s = 2E(\alpha)\dot\alpha,\; v^s = \dot t + \hat t\,\omega^s)",
-      "rate_matrix, pose_coordinates_rate", "dual_quaternion/pose_coordinates.hpp",
+      "quaternion_rate_matrix, pose_coordinates_rate", "dual_quaternion/pose_coordinates.hpp",
       {rotation_vector, vector, vector, vector},
       []<class T>(const numbers<T>& x) {
         // From the twist to [ṫ; α̇].

@@ -27,15 +27,15 @@ void target(const std::string& input) {
   const std::string path = "fuzz_loops.txt";
   std::ofstream(path, std::ios::binary) << input;
   try {
-    for (const duet::tree_loop& loop : duet::read_loops(path).loops) {
-      for (const duet::loop_frame* end : {&loop.first, &loop.second}) {
+    for (const duet::loop_constraint& loop : duet::read_loops(path).loops) {
+      for (const duet::constraint_frame* end : {&loop.first, &loop.second}) {
         const auto& [r, t] = end->offset;
         duet_fuzz::require(std::all_of(t.begin(), t.end(), [](double x) { return x - x == 0; }),
                            "finite places");
-        duet_fuzz::require(std::abs(norm2(r) - 1) < 1e-12, "rotations");
+        duet_fuzz::require(std::abs(squared_norm(r) - 1) < 1e-12, "rotations");
         duet_fuzz::require(!end->link.empty(), "links");
       }
-      duet_fuzz::require((loop.length > 0) == (loop.kind == duet::loop_kind::rod),
+      duet_fuzz::require((loop.length > 0) == (loop.kind == duet::constraint_kind::distance),
                          "rods alone have lengths");
     }
   } catch (const duet::file_error& error) {

@@ -31,14 +31,14 @@ bool are_near(const duet::vector3<double>& a, const duet::vector3<double>& b) {
   return (a - b).stableNorm() <= 1e-14 * b.stableNorm() + 1e-300;
 }
 
-void require_copies(const duet::look_up_table<double>& table) {
+void require_copies(const duet::lookup_table<double>& table) {
   duet::save_table(copy, table);
   const auto again = duet::load_table<double>(copy);
   require(again.parameters == table.parameters, "the same parameters");
   require(again.elements == table.elements, "the same rotations");
   std::remove(copy.c_str());
 }
-void require_copies(const duet::look_up_table<duet::screw_dual<double>>& table) {
+void require_copies(const duet::lookup_table<duet::screw_dual<double>>& table) {
   using enum duet::table_format;
   for (const auto format : {csv, tum, euroc, kitti}) {
     const std::string file_of_times = format == kitti ? times : "";
@@ -70,7 +70,7 @@ void require_copies(const duet::look_up_table<duet::screw_dual<double>>& table) 
 
 template <class T>
 void try_loading(const std::string& path) {
-  duet::look_up_table<T> table;
+  duet::lookup_table<T> table;
   try {
     table = duet::load_table<T>(path);
   } catch (const duet::file_error& error) {

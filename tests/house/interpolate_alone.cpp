@@ -38,7 +38,7 @@ int main() {
   interpolate_all(u, turns, omega);
   interpolate_all(u, poses, twist);
 
-  fit_report report;
+  interpolation_report report;
   const auto curve = interpolate<rotation_vector_spline<double>>(u, turns, natural{}, report);
   const motion<double> there = curve.motion(.5, frame::spatial);
   static_cast<void>(hermite_spline(u, turns, std::vector(u.size(), there.velocity), frame::body));

@@ -56,5 +56,5 @@ int main() {
   check_names(duet::dual<double, 2>(.5));
   check_names(duet::dual<double, 1, tag>(.5));
   check_names(duet::taylor<double, 2>(.5));
-  check_names(duet::second_dual<double, 2>(.5));
+  check_names(duet::second_order_dual<double, 2>(.5));
 }

@@ -34,18 +34,19 @@ void check_vectors(const vector& x, const several& y) {
   const auto twice = [](const auto& v) { return (v + v).eval(); };
   const auto [a, j] = jacobian(twice, x + x);
   const auto [b, g] = gradient([](const auto& v) { return v.squaredNorm(); }, y + y);
-  const auto equations = [](const auto& v, const auto& u) { return column(v[0] - u, v[1] + u); };
-  using loop = decltype(closed_loop(equations, x.head<2>() * 2, 1));
-  static_assert(
-      std::is_same_v<
-          loop, closed_loop<std::remove_const_t<decltype(equations)>, Eigen::Vector2d, double>>);
-  check(a, j, b, g, column(1.0, 2), map_scalars([](double z) { return z; }, x + x));
+  const auto equations = [](const auto& v, const auto& u) {
+    return make_vector(v[0] - u, v[1] + u);
+  };
+  using loop = decltype(constrained_mechanism(equations, x.head<2>() * 2, 1));
+  static_assert(std::is_same_v<loop, constrained_mechanism<std::remove_const_t<decltype(equations)>,
+                                                           Eigen::Vector2d, double>>);
+  check(a, j, b, g, make_vector(1.0, 2), map_scalars([](double z) { return z; }, x + x));
 }
 
 void check_rotations(const rotation_type& q, const vector& x) {
   check(q.vec(), rotate(q, x), rotation_vector(q), rotation_matrix(q), log(q), exp(x),
         angular_velocity(q, q, frame::body), quaternion_rate(q, x, frame::spatial),
-        rate_matrix(q, frame::body), euler<zyx>(q), euler_rate_matrix<zyx>(.1, .2),
+        quaternion_rate_matrix(q, frame::body), euler<zyx>(q), euler_rate_matrix<zyx>(.1, .2),
         from_euler<zyx>(.1, .2, 0), slerp(q, q, .5), left_jacobian(x), right_jacobian_inverse(x));
 }
 

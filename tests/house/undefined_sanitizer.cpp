@@ -17,7 +17,7 @@ int main() {
   const auto f = exp(-u) * sin(v * u * u) / (1 + u * u) + select(u < v, u, v);
   const double slope = derivative(f, u)(u = .3, v = 2);
   const auto g = gradient(f, wrt(u, v))(u = .3, v = 2);
-  const auto arm = screw(axis::z, u) * slide(axis::x, v) * screw(axis::y, u);
+  const auto arm = screw(axis::z, u) * translation_along(axis::x, v) * screw(axis::y, u);
   const auto m = motion(arm, u, duet::frame::body)(u = .3, v = 2);
   return slope == g.gradient[0] && m.velocity[5] == m.velocity[5] ? 0 : 1;
 }

@@ -50,10 +50,10 @@ int main() {
   jacobians(read, configurations, frame::hybrid, jacobians_there, all_cores);
 
   const auto bars = [](const auto& x, const auto& crank) {
-    return column(.2 * cos(crank) + .5 * cos(x[0]) - .55 - .4 * cos(x[1]),
-                  .2 * sin(crank) + .5 * sin(x[0]) - .4 * sin(x[1]));
+    return make_vector(.2 * cos(crank) + .5 * cos(x[0]) - .55 - .4 * cos(x[1]),
+                       .2 * sin(crank) + .5 * sin(x[0]) - .4 * sin(x[1]));
   };
-  const closed_loop loop(bars, Eigen::Vector2d(.9, 1.7), 0);
+  const constrained_mechanism loop(bars, Eigen::Vector2d(.9, 1.7), 0);
   std::cout << derivatives<2>(loop, 2.0)[2] << implicit_function<2>(bars, loop.position(), 0.0)[1];
 
   const std::vector<double> times{0, 1, 2, 3, 4};
@@ -67,19 +67,20 @@ int main() {
   std::cout << to_text(fit<cumulative_bspline<double, 4>>(times, rows, knots));
 
   // Some fields by name, the others as they are.
-  const auto weighted = fit<cumulative_bspline<double, 4>>(times, rows, knots, {.outlier = 0});
-  std::cout << weighted.rms << weighted.outlier;
+  const auto weighted =
+      fit<cumulative_bspline<double, 4>>(times, rows, knots, {.outlier_threshold = 0});
+  std::cout << weighted.rms << weighted.outlier_threshold;
   [[maybe_unused]] const std::tuple some{fit_options{.length = 2},
                                          fit_options{.max_iterations = 3},
-                                         table_options{.length = 2},
-                                         table_options{.most_rows = 100},
+                                         adaptive_table_options{.length = 2},
+                                         adaptive_table_options{.max_samples = 100},
                                          plan_options{.tolerance = 1e-9},
-                                         plan_options{.iterations = 100},
+                                         plan_options{.max_iterations = 100},
                                          inverse_kinematics_options{.tolerance = 1e-9},
                                          inverse_kinematics_options{.seed = 2},
-                                         time_options{.parts = 10},
+                                         time_parametrisation_options{.min_intervals = 10},
                                          newton_options{.max_iterations = 3},
-                                         closed_loop_options{.largest_step = .1},
+                                         constrained_mechanism_options{.largest_step = .1},
                                          comparison_options{.samples = 3},
                                          comparison_options{.tolerance = 3},
                                          real_numbers{.lower = 0},

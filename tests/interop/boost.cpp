@@ -39,7 +39,7 @@ TEST_CASE("products, quotients, conjugates, norms, exponentials and powers agree
     CHECK(norm(duet::from_boost(bp / bq) - p * inverse(q)) <= 1e-14 * norm(p) / norm(q));
     CHECK(duet::from_boost(boost::math::conj(bp)) == conj(p));
     CHECK(boost::math::abs(bp) == doctest::Approx(norm(p)).epsilon(1e-15));
-    CHECK(boost::math::norm(bp) == doctest::Approx(norm2(p)).epsilon(1e-15)); // Cayley's
+    CHECK(boost::math::norm(bp) == doctest::Approx(squared_norm(p)).epsilon(1e-15)); // Cayley's
     CHECK(norm(duet::from_boost(boost::math::exp(bp)) - exp(p)) <= 1e-14 * norm(exp(p)));
     CHECK(norm(duet::from_boost(boost::math::pow(bp, 3)) - pow(p, 3)) <= 1e-14 * norm(pow(p, 3)));
   }

@@ -70,7 +70,7 @@ void check_all_numbers(F f, double x, Expected expected) {
   using third = duet::dual<second, 1, outermost_tag>;
   const auto series = f(duet::taylor<double, 3>::variable(x));
   const auto nested = f(third::variable(second::variable(D::variable(x))));
-  const auto half = f(duet::second_dual<double, 1>::variable(x));
+  const auto half = f(duet::second_order_dual<double, 1>::variable(x));
   const std::array by_nesting{nested.value().value().value(), nested.value().value().epsilon(),
                               nested.value().epsilon().epsilon(),
                               nested.epsilon().epsilon().epsilon()};
@@ -281,8 +281,8 @@ TEST_CASE("exponential integral, zeta and beta") {
   check(
       "beta", [](const auto& x) { return beta(x, 3); }, [](double x) { return std::beta(x, 3.0); },
       [](const R& x) -> R { return 2 / (x * (x + 1) * (x + 2)); }, {0.5, 1, 2, 4.5});
-  const auto mixed = beta(duet::second_dual<double, 2>::variable(1, 0),
-                          duet::second_dual<double, 2>::variable(1, 1));
+  const auto mixed = beta(duet::second_order_dual<double, 2>::variable(1, 0),
+                          duet::second_order_dual<double, 2>::variable(1, 1));
   CHECK(mixed.second_partial(0, 1) == // 2 − π²/6
         doctest::Approx(0.35506593315177356).epsilon(1e-14));
 }

@@ -100,7 +100,7 @@ TEST_CASE("locked joints: what is left moves as before") {
         if (!(arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper)) {
           continue;
         }
-        const auto locked = with_locked(arm, i, theta[i]);
+        const auto locked = with_locked_joint(arm, i, theta[i]);
         static_assert(std::is_same_v<decltype(locked), const serial_chain<n - 1>>);
         const auto rest = without<n>(theta, i);
         CHECK(gap(transform_matrix(locked.pose(rest)), transform_matrix(arm.pose(theta))) < 8e-15);
@@ -125,7 +125,8 @@ TEST_CASE("locked joints: what is left moves as before") {
 
 TEST_CASE("chains that the compiler knows: what is made of them it knows, too") {
   constexpr auto arm = robots::panda();
-  constexpr auto six = with_locked(with_tool(arm, {quaternion<double>(1), {0, 0, .1}}), 2, .5);
+  constexpr auto six =
+      with_locked_joint(with_tool(arm, {quaternion<double>(1), {0, 0, .1}}), 2, .5);
   static_assert(std::is_same_v<decltype(six), const serial_chain<6>>);
   static_assert(six.limits(2).upper == arm.limits(3).upper);
   struct on_a_wall {
@@ -169,7 +170,7 @@ TEST_CASE("to fifty digits") {
     for (int i = 0; i < n; ++i) {
       Eigen::Matrix<real, n - 1, 1> rest;
       rest << theta.head(i), theta.tail(n - 1 - i);
-      const auto locked = with_locked(arm, i, theta[i]);
+      const auto locked = with_locked_joint(arm, i, theta[i]);
       const auto apart =
           (transform_matrix(locked.pose(rest)) - transform_matrix(arm.pose(theta))).eval();
       CHECK(apart.norm() < real("1e-47"));
@@ -193,15 +194,16 @@ TEST_CASE("a chain from a file keeps names, and its links are where they were") 
   const dual_quaternion<double> none(1);
   check(with_base(chain, base), theta, base);
   check(with_tool(chain, tool), theta, none);
-  check(with_locked(chain, "slide", .3), {-.6, .8}, none);
-  check(with_locked(chain, std::string("shoulder"), -.6), {.3, .8}, none);
-  check(with_locked(chain, 2, .8), {.3, -.6}, none);
-  check(with_base(with_locked(with_locked(chain, 2, .8), "slide", .3), base), {-.6}, base);
+  check(with_locked_joint(chain, "slide", .3), {-.6, .8}, none);
+  check(with_locked_joint(chain, std::string("shoulder"), -.6), {.3, .8}, none);
+  check(with_locked_joint(chain, 2, .8), {.3, -.6}, none);
+  check(with_base(with_locked_joint(with_locked_joint(chain, 2, .8), "slide", .3), base), {-.6},
+        base);
   CHECK(gap(transform_matrix(with_tool(chain, tool).pose(theta)),
             transform_matrix(chain.pose(theta) * tool)) < 4e-15);
-  const auto locked = with_locked(chain, "shoulder", -.6);
+  const auto locked = with_locked_joint(chain, "shoulder", -.6);
   CHECK(locked.joint_names() == std::vector<std::string>{"slide", "elbow"});
-  const auto still = with_locked(with_locked(locked, 1, .8), 0, .3);
+  const auto still = with_locked_joint(with_locked_joint(locked, 1, .8), 0, .3);
   CHECK(still.size() == 0);
   check(with_base(still, base), {}, base);
   // Limits by name.
@@ -212,23 +214,24 @@ TEST_CASE("what is wrong is said with the joint and the value") {
   const auto arm = robots::ur5e();
   const auto chain = from_file();
   const auto message = [](const auto& f) { return duet_test::message_of(f); };
-  CHECK(message([&] { (void)with_locked(arm, 2, 4); }) ==
-        "duet: with_locked: joint 2: 4 is not within its limits, -3.14159 to 3.14159");
-  CHECK(message([&] { (void)with_locked(arm, 2, std::nan("")); }) ==
-        "duet: with_locked: joint 2: nan is not within its limits, -3.14159 to 3.14159");
+  CHECK(message([&] { (void)with_locked_joint(arm, 2, 4); }) ==
+        "duet: with_locked_joint: joint 2: 4 is not within its limits, -3.14159 to 3.14159");
+  CHECK(message([&] { (void)with_locked_joint(arm, 2, std::nan("")); }) ==
+        "duet: with_locked_joint: joint 2: nan is not within its limits, -3.14159 to 3.14159");
   CHECK(message([&] {
-          (void)with_locked(serial_chain<2>(std::array<joint<>, 2>{}), 1,
-                            std::numeric_limits<double>::infinity());
-        }) == "duet: with_locked: joint 1: inf is not within its limits, -inf to inf");
-  CHECK(message([&] { (void)with_locked(chain, "elbow", 4); }) ==
-        "duet: with_locked: joint 2 \"elbow\": 4 is not within its limits, -1 to 2");
-  CHECK(message([&] { (void)with_locked(chain, 2, 4); }) ==
-        "duet: with_locked: joint 2 \"elbow\": 4 is not within its limits, -1 to 2");
-  CHECK(message([&] { (void)with_locked(chain, "elbw", 0); }) ==
-        "duet: with_locked: no joint \"elbw\": there are \"elbow\", \"slide\", \"shoulder\"");
+          (void)with_locked_joint(serial_chain<2>(std::array<joint<>, 2>{}), 1,
+                                  std::numeric_limits<double>::infinity());
+        }) == "duet: with_locked_joint: joint 1: inf is not within its limits, -inf to inf");
+  CHECK(message([&] { (void)with_locked_joint(chain, "elbow", 4); }) ==
+        "duet: with_locked_joint: joint 2 \"elbow\": 4 is not within its limits, -1 to 2");
+  CHECK(message([&] { (void)with_locked_joint(chain, 2, 4); }) ==
+        "duet: with_locked_joint: joint 2 \"elbow\": 4 is not within its limits, -1 to 2");
+  CHECK(message([&] { (void)with_locked_joint(chain, "elbw", 0); }) ==
+        "duet: with_locked_joint: no joint \"elbw\": there are \"elbow\", \"slide\", \"shoulder\"");
   for (const int none : {-1, 6}) {
-    CHECK(message([&] { (void)with_locked(arm, none, 0); }) ==
-          "duet: with_locked: no joint " + std::to_string(none) + " in a chain of 6 moving joints");
+    CHECK(message([&] { (void)with_locked_joint(arm, none, 0); }) ==
+          "duet: with_locked_joint: no joint " + std::to_string(none) +
+              " in a chain of 6 moving joints");
   }
   CHECK(message([&] {
           (void)with_limits(chain, "slide", {2, 1});

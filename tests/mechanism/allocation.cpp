@@ -20,7 +20,7 @@ using namespace duet;
 
 TEST_CASE("evaluation allocates nothing") {
   const auto known = robots::panda();
-  const serial_chain<-16> chain = robots::panda().table();
+  const bounded_chain<16> chain = robots::panda().table();
   const auto theta = duet_test::configurations(known.table(), 3).back();
   const std::size_t before = duet_test::allocations;
   double sum = duet_test::everything(known, theta);
@@ -36,7 +36,7 @@ TEST_CASE("evaluation allocates nothing") {
 }
 
 TEST_CASE("sweeps on one core allocate nothing") {
-  const serial_chain<-16> chain = robots::panda().table();
+  const bounded_chain<16> chain = robots::panda().table();
   const auto theta = duet_test::configurations(robots::panda().table(), 9);
   std::vector<dual_quaternion<double>> tips(theta.size());
   std::vector<Eigen::Matrix<double, 6, 7>> columns(theta.size());

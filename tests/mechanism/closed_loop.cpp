@@ -31,8 +31,8 @@ struct four_bar {
   auto operator()(const X& x, const T& theta) const {
     using std::cos;
     using std::sin;
-    return column(a * cos(theta) + b * cos(x[0]) - d - c * cos(x[1]),
-                  a * sin(theta) + b * sin(x[0]) - c * sin(x[1]));
+    return make_vector(a * cos(theta) + b * cos(x[0]) - d - c * cos(x[1]),
+                       a * sin(theta) + b * sin(x[0]) - c * sin(x[1]));
   }
 
   /// ψ by Freudenstein's equation, A sin ψ + B cos ψ = C; `open` is the way it is assembled.
@@ -69,7 +69,7 @@ double rocker_error(const Loop& loop, const four_bar& bars, double theta, double
 
 template <class F>
 std::string message(const F& f) {
-  return duet_test::message_of<cannot_close>(f);
+  return duet_test::message_of<loop_closure_failure>(f);
 }
 
 } // namespace
@@ -78,7 +78,7 @@ TEST_CASE("a crank-rocker, twice around, in both ways it can be assembled") {
   const four_bar bars{.2, .5, .4, .55};
   for (const double open : {-1.0, 1.0}) {
     CAPTURE(open);
-    const closed_loop loop(bars, bars.position(.3, open), .3);
+    const constrained_mechanism loop(bars, bars.position(.3, open), .3);
     CHECK(loop.parameter() == .3);
     for (int i = -40; i <= 40; ++i) {
       const double theta = .3 + i * pi / 20;
@@ -87,10 +87,10 @@ TEST_CASE("a crank-rocker, twice around, in both ways it can be assembled") {
     }
     // A start that is only near.
     const Eigen::Vector2d near = bars.position(.3, open) + Eigen::Vector2d(.2, -.1);
-    CHECK((closed_loop(bars, near, .3).position() - loop.position()).norm() < 1e-15);
+    CHECK((constrained_mechanism(bars, near, .3).position() - loop.position()).norm() < 1e-15);
     // Whole turns leave the angles where they were: the rocker never goes around.
     CHECK((loop(.3 + 6 * pi) - loop.position()).norm() < 1e-14);
-    const auto moved = loop.moved_to(2);
+    const auto moved = loop.warm_started_at(2);
     CHECK(moved.parameter() == 2);
     CHECK((moved(1.5) - loop(1.5)).norm() < 1e-15);
   }
@@ -100,7 +100,7 @@ TEST_CASE("up to dead points and not beyond") {
   const four_bar bars{.3, .25, .2, .4}; // a + d > b + c: the crank cannot go around
   const double dead = std::acos((.3 * .3 + .4 * .4 - .45 * .45) / (2 * .3 * .4));
   for (const double open : {-1.0, 1.0}) {
-    const closed_loop loop(bars, bars.position(.5, open), .5);
+    const constrained_mechanism loop(bars, bars.position(.5, open), .5);
     for (const double before : {1e-1, 1e-3, 1e-6}) {
       // Rates are unbounded there: errors of the closed form itself grow by 1/before.
       CHECK(rocker_error(loop, bars, dead - before, open) < 1e-14 / before);
@@ -109,7 +109,7 @@ TEST_CASE("up to dead points and not beyond") {
       try {
         static_cast<void>(loop(dead + beyond));
         FAIL("it closes beyond the dead point");
-      } catch (const cannot_close& e) {
+      } catch (const loop_closure_failure& e) {
         CHECK(e.parameter().size() == 1);
         CHECK(e.parameter()[0] == doctest::Approx(dead).epsilon(1e-6));
       }
@@ -120,32 +120,33 @@ TEST_CASE("up to dead points and not beyond") {
 TEST_CASE("beyond a gap the same assembly mode goes on, and is not reached") {
   const four_bar bars{.975, .741, 1.076, .694};
   for (const double open : {-1.0, 1.0}) {
-    const closed_loop loop(bars, bars.position(1.5, open), 1.5, {.largest_step = 10});
-    CHECK_THROWS_AS((void)loop(-1.5), cannot_close);
-    const closed_loop other(bars, bars.position(-1.5, open), -1.5);
+    const constrained_mechanism loop(bars, bars.position(1.5, open), 1.5, {.largest_step = 10});
+    CHECK_THROWS_AS((void)loop(-1.5), loop_closure_failure);
+    const constrained_mechanism other(bars, bars.position(-1.5, open), -1.5);
     CHECK(rocker_error(other, bars, -1.6, open) < 1e-13);
   }
 }
 
 TEST_CASE("what cannot be is said with the parameter") {
   const four_bar too_short{.1, .2, .2, 1};
-  CHECK(message([&] { closed_loop(too_short, Eigen::Vector2d(0, 0), .5); }) ==
-        "duet: closed_loop: no position near the given one at u = 0.5");
+  CHECK(message([&] { constrained_mechanism(too_short, Eigen::Vector2d(0, 0), .5); }) ==
+        "duet: constrained_mechanism: no position near the given one at u = 0.5");
   // A slider on a crank: x² = 1 − u².
   const auto circle = [](const auto& x, const auto& u) { return x * x + u * u - 1; };
-  const closed_loop slider(circle, 1.0, 0);
+  const constrained_mechanism slider(circle, 1.0, 0);
   CHECK(message([&] {
           (void)slider(2.0);
-        }).find("duet: closed_loop: cannot close beyond u = 0.99999") == 0);
+        }).find("duet: constrained_mechanism: cannot close beyond u = 0.99999") == 0);
   CHECK(message([&] { (void)slider(2.0); }).find(" on the way from 0 to 2") != std::string::npos);
-  CHECK_THROWS_WITH_AS((void)slider(std::nan("")), "duet: closed_loop: u = nan is not finite",
-                       invalid_input);
-  CHECK_THROWS_AS(closed_loop(circle, 0.0, 1.0), cannot_close); // in the dead point itself
+  CHECK_THROWS_WITH_AS((void)slider(std::nan("")),
+                       "duet: constrained_mechanism: u = nan is not finite", invalid_input);
+  CHECK_THROWS_AS(constrained_mechanism(circle, 0.0, 1.0),
+                  loop_closure_failure); // in the dead point itself
 }
 
 TEST_CASE("small steps, and a loop that stands still") {
   const auto circle = [](const auto& x, const auto& u) { return x * x + u * u - 1; };
-  const closed_loop slider(circle, -.7, 0.0); // the other side
+  const constrained_mechanism slider(circle, -.7, 0.0); // the other side
   CHECK(slider.position() == -1);
   for (const double u : {1e-300, 1e-18, 1e-9, 1e-3, .6, .999}) {
     const auto x = derivatives<2>(slider, -u);
@@ -154,7 +155,7 @@ TEST_CASE("small steps, and a loop that stands still") {
     CHECK(x[1] == doctest::Approx(-u / root).epsilon(1e-12));
     CHECK(x[2] == doctest::Approx(1 / (root * root * root)).epsilon(1e-12));
   }
-  const closed_loop still([](const auto& x, const auto&) { return x * x - 2; }, 1.0, 0.0);
+  const constrained_mechanism still([](const auto& x, const auto&) { return x * x - 2; }, 1.0, 0.0);
   CHECK(still(5.0) == doctest::Approx(std::sqrt(2.0)).epsilon(1e-15));
 }
 
@@ -168,7 +169,7 @@ TEST_CASE("two driving parameters: a five-bar") {
       const auto dy = x[1] - sin(angle);
       return dx * dx + dy * dy - 1.44;
     };
-    return column(from(-.5, u[0]), from(.5, u[1]));
+    return make_vector(from(-.5, u[0]), from(.5, u[1]));
   };
   const auto closed_form = [](const auto& u) {
     using std::cos;
@@ -177,10 +178,10 @@ TEST_CASE("two driving parameters: a five-bar") {
     const auto ax = cos(u[0]) - .5, ay = sin(u[0]), bx = cos(u[1]) + .5, by = sin(u[1]);
     const auto dx = bx - ax, dy = by - ay;
     const auto side = sqrt(1.44 / (dx * dx + dy * dy) - .25);
-    return column((ax + bx) / 2 - side * dy, (ay + by) / 2 + side * dx);
+    return make_vector((ax + bx) / 2 - side * dy, (ay + by) / 2 + side * dx);
   };
   const Eigen::Vector2d start(2, 1);
-  const closed_loop loop(five_bar, Eigen::Vector2d(closed_form(start)), start);
+  const constrained_mechanism loop(five_bar, Eigen::Vector2d(closed_form(start)), start);
   for (const Eigen::Vector2d& u : {Eigen::Vector2d(1.8, .8), Eigen::Vector2d(1.5, .2), start}) {
     const auto [x, j] = jacobian(loop, u);
     const auto [y, k] = jacobian(closed_form, u);
@@ -189,7 +190,7 @@ TEST_CASE("two driving parameters: a five-bar") {
   }
   CHECK(message([&] {
           (void)loop(Eigen::Vector2d(3, 0));
-        }).find("duet: closed_loop: cannot close beyond u = (2.") == 0);
+        }).find("duet: constrained_mechanism: cannot close beyond u = (2.") == 0);
 }
 
 } // namespace test_mechanism_closed_loop

@@ -42,24 +42,24 @@ VectorXd vector(std::initializer_list<double> x) {
   return Eigen::Map<const VectorXd>(x.begin(), Eigen::Index(x.size()));
 }
 
-constexpr int kinds = int(loop_kind::rod) + 1;
+constexpr int kinds = int(constraint_kind::distance) + 1;
 
 /// A body that floats, held by one loop of a kind; both frames turned and displaced.
-closed_tree held_body(loop_kind kind, double scale = 1) {
+closed_chain_mechanism held_body(constraint_kind kind, double scale = 1) {
   robot_description robot;
   robot.links = {{"base"}, {"body"}};
   robot.joints = {{"free", "base", "body", {joint_kind::floating}}};
-  return closed_tree(kinematic_tree(robot),
-                     {{{kind,
-                        {"base", place(.3, -.2, .5, .4 * scale, .1 * scale, -.2 * scale)},
-                        {"body", place(-.1, .7, .2, -.3 * scale, .2 * scale, .5 * scale)},
-                        .8 * scale}}});
+  return closed_chain_mechanism(
+      kinematic_tree(robot), {{{kind,
+                                {"base", place(.3, -.2, .5, .4 * scale, .1 * scale, -.2 * scale)},
+                                {"body", place(-.1, .7, .2, -.3 * scale, .2 * scale, .5 * scale)},
+                                .8 * scale}}});
 }
 
 /// The pose of the second frame in the first.
-dual_quaternion<double> seen(const closed_tree& mechanism, const VectorXd& q) {
-  const tree_loop& loop = mechanism.loops()[0];
-  const auto at = [&](const loop_frame& frame) {
+dual_quaternion<double> seen(const closed_chain_mechanism& mechanism, const VectorXd& q) {
+  const loop_constraint& loop = mechanism.loops()[0];
+  const auto at = [&](const constraint_frame& frame) {
     return mechanism.tree().pose(q, mechanism.tree().link(frame.link)) * frame.offset.pose();
   };
   return conj(at(loop.first)) * at(loop.second);
@@ -71,9 +71,9 @@ TEST_CASE("what loops of every kind leave: equations, and frames that they hold"
   const std::array<int, kinds> equations{6, 5, 5, 4, 4, 3, 3, 1};
   duet_test::random_source random(5);
   for (int k = 0; k < kinds; ++k) {
-    const auto kind = loop_kind(k);
+    const auto kind = constraint_kind(k);
     CAPTURE(std::string(to_text(kind)));
-    const closed_tree mechanism = held_body(kind);
+    const closed_chain_mechanism mechanism = held_body(kind);
     CHECK(mechanism.equations() == equations[std::size_t(k)]);
     for (int i = 0; i < 5; ++i) {
       VectorXd guess(6);
@@ -84,30 +84,31 @@ TEST_CASE("what loops of every kind leave: equations, and frames that they hold"
       const auto a = seen(mechanism, q);
       const Eigen::Matrix3d r = rotation_matrix(rotation(a));
       const Vector3d t = translation(a);
-      const bool is_point = kind == loop_kind::weld || kind == loop_kind::hinge ||
-                            kind == loop_kind::universal || kind == loop_kind::ball;
-      const bool has_axis = kind == loop_kind::weld || kind == loop_kind::hinge ||
-                            kind == loop_kind::slider || kind == loop_kind::cylindrical ||
-                            kind == loop_kind::planar;
+      const bool is_point = kind == constraint_kind::fixed || kind == constraint_kind::revolute ||
+                            kind == constraint_kind::universal ||
+                            kind == constraint_kind::spherical;
+      const bool has_axis = kind == constraint_kind::fixed || kind == constraint_kind::revolute ||
+                            kind == constraint_kind::prismatic ||
+                            kind == constraint_kind::cylindrical || kind == constraint_kind::planar;
       if (is_point) {
         CHECK(t.norm() < 1e-12);
       }
       if (has_axis) { // the same way round
         CHECK((r.col(2) - Vector3d::UnitZ()).norm() < 1e-12);
       }
-      if (kind == loop_kind::weld || kind == loop_kind::slider) {
+      if (kind == constraint_kind::fixed || kind == constraint_kind::prismatic) {
         CHECK((r - Eigen::Matrix3d::Identity()).norm() < 1e-12);
       }
-      if (kind == loop_kind::slider || kind == loop_kind::cylindrical) {
+      if (kind == constraint_kind::prismatic || kind == constraint_kind::cylindrical) {
         CHECK(t.head<2>().norm() < 1e-12);
       }
-      if (kind == loop_kind::planar) {
+      if (kind == constraint_kind::planar) {
         CHECK(std::abs(t[2]) < 1e-12);
       }
-      if (kind == loop_kind::universal) {
+      if (kind == constraint_kind::universal) {
         CHECK(std::abs(r(0, 1)) < 1e-12);
       }
-      if (kind == loop_kind::rod) {
+      if (kind == constraint_kind::distance) {
         CHECK(std::abs(t.norm() - .8) < 1e-12);
       }
       // Those that Eigen's QR of the rates has its pivots at.
@@ -130,15 +131,15 @@ TEST_CASE("what loops of every kind leave: equations, and frames that they hold"
 
 TEST_CASE("the Jacobian of every kind of loop between all kinds of joints, against dual numbers") {
   const kinematic_tree tree(all_joints());
-  loop_description loops;
+  loop_constraints loops;
   const std::array links{"finger", "cart", "flange", "screw", "tool", "thumb", "body", "hand"};
   for (int k = 0; k < kinds; ++k) {
-    loops.loops.push_back({loop_kind(k),
+    loops.loops.push_back({constraint_kind(k),
                            {links[std::size_t(k)], place(.3, .1 * k, -.2, .2, -.1, .3)},
                            {links[std::size_t(k + 3) % 8], place(-.4, .2, .1 * k, 0, .4, .1)},
                            .5 + k});
   }
-  const closed_tree mechanism(tree, loops);
+  const closed_chain_mechanism mechanism(tree, loops);
   for (const VectorXd& q : coordinates_of(tree, 10)) {
     const auto expected =
         jacobian<duet_test::shared_tag>([&](const auto& x) { return mechanism.residuals(x); }, q);
@@ -151,7 +152,8 @@ TEST_CASE("the Jacobian of every kind of loop between all kinds of joints, again
 TEST_CASE("nothing depends on the unit of length") {
   const double mm = 1000;
   for (int k = 0; k < kinds; ++k) {
-    const closed_tree in_m = held_body(loop_kind(k)), in_mm = held_body(loop_kind(k), mm);
+    const closed_chain_mechanism in_m = held_body(constraint_kind(k)),
+                                 in_mm = held_body(constraint_kind(k), mm);
     const VectorXd guess = vector({.3, -.4, .2, .5, 1.1, -.7});
     VectorXd scaled = guess;
     scaled.head<3>() *= mm;
@@ -167,17 +169,18 @@ TEST_CASE("nothing depends on the unit of length") {
 
 TEST_CASE("all positions of a four-bar are those of Freudenstein's equation") {
   const double a = .2, b = .5, c = .4, d = .55;
-  const closed_tree mechanism = four_bar(a, b, c, d);
+  const closed_chain_mechanism mechanism = four_bar(a, b, c, d);
   for (const double theta : {-2.5, 0., .4, 2., 3.1}) {
-    const auto found = all_positions(mechanism, {0}, vector({theta}), {.starts = 30});
-    CHECK(found.chance_of_more() == 0);
+    const auto found =
+        find_assembly_configurations(mechanism, {0}, vector({theta}), {.random_starts = 30});
+    CHECK(found.missing_probability() == 0);
     REQUIRE(found.positions.size() == 2);
     const double k = a * std::cos(theta) - d, s = a * std::sin(theta);
     const double q = (c * c + k * k + s * s - b * b) / (2 * c);
     for (const double side : {-1., 1.}) {
       const double psi = std::atan2(s, k) + side * std::atan2(std::sqrt(k * k + s * s - q * q), q);
       double nearest = 1;
-      for (const loop_position& each : found.positions) {
+      for (const assembly_configuration& each : found.positions) {
         CHECK(each.smallest_singular_value > .01);
         nearest = std::min(
             nearest, std::abs(std::remainder(each.coordinates[2] - psi, 2 * std::numbers::pi)));
@@ -185,22 +188,25 @@ TEST_CASE("all positions of a four-bar are those of Freudenstein's equation") {
       CHECK(nearest < 1e-13);
     }
   }
-  CHECK(all_positions(four_bar(.2, .5, .4, 3), {0}, vector({0}), {.starts = 10}).positions.empty());
-  CHECK(duet_test::message_of<cannot_close>([] {
+  CHECK(
+      find_assembly_configurations(four_bar(.2, .5, .4, 3), {0}, vector({0}), {.random_starts = 10})
+          .positions.empty());
+  CHECK(duet_test::message_of<loop_closure_failure>([] {
           (void)four_bar(.2, .5, .4, 3).closed(vector({0, 0, 0}));
-        }).starts_with("duet: closed_tree: no position near the guess: residual "));
+        }).starts_with("duet: closed_chain_mechanism: no position near the guess: residual "));
 }
 
 TEST_CASE("limits of joints bound where positions are looked for, and are reported") {
   robot_description robot = four_bar(.2, .5, .4, .55).tree().description();
   robot.joints[2].motion.kind = joint_kind::revolute;
   robot.joints[2].motion.limits = {0, 3};
-  const closed_tree mechanism(
+  const closed_chain_mechanism mechanism(
       kinematic_tree(robot),
-      {{{loop_kind::hinge, {"coupler", at_point(.5, 0)}, {"rocker", at_point(.4, 0)}}}});
-  const auto found = all_positions(mechanism, {0}, vector({2}), {.starts = 40});
+      {{{constraint_kind::revolute, {"coupler", at_point(.5, 0)}, {"rocker", at_point(.4, 0)}}}});
+  const auto found =
+      find_assembly_configurations(mechanism, {0}, vector({2}), {.random_starts = 40});
   int within = 0;
-  for (const loop_position& each : found.positions) {
+  for (const assembly_configuration& each : found.positions) {
     CHECK(each.within_limits == (each.coordinates[2] >= 0 && each.coordinates[2] <= 3));
     within += each.within_limits ? 1 : 0;
   }
@@ -208,7 +214,7 @@ TEST_CASE("limits of joints bound where positions are looked for, and are report
 }
 
 TEST_CASE("held coordinates stay, and the way to the position is short") {
-  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+  const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
   const VectorXd q = mechanism.closed(vector({2, -1.6, 2}), {0});
   CHECK(q[0] == 2);
   CHECK(std::abs(q[2] - 2.002371114722) < 1e-12);
@@ -223,47 +229,48 @@ TEST_CASE("held coordinates stay, and the way to the position is short") {
 TEST_CASE("what is wrong with loops") {
   using duet_test::message_of;
   const kinematic_tree tree = four_bar(.2, .5, .4, .55).tree();
-  const auto message = [&](const tree_loop& loop, const std::string& file = {}) {
-    return message_of([&] { closed_tree(tree, {{loop}, file}); });
+  const auto message = [&](const loop_constraint& loop, const std::string& file = {}) {
+    return message_of([&] { closed_chain_mechanism(tree, {{loop}, file}); });
   };
-  const loop_frame coupler{"coupler", at_point(.5, 0)}, rocker{"rocker", at_point(.4, 0)};
-  CHECK(message({loop_kind::hinge, {"couple", {}}, rocker})
-            .starts_with("duet: closed_tree: loop 0, hinge: no link \"couple\": there are "
-                         "\"coupler\", "));
-  CHECK(message({loop_kind::hinge, {"couple", {}}, rocker, 0, 7}, "loops.txt")
-            .starts_with("duet: loops.txt:7: hinge: no link \"couple\": "));
-  CHECK(message({loop_kind::ball, coupler, coupler}) ==
-        "duet: closed_tree: loop 0, ball: both frames are on the link \"coupler\"");
-  CHECK(message({loop_kind::rod, coupler, rocker}) ==
-        "duet: closed_tree: loop 0, rod: its length is 0");
-  CHECK(message({loop_kind::rod, coupler, rocker, std::nan("")}) ==
-        "duet: closed_tree: loop 0, rod: its length is nan");
-  loop_frame infinite = coupler;
+  const constraint_frame coupler{"coupler", at_point(.5, 0)}, rocker{"rocker", at_point(.4, 0)};
+  CHECK(message({constraint_kind::revolute, {"couple", {}}, rocker})
+            .starts_with(
+                "duet: closed_chain_mechanism: loop 0, revolute: no link \"couple\": there are "
+                "\"coupler\", "));
+  CHECK(message({constraint_kind::revolute, {"couple", {}}, rocker, 0, 7}, "loops.txt")
+            .starts_with("duet: loops.txt:7: revolute: no link \"couple\": "));
+  CHECK(message({constraint_kind::spherical, coupler, coupler}) ==
+        "duet: closed_chain_mechanism: loop 0, spherical: both frames are on the link \"coupler\"");
+  CHECK(message({constraint_kind::distance, coupler, rocker}) ==
+        "duet: closed_chain_mechanism: loop 0, distance: its length is 0");
+  CHECK(message({constraint_kind::distance, coupler, rocker, std::nan("")}) ==
+        "duet: closed_chain_mechanism: loop 0, distance: its length is nan");
+  constraint_frame infinite = coupler;
   infinite.offset.translation[1] = std::numeric_limits<double>::infinity();
-  CHECK(message({loop_kind::ball, infinite, rocker}) ==
-        "duet: closed_tree: loop 0, ball: its frame on \"coupler\" is not finite");
+  CHECK(message({constraint_kind::spherical, infinite, rocker}) ==
+        "duet: closed_chain_mechanism: loop 0, spherical: its frame on \"coupler\" is not finite");
   CHECK(message_of([] {
-          (void)along_axis({0, 0, 0}, {0, 0, 0});
-        }) == "duet: along_axis: (0, 0, 0) is no direction");
-  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+          (void)frame_with_z_axis({0, 0, 0}, {0, 0, 0});
+        }) == "duet: frame_with_z_axis: (0, 0, 0) is no direction");
+  const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
   CHECK(message_of([&] {
           (void)mechanism.closed(vector({0, 0, 0}), {3});
-        }) == "duet: closed_tree: no coordinate 3 of 3");
+        }) == "duet: closed_chain_mechanism: no coordinate 3 of 3");
   CHECK(message_of([&] {
           (void)mechanism.closed(vector({0, 0, std::nan("")}));
-        }) == "duet: closed_tree: the guess is not finite");
+        }) == "duet: closed_chain_mechanism: the guess is not finite");
   CHECK(message_of([&] {
           (void)mechanism.closed(vector({0, 0}));
         }) == "duet: a tree of 3 coordinates, but 2 are given");
-  CHECK(message_of([&] { (void)all_positions(mechanism, {0}, VectorXd()); }) ==
-        "duet: all_positions: 1 coordinates are held, but 0 numbers given");
+  CHECK(message_of([&] { (void)find_assembly_configurations(mechanism, {0}, VectorXd()); }) ==
+        "duet: find_assembly_configurations: 1 coordinates are held, but 0 numbers given");
 }
 
 TEST_CASE("an axis in any direction") {
   for (const Vector3d& n :
        {Vector3d(0, 0, 1), Vector3d(0, 0, -1), Vector3d(1, 2, -.3), Vector3d(0, -1e-9, -1),
         Vector3d(3, 0, 0), Vector3d(0, 1e308, 1e308), Vector3d(5e-324, 5e-324, 0)}) {
-    const auto at = along_axis({1, 2, 3}, {n[0], n[1], n[2]});
+    const auto at = frame_with_z_axis({1, 2, 3}, {n[0], n[1], n[2]});
     const Vector3d direction = (n / n.cwiseAbs().maxCoeff()).normalized();
     CHECK((rotation_matrix(at.rotation).col(2) - direction).norm() < 4e-15);
     CHECK(at.translation == std::array<double, 3>{1, 2, 3});
@@ -271,21 +278,22 @@ TEST_CASE("an axis in any direction") {
 }
 
 TEST_CASE("positions are looked for until another one is improbable, or guesses run out") {
-  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
-  const auto found = [&](const std::vector<int>& held, const loop_search_options& options) {
-    return all_positions(mechanism, held, VectorXd::Constant(Eigen::Index(held.size()), 2),
-                         options);
+  const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
+  const auto found = [&](const std::vector<int>& held, const assembly_search_options& options) {
+    return find_assembly_configurations(mechanism, held,
+                                        VectorXd::Constant(Eigen::Index(held.size()), 2), options);
   };
   CHECK(found({0}, {}).starts == 200);
-  const loop_positions until = found({0}, {.starts = 1, .chance_of_more = .02});
+  const assembly_search_result until = found({0}, {.random_starts = 1, .missing_probability = .02});
   CHECK(until.positions.size() == 2);
   CHECK(until.closed == 50); // 1 / 50 is no more than the chance
-  CHECK(until.chance_of_more() == 0);
-  CHECK(found({0}, {.starts = 70, .chance_of_more = .02}).starts == 70);
-  CHECK(found({0}, {.starts = 1, .chance_of_more = 0, .most_starts = 60}).starts == 60);
-  CHECK(found({0}, {.starts = 80, .chance_of_more = 0, .most_starts = 60}).starts == 80);
+  CHECK(until.missing_probability() == 0);
+  CHECK(found({0}, {.random_starts = 70, .missing_probability = .02}).starts == 70);
+  CHECK(found({0}, {.random_starts = 1, .missing_probability = 0, .max_starts = 60}).starts == 60);
+  CHECK(found({0}, {.random_starts = 80, .missing_probability = 0, .max_starts = 60}).starts == 80);
   // Nothing is held: each guess finds another one.
-  const loop_positions curve = found({}, {.starts = 1, .chance_of_more = .5, .most_starts = 90});
+  const assembly_search_result curve =
+      found({}, {.random_starts = 1, .missing_probability = .5, .max_starts = 90});
   CHECK(curve.starts == 90);
   CHECK(int(curve.positions.size()) == curve.closed);
 }

@@ -21,7 +21,7 @@ using point = std::array<double, 3>;
 
 const std::string path = "test_mechanism_collada.dae";
 
-mesh_surface read(const std::string& text) {
+triangle_mesh read(const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
   return read_mesh(path);
 }
@@ -31,7 +31,7 @@ std::string fault(const std::string& text) {
   const std::string begin = "duet: " + path + ":";
   return message.starts_with(begin) ? message.substr(begin.size()) : message;
 }
-void check_corners(const mesh_surface& m, const std::vector<point>& wanted) {
+void check_corners(const triangle_mesh& m, const std::vector<point>& wanted) {
   REQUIRE(m.corners.size() == wanted.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -44,7 +44,7 @@ void check_corners(const mesh_surface& m, const std::vector<point>& wanted) {
 
 /// Of the six volumes of a tetrahedron over the origin, the sum: its sign tells which way triangles
 /// are turned.
-double six_volumes(const mesh_surface& m) {
+double six_volumes(const triangle_mesh& m) {
   double sum = 0;
   for (std::size_t i = 0; i < m.corners.size(); i += 3) {
     const auto &a = m.corners[i], &b = m.corners[i + 1], &c = m.corners[i + 2];

@@ -85,7 +85,7 @@ TEST_CASE("as many joints as there turn out to be") {
   joints[1].axis = {0, 1, 0};
   joints[1].origin.translation = {.4, 0, 0};
   joints[2].kind = joint_kind::prismatic;
-  const serial_chain<-16> chain{std::span<const joint<>>(joints),
+  const bounded_chain<16> chain{std::span<const joint<>>(joints),
                                 {quaternion<double>(1), {1, 2, 3}}};
   const serial_chain<3> same{std::span<const joint<>>(joints), {quaternion<double>(1), {1, 2, 3}}};
   const Eigen::Vector3d theta(.3, -1.2, .7);

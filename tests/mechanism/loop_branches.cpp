@@ -44,7 +44,7 @@ double second_order(const std::array<double, 4>& bar, const VectorXd& q, const V
   return a * v[0] * v[0] + b * (v[0] + v[1]) * (v[0] + v[1]) - c * v[2] * v[2];
 }
 
-closed_tree bars(const std::array<double, 4>& bar) {
+closed_chain_mechanism bars(const std::array<double, 4>& bar) {
   return four_bar(bar[0], bar[1], bar[2], bar[3]);
 }
 
@@ -79,11 +79,11 @@ std::array<double, 4> change_point(duet::random_source& random) {
 }
 
 /// One of the positions with the crank at an angle that allows some.
-VectorXd some_position(const closed_tree& mechanism, duet::random_source& random) {
+VectorXd some_position(const closed_chain_mechanism& mechanism, duet::random_source& random) {
   for (;;) {
-    const auto found =
-        all_positions(mechanism, {0}, VectorXd::Constant(1, random.uniform(-3, 3)), {.starts = 20});
-    for (const loop_position& each : found.positions) {
+    const auto found = find_assembly_configurations(
+        mechanism, {0}, VectorXd::Constant(1, random.uniform(-3, 3)), {.random_starts = 20});
+    for (const assembly_configuration& each : found.positions) {
       if (each.smallest_singular_value > .05) {
         return each.coordinates;
       }
@@ -95,8 +95,8 @@ VectorXd some_position(const closed_tree& mechanism, duet::random_source& random
 
 TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram") {
   const std::array bar{.3, .8, .3, .8};
-  const loop_motion motion(bars(bar), Vector3d(1, -1, 1), {0});
-  const loop_trace_result straight = trace(motion);
+  const driven_motion motion(bars(bar), Vector3d(1, -1, 1), {0});
+  const motion_trace straight = trace(motion);
   CHECK(straight.is_closed);
   CHECK(!straight.meets_branches);
   CHECK(straight.dead_points.empty());
@@ -115,7 +115,7 @@ TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram")
   }
 
   for (const std::size_t way : {1, 2}) {
-    const loop_trace_result other = trace(motion, 0, {.ways = {way}});
+    const motion_trace other = trace(motion, 0, {.ways = {way}});
     CHECK(other.is_closed);
     REQUIRE(other.branch_points.size() == 3); // back through the first one
     CHECK(other.branch_points[0].taken == way);
@@ -131,7 +131,7 @@ TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram")
     CHECK(crossed > 40);
   }
   // Back where it came from.
-  const loop_trace_result back = trace(motion, 0, {.ways = {3}});
+  const motion_trace back = trace(motion, 0, {.ways = {3}});
   CHECK(back.branch_points[0].taken == 3);
   CHECK(std::abs(back.positions.back()[0] - back.positions.back()[2]) < 1e-12);
   CHECK(message_of([&] { (void)trace(motion, 0, {.ways = {4}}); }) ==
@@ -143,7 +143,7 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
     const std::array<double, 4> bar = change_point(random);
-    closed_tree mechanism = bars(bar);
+    closed_chain_mechanism mechanism = bars(bar);
     robot_description robot = mechanism.tree().description();
     const auto base = duet_test::place(random.uniform(-3, 3), random.uniform(-1, 1),
                                        random.uniform(-3, 3), random.uniform(-1, 1), .3, -.2);
@@ -152,9 +152,9 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
         joint.motion.origin = base * joint.motion.origin;
       }
     }
-    mechanism = closed_tree(kinematic_tree(robot), {mechanism.loops()});
-    const loop_motion motion(mechanism, some_position(mechanism, random), {0});
-    const loop_trace_result whole = trace(motion);
+    mechanism = closed_chain_mechanism(kinematic_tree(robot), {mechanism.loops()});
+    const driven_motion motion(mechanism, some_position(mechanism, random), {0});
+    const motion_trace whole = trace(motion);
     CHECK(whole.is_closed);
     CHECK(!whole.meets_branches);
     REQUIRE(whole.branch_points.size() == 2); // once on each branch
@@ -162,7 +162,7 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
       check_crossing(bar, at);
     }
     for (const std::size_t way : {1, 2, 3}) {
-      const loop_trace_result other = trace(motion, 0, {.ways = {way}});
+      const motion_trace other = trace(motion, 0, {.ways = {way}});
       CHECK(other.is_closed);
       CHECK(!other.meets_branches);
       for (const VectorXd& q : other.positions) {
@@ -208,15 +208,15 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
 
 TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
   const std::array bar{.8, .5, .5, .8};
-  const loop_motion motion(bars(bar), Vector3d(1, 2, 2), {0});
-  const loop_trace_result whole = trace(motion);
+  const driven_motion motion(bars(bar), Vector3d(1, 2, 2), {0});
+  const motion_trace whole = trace(motion);
   CHECK(whole.is_closed);
   REQUIRE(whole.branch_points.size() == 2);
   for (const branch_point& at : whole.branch_points) {
     check_crossing(bar, at);
     CHECK(std::abs(at.ways[1][0]) < 1e-14); // coupler and rocker turn as one
   }
-  const loop_trace_result folded = trace(motion, 0, {.ways = {1}});
+  const motion_trace folded = trace(motion, 0, {.ways = {1}});
   CHECK(folded.is_closed);
   CHECK(std::abs(folded.positions.back()[0]) < 1e-12);
 
@@ -227,13 +227,14 @@ TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
                   turning_joint("left_coupler", "left", at_point(.5, 0)),
                   turning_joint("right", "ground", at_point(.3, 0)),
                   turning_joint("right_coupler", "right", at_point(.5, 0))};
-  const closed_tree five_bar(kinematic_tree(robot), {{{loop_kind::hinge,
-                                                       {"left_coupler", at_point(.7, 0)},
-                                                       {"right_coupler", at_point(.7, 0)}}}});
+  const closed_chain_mechanism five_bar(kinematic_tree(robot),
+                                        {{{constraint_kind::revolute,
+                                           {"left_coupler", at_point(.7, 0)},
+                                           {"right_coupler", at_point(.7, 0)}}}});
   const double held = std::acos(-.6); // from (.3, 0) by .5 to the point above (0, 0)
   VectorXd guess(4);
   guess << 2, -1, held, 1;
-  const loop_trace_result five = trace(loop_motion(five_bar, guess, {0, 2}));
+  const motion_trace five = trace(driven_motion(five_bar, guess, {0, 2}));
   CHECK(five.is_closed);
   REQUIRE(!five.branch_points.empty());
   int cranks_meet = 0;
@@ -254,9 +255,9 @@ TEST_CASE("four-bars that are nearly flat have one branch, and are told from tho
       CAPTURE(k);
       CAPTURE(miss);
       const double a = flat[0], b = flat[1], c = flat[2], d = flat[3];
-      const closed_tree mechanism = four_bar(a, b + miss, c, d);
-      const loop_trace_result whole =
-          trace(loop_motion(mechanism, some_position(mechanism, random), {0}));
+      const closed_chain_mechanism mechanism = four_bar(a, b + miss, c, d);
+      const motion_trace whole =
+          trace(driven_motion(mechanism, some_position(mechanism, random), {0}));
       CHECK(whole.branch_points.empty());
       CHECK(whole.is_closed);
       CHECK(!whole.meets_branches);
@@ -281,13 +282,14 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
       turning_joint("crank", "ground", {}), turning_joint("c1", "crank", at_point(.3, 0)),
       turning_joint("r1", "ground", at_point(.8, 0)), turning_joint("c2", "crank", at_point(.3, 0)),
       turning_joint("r2", "ground", at_point(-.6, 0))};
-  const closed_tree both(kinematic_tree(robot),
-                         {{{loop_kind::hinge, {"c1", at_point(.8, 0)}, {"r1", at_point(.3, 0)}},
-                           {loop_kind::hinge, {"c2", at_point(-.6, 0)}, {"r2", at_point(.3, 0)}}}});
+  const closed_chain_mechanism both(
+      kinematic_tree(robot),
+      {{{constraint_kind::revolute, {"c1", at_point(.8, 0)}, {"r1", at_point(.3, 0)}},
+        {constraint_kind::revolute, {"c2", at_point(-.6, 0)}, {"r2", at_point(.3, 0)}}}});
   for (const double start : {.8, 1., 1.234, 1.7}) {
     VectorXd q(5);
     q << start, -start, start, -start, start;
-    const loop_trace_result whole = trace(loop_motion(both, q, {0}));
+    const motion_trace whole = trace(driven_motion(both, q, {0}));
     CHECK(whole.is_closed);
     REQUIRE(whole.branch_points.size() == 2);
     for (const branch_point& at : whole.branch_points) {
@@ -313,11 +315,11 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
                   turning_joint("coupler", "crank", at_point(.3, 0)),
                   turning_joint("rocker", "ground", at_point(.8, 0)),
                   turning_joint("third", "ground", at_point(.5, 0))};
-  const closed_tree three(
+  const closed_chain_mechanism three(
       kinematic_tree(robot),
-      {{{loop_kind::hinge, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
-        {loop_kind::hinge, {"coupler", at_point(.5, 0)}, {"third", at_point(.3, 0)}}}});
-  const loop_trace_result whole = trace(loop_motion(three, Eigen::Vector4d(1, -1, 1, 1), {0}));
+      {{{constraint_kind::revolute, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
+        {constraint_kind::revolute, {"coupler", at_point(.5, 0)}, {"third", at_point(.3, 0)}}}});
+  const motion_trace whole = trace(driven_motion(three, Eigen::Vector4d(1, -1, 1, 1), {0}));
   CHECK(whole.is_closed);
   REQUIRE(whole.branch_points.size() == 2);
   for (const branch_point& at : whole.branch_points) {
@@ -335,10 +337,11 @@ TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere"
     robot.joints = {turning_joint("crank", "ground", {}),
                     turning_joint("coupler", "crank", at_point(r, 0)),
                     {"slide", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}}};
-    const closed_tree mechanism(kinematic_tree(robot),
-                                {{{loop_kind::hinge, {"coupler", at_point(r, 0)}, {"slide", {}}}}});
-    const loop_trace_result whole =
-        trace(loop_motion(mechanism, Vector3d(1, -2, 2 * r * std::cos(1)), {0}));
+    const closed_chain_mechanism mechanism(
+        kinematic_tree(robot),
+        {{{constraint_kind::revolute, {"coupler", at_point(r, 0)}, {"slide", {}}}}});
+    const motion_trace whole =
+        trace(driven_motion(mechanism, Vector3d(1, -2, 2 * r * std::cos(1)), {0}));
     CHECK(whole.is_closed);
     REQUIRE(whole.branch_points.size() == 2);
     for (const branch_point& at : whole.branch_points) {
@@ -354,14 +357,14 @@ TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere"
   }
   // All axes in a point, opposite sides alike: tan(θ₁/2) tan(θ₂/2) is one of two constants.
   const double a = .4, b = .9;
-  const closed_tree sphere = duet_test::ring({{0, a}, {0, b}, {0, a}, {0, b}});
+  const closed_chain_mechanism sphere = duet_test::ring({{0, a}, {0, b}, {0, a}, {0, b}});
   const std::array constants{std::cos((a + b) / 2) / std::cos((b - a) / 2),
                              std::sin((a + b) / 2) / std::sin((b - a) / 2)};
-  const loop_positions found =
-      all_positions(sphere, {0}, VectorXd::Constant(1, .8), {.starts = 60});
+  const assembly_search_result found =
+      find_assembly_configurations(sphere, {0}, VectorXd::Constant(1, .8), {.random_starts = 60});
   REQUIRE(found.positions.size() == 2);
-  for (const loop_position& each : found.positions) {
-    const loop_trace_result whole = trace(loop_motion(sphere, each.coordinates, {0}));
+  for (const assembly_configuration& each : found.positions) {
+    const motion_trace whole = trace(driven_motion(sphere, each.coordinates, {0}));
     CHECK(whole.is_closed);
     REQUIRE(whole.branch_points.size() == 2);
     for (const branch_point& at : whole.branch_points) {
@@ -388,12 +391,13 @@ TEST_CASE("of ways that fill a plane none is returned") {
                   turning_joint("c", "ground", {}),
                   turning_joint("d", "c", at_point(.3, 0)),
                   {"slide", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}}};
-  const closed_tree mechanism(kinematic_tree(robot),
-                              {{{loop_kind::hinge, {"b", at_point(.3, 0)}, {"slide", {}}},
-                                {loop_kind::hinge, {"d", at_point(.3, 0)}, {"slide", {}}}}});
+  const closed_chain_mechanism mechanism(
+      kinematic_tree(robot),
+      {{{constraint_kind::revolute, {"b", at_point(.3, 0)}, {"slide", {}}},
+        {constraint_kind::revolute, {"d", at_point(.3, 0)}, {"slide", {}}}}});
   VectorXd start(5);
   start << 1, -2, -1, 2, .6 * std::cos(1);
-  const loop_trace_result whole = trace(loop_motion(mechanism, start, {0}));
+  const motion_trace whole = trace(driven_motion(mechanism, start, {0}));
   CHECK(whole.is_closed);
   REQUIRE(whole.branch_points.size() == 4);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -409,23 +413,22 @@ TEST_CASE("of ways that fill a plane none is returned") {
 }
 
 TEST_CASE("traces that start beside a crossing, and with large steps") {
-  const closed_tree mechanism = bars({.3, .8, .3, .8});
+  const closed_chain_mechanism mechanism = bars({.3, .8, .3, .8});
   for (const double start : {1e-2, 2e-3, 1e-3, 5e-4, 1e-4, 1e-5}) {
-    const loop_trace_result whole =
-        trace(loop_motion(mechanism, Vector3d(start, -start, start), {0}));
+    const motion_trace whole = trace(driven_motion(mechanism, Vector3d(start, -start, start), {0}));
     CHECK(whole.is_closed);
     CHECK(whole.branch_points.size() == 2);
   }
   for (const double step : {.03, .5, 1.5}) {
-    const loop_trace_result whole =
-        trace(loop_motion(mechanism, Vector3d(1, -1, 1), {0}), 0, {.largest_step = step});
+    const motion_trace whole =
+        trace(driven_motion(mechanism, Vector3d(1, -1, 1), {0}), 0, {.largest_step = step});
     CHECK(whole.is_closed);
     CHECK(whole.branch_points.size() == 2);
   }
 }
 
 TEST_CASE("a motion by drives goes straight on where branches meet") {
-  const loop_motion flat(bars({.3, .8, .3, .8}), Vector3d(1, -1, 1), {0});
+  const driven_motion flat(bars({.3, .8, .3, .8}), Vector3d(1, -1, 1), {0});
   for (const double u : {.5, 1e-3, 1e-5, 1e-7, 1e-10, 0., -1e-12, -1e-9, -1e-7, -1e-4, -1., -4.}) {
     CHECK((flat(u) - u * Vector3d(1, -1, 1)).norm() < 1e-12);
   }
@@ -433,12 +436,12 @@ TEST_CASE("a motion by drives goes straight on where branches meet") {
   CHECK((q[1] - Vector3d(1, -1, 1)).norm() < 1e-12);
   CHECK(q[2].norm() < 1e-11);
   CHECK(message_of([&] { (void)derivatives<1>(flat, 0.); }) ==
-        "duet: loop_motion: crank does not determine the rates of the other coordinates: a dead "
+        "duet: driven_motion: crank does not determine the rates of the other coordinates: a dead "
         "point");
   // An antiparallelogram, too.
   const Vector3d crossed(1, 0, -2 * std::atan(std::tan(.5) * 1.1 / .5));
-  const closed_tree mechanism = bars({.3, .8, .3, .8});
-  const loop_motion anti(mechanism, mechanism.closed(crossed, {0}), {0});
+  const closed_chain_mechanism mechanism = bars({.3, .8, .3, .8});
+  const driven_motion anti(mechanism, mechanism.closed(crossed, {0}), {0});
   for (const double u : {.3, -.3, -2.}) {
     CHECK(std::abs(std::tan(anti(u)[2] / 2) * .5 + std::tan(u / 2) * 1.1) < 1e-12);
   }

@@ -20,7 +20,7 @@ using duet_test::message_of;
 
 const std::string path = "test_mechanism_loop_file.txt";
 
-loop_description read(const std::string& content) {
+loop_constraints read(const std::string& content) {
   write_file(path, content);
   return read_loops(path);
 }
@@ -36,7 +36,7 @@ std::string fault(const std::string& content) {
 } // namespace
 
 TEST_CASE("loops of every kind, with points, axes and angles, comments and blank lines") {
-  const loop_description loops = read("\xef\xbb\xbf# closes the frame\n"
+  const loop_constraints loops = read("\xef\xbb\xbf# closes the frame\n"
                                       "hinge coupler .5 0 0  rocker 0.4 -1e-1 0 # in front\r\n"
                                       "\n"
                                       "\tslider a 1 2 3 rpy 0.1 0.2 0.3 b 0 0 0 axis 0 0 2\n"
@@ -48,31 +48,42 @@ TEST_CASE("loops of every kind, with points, axes and angles, comments and blank
                                       "rod axis 0 0 0 axis 0 1 0 rpy 0 0 0 length 0.25");
   REQUIRE(loops.loops.size() == 8);
   CHECK(loops.file == path);
-  const tree_loop& hinge = loops.loops[0];
-  CHECK(hinge.kind == loop_kind::hinge);
+  const loop_constraint& hinge = loops.loops[0];
+  CHECK(hinge.kind == constraint_kind::revolute);
   CHECK(hinge.line == 2);
   CHECK(hinge.first.link == "coupler");
   CHECK(hinge.first.offset.translation == std::array{.5, 0., 0.});
   CHECK(hinge.second.link == "rocker");
   CHECK(hinge.second.offset.translation == std::array{.4, -.1, 0.});
-  const tree_loop& slider = loops.loops[1];
-  CHECK(slider.kind == loop_kind::slider);
+  const loop_constraint& slider = loops.loops[1];
+  CHECK(slider.kind == constraint_kind::prismatic);
   CHECK(slider.line == 4);
   const auto turned = duet_test::place(0, 0, .3, 0, 0, 0) * duet_test::place(0, .2, 0, 0, 0, 0) *
                       duet_test::place(.1, 0, 0, 1, 2, 3);
   CHECK(distance(slider.first.offset.rotation, turned.rotation) < 1e-15);
   CHECK(slider.second.offset.rotation == quaternion<double>(1.0));
-  CHECK(loops.loops[3].first.offset.rotation == along_axis({0, 0, 0}, {1, 0, 0}).rotation);
-  const tree_loop& rod = loops.loops[7]; // the names of the links are words of the format
-  CHECK(rod.kind == loop_kind::rod);
+  CHECK(loops.loops[3].first.offset.rotation == frame_with_z_axis({0, 0, 0}, {1, 0, 0}).rotation);
+  const loop_constraint& rod = loops.loops[7]; // the names of the links are words of the format
+  CHECK(rod.kind == constraint_kind::distance);
   CHECK(rod.first.link == "axis");
   CHECK(rod.second.link == "rpy");
   CHECK(rod.length == .25);
-  const std::array order{loop_kind::hinge,       loop_kind::slider,    loop_kind::weld,
-                         loop_kind::cylindrical, loop_kind::universal, loop_kind::ball,
-                         loop_kind::planar,      loop_kind::rod};
+  const std::array order{constraint_kind::revolute,  constraint_kind::prismatic,
+                         constraint_kind::fixed,     constraint_kind::cylindrical,
+                         constraint_kind::universal, constraint_kind::spherical,
+                         constraint_kind::planar,    constraint_kind::distance};
   for (std::size_t i = 0; i < order.size(); ++i) {
     CHECK(loops.loops[i].kind == order[i]);
+  }
+}
+
+TEST_CASE("kinds of loops by the words of joints") {
+  const std::array words{"fixed",     "revolute",  "prismatic", "cylindrical",
+                         "universal", "spherical", "planar",    "distance"};
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string length = i == 7 ? " length 1" : "";
+    const loop_constraints loops = read(words[i] + (" a 0 0 0 b 0 0 0" + length));
+    CHECK(loops.loops[0].kind == constraint_kind(i));
   }
 }
 
@@ -80,6 +91,8 @@ TEST_CASE("what is wrong with a file of loops, and where") {
   CHECK(fault(" # nothing\n") == " no loops");
   CHECK(fault("# a\nhing a 0 0 0 b 0 0 0")
             .starts_with("2: no kind of loop is \"hing\": there are \"hinge\", "));
+  CHECK(fault("distanc a 0 0 0 b 0 0 0")
+            .starts_with("1: no kind of loop is \"distanc\": there are \"distance\", "));
   CHECK(fault("hinge") == "1: a link is missing");
   CHECK(fault("hinge a 0 0") == "1: z on \"a\" is missing");
   CHECK(fault("hinge a 0 0 b 0 0 0") == "1: z on \"a\" is not a number: 'b'");

@@ -52,16 +52,17 @@ T freudenstein(double a, double b, double c, double d, const T& theta, double si
 }
 
 /// Two cranks about (∓foot, 0), two couplers that meet in a hinge.
-closed_tree five_bar(double foot, double crank, double coupler) {
+closed_chain_mechanism five_bar(double foot, double crank, double coupler) {
   robot_description robot;
   robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
   robot.joints = {turning_joint("left", "ground", at_point(-foot, 0)),
                   turning_joint("left_coupler", "left", at_point(crank, 0)),
                   turning_joint("right", "ground", at_point(foot, 0)),
                   turning_joint("right_coupler", "right", at_point(crank, 0))};
-  return closed_tree(kinematic_tree(robot), {{{loop_kind::hinge,
-                                               {"left_coupler", at_point(coupler, 0)},
-                                               {"right_coupler", at_point(coupler, 0)}}}});
+  return closed_chain_mechanism(kinematic_tree(robot),
+                                {{{constraint_kind::revolute,
+                                   {"left_coupler", at_point(coupler, 0)},
+                                   {"right_coupler", at_point(coupler, 0)}}}});
 }
 
 /// The upper point where circles about the cranks' ends meet.
@@ -81,7 +82,7 @@ std::array<T, 2> meeting_point(double foot, double crank, double coupler, const 
 } // namespace
 
 TEST_CASE("a four-bar by its crank, all the way round, against Freudenstein's equation") {
-  const loop_motion by_crank(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0});
+  const driven_motion by_crank(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0});
   for (double theta = -700 * degree; theta < 800 * degree; theta += 33 * degree) {
     const auto x = derivatives<3>(by_crank, theta);
     const auto expected =
@@ -100,10 +101,11 @@ TEST_CASE("derivatives up to the third against 50 digits") {
   robot.links = {{"ground"}, {"crank"}, {"rocker"}};
   robot.joints = {turning_joint("crank", "ground", {}),
                   turning_joint("rocker", "ground", duet_test::place(.9, .4, 0, .9, .3, .2))};
-  const closed_tree mechanism(
-      kinematic_tree(robot),
-      {{{loop_kind::rod, {"crank", at_point(.3, 0, .1)}, {"rocker", at_point(.6, .1, 0)}, .8}}});
-  const loop_motion motion(mechanism, vector({.4, 1}), {0});
+  const closed_chain_mechanism mechanism(kinematic_tree(robot), {{{constraint_kind::distance,
+                                                                   {"crank", at_point(.3, 0, .1)},
+                                                                   {"rocker", at_point(.6, .1, 0)},
+                                                                   .8}}});
+  const driven_motion motion(mechanism, vector({.4, 1}), {0});
   // Newton's method with 100 digits, for one unknown.
   const auto exact = [&](const real_100& theta) {
     std::vector<real_100> q{theta, real_100(motion(double(theta))[1])};
@@ -125,10 +127,10 @@ TEST_CASE("derivatives up to the third against 50 digits") {
 
 TEST_CASE("a five-bar by both cranks: its point, Jacobian and Hessian against the circles'") {
   const double foot = .3, crank = .5, coupler = .7;
-  const closed_tree mechanism = five_bar(foot, crank, coupler);
+  const closed_chain_mechanism mechanism = five_bar(foot, crank, coupler);
   const VectorXd start = vector({2, -1, 1.2, 1});
   CHECK(mobility(mechanism, mechanism.closed(start)).mobility == 2);
-  const loop_motion motion(mechanism, start, {0, 2});
+  const driven_motion motion(mechanism, start, {0, 2});
   const coupled_tree driven(mechanism.tree(), motion);
   const auto tip = mechanism.tree().link("left_coupler").at_point({coupler, 0, 0});
   const auto by_hand = [&](const auto& u) {
@@ -156,10 +158,11 @@ TEST_CASE("a mechanism of three rods and a sliding drive: nothing depends on uni
     robot.links = {{"ground"}, {"slide"}, {"arm"}};
     robot.joints = {{"push", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}},
                     turning_joint("arm", "ground", at_point(0, .3 * mm))};
-    const closed_tree mechanism(
-        kinematic_tree(robot),
-        {{{loop_kind::rod, {"slide", at_point(0, 0)}, {"arm", at_point(.4 * mm, 0)}, .5 * mm}}});
-    const loop_motion motion(mechanism, vector({.5 * mm, .2}), {0});
+    const closed_chain_mechanism mechanism(kinematic_tree(robot), {{{constraint_kind::distance,
+                                                                     {"slide", at_point(0, 0)},
+                                                                     {"arm", at_point(.4 * mm, 0)},
+                                                                     .5 * mm}}});
+    const driven_motion motion(mechanism, vector({.5 * mm, .2}), {0});
     const auto x = derivatives<2>(motion, .6 * mm);
     // (u − .4 cos α)² + (.3 + .4 sin α)² = .25
     const double alpha = x[0][1];
@@ -176,21 +179,21 @@ TEST_CASE("dead points: where a motion stops, what moves there, and the way thro
   // (b + c)² = a² + d² − 2 a d cos θ: coupler and rocker in a row.
   const double a = .3, b = .25, c = .2, d = .4;
   const double dead = std::acos((a * a + d * d - (b + c) * (b + c)) / (2 * a * d));
-  const closed_tree mechanism = four_bar(a, b, c, d);
-  const loop_motion by_crank(mechanism, vector({.5, 1, 2}), {0});
+  const closed_chain_mechanism mechanism = four_bar(a, b, c, d);
+  const driven_motion by_crank(mechanism, vector({.5, 1, 2}), {0});
   try {
     (void)by_crank(2.);
     FAIL("closes beyond the dead point");
-  } catch (const cannot_close& error) {
+  } catch (const loop_closure_failure& error) {
     CHECK(std::abs(error.parameter()[0] - dead) < 1e-12);
     const std::string text = error.what();
-    CHECK(text.starts_with("duet: loop_motion: cannot close beyond crank = 1.3715"));
+    CHECK(text.starts_with("duet: driven_motion: cannot close beyond crank = 1.3715"));
     CHECK(text.ends_with(" on the way from 0.5 to 2: a dead point, coupler, rocker move on"));
   }
   CHECK(std::abs(by_crank(dead - 1e-9)[0] - (dead - 1e-9)) == 0);
-  CHECK_THROWS_AS((void)by_crank(dead + 1e-9), cannot_close);
+  CHECK_THROWS_AS((void)by_crank(dead + 1e-9), loop_closure_failure);
 
-  const loop_trace_result whole = trace(by_crank);
+  const motion_trace whole = trace(by_crank);
   CHECK(whole.is_closed);
   CHECK(!whole.meets_branches);
   int of_crank = 0, of_rocker = 0;
@@ -213,8 +216,8 @@ TEST_CASE("dead points: where a motion stops, what moves there, and the way thro
   CHECK(of_crank >= 2);
   CHECK(of_rocker >= 2);
   // A crank that goes round has none.
-  const loop_trace_result round =
-      trace(loop_motion(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0}));
+  const motion_trace round =
+      trace(driven_motion(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0}));
   CHECK(round.is_closed);
   for (const dead_point& each : round.dead_points) {
     CHECK(each.coordinate != 0);
@@ -237,7 +240,7 @@ TEST_CASE("of 200 random four-bars each motion ends where its coupler and rocker
     const Vector2d elbow(a * std::cos(from), a * std::sin(from));
     const Vector2d end(d + c * std::cos(psi), c * std::sin(psi));
     const double beta = std::atan2(end[1] - elbow[1], end[0] - elbow[0]);
-    const loop_motion motion(four_bar(a, b, c, d), vector({from, beta - from, psi}), {0});
+    const driven_motion motion(four_bar(a, b, c, d), vector({from, beta - from, psi}), {0});
     // The first crank angle on the way at which the distance of the free ends is b ± c.
     double first = 2;
     for (const double reach : {b + c, std::abs(b - c)}) {
@@ -257,7 +260,7 @@ TEST_CASE("of 200 random four-bars each motion ends where its coupler and rocker
       CHECK(first > 1);
       CHECK(std::abs(std::remainder(q[2] - freudenstein(a, b, c, d, to, side),
                                     2 * std::numbers::pi)) < 1e-10);
-    } catch (const cannot_close& error) {
+    } catch (const loop_closure_failure& error) {
       ++stopped;
       CHECK(first < 1);
       CHECK(std::abs(error.parameter()[0] - (from + first * (to - from))) < 1e-8);
@@ -273,38 +276,39 @@ TEST_CASE("coordinates that are singular, drives that do not drive, and other mi
   robot_description robot;
   robot.links = {{"base"}, {"body"}};
   robot.joints = {{"ball", "base", "body", {joint_kind::spherical}}};
-  const loop_motion turn(
-      closed_tree(kinematic_tree(robot), {{{loop_kind::hinge, {"base", {}}, {"body", {}}}}}),
+  const driven_motion turn(
+      closed_chain_mechanism(kinematic_tree(robot),
+                             {{{constraint_kind::revolute, {"base", {}}, {"body", {}}}}}),
       vector({0, 0, 1}), {2});
   CHECK(gap(turn(6.), vector({0, 0, 6})) < 1e-12);
-  const std::string text = message_of<cannot_close>([&] { (void)turn(7.); });
-  CHECK(text.starts_with("duet: loop_motion: cannot close beyond ball.rz = 6.2831"));
+  const std::string text = message_of<loop_closure_failure>([&] { (void)turn(7.); });
+  CHECK(text.starts_with("duet: driven_motion: cannot close beyond ball.rz = 6.2831"));
   CHECK(text.ends_with(": no step leads on, branches touch or coordinates are singular"));
-  const loop_trace_result whole = trace(turn);
+  const motion_trace whole = trace(turn);
   CHECK(whole.meets_branches);
   CHECK(whole.branch_points.empty());
 
-  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+  const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
   const VectorXd q = mechanism.closed(vector({2, -1, 1.7}), {0});
   CHECK(message_of([&] {
-          loop_motion(mechanism, q, {0, 1});
-        }) == "duet: loop_motion: 2 drives, but the loops leave 1 independent rates");
-  const closed_tree two = five_bar(.3, .5, .7);
+          driven_motion(mechanism, q, {0, 1});
+        }) == "duet: driven_motion: 2 drives, but the loops leave 1 independent rates");
+  const closed_chain_mechanism two = five_bar(.3, .5, .7);
   CHECK(message_of([&] {
-          loop_motion(two, vector({2, -1, 1.2, 1}), {0});
+          driven_motion(two, vector({2, -1, 1.2, 1}), {0});
         }) ==
-        "duet: loop_motion: left does not determine the rates of the other coordinates: a dead "
+        "duet: driven_motion: left does not determine the rates of the other coordinates: a dead "
         "point");
-  CHECK(message_of([&] { loop_motion(mechanism, q, {5}); }) ==
-        "duet: closed_tree: no coordinate 5 of 3");
-  const loop_motion motion(mechanism, q, {0});
+  CHECK(message_of([&] { driven_motion(mechanism, q, {5}); }) ==
+        "duet: closed_chain_mechanism: no coordinate 5 of 3");
+  const driven_motion motion(mechanism, q, {0});
   CHECK(message_of([&] {
           (void)motion(vector({1, 2}));
-        }) == "duet: loop_motion: 1 drives, but 2 numbers are given");
+        }) == "duet: driven_motion: 1 drives, but 2 numbers are given");
   CHECK(message_of([&] { (void)motion(std::nan("")); }) ==
-        "duet: loop_motion: drives are not finite");
+        "duet: driven_motion: drives are not finite");
   CHECK(message_of([&] { (void)trace(motion, 1); }) == "duet: trace: no drive 1 of 1");
-  const loop_motion moved = motion.moved_to(vector({2.5}));
+  const driven_motion moved = motion.warm_started_at(vector({2.5}));
   CHECK(moved.start()[0] == 2.5);
   CHECK(gap(moved(3.), motion(3.)) < 1e-13);
 }

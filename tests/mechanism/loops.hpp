@@ -44,31 +44,32 @@ inline duet::tree_joint turning_joint(const std::string& name, const std::string
 
 /// The crank turns about (0, 0), the rocker about (ground, 0); what is cut is the joint between
 /// coupler and rocker.
-inline duet::closed_tree four_bar(double crank, double coupler, double rocker, double ground,
-                                  duet::loop_kind kind = duet::loop_kind::hinge) {
+inline duet::closed_chain_mechanism
+four_bar(double crank, double coupler, double rocker, double ground,
+         duet::constraint_kind kind = duet::constraint_kind::revolute) {
   duet::robot_description robot;
   robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"rocker"}};
   robot.joints = {turning_joint("crank", "ground", {}),
                   turning_joint("coupler", "crank", at_point(crank, 0)),
                   turning_joint("rocker", "ground", at_point(ground, 0))};
-  return duet::closed_tree(
+  return duet::closed_chain_mechanism(
       duet::kinematic_tree(robot),
       {{{kind, {"coupler", at_point(coupler, 0)}, {"rocker", at_point(rocker, 0)}}}});
 }
 
 /// One loop of turning joints with the link lengths and twists of Denavit and Hartenberg and no
 /// offsets, cut at the last joint.
-inline duet::closed_tree ring(const std::vector<std::array<double, 2>>& links) {
+inline duet::closed_chain_mechanism ring(const std::vector<std::array<double, 2>>& links) {
   std::vector<duet::placement<double>> origins = {{}};
   const auto link = [&](std::size_t i) { return place(links[i][1], 0, 0, links[i][0], 0, 0); };
   for (std::size_t i = 0; i + 2 < links.size(); ++i) {
     origins.push_back(link(i));
   }
   const duet::placement<double> back(duet::conj(link(links.size() - 1).pose()));
-  return duet::closed_tree(duet::kinematic_tree(turning(origins)),
-                           {{{duet::loop_kind::hinge,
-                              {std::to_string(links.size() - 1), link(links.size() - 2)},
-                              {"0", back}}}});
+  return duet::closed_chain_mechanism(duet::kinematic_tree(turning(origins)),
+                                      {{{duet::constraint_kind::revolute,
+                                         {std::to_string(links.size() - 1), link(links.size() - 2)},
+                                         {"0", back}}}});
 }
 
 } // namespace duet_test

@@ -140,7 +140,7 @@ TEST_CASE("the gradient within rounding of a singularity is as steep as beside i
 
 TEST_CASE("as many joints as there turn out to be") {
   const auto panda = robots::panda().table();
-  const serial_chain<-9> chain = panda;
+  const bounded_chain<9> chain = panda;
   for (const auto& theta : duet_test::configurations(panda, 3)) {
     const Eigen::VectorXd x = theta;
     CHECK(manipulability(chain, x) == doctest::Approx(manipulability(panda, theta)).epsilon(1e-10));

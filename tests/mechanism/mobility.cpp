@@ -34,7 +34,7 @@ std::array<double, 2> with_twist(double length, double ratio) {
 } // namespace
 
 TEST_CASE("a planar four-bar has three equations too many") {
-  const closed_tree mechanism = four_bar(.2, .5, .4, .55);
+  const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
   const VectorXd q = mechanism.closed(vector({2, -1, 1.7}), {0});
   const mobility_result m = mobility(mechanism, q);
   CHECK(m.mobility == 1);
@@ -45,7 +45,7 @@ TEST_CASE("a planar four-bar has three equations too many") {
   CHECK(!m.is_singular());
   CHECK(to_text(m) == "mobility 1: counted -2, first order 1 here, 1 nearby");
   CHECK_THROWS_AS((void)mobility(mechanism, vector({2, -1, 1.7})), invalid_input);
-  const closed_tree by_ball = four_bar(.2, .5, .4, .55, loop_kind::ball);
+  const closed_chain_mechanism by_ball = four_bar(.2, .5, .4, .55, constraint_kind::spherical);
   CHECK(mobility(by_ball, q).counted == 0);
   CHECK(mobility(by_ball, q).mobility == 1);
 }
@@ -53,8 +53,8 @@ TEST_CASE("a planar four-bar has three equations too many") {
 TEST_CASE(
     "Bennett's and Goldberg's linkages move, a general ring of four or five joints does not") {
   const auto a = with_twist(.6, .9), b = with_twist(.9, .9), c = with_twist(.45, .9);
-  const closed_tree bennett = ring({a, b, a, b});
-  const auto ways = all_positions(bennett, {0}, vector({.8}), {.starts = 30});
+  const closed_chain_mechanism bennett = ring({a, b, a, b});
+  const auto ways = find_assembly_configurations(bennett, {0}, vector({.8}), {.random_starts = 30});
   REQUIRE(!ways.positions.empty());
   const VectorXd& q = ways.positions[0].coordinates;
   const mobility_result m = mobility(bennett, q);
@@ -62,18 +62,19 @@ TEST_CASE(
   CHECK(m.counted == -2);
   CHECK(m.evidence == mobility_evidence::nearby_positions);
   // tan(θ1/2) tan(θ2/2) = ± sin((β + α)/2) / sin((β − α)/2), the same all the way.
-  const loop_motion by_first(bennett, q, {0});
+  const driven_motion by_first(bennett, q, {0});
   const double constant = std::sin((b[1] + a[1]) / 2) / std::sin((b[1] - a[1]) / 2);
   for (const double theta : {.3, .8, 1.9, 2.8}) {
     const VectorXd x = by_first(theta);
     CHECK(std::abs(std::abs(std::tan(x[0] / 2) * std::tan(x[1] / 2)) - std::abs(constant)) < 1e-12);
   }
 
-  const closed_tree goldberg = ring({{a[0] + c[0], a[1] + c[1]}, b, c, a, b});
-  const auto of_five = all_positions(goldberg, {0}, vector({.8}), {.starts = 60});
+  const closed_chain_mechanism goldberg = ring({{a[0] + c[0], a[1] + c[1]}, b, c, a, b});
+  const auto of_five =
+      find_assembly_configurations(goldberg, {0}, vector({.8}), {.random_starts = 60});
   REQUIRE(!of_five.positions.empty());
   int moving = 0;
-  for (const loop_position& each : of_five.positions) {
+  for (const assembly_configuration& each : of_five.positions) {
     const mobility_result n = mobility(goldberg, each.coordinates);
     CHECK(n.counted == -1);
     moving += n.mobility == 1 ? 1 : 0;
@@ -81,8 +82,9 @@ TEST_CASE(
   CHECK(moving > 0);
 
   // The lengths of Bennett's, another twist: closes nowhere.
-  const closed_tree general = ring({a, b, a, {b[0], b[1] + .1}});
-  CHECK(all_positions(general, {}, VectorXd(), {.starts = 30}).positions.empty());
+  const closed_chain_mechanism general = ring({a, b, a, {b[0], b[1] + .1}});
+  CHECK(find_assembly_configurations(general, {}, VectorXd(), {.random_starts = 30})
+            .positions.empty());
 }
 
 TEST_CASE("a stretched frame has rates, but does not move") {
@@ -91,33 +93,33 @@ TEST_CASE("a stretched frame has rates, but does not move") {
   robot.links = {{"ground"}, {"first"}, {"second"}};
   robot.joints = {turning_joint("first", "ground", {}),
                   turning_joint("second", "first", at_point(.7, 0))};
-  const closed_tree shaky(
+  const closed_chain_mechanism shaky(
       kinematic_tree(robot),
-      {{{loop_kind::hinge, {"second", at_point(.5, 0)}, {"ground", at_point(1.2, 0)}}}});
+      {{{constraint_kind::revolute, {"second", at_point(.5, 0)}, {"ground", at_point(1.2, 0)}}}});
   const mobility_result m = mobility(shaky, vector({0, 0}));
   CHECK(m.mobility == 0);
   CHECK(m.first_order == 1);
   CHECK(m.evidence == mobility_evidence::no_acceleration);
   CHECK(m.is_singular());
-  CHECK_THROWS_WITH_AS(loop_motion(shaky, vector({0, 0}), {0}),
-                       "duet: loop_motion: a rate of first fulfils the equations, but has no "
+  CHECK_THROWS_WITH_AS(driven_motion(shaky, vector({0, 0}), {0}),
+                       "duet: driven_motion: a rate of first fulfils the equations, but has no "
                        "acceleration: it does not move so",
                        invalid_input);
 
   // Pins nearer to each other: rigid to first order.
-  const closed_tree rigid(
+  const closed_chain_mechanism rigid(
       kinematic_tree(robot),
-      {{{loop_kind::hinge, {"second", at_point(.5, 0)}, {"ground", at_point(.9, 0)}}}});
-  const auto ways = all_positions(rigid, {}, VectorXd(), {.starts = 20});
+      {{{constraint_kind::revolute, {"second", at_point(.5, 0)}, {"ground", at_point(.9, 0)}}}});
+  const auto ways = find_assembly_configurations(rigid, {}, VectorXd(), {.random_starts = 20});
   CHECK(ways.positions.size() == 2);
-  for (const loop_position& each : ways.positions) {
+  for (const assembly_configuration& each : ways.positions) {
     CHECK(mobility(rigid, each.coordinates).mobility == 0);
     CHECK(mobility(rigid, each.coordinates).evidence == mobility_evidence::no_rates);
   }
 }
 
 TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carries a shaky frame") {
-  const closed_tree flat = four_bar(.3, .8, .3, .8);
+  const closed_chain_mechanism flat = four_bar(.3, .8, .3, .8);
   const mobility_result m = mobility(flat, vector({0, 0, 0}));
   CHECK(m.mobility == 1);
   CHECK(m.first_order == 2);
@@ -129,10 +131,10 @@ TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carri
   robot.links.insert(robot.links.end(), {{"first"}, {"second"}});
   robot.joints.push_back(turning_joint("first", "coupler", at_point(0, .1)));
   robot.joints.push_back(turning_joint("second", "first", at_point(.3, 0)));
-  const closed_tree both(
+  const closed_chain_mechanism both(
       kinematic_tree(robot),
-      {{{loop_kind::hinge, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
-        {loop_kind::hinge, {"second", at_point(.3, 0)}, {"coupler", at_point(.6, .1)}}}});
+      {{{constraint_kind::revolute, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
+        {constraint_kind::revolute, {"second", at_point(.3, 0)}, {"coupler", at_point(.6, .1)}}}});
   const mobility_result n = mobility(both, vector({1, -1, 1, 0, 0}));
   CHECK(n.mobility == 1);
   CHECK(n.first_order == 2);
@@ -141,21 +143,21 @@ TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carri
 
 TEST_CASE("a tree without loops moves by all coordinates, and nothing moves without coordinates") {
   const kinematic_tree tree(duet_test::turning({{}, at_point(1, 0)}));
-  const closed_tree open(tree, {});
+  const closed_chain_mechanism open(tree, {});
   CHECK(open.equations() == 0);
   CHECK(mobility(open, vector({1, 2})).mobility == 2);
   CHECK(open.independent_coordinates(vector({1, 2})) == std::vector<int>{0, 1});
   CHECK(open.closed(vector({1, 2})) == vector({1, 2}));
-  CHECK(loop_motion(open, vector({1, 2}), {0, 1})(vector({3, 4})) == vector({3, 4}));
-  CHECK_THROWS_AS(loop_motion(open, vector({1, 2}), {0}), invalid_input);
+  CHECK(driven_motion(open, vector({1, 2}), {0, 1})(vector({3, 4})) == vector({3, 4}));
+  CHECK_THROWS_AS(driven_motion(open, vector({1, 2}), {0}), invalid_input);
   robot_description robot;
   robot.links = {{"a"}, {"b"}};
   robot.joints = {{"weld", "a", "b", {joint_kind::fixed, at_point(1, 0)}}};
-  const closed_tree still(kinematic_tree(robot),
-                          {{{loop_kind::ball, {"a", at_point(1, 0)}, {"b", {}}}}});
+  const closed_chain_mechanism still(
+      kinematic_tree(robot), {{{constraint_kind::spherical, {"a", at_point(1, 0)}, {"b", {}}}}});
   CHECK(mobility(still, VectorXd()).mobility == 0);
   CHECK(still.independent_coordinates(VectorXd()).empty());
-  const auto ways = all_positions(still, {}, VectorXd(), {.starts = 3});
+  const auto ways = find_assembly_configurations(still, {}, VectorXd(), {.random_starts = 3});
   CHECK(ways.positions.size() == 1);
 }
 
@@ -164,13 +166,13 @@ TEST_CASE("equations that do not depend on each other are counted") {
   robot_description robot;
   robot.links = {{"base"}, {"plate"}};
   robot.joints = {{"free", "base", "plate", {joint_kind::floating}}};
-  loop_description rods;
+  loop_constraints rods;
   for (int i = 0; i < 3; ++i) {
     const double x = std::cos(2. * i), y = std::sin(2. * i);
     rods.loops.push_back(
-        {loop_kind::rod, {"base", at_point(x, y)}, {"plate", at_point(y, x, .1)}, 1.5});
+        {constraint_kind::distance, {"base", at_point(x, y)}, {"plate", at_point(y, x, .1)}, 1.5});
   }
-  const closed_tree mechanism(kinematic_tree(robot), rods);
+  const closed_chain_mechanism mechanism(kinematic_tree(robot), rods);
   const VectorXd q = mechanism.closed(vector({.1, .2, 1.4, .1, .2, .3}));
   const mobility_result m = mobility(mechanism, q);
   CHECK(m.mobility == 3);

@@ -187,7 +187,7 @@ TEST_CASE("frames on links and points of them") {
 }
 
 TEST_CASE("fixed joints are merged; the number of joints may be known at run time") {
-  using wide_chain = serial_chain<-4>;
+  using wide_chain = bounded_chain<4>;
   std::vector<joint<>> joints(3);
   joints[0].origin.translation = {1, 0, 0};
   joints[1].kind = joint_kind::fixed;
@@ -203,8 +203,8 @@ TEST_CASE("fixed joints are merged; the number of joints may be known at run tim
 
 TEST_CASE("a chain whose number of joints is no more in its type is the same chain") {
   const auto given = robots::baxter_left().table(); // its link frames are not those of its joints
-  const serial_chain<-16> chain = given;
-  static_assert(!std::is_convertible_v<serial_chain<7>, serial_chain<-6>>);
+  const bounded_chain<16> chain = given;
+  static_assert(!std::is_convertible_v<serial_chain<7>, bounded_chain<6>>);
   for (const auto& theta : duet_test::configurations(given, 3)) {
     CHECK(gap_of_poses(chain.pose(theta), given.pose(theta)) == 0);
     CHECK(gap_of_poses(chain.pose(theta, 4), given.pose(theta, 4)) == 0);
@@ -234,7 +234,7 @@ TEST_CASE("what is wrong with a chain is said in one line") {
   CHECK(message([&] { serial_chain chain(joints); }) ==
         "duet: serial_chain<2>: only 1 joints move");
   joints[1] = {};
-  CHECK(message([&] { serial_chain<-1> chain(joints); }) ==
+  CHECK(message([&] { bounded_chain<1> chain(joints); }) ==
         "duet: serial_chain: joint 1: the chain has room for 1");
   joints[1].origin.translation[2] = INFINITY;
   CHECK(message([&] { serial_chain chain(joints); }) ==
@@ -270,7 +270,7 @@ TEST_CASE("a tool and fixed joints whose rotations have few digits move nothing 
 
 TEST_CASE("sines of all joints at once: as one after the other, under derivatives of any kind") {
   const auto arm = duet_test::every_joint();
-  const serial_chain<-9> unsized = arm;
+  const bounded_chain<9> unsized = arm;
   // Joint 3 is beyond the vector sine; all coordinates are the same in both precisions.
   const auto height = [&](const auto& chain, const auto& t, const auto& u) {
     using T = std::decay_t<decltype(t + u)>;

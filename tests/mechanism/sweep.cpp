@@ -50,7 +50,7 @@ std::vector<angles> configurations(std::size_t count) {
 TEST_CASE("a range gives what each configuration gives, on any number of cores") {
   const auto known = robots::panda();
   const auto table = known.table();
-  const serial_chain<-9> unsized = table;
+  const bounded_chain<9> unsized = table;
   for (const std::size_t count : {0U, 1U, 3U, 4U, 5U, 18U}) {
     const auto theta = configurations(count);
     const auto check = [&](const auto& chain, const auto& frame) {

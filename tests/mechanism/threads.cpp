@@ -44,13 +44,14 @@ void check_in_threads(std::size_t count, const F& f) {
 } // namespace
 
 TEST_CASE("one chain, several threads, identical results") {
-  const serial_chain<-16> chain = robots::panda().table();
+  const bounded_chain<16> chain = robots::panda().table();
   const auto all = duet_test::configurations(robots::panda().table(), 60);
   check_in_threads(all.size(), [&](std::size_t i) { return duet_test::everything(chain, all[i]); });
 }
 
 TEST_CASE("one closed loop, several threads, identical results") {
-  const closed_loop slider([](const auto& x, const auto& u) { return x * x + u * u - 1; }, 1.0, 0);
+  const constrained_mechanism slider([](const auto& x, const auto& u) { return x * x + u * u - 1; },
+                                     1.0, 0);
   check_in_threads(60, [&](std::size_t i) { return slider(std::sin(double(i))); });
 }
 

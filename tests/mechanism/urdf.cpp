@@ -174,12 +174,12 @@ TEST_CASE("what URDF has not: attributes are mistakes, elements are listed") {
   says("<link name=\"x\" xmlns:v=\"w\" v:y=\"1\"><visual any=\"1\"/></link>"
        "<gazebo any=\"1\"/><transmission><joint name=\"q\" any=\"1\"/></transmission>",
        "");
-  CHECK(read_urdf_names(path).unknown.empty());
-  CHECK(to_text(read_urdf_names(path)).find("unknown") == std::string::npos);
+  CHECK(read_urdf_summary(path).unknown.empty());
+  CHECK(to_text(read_urdf_summary(path)).find("unknown") == std::string::npos);
   // Elements.
   write(links + first + joint_to_c("<orgin xyz=\"1 0 0\"/>\n<Axis/>") +
         "<v:tool/>\n<link name=\"x\"><contact/></link>");
-  const auto names = read_urdf_names(path);
+  const auto names = read_urdf_summary(path);
   CHECK(to_text(names) == "links:\n  a\n  b\n  c\n  x\njoints:\n  p: prismatic, a -> b\n"
                           "  q: continuous, b -> c\nunknown elements:\n"
                           "  line 5: <orgin> in <joint name=\"q\">\n"
@@ -307,7 +307,7 @@ TEST_CASE("what is no XML") {
   CHECK(says("<?xml version='1.0' encoding='ISO-8859-1'?><robot><link name='a'/><link name='\xe4'/>"
              "</robot>")
             .empty());
-  CHECK(read_urdf_names(path).links[1] == "\xc3\xa4");
+  CHECK(read_urdf_summary(path).links[1] == "\xc3\xa4");
   CHECK(says("<?xml version='1.0' encoding='none'?><robot/>") == file + "1: unknown encoding");
   CHECK(says(std::string((1U << 24U) + 1, ' ')) == "duet: " + path + ": has more than 16 MB");
   std::filesystem::remove(path);
@@ -355,7 +355,7 @@ TEST_CASE("links by name and frame; the Jacobian by duals of joints of run-time 
 
 TEST_CASE("names of links and joints, and those that are like one that is not there") {
   write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
-  const auto names = duet::read_urdf_names(path);
+  const auto names = duet::read_urdf_summary(path);
   CHECK(names.links == std::vector<std::string>{"a", "b", "c"});
   REQUIRE(names.joints.size() == 2);
   CHECK(names.joints[0].parent == "a");

@@ -142,7 +142,7 @@ TEST_CASE("mistakes, with file, line and element") {
   says(weighs("<mass value=\"1\"/><origin xyz=\"1 2\"/>"),
        a + "<origin>: xyz=\"1 2\" is not three numbers");
   says(weighs("<mass value=\"1\"/><colour/>"), "");
-  CHECK(to_text(read_urdf_names(path))
+  CHECK(to_text(read_urdf_summary(path))
             .ends_with("unknown elements:\n  line 4: <colour> in <link name=\"a\"> <inertial>\n"));
   std::filesystem::remove(path);
 }

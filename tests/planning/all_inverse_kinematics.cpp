@@ -26,7 +26,7 @@ namespace {
 using namespace duet;
 using std::numbers::pi;
 /// Of any number of joints, so that all is compiled once.
-using chain = serial_chain<-16>;
+using chain = bounded_chain<16>;
 using vector = detail::joint_vector<double, -16>;
 using result = all_inverse_kinematics_result<-16>;
 
@@ -35,7 +35,7 @@ struct arm_kind {
   bool parallel_2_3 = false, meet_1_2 = false, meet_4_5 = false, right_angles = false;
   std::vector<std::size_t> sliding = {};
   int meeting = -1, parallel = -1; ///< the first of three axes
-  branch_method method = branch_method::elimination;
+  solution_method method = solution_method::elimination;
   int most = 16;       ///< solutions
   bool certain = true; ///< is their number?
 };
@@ -176,7 +176,7 @@ void check_kind(const arm_kind& kind, int count) {
     CHECK(found.solutions.size() % 2 == 0);
     const int all = int(found.solutions.size()) + found.complex_solutions;
     CHECK(all <= kind.most);
-    if (name == "general" || kind.method != branch_method::elimination) {
+    if (name == "general" || kind.method != solution_method::elimination) {
       CHECK(all == kind.most);
     }
     check_solutions(arm, found, goal);
@@ -201,9 +201,11 @@ TEST_CASE("the coordinates that the goal is made of are found") {
     for (std::size_t j = 0; j < i; ++j) {
       CAPTURE(i);
       CAPTURE(j);
-      check_kind(
-          {.name = "two slide", .sliding = {i, j}, .method = branch_method::two_slides, .most = 8},
-          6);
+      check_kind({.name = "two slide",
+                  .sliding = {i, j},
+                  .method = solution_method::two_prismatic,
+                  .most = 8},
+                 6);
     }
   }
 }
@@ -213,12 +215,12 @@ TEST_CASE("closed forms") {
     CAPTURE(first);
     check_kind({.name = "three axes meet",
                 .meeting = first,
-                .method = branch_method::spherical_wrist,
+                .method = solution_method::spherical_wrist,
                 .most = 8},
                20);
     check_kind({.name = "three axes are parallel",
                 .parallel = first,
-                .method = branch_method::parallel_axes,
+                .method = solution_method::parallel_axes,
                 .most = 8},
                20);
   }
@@ -227,14 +229,14 @@ TEST_CASE("closed forms") {
               .meet_1_2 = true,
               .right_angles = true,
               .meeting = 3,
-              .method = branch_method::spherical_wrist,
+              .method = solution_method::spherical_wrist,
               .most = 8},
              20);
   for (const auto& sliding : {std::vector<std::size_t>{0, 1, 2}, std::vector<std::size_t>{0, 2, 4},
                               std::vector<std::size_t>{2, 3, 5}}) {
     check_kind({.name = "three slide",
                 .sliding = sliding,
-                .method = branch_method::three_slides,
+                .method = solution_method::three_prismatic,
                 .most = 2},
                10);
   }
@@ -279,9 +281,9 @@ TEST_CASE("slides thousands of times as long as the arm") {
         for (const std::size_t i : sliding) {
           longest = std::max(longest, std::abs(s.joints[Eigen::Index(i)]));
         }
-        const auto left = deviation_between(arm.pose(s.joints), goal);
+        const auto left = pose_error_between(arm.pose(s.joints), goal);
         CHECK(s.residual ==
-              doctest::Approx(std::max(left.length / longest, left.angle)).epsilon(1e-9));
+              doctest::Approx(std::max(left.translation / longest, left.rotation)).epsilon(1e-9));
         CHECK(s.residual <= 3e-13);
       }
     }
@@ -329,7 +331,7 @@ TEST_CASE("zeros that crowd in one order") {
                           {a, -d, 0}};
       theta[Eigen::Index(i)] = each.theta[i];
     }
-    const chain arm = serial_chain<-16>(joints);
+    const chain arm = bounded_chain<16>(joints);
     const auto goal = arm.pose(theta);
     const result found = all_inverse_kinematics(arm, goal);
     CHECK(found.is_complete);
@@ -518,9 +520,9 @@ TEST_CASE("arms in use") {
     CHECK(holds(arm, found, theta));
     check_solutions(arm, found, goal);
   }
-  CHECK(all_inverse_kinematics(ur5e, ur5e.pose(theta)).method == branch_method::parallel_axes);
+  CHECK(all_inverse_kinematics(ur5e, ur5e.pose(theta)).method == solution_method::parallel_axes);
   CHECK(all_inverse_kinematics(puma(), puma().pose(theta)).method ==
-        branch_method::spherical_wrist);
+        solution_method::spherical_wrist);
 }
 
 /// The outer joints of a wrist turn against each other with the tip in place.

@@ -166,7 +166,7 @@ wide_joints exact_solution(const chain& arm, const dual_quaternion<real_50>& goa
 
 /// \param joint  whose coordinate is how far θ is from a singularity
 /// \param certain  as near as that it has to be certain that there are no others
-void check_beside(const chain& arm, joints theta, int joint, branch_method method,
+void check_beside(const chain& arm, joints theta, int joint, solution_method method,
                   double certain = 1e-12, std::span<const double> how_far = distances) {
   const double singular = theta[joint];
   for (const double side : {1., -1.}) {
@@ -231,7 +231,7 @@ TEST_CASE("beside the singularity of a wrist") {
   for (int k = 0; k < 5; ++k) {
     CAPTURE(k);
     const chain arm = with_wrist(random, k < 3 ? pi / 2 : random.uniform(.5, 1.2));
-    check_beside(arm, configuration(arm, random, 4), 4, branch_method::spherical_wrist);
+    check_beside(arm, configuration(arm, random, 4), 4, solution_method::spherical_wrist);
   }
 }
 
@@ -240,14 +240,14 @@ TEST_CASE("beside the singularity of a wrist after three parallel axes") {
   for (int k = 0; k < 5; ++k) {
     CAPTURE(k);
     const chain arm = with_parallel_axes(random, k >= 3);
-    check_beside(arm, configuration(arm, random, 4), 4, branch_method::parallel_axes);
+    check_beside(arm, configuration(arm, random, 4), 4, solution_method::parallel_axes);
   }
 }
 
 void check_beside_fold(const chain& arm, int elbow, double fold, duet_test::random_source& random) {
   const std::span<const double> down_to_1e_12 = std::span(distances).first(12);
   joints theta = configuration(arm, random, elbow, fold);
-  check_beside(arm, theta, elbow, branch_method::spherical_wrist, 1e-8, down_to_1e_12);
+  check_beside(arm, theta, elbow, solution_method::spherical_wrist, 1e-8, down_to_1e_12);
   for (const double away : {1e-14, 1e-16, 0.}) { // the joints move with the tip in place
     CAPTURE(away);
     theta[elbow] = fold + away;

@@ -59,8 +59,8 @@ std::vector<point> inside_cylinder(const collision_cylinder& c, int count, bool 
 }
 
 /// Of an octahedron with its corners at these distances from the origin, faces outwards.
-mesh_surface octahedron(double a, double b, double c) {
-  mesh_surface result;
+triangle_mesh octahedron(double a, double b, double c) {
+  triangle_mesh result;
   for (int k = 0; k < 8; ++k) {
     const double x = k % 2 == 0 ? a : -a, y = k / 2 % 2 == 0 ? b : -b, z = k / 4 == 0 ? c : -c;
     const bool is_turned = x * y * z < 0;
@@ -77,7 +77,7 @@ TEST_CASE("cylinders are inside, and no capsule along their axis is smaller") {
   for (const double r : {1e-3, .1, .5, 1., 3.}) {
     for (const double length : {0., 1e-6, .3, 1., 1.1, 1.2, 4., 1000.}) {
       const collision_cylinder cylinder{r, length};
-      const capsule<> c = enclosing_capsule(cylinder);
+      const capsule<> c = bounding_capsule(cylinder);
       check_touches(c, inside_cylinder(cylinder, 50, true), r + length);
       for (const point& x : inside_cylinder(cylinder, 2500, false)) {
         CHECK(outside(c, x) < 1e-13 * (r + length));
@@ -100,9 +100,9 @@ TEST_CASE("boxes are inside, along the edge for which it is least") {
   duet_test::random_source random(2);
   for (int k = 0; k < 8; ++k) {
     const collision_box b{
-        {random.magnitude(.1, 10), random.magnitude(.1, 10), random.magnitude(.1, 10)}};
+        {random.log_uniform(.1, 10), random.log_uniform(.1, 10), random.log_uniform(.1, 10)}};
     const double scale = b.size[0] + b.size[1] + b.size[2];
-    const capsule<> c = enclosing_capsule(b);
+    const capsule<> c = bounding_capsule(b);
     std::vector<point> corners;
     for (int i = 0; i < 8; ++i) {
       corners.push_back(corner(b, i));
@@ -113,19 +113,19 @@ TEST_CASE("boxes are inside, along the edge for which it is least") {
                         b.size[2] * random.uniform(-.5, .5)}) < 1e-13 * scale);
     }
     // What is sought in all directions is not smaller, by more than rounding and its own accuracy.
-    const capsule<> sought = enclosing_capsule(corners);
+    const capsule<> sought = bounding_capsule(corners);
     check_touches(sought, corners, scale);
     CHECK(volume_of(sought) > volume_of(c) * (1 - 1e-3));
     CHECK(volume_of(sought) < volume_of(c) * 1.01);
   }
-  CHECK(enclosing_capsule(collision_box{{0, 0, 0}}).radius == 0);
+  CHECK(bounding_capsule(collision_box{{0, 0, 0}}).radius == 0);
 }
 
 TEST_CASE("spheres and capsules are themselves") {
-  const capsule<> ball = enclosing_capsule(collision_sphere{.3});
+  const capsule<> ball = bounding_capsule(collision_sphere{.3});
   CHECK(ball.from == ball.to);
   CHECK(ball.radius == .3);
-  const capsule<> c = enclosing_capsule(collision_capsule{.2, 1});
+  const capsule<> c = bounding_capsule(collision_capsule{.2, 1});
   CHECK(c.from == point(0, 0, -.5));
   CHECK(c.to == point(0, 0, .5));
   CHECK(c.radius == .2);
@@ -141,7 +141,7 @@ TEST_CASE("points are inside; what is a capsule is found again") {
       return point(random.uniform(-size, size), random.uniform(-size, size),
                    random.uniform(-size, size));
     };
-    const double unit = random.magnitude(1e-6, 1e3);
+    const double unit = random.log_uniform(1e-6, 1e3);
     const point from = unit * at(3), to = from + unit * at(k % 4);
     const double radius = unit * random.uniform(.1, 1);
     std::vector<point> points;
@@ -150,7 +150,7 @@ TEST_CASE("points are inside; what is a capsule is found again") {
       const double t = random.uniform(0, 1);
       points.push_back((1 - t) * from + t * to + radius * point(d[0], d[1], d[2]));
     }
-    const capsule<> c = enclosing_capsule(points);
+    const capsule<> c = bounding_capsule(points);
     check_touches(c, points, unit);
     CHECK(volume_of(c) < 1.02 * volume_of(capsule<>(from, to, radius)));
     CHECK(volume_of(c) > .8 * volume_of(capsule<>(from, to, radius)));
@@ -159,19 +159,19 @@ TEST_CASE("points are inside; what is a capsule is found again") {
 
 TEST_CASE("few points, in line, in a plane, one again and again, none") {
   const point x(1, 2, 3), y(-1, 0, 2);
-  CHECK(enclosing_capsule(std::vector{x}).from == x);
-  CHECK(enclosing_capsule(std::vector{x, x, x}).radius == 0);
-  const auto line = enclosing_capsule(std::vector<point>{x, y, (x + y) / 2});
+  CHECK(bounding_capsule(std::vector{x}).from == x);
+  CHECK(bounding_capsule(std::vector{x, x, x}).radius == 0);
+  const auto line = bounding_capsule(std::vector<point>{x, y, (x + y) / 2});
   CHECK(line.radius < 1e-3);
   CHECK(outside(line, x) < 1e-15);
   CHECK(outside(line, y) < 1e-15);
-  const auto square = enclosing_capsule(
-      std::vector<point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5, .5, 0}});
-  CHECK(volume_of(square) < 1.001 * volume_of(enclosing_capsule(collision_box{{1, 1, 0}})));
-  CHECK_THROWS_WITH_AS((void)enclosing_capsule(std::vector<point>{}),
-                       "duet: enclosing_capsule: no points", invalid_input);
-  CHECK_THROWS_WITH_AS((void)enclosing_capsule(std::vector<point>{x, point(0, NAN, 0)}),
-                       "duet: enclosing_capsule: point 1 is not finite", invalid_input);
+  const auto square =
+      bounding_capsule(std::vector<point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5, .5, 0}});
+  CHECK(volume_of(square) < 1.001 * volume_of(bounding_capsule(collision_box{{1, 1, 0}})));
+  CHECK_THROWS_WITH_AS((void)bounding_capsule(std::vector<point>{}),
+                       "duet: bounding_capsule: no points", invalid_input);
+  CHECK_THROWS_WITH_AS((void)bounding_capsule(std::vector<point>{x, point(0, NAN, 0)}),
+                       "duet: bounding_capsule: point 1 is not finite", invalid_input);
 }
 
 TEST_CASE("volumes of surfaces: closed, turned inside out, open") {
@@ -202,12 +202,13 @@ TEST_CASE("the links of a tree and a chain: each shape where it stands") {
   robot.links[3].collision = {{placed, collision_capsule{.05, .3}}};
   const kinematic_tree tree(robot);
   const auto chain = tree.chain("base", "hand");
-  const fitted_bodies of_tree = capsules_of(tree, "."), of_chain = capsules_of(chain, ".");
+  const bounding_capsules_result of_tree = bounding_capsules(tree, "."),
+                                 of_chain = bounding_capsules(chain, ".");
   REQUIRE(of_tree.bodies.size() == 5);
   REQUIRE(of_chain.bodies.size() == 5);
   const std::array<double, 2> theta = {.3, -.8};
   for (std::size_t i = 0; i < 5; ++i) {
-    const link_body &a = of_tree.bodies[i], &b = of_chain.bodies[i];
+    const collision_body &a = of_tree.bodies[i], &b = of_chain.bodies[i];
     CHECK(a.name == b.name);
     CHECK(of_tree.volume_ratios[i] == of_chain.volume_ratios[i]);
     const auto x = transformed(tree.pose(theta, a.link), a.shape);
@@ -234,8 +235,8 @@ TEST_CASE("the links of a tree and a chain: each shape where it stands") {
   CHECK(of_tree.volume_ratios[3] ==
         doctest::Approx(volume_of(meshed.shape) / (4. / 3 * .006)).epsilon(1e-12));
   // Bodies of links that are fixed to each other, or beside each other, are no pairs.
-  CHECK(pairs_apart(tree, of_tree.bodies).size() == 2); // hand and base
-  CHECK(pairs_apart(chain, of_chain.bodies).size() == 2);
+  CHECK(self_collision_pairs(tree, of_tree.bodies).size() == 2); // hand and base
+  CHECK(self_collision_pairs(chain, of_chain.bodies).size() == 2);
 
   // COLLADA, in centimetres, twice as large by the description.
   std::ofstream(folder + ".dae")
@@ -253,12 +254,13 @@ TEST_CASE("the links of a tree and a chain: each shape where it stands") {
          "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#w\"/></scene>"
          "</COLLADA>";
   robot.links[3].collision = {{{}, collision_mesh{"package://" + folder + ".dae", {2, 2, 2}}}};
-  const auto triangle = capsules_of(kinematic_tree(robot), ".").bodies.back().shape;
+  const auto triangle = bounding_capsules(kinematic_tree(robot), ".").bodies.back().shape;
   check_touches(triangle, std::vector<point>{{0, 0, 0}, {.6, 0, 0}, {0, .8, 0}}, 1);
 
   robot.links[3].collision = {{{}, collision_mesh{"package://nowhere/hand.stl"}}};
-  CHECK(duet_test::message_of<file_error>([&] { (void)capsules_of(kinematic_tree(robot), "."); }) ==
-        "duet: ./nowhere/hand.stl: cannot be read");
+  CHECK(duet_test::message_of<file_error>([&] {
+          (void)bounding_capsules(kinematic_tree(robot), ".");
+        }) == "duet: ./nowhere/hand.stl: cannot be read");
 }
 
 } // namespace test_planning_capsules_of

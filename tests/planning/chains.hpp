@@ -12,7 +12,7 @@
 
 namespace duet_test {
 
-using any_chain = duet::serial_chain<-16>;
+using any_chain = duet::bounded_chain<16>;
 using any_joints = duet::detail::joint_vector<double, -16>;
 
 /// Uniform within the limits and a turn.

@@ -28,16 +28,16 @@ using std::numbers::pi;
 
 /// Is it a plan along all of the path, from a start within limits?
 template <class Path>
-bool is_whole(const chain& arm, const start_choice<-16>& found, const Path& path, double first,
-              double last) {
+bool is_whole(const chain& arm, const start_search_result<-16>& found, const Path& path,
+              double first, double last) {
   const auto& plan = found.plan;
   if (found.reason != stop_reason::reached || found.unsolved || plan.tau.front() != first ||
       plan.tau.back() != last) {
     return false;
   }
   for (std::size_t k = 0; k < plan.joints.size(); ++k) {
-    const auto left = deviation_between(arm.pose(plan.joints[k]), path(plan.tau[k]));
-    if (left.length > 1e-5 || left.angle > 1e-5) {
+    const auto left = pose_error_between(arm.pose(plan.joints[k]), path(plan.tau[k]));
+    if (left.translation > 1e-5 || left.rotation > 1e-5) {
       return false;
     }
     for (int i = 0; i < arm.size(); ++i) {
@@ -64,7 +64,7 @@ TEST_CASE("paths made of joint paths: a start is found from which each can be fo
     for (int k = 0; k < count; ++k) {
       const vector from = configuration(arm, random), to = configuration(arm, random);
       const auto path = [&](double u) { return arm.pose((from + .3 * u * (to - from)).eval()); };
-      const auto found = choose_start(arm, path, 0, 1, {.resolution = .5});
+      const auto found = find_start_configuration(arm, path, 0, 1, {.resolution = .5});
       solved += is_whole(arm, found, path, 0, 1);
     }
     CHECK(solved == count);
@@ -80,7 +80,7 @@ TEST_CASE("the one start of eight, and the one turn of the joints") {
     x[5] += 11 * u;
     return arm.pose(x);
   };
-  const auto found = choose_start(arm, path, 0, 1);
+  const auto found = find_start_configuration(arm, path, 0, 1);
   CHECK(is_whole(arm, found, path, 0, 1));
   CHECK(found.plan.joints.front()[5] < -4);
   // Nowhere near are two turns and a half more.
@@ -89,7 +89,7 @@ TEST_CASE("the one start of eight, and the one turn of the joints") {
     x[5] += 14 * u;
     return arm.pose(x);
   };
-  const auto stuck = choose_start(arm, more, 0, 1);
+  const auto stuck = find_start_configuration(arm, more, 0, 1);
   CHECK(stuck.reason == stop_reason::joint_limit);
   CHECK(!stuck.unsolved); // each pose has solutions, the path has none
   CHECK(stuck.plan.tau.back() > .8);
@@ -104,7 +104,8 @@ TEST_CASE("the objective says which start is tried first") {
   const auto all = all_inverse_kinematics(arm, path(0));
   REQUIRE(all.solutions.size() == 8);
   for (const auto& branch : all.solutions) {
-    const auto found = choose_start(arm, path, 0, 1, {}, preferred_posture{branch.joints});
+    const auto found =
+        find_start_configuration(arm, path, 0, 1, {}, preferred_posture{branch.joints});
     CHECK(found.reason == stop_reason::reached);
     CHECK(found.starts == 1);
     CHECK((found.plan.joints.front() - branch.joints).norm() < 1e-9);
@@ -126,14 +127,14 @@ TEST_CASE("no start is chosen where the objective is nan, and that it is so at a
       }
       return sqrt(sum);
     };
-    const auto found = choose_start(arm, path, 0, 1, {}, only);
+    const auto found = find_start_configuration(arm, path, 0, 1, {}, only);
     CHECK((found.plan.joints.front() - branch.joints).norm() < 1e-9);
   }
   const auto nowhere = [](const auto& x) { return 0 * x[0] + std::nan(""); };
-  CHECK(
-      duet_test::message_of<invalid_input>([&] {
-        static_cast<void>(choose_start(arm, path, 0, 1, {}, nowhere));
-      }).starts_with("duet: choose_start: the objective is nan at all starts, as at the joints ("));
+  CHECK(duet_test::message_of<invalid_input>(
+            [&] { static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, nowhere)); })
+            .starts_with("duet: find_start_configuration: the objective is nan at all starts, as "
+                         "at the joints ("));
 }
 
 TEST_CASE("the first pose without a solution, and why") {
@@ -143,7 +144,7 @@ TEST_CASE("the first pose without a solution, and why") {
   const auto out = [&](double u) {
     return pose(quaternion<double>(1), vector3<double>(2 * u, 0, 0)) * start;
   };
-  const auto far = choose_start(arm, out, 0, 1);
+  const auto far = find_start_configuration(arm, out, 0, 1);
   REQUIRE(far.unsolved);
   CHECK(far.is_certain);
   CHECK((far.reason == stop_reason::out_of_reach || far.reason == stop_reason::no_solution));
@@ -152,7 +153,7 @@ TEST_CASE("the first pose without a solution, and why") {
   CHECK(!all_inverse_kinematics(arm, out(*far.unsolved - 2e-6)).solutions.empty());
   CHECK(far.plan.tau.back() > .9 * *far.unsolved);
   // From where there is none at all.
-  const auto none = choose_start(arm, out, .9, 1);
+  const auto none = find_start_configuration(arm, out, .9, 1);
   REQUIRE(none.unsolved);
   CHECK(*none.unsolved == .9);
   CHECK(none.reason == stop_reason::out_of_reach);
@@ -166,7 +167,7 @@ TEST_CASE("the first pose without a solution, and why") {
   const auto turning = [&](double u) {
     return pose(exp(vector3<double>(0, 0, u / 2)), vector3<double>(0, 0, 0)) * start;
   };
-  const auto bounded = choose_start(limited, turning, 0, 1);
+  const auto bounded = find_start_configuration(limited, turning, 0, 1);
   REQUIRE(bounded.unsolved);
   CHECK(bounded.reason == stop_reason::joint_limit);
   CHECK(bounded.is_certain);
@@ -181,7 +182,7 @@ TEST_CASE("the first pose without a solution, and why") {
   const auto down = [&](double u) {
     return pose(quaternion<double>(1), vector3<double>(0, 0, -.35 * u)) * start;
   };
-  const auto blocked = choose_start(arm, down, 0, 1, {}, no_objective{}, around);
+  const auto blocked = find_start_configuration(arm, down, 0, 1, {}, no_objective{}, around);
   REQUIRE(blocked.unsolved);
   CHECK(blocked.reason == stop_reason::obstacle);
   CHECK(*blocked.unsolved > .3);
@@ -201,7 +202,7 @@ TEST_CASE("along a spline of poses, over all of its domain") {
     poses.push_back(arm.pose(x));
   }
   const auto curve = interpolate<rotation_vector_spline<dual<double, 1, screw_tag>>>(u, poses);
-  const auto found = choose_start(arm, curve);
+  const auto found = find_start_configuration(arm, curve);
   CHECK(is_whole(arm, found, curve, 2, 6));
   // Every knot is a waypoint.
   for (const double each : u) {
@@ -209,7 +210,7 @@ TEST_CASE("along a spline of poses, over all of its domain") {
   }
   // The objective says which start, as of other paths.
   for (const auto& branch : all_inverse_kinematics(arm, curve(2)).solutions) {
-    const auto wanted = choose_start(arm, curve, {}, preferred_posture{branch.joints});
+    const auto wanted = find_start_configuration(arm, curve, {}, preferred_posture{branch.joints});
     CHECK((wanted.reason != stop_reason::reached || wanted.starts > 1 ||
            (wanted.plan.joints.front() - branch.joints).norm() < 1e-9));
   }
@@ -245,14 +246,16 @@ TEST_CASE("links that are kept apart, in single solutions and along paths") {
     return pose(quaternion<double>(1), vector3<double>(0, 0, .02 * u)) * goal;
   };
   const preferred_posture wish{too_near};
-  CHECK((choose_start(arm, path, 0, 1, {}, wish).plan.joints.front() - too_near).norm() < 1e-9);
-  const auto found = choose_start(arm, path, 0, 1, {}, wish, around);
+  CHECK(
+      (find_start_configuration(arm, path, 0, 1, {}, wish).plan.joints.front() - too_near).norm() <
+      1e-9);
+  const auto found = find_start_configuration(arm, path, 0, 1, {}, wish, around);
   REQUIRE(is_whole(arm, found, path, 0, 1));
   CHECK(found.plan.smallest_clearance >= around.margin - 1e-6);
   // Nothing is far enough apart.
   around.margin = *most + .3;
-  around.horizon = 1;
-  const auto none = choose_start(arm, path, 0, 1, {}, wish, around);
+  around.influence_distance_offset = 1;
+  const auto none = find_start_configuration(arm, path, 0, 1, {}, wish, around);
   CHECK(none.reason == stop_reason::obstacle);
   REQUIRE(none.unsolved);
   CHECK(*none.unsolved == 0);
@@ -264,7 +267,8 @@ TEST_CASE("seven joints without a solution, and with one of few starts") {
   const auto path = [&](double u) {
     return pose(quaternion<double>(1), vector3<double>(0, 0, u)) * arm.pose(theta);
   };
-  const auto found = choose_start(arm, path, 0, 1, {.starts = 4, .resolution = .5, .sampling = .1});
+  const auto found = find_start_configuration(arm, path, 0, 1,
+                                              {.max_starts = 4, .resolution = .5, .sampling = .1});
   REQUIRE(found.unsolved);
   CHECK((found.reason == stop_reason::out_of_reach || found.reason == stop_reason::no_solution));
   CHECK(found.plan.tau.back() <= *found.unsolved + 1e-5);
@@ -275,15 +279,18 @@ TEST_CASE("what is refused") {
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto path = [&](double) { return arm.pose(theta); };
-  CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 1, 1)),
-                       "duet: choose_start: the path's parameter goes from 1 to 1", invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 0, 1, {.starts = 0})),
-                       "duet: choose_start: starts is 0, not a number above 0", invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 0, 1, {.sampling = 2})),
-                       "duet: choose_start: sampling is 2, not within (0, 1]", invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(find_start_configuration(arm, path, 1, 1)),
+                       "duet: find_start_configuration: the path's parameter goes from 1 to 1",
+                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(find_start_configuration(arm, path, 0, 1, {.max_starts = 0})),
+      "duet: find_start_configuration: starts is 0, not a number above 0", invalid_input);
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(find_start_configuration(arm, path, 0, 1, {.sampling = 2})),
+      "duet: find_start_configuration: sampling is 2, not within (0, 1]", invalid_input);
   const preferred_posture few{vector(vector::Zero(5))};
   const char* const what = "duet: preferred_posture: 5 coordinates for 6 joints";
-  CHECK_THROWS_WITH_AS(static_cast<void>(choose_start(arm, path, 0, 1, {}, few)), what,
+  CHECK_THROWS_WITH_AS(static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, few)), what,
                        invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(follow_path(arm, theta, path, 0, 1, {}, few)), what,
                        invalid_input);

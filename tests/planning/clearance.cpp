@@ -99,7 +99,7 @@ TEST_CASE("where a coordinate is nan no distance is told, whichever obstacle com
   const auto arm = robots::panda().table();
   duet_test::coordinates<7> theta = duet_test::coordinates<7>::Zero();
   theta[6] = std::nan(""); // only link 7 is nowhere
-  const link_body upper{3, sphere<>{{0, 0, 0}, .1}}, hand{7, sphere<>{{0, 0, .1}, .1}};
+  const collision_body upper{3, sphere<>{{0, 0, 0}, .1}}, hand{7, sphere<>{{0, 0, .1}, .1}};
   const std::vector<obstacle> obstacles = {
       sphere<>{{1, 0, 0}, .1}, capsule<>({1, 0, 0}, {1, 1, 0}, .1), half_space<>{{0, 0, 1}, -1},
       box<>{pose(quaternion<double>(1), vector3<double>(1, 0, 0)), {.1, .1, .1}}};

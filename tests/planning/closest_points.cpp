@@ -39,14 +39,14 @@ double reference(const half_space<>& h, const vector& x) {
   return (x - h.offset * h.normal).dot(h.normal);
 }
 double reference(const box<>& b, const vector& x) {
-  const Eigen::Matrix3d r = rotation_matrix(rotation(b.placed));
-  const vector local = r.transpose() * (x - translation(b.placed));
-  const vector inside = local.cwiseMin(b.half_sizes).cwiseMax(-b.half_sizes);
+  const Eigen::Matrix3d r = rotation_matrix(rotation(b.pose));
+  const vector local = r.transpose() * (x - translation(b.pose));
+  const vector inside = local.cwiseMin(b.half_extents).cwiseMax(-b.half_extents);
   if (inside != local) {
     return (local - inside).norm();
   }
   // To the planes of the six faces.
-  return -std::min((b.half_sizes - local).minCoeff(), (b.half_sizes + local).minCoeff());
+  return -std::min((b.half_extents - local).minCoeff(), (b.half_extents + local).minCoeff());
 }
 
 double reference(const capsule<>& c, const vector& x) {
@@ -141,7 +141,7 @@ void check_with_50_digits(const capsule<>& a, const capsule<>& b) {
 TEST_CASE("capsules and obstacles, apart, touching and overlapping, by search") {
   duet_test::random_source random(1);
   for (int k = 0; k < 150; ++k) {
-    const double length = k % 3 == 0 ? 3 : random.magnitude(1e-9, 1);
+    const double length = k % 3 == 0 ? 3 : random.log_uniform(1e-9, 1);
     const vector from = point(random, 1.5);
     const capsule<> c(from, vector(from + point(random, length)), k % 2 == 0 ? 0 : .2);
     for_each_obstacle(random, [&](const auto& obstacle) { check(c, obstacle); });
@@ -186,7 +186,7 @@ TEST_CASE("axes along edges, through corners, in faces, and of no length") {
 TEST_CASE("capsules beside, across, along and in each other, at 50 digits") {
   duet_test::random_source random(5);
   for (int k = 0; k < 12; ++k) {
-    const double length = k % 2 == 0 ? 1 : random.magnitude(1e-9, 1);
+    const double length = k % 2 == 0 ? 1 : random.log_uniform(1e-9, 1);
     const vector from = point(random, 1), to = from + point(random, length);
     check_with_50_digits(capsule<>(from, to, .1),
                          capsule<>(point(random, 1), point(random, 1), .2));
@@ -255,11 +255,10 @@ TEST_CASE("50 digits, and the rounding of double") {
     const vector from = point(random, 1.2);
     const capsule<> c(from, vector(from + point(random, 2)), .1);
     for_each_obstacle(random, [&](auto obstacle) {
-      if constexpr (requires { obstacle.placed; }) {
+      if constexpr (requires { obstacle.pose; }) {
         // The unit of double is none of 50 digits.
-        const dual_quaternion<real_50> exact =
-            normalized(dual_quaternion<real_50>(obstacle.placed));
-        const box<real_50> b{exact, obstacle.half_sizes.template cast<real_50>()};
+        const dual_quaternion<real_50> exact = normalized(dual_quaternion<real_50>(obstacle.pose));
+        const box<real_50> b{exact, obstacle.half_extents.template cast<real_50>()};
         const capsule<real_50> d(c.from.cast<real_50>(), c.to.cast<real_50>(), c.radius);
         const auto p = closest_points(d, b);
         CHECK(abs(real_50(closest_points(c, obstacle).distance - p.distance)) < 2e-15);

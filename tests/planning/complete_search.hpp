@@ -64,8 +64,9 @@ public:
   /// The configuration next to one that is nearly at u, where there is one within limits.
   [[nodiscard]] std::optional<joints> exact(double u, const joints& x) const {
     const joints y = at(u, x);
-    const auto left = duet::deviation_between(arm_.pose(y), path_(u));
-    return std::max(left.length, left.angle) < 1e-12 && (y - x).norm() < .01 && is_within_limits(y)
+    const auto left = duet::pose_error_between(arm_.pose(y), path_(u));
+    return std::max(left.translation, left.rotation) < 1e-12 && (y - x).norm() < .01 &&
+                   is_within_limits(y)
                ? std::optional(y)
                : std::nullopt;
   }
@@ -112,8 +113,8 @@ private:
       }
     }
     const joints nearby = at(u, x);
-    const auto left = duet::deviation_between(arm_.pose(nearby), path_(u));
-    if (std::max(left.length, left.angle) < 1e-12) {
+    const auto left = duet::pose_error_between(arm_.pose(nearby), path_(u));
+    if (std::max(left.translation, left.rotation) < 1e-12) {
       add(result, nearby);
     }
     return result;
@@ -124,9 +125,9 @@ private:
       return false;
     }
     for (const double part : {.5, .25, .75}) {
-      const auto off = duet::deviation_between(arm_.pose(joints((1 - part) * x + part * y)),
-                                               path_((1 - part) * u + part * v));
-      if (std::max(off.length, off.angle) > 1e-5) {
+      const auto off = duet::pose_error_between(arm_.pose(joints((1 - part) * x + part * y)),
+                                                path_((1 - part) * u + part * v));
+      if (std::max(off.translation, off.rotation) > 1e-5) {
         return false;
       }
     }
@@ -278,9 +279,9 @@ private:
           here.setThreshold(1e-4);
           y += here.solve(Eigen::Map<const joints>(&e.values[0]));
         }
-        const auto off = duet::deviation_between(arm_.pose(y), pose);
-        if (std::max(off.length, off.angle) > 1e-9 || (y - x).dot(direction) < .7 * fibre_step ||
-            (keeps_limits && !is_within_limits(y))) {
+        const auto off = duet::pose_error_between(arm_.pose(y), pose);
+        if (std::max(off.translation, off.rotation) > 1e-9 ||
+            (y - x).dot(direction) < .7 * fibre_step || (keeps_limits && !is_within_limits(y))) {
           break;
         }
         result.push_back(y);

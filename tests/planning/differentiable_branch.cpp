@@ -57,7 +57,7 @@ TEST_CASE("by the goal, for every branch") {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto p = real_part(tip[k]) - sign * real_part(wanted[k]);
       const auto q = dual_part(tip[k]) - sign * dual_part(wanted[k]);
-      CHECK(std::sqrt(norm2(p) + norm2(q)) < 1e-8 * (1 + x[k].norm()));
+      CHECK(std::sqrt(squared_norm(p) + squared_norm(q)) < 1e-8 * (1 + x[k].norm()));
     }
   }
 }

@@ -108,7 +108,7 @@ TEST_CASE("along a function; objectives move the joints and leave the tip where 
   CHECK((by_ad.joints.back() - by_formula.joints.back()).norm() < 1e-9);
 
   const auto agile =
-      follow_path(arm, bent, circle, 0, 3, {.centring = 0}, high_manipulability{arm, 10.0});
+      follow_path(arm, bent, circle, 0, 3, {.centring = 0}, manipulability_objective{arm, 10.0});
   const auto lazy = follow_path(arm, bent, circle, 0, 3, {.centring = 0});
   CHECK(agile.reason == stop_reason::reached);
   CHECK(largest_deviation(arm, agile, circle) < 1e-5);
@@ -120,7 +120,7 @@ TEST_CASE("gradients of objectives") {
   // No joint where a sign would not count.
   const preferred_posture posture{gripper_down() + vector::Constant(.3), 3.0};
   CHECK((gradient(posture, theta).gradient - posture.gradient(theta)).norm() < 1e-14);
-  const high_manipulability agile{arm, 1.5};
+  const manipulability_objective agile{arm, 1.5};
   const auto slope = agile.gradient(theta);
   CHECK((gradient(agile, theta).gradient - slope).norm() < 1e-12 * slope.norm());
 }

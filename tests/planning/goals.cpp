@@ -71,7 +71,7 @@ struct place_in_region {
   wide_vector at;
   real_50 tilt, turn;
 
-  place_in_region(const dual_quaternion<real_50>& tip, const pose_region& region) {
+  place_in_region(const dual_quaternion<real_50>& tip, const task_space_region& region) {
     const auto frame = transform_matrix(dual_quaternion<real_50>(region.frame));
     const auto here = transform_matrix(tip);
     const wide_matrix axes = frame.topLeftCorner<3, 3>();
@@ -95,26 +95,27 @@ struct place_in_region {
 };
 
 /// How far a tip is outside: of lengths and angles.
-pose_deviation outside(const chain& arm, const vector& theta, const pose_region& region) {
+pose_error outside(const chain& arm, const vector& theta, const task_space_region& region) {
   const Eigen::Matrix<real_50, Eigen::Dynamic, 1> exact = theta.cast<real_50>();
   const place_in_region place(arm.pose(exact), region);
-  pose_deviation result;
+  pose_error result;
   for (int i = 0; i < 3; ++i) {
     const auto k = std::size_t(i);
-    result.length = std::max({result.length, double(real_50(region.lower[k]) - place.at[i]),
-                              double(place.at[i] - real_50(region.upper[k]))});
+    result.translation =
+        std::max({result.translation, double(real_50(region.lower[k]) - place.at[i]),
+                  double(place.at[i] - real_50(region.upper[k]))});
   }
-  result.angle = std::max(0., double(place.tilt - real_50(region.tilt)));
-  const double turn(place.turn), middle = (region.turn_lower + region.turn_upper) / 2;
-  const double half = (region.turn_upper - region.turn_lower) / 2;
+  result.rotation = std::max(0., double(place.tilt - real_50(region.max_tilt)));
+  const double turn(place.turn), middle = (region.rotation_lower + region.rotation_upper) / 2;
+  const double half = (region.rotation_upper - region.rotation_lower) / 2;
   const double from_middle = std::abs(std::remainder(turn - middle, 2 * pi));
-  result.angle = std::max(result.angle, from_middle - half);
+  result.rotation = std::max(result.rotation, from_middle - half);
   return result;
 }
 
 struct made_goal {
   const char* name;
-  pose_region region;
+  task_space_region region;
 };
 
 /// Goals that a pose of the tip fulfils.
@@ -131,13 +132,13 @@ std::vector<made_goal> goals_at(const dual_quaternion<double>& tip,
   const auto twist = exp(vector3<double>(turn / 2 * axis));
   const quaternion<double> frame = rotation(tip) * conj(swing * twist);
   const vector3<double> shift(up_to(.1), -up_to(.1), up_to(.02));
-  const pose_region region{.frame = pose(frame, vector3<double>(p - rotate(frame, shift))),
-                           .lower = {shift[0] - up_to(.01), shift[1] - up_to(.02), shift[2]},
-                           .upper = {shift[0] + up_to(.05), shift[1], shift[2] + up_to(.05)},
-                           .axis = {axis[0], axis[1], axis[2]},
-                           .tilt = tilt + up_to(.1),
-                           .turn_lower = turn - up_to(.2),
-                           .turn_upper = turn + up_to(.2)};
+  const task_space_region region{.frame = pose(frame, vector3<double>(p - rotate(frame, shift))),
+                                 .lower = {shift[0] - up_to(.01), shift[1] - up_to(.02), shift[2]},
+                                 .upper = {shift[0] + up_to(.05), shift[1], shift[2] + up_to(.05)},
+                                 .axis = {axis[0], axis[1], axis[2]},
+                                 .max_tilt = tilt + up_to(.1),
+                                 .rotation_lower = turn - up_to(.2),
+                                 .rotation_upper = turn + up_to(.2)};
   auto line = position_goal(p);
   line.upper[2] = std::numeric_limits<double>::infinity();
   return {{"position", position_goal(p)},
@@ -152,7 +153,7 @@ std::vector<made_goal> goals_at(const dual_quaternion<double>& tip,
 
 } // namespace
 
-TEST_CASE("goals in part made of known joints, six arms, to 50 digits") {
+TEST_CASE("partial goals made of known joints, six arms, to 50 digits") {
   const std::uint64_t seed = 71;
   CAPTURE(seed);
   duet_test::random_source random(seed);
@@ -168,7 +169,7 @@ TEST_CASE("goals in part made of known joints, six arms, to 50 digits") {
         const auto& region = goals[g].region;
         const auto found = inverse_kinematics(arm, region, start, {.tolerance = 1e-9});
         const auto left = outside(arm, found.joints, region);
-        const bool is_true = left.length <= 1e-9 + 1e-14 && left.angle <= 1e-9 + 1e-13;
+        const bool is_true = left.translation <= 1e-9 + 1e-14 && left.rotation <= 1e-9 + 1e-13;
         solved[g] +=
             found.reason == stop_reason::reached && is_true && is_within_limits(arm, found.joints);
       }
@@ -184,32 +185,32 @@ TEST_CASE("rows are the derivatives of what they want less of") {
   for (int k = 0; k < 100; ++k) {
     const auto frame = anywhere(random);
     const vector3<double> n = direction(random);
-    const pose_region range{.frame = frame,
-                            .lower = {-1, -2, -3},
-                            .upper = {3, 2, 1},
-                            .axis = {n[0], n[1], n[2]},
-                            .tilt = .3,
-                            .turn_lower = -.4,
-                            .turn_upper = .2};
-    pose_region exact = range;
+    const task_space_region range{.frame = frame,
+                                  .lower = {-1, -2, -3},
+                                  .upper = {3, 2, 1},
+                                  .axis = {n[0], n[1], n[2]},
+                                  .max_tilt = .3,
+                                  .rotation_lower = -.4,
+                                  .rotation_upper = .2};
+    task_space_region exact = range;
     exact.lower = exact.upper = {0, 0, 0};
-    exact.tilt = exact.turn_lower = exact.turn_upper = 0;
+    exact.max_tilt = exact.rotation_lower = exact.rotation_upper = 0;
     for (const bool is_exact : {false, true}) {
-      const pose_region& region = is_exact ? exact : range;
+      const task_space_region& region = is_exact ? exact : range;
       const auto tip = is_exact ? frame : anywhere(random); // equations hold at the solution
-      const auto rows = region.wanted(tip).rows;
+      const auto rows = region.constraint(tip).matrix;
       for (int j = 0; j < 6; ++j) {
         const double h = 1e-6;
         const auto moved = [&](double way) {
           vector3<double> t = translation(tip), half(0, 0, 0);
           (j < 3 ? t[j] : half[j - 3]) += (j < 3 ? way : way / 2);
-          return region.wanted(pose(exp(half) * rotation(tip), t));
+          return region.constraint(pose(exp(half) * rotation(tip), t));
         };
         const auto after = moved(h), before = moved(-h);
         for (int i = 0; i < 6; ++i) {
-          const double least = (before.least[i] - after.least[i]) / (2 * h);
-          const double most = (before.most[i] - after.most[i]) / (2 * h);
-          if (after.least[i] > -std::numeric_limits<double>::infinity()) {
+          const double least = (before.lower[i] - after.lower[i]) / (2 * h);
+          const double most = (before.upper[i] - after.upper[i]) / (2 * h);
+          if (after.lower[i] > -std::numeric_limits<double>::infinity()) {
             CHECK(std::abs(rows(i, j) - least) < 1e-7 * (1 + std::abs(least)));
           }
           CHECK(std::abs(rows(i, j) - most) < 1e-7 * (1 + std::abs(most)));
@@ -223,27 +224,28 @@ TEST_CASE("what regions want at their edges, and for opposite axes") {
   const quaternion<double> one(1);
   const vector3<double> x(1, 0, 0), z(0, 0, 1), zero(0, 0, 0);
   // The axis is where it should not be at all: any way is as good, but there is one.
-  const auto opposite = pointing_goal(z, -z).wanted(pose(one, zero));
-  CHECK(opposite.least.norm() == doctest::Approx(pi));
-  CHECK(opposite.rows.allFinite());
-  const auto there = pointing_goal(z, z).wanted(pose(one, zero));
-  CHECK(there.least.norm() < 1e-15);
+  const auto opposite = pointing_goal(z, -z).constraint(pose(one, zero));
+  CHECK(opposite.lower.norm() == doctest::Approx(pi));
+  CHECK(opposite.matrix.allFinite());
+  const auto there = pointing_goal(z, z).constraint(pose(one, zero));
+  CHECK(there.lower.norm() < 1e-15);
   // Nothing is wanted but three lengths, in the region's axes.
-  const auto position = position_goal(x).wanted(pose(one, zero));
-  CHECK(position.least.head<3>() == x);
-  CHECK(position.rows.topLeftCorner<3, 3>() == Eigen::Matrix3d::Identity());
-  CHECK(position.rows.bottomRows<3>().isZero(0));
+  const auto position = position_goal(x).constraint(pose(one, zero));
+  CHECK(position.lower.head<3>() == x);
+  CHECK(position.matrix.topLeftCorner<3, 3>() == Eigen::Matrix3d::Identity());
+  CHECK(position.matrix.bottomRows<3>().isZero(0));
   // Turns are counted to the nearer edge.
-  pose_region turns{.frame = pose(one, zero), .tilt = pi, .turn_lower = 3, .turn_upper = 3.2};
+  task_space_region turns{
+      .frame = pose(one, zero), .max_tilt = pi, .rotation_lower = 3, .rotation_upper = 3.2};
   const auto at = [&](double angle) {
-    return turns.wanted(pose(exp(vector3<double>(0, 0, angle / 2)), zero));
+    return turns.constraint(pose(exp(vector3<double>(0, 0, angle / 2)), zero));
   };
-  CHECK(at(2.9).least[5] == doctest::Approx(.1));
-  CHECK(at(-2.9).most[5] == doctest::Approx(-(2 * pi - 2.9 - 3.2)));
-  CHECK(at(3.1).least[5] < 0);
-  CHECK(at(3.1).most[5] > 0);
+  CHECK(at(2.9).lower[5] == doctest::Approx(.1));
+  CHECK(at(-2.9).upper[5] == doctest::Approx(-(2 * pi - 2.9 - 3.2)));
+  CHECK(at(3.1).lower[5] < 0);
+  CHECK(at(3.1).upper[5] > 0);
   // How far from a point.
-  pose_region box = position_goal(vector3<double>(1, 2, 3));
+  task_space_region box = position_goal(vector3<double>(1, 2, 3));
   box.upper = {1, 1, 1};
   CHECK(box.distance_from(zero) == doctest::Approx(std::sqrt(14)));
   CHECK(box.distance_from(vector3<double>(1.5, 2.5, 3.5)) == 0);
@@ -281,7 +283,8 @@ TEST_CASE("equations of one's own: a tip on a sphere that looks at its middle") 
 TEST_CASE("goals that cannot be reached, and why") {
   const chain panda = robots::panda().table();
   const vector middle = (lower_limits(panda) + upper_limits(panda)) / 2;
-  const auto far = inverse_kinematics(panda, position_goal({1.4, 0, .3}), middle, {.restarts = 3});
+  const auto far =
+      inverse_kinematics(panda, position_goal({1.4, 0, .3}), middle, {.max_restarts = 3});
   CHECK(far.reason == stop_reason::out_of_reach);
   CHECK(far.restarts == 3);
   // A box of which only a corner is near enough.
@@ -302,12 +305,12 @@ TEST_CASE("goals that cannot be reached, and why") {
         stop_reason::reached);
   const auto high = inverse_kinematics(scara, position_goal({.4, .2, .3}), start);
   CHECK(high.reason == stop_reason::joint_limit);
-  CHECK(high.deviation.length == doctest::Approx(.1).epsilon(1e-6));
+  CHECK(high.deviation.translation == doctest::Approx(.1).epsilon(1e-6));
   // Its axis always points down: nothing that joints could do about it.
   const auto tilted =
       inverse_kinematics(scara, pointing_goal({0, 0, 1}, {0, std::sin(.3), -std::cos(.3)}), start);
   CHECK(tilted.reason != stop_reason::reached);
-  CHECK(tilted.deviation.angle == doctest::Approx(.3));
+  CHECK(tilted.deviation.rotation == doctest::Approx(.3));
   CHECK(inverse_kinematics(scara, pointing_goal({0, 0, 1}, {0, std::sin(.3), -std::cos(.3)}, .31),
                            start)
             .reason == stop_reason::reached);
@@ -317,14 +320,14 @@ TEST_CASE("goals that cannot be reached, and why") {
   const auto inner = position_goal({.1, 0, 0});
   const auto folded = inverse_kinematics(planar, inner, vector::Constant(2, .3));
   CHECK(folded.reason == stop_reason::no_progress);
-  CHECK(folded.deviation.length >= .1 - 1e-12);
-  CHECK(folded.deviation.length < .12);
+  CHECK(folded.deviation.translation >= .1 - 1e-12);
+  CHECK(folded.deviation.translation < .12);
 }
 
 TEST_CASE("regions that hold no pose") {
   const chain arm = robots::panda().table();
   const vector start = vector::Zero(7).cwiseMin(upper_limits(arm));
-  const auto text = [&](const pose_region& region) -> std::string {
+  const auto text = [&](const task_space_region& region) -> std::string {
     try {
       static_cast<void>(inverse_kinematics(arm, region, start));
     } catch (const invalid_input& e) {
@@ -332,9 +335,9 @@ TEST_CASE("regions that hold no pose") {
     }
     return "";
   };
-  const pose_region good = position_goal({.5, 0, .5});
+  const task_space_region good = position_goal({.5, 0, .5});
   CHECK(text(good) == "");
-  pose_region bad = good;
+  task_space_region bad = good;
   bad.upper[1] = -1;
   CHECK(text(bad) ==
         "duet: inverse_kinematics: the region goes from 0 to -1 along axis 1 of its frame");
@@ -343,10 +346,10 @@ TEST_CASE("regions that hold no pose") {
   CHECK(text(bad) ==
         "duet: inverse_kinematics: the axis of the region (0, 1, 1) is no unit vector");
   bad = good;
-  bad.tilt = -.1;
+  bad.max_tilt = -.1;
   CHECK(text(bad) == "duet: inverse_kinematics: the tilt of the region is -0.1");
   bad = good;
-  bad.turn_lower = 4;
+  bad.rotation_lower = 4;
   CHECK(text(bad).find("the turns of the region go from 4 to 3.14") != std::string::npos);
   bad = good;
   bad.frame = 2 * bad.frame;
@@ -360,9 +363,9 @@ TEST_CASE("regions that hold no pose") {
   CHECK(text(bad) ==
         "duet: inverse_kinematics: the region goes from inf to inf along axis 0 of its frame");
   bad = good;
-  bad.turn_lower = bad.turn_upper = -infinity;
+  bad.rotation_lower = bad.rotation_upper = -infinity;
   CHECK(text(bad) == "duet: inverse_kinematics: the turns of the region go from -inf to -inf");
-  bad.turn_upper = infinity; // that is any
+  bad.rotation_upper = infinity; // that is any
   CHECK(text(bad) == "");
 }
 

@@ -152,13 +152,13 @@ TEST_CASE("default-initialized aggregates hold the values that their fields stat
   DUET_CHECK(value_and_jacobian<Vector3d, Matrix3d>);
   DUET_CHECK(value_gradient_and_product<double, Vector3d>);
   DUET_CHECK(value_and_mixed_hessian<double, Matrix3d>);
-  DUET_CHECK(eigenvalues_and_vectors<Vector3d, Matrix3d>);
+  DUET_CHECK(symmetric_eigen_result<Vector3d, Matrix3d>);
   DUET_CHECK(singular_value_decomposition<Matrix3d, Vector3d, Matrix3d>);
   DUET_CHECK(scaled_pose<double>);
   DUET_CHECK(nearest_result<double>);
   DUET_CHECK(plane<double>);
   DUET_CHECK(screw_motion<double>);
-  DUET_CHECK(closed_loop_options);
+  DUET_CHECK(constrained_mechanism_options);
   DUET_CHECK(collision_box);
   DUET_CHECK(collision_cylinder);
   DUET_CHECK(collision_capsule);
@@ -174,44 +174,44 @@ TEST_CASE("default-initialized aggregates hold the values that their fields stat
   DUET_CHECK(attached_frame<double>);
   DUET_CHECK(relative_frame);
   DUET_CHECK(loop_motion_options);
-  DUET_CHECK(loop_position);
-  DUET_CHECK(loop_positions);
-  DUET_CHECK(loop_search_options);
+  DUET_CHECK(assembly_configuration);
+  DUET_CHECK(assembly_search_result);
+  DUET_CHECK(assembly_search_options);
   DUET_CHECK(dead_point);
   DUET_CHECK(branch_point);
-  DUET_CHECK(loop_trace_result);
-  DUET_CHECK(loop_trace_options);
-  DUET_CHECK(mesh_surface);
+  DUET_CHECK(motion_trace);
+  DUET_CHECK(trace_options);
+  DUET_CHECK(triangle_mesh);
   DUET_CHECK(mobility_result);
   DUET_CHECK(link_inertia);
   DUET_CHECK(tree_link);
   DUET_CHECK(joint_mimic);
   DUET_CHECK(tree_joint);
   DUET_CHECK(robot_description);
-  DUET_CHECK(loop_frame);
-  DUET_CHECK(tree_loop);
-  DUET_CHECK(loop_description);
-  DUET_CHECK(urdf_joint_name);
+  DUET_CHECK(constraint_frame);
+  DUET_CHECK(loop_constraint);
+  DUET_CHECK(loop_constraints);
+  DUET_CHECK(urdf_joint);
   DUET_CHECK(urdf_unknown_element);
-  DUET_CHECK(urdf_names);
+  DUET_CHECK(urdf_summary);
   DUET_CHECK(link_pair);
   DUET_CHECK(urdf_link);
-  DUET_CHECK(inverse_kinematics_branch<6>);
+  DUET_CHECK(inverse_kinematics_solution<6>);
   DUET_CHECK(all_inverse_kinematics_result<6>);
-  DUET_CHECK(fitted_bodies);
-  DUET_CHECK(body_pair);
+  DUET_CHECK(bounding_capsules_result);
+  DUET_CHECK(collision_pair);
   DUET_CHECK(scene);
   DUET_CHECK(chain_clearance<double>);
   DUET_CHECK(proximity<double>);
   DUET_CHECK(inverse_kinematics_options);
   DUET_CHECK(inverse_kinematics_result<6>);
-  DUET_CHECK(joint_motion<Vector3d>);
-  DUET_CHECK(pose_deviation);
+  DUET_CHECK(joint_state<Vector3d>);
+  DUET_CHECK(pose_error);
   DUET_CHECK(plan_options);
   DUET_CHECK(motion_plan<6>);
   DUET_CHECK(preferred_posture<Vector3d>);
-  DUET_CHECK(wanted_twist);
-  DUET_CHECK(pose_region);
+  DUET_CHECK(twist_constraint);
+  DUET_CHECK(task_space_region);
   DUET_CHECK(printed_plan_options);
   DUET_CHECK(self_motion_options);
   DUET_CHECK(self_motion_curve<7>);
@@ -219,34 +219,34 @@ TEST_CASE("default-initialized aggregates hold the values that their fields stat
   DUET_CHECK(box<double>);
   DUET_CHECK(half_space<double>);
   DUET_CHECK(start_options);
-  DUET_CHECK(start_choice<6>);
-  DUET_CHECK(time_options);
-  DUET_CHECK(table_options);
+  DUET_CHECK(start_search_result<6>);
+  DUET_CHECK(time_parametrisation_options);
+  DUET_CHECK(adaptive_table_options);
   DUET_CHECK(clamped<>);
   DUET_CHECK(clamped<twist>);
   DUET_CHECK(end_acceleration<>);
   DUET_CHECK(fully_clamped<>);
   DUET_CHECK(fit_options);
-  DUET_CHECK(fit_report);
+  DUET_CHECK(interpolation_report);
   DUET_CHECK(span_hint);
-  DUET_CHECK(look_up_table<double>);
+  DUET_CHECK(lookup_table<double>);
   DUET_CHECK(motion<double>);
   DUET_CHECK(motion<dual<double, 1, screw_tag>>);
   DUET_CHECK(printed_derivatives<double>);
-  DUET_CHECK(recording_fault);
+  DUET_CHECK(recording_issue);
   DUET_CHECK(recording<double>);
   DUET_CHECK(lane_mask<double, 4>);
 #undef DUET_CHECK
 
   // These cannot be made without values.
   static_assert(!std::is_default_constructible_v<capsule<double>>);
-  static_assert(!std::is_default_constructible_v<link_body>);
+  static_assert(!std::is_default_constructible_v<collision_body>);
   static_assert(!std::is_default_constructible_v<pose_tolerance>);
   static_assert(!std::is_default_constructible_v<joint_screw<double>>);
   static_assert(!std::is_default_constructible_v<curve_ends<double>>);
-  static_assert(!std::is_default_constructible_v<table_result<curve>>);
+  static_assert(!std::is_default_constructible_v<adaptive_table_result<curve>>);
   static_assert(!std::is_default_constructible_v<fit_result<curve>>);
-  static_assert(!std::is_default_constructible_v<high_manipulability<serial_chain<7>>>);
+  static_assert(!std::is_default_constructible_v<manipulability_objective<serial_chain<7>>>);
 }
 
 TEST_CASE("default values of ends, shapes and planes are the documented ones") {
@@ -262,7 +262,7 @@ TEST_CASE("default values of ends, shapes and planes are the documented ones") {
   CHECK(closest_points(body, half_space<>{}).distance == doctest::Approx(1.5));
   CHECK(closest_points(body, sphere<>{.radius = .25}).distance ==
         doctest::Approx(std::sqrt(5.) - .75));
-  CHECK(closest_points(body, box<>{.half_sizes = {.5, .5, .5}}).distance ==
+  CHECK(closest_points(body, box<>{.half_extents = {.5, .5, .5}}).distance ==
         doctest::Approx(std::hypot(.5, 1.5) - .5));
   CHECK(plane<double>{}.normal == Vector3d(0, 0, 1));
   CHECK(progress{}.share() == 1);

@@ -22,7 +22,7 @@ using namespace duet;
 using duet_test::configuration;
 using duet_test::is_within_limits;
 /// Of any number of joints, so that the search is compiled once.
-using chain = serial_chain<-16>;
+using chain = bounded_chain<16>;
 using result = inverse_kinematics_result<-16>;
 using vector = detail::joint_vector<double, -16>;
 using std::numbers::pi;
@@ -33,8 +33,8 @@ std::vector<chain> arms() {
 }
 
 /// How far the tip is from the goal, by matrices: of a turn by φ, |R − 1| = 2√2 |sin φ/2|.
-pose_deviation deviation_by_matrices(const chain& arm, const vector& theta,
-                                     const dual_quaternion<double>& goal) {
+pose_error deviation_by_matrices(const chain& arm, const vector& theta,
+                                 const dual_quaternion<double>& goal) {
   const Eigen::Matrix4d gap = transform_matrix(arm.pose(theta)) - transform_matrix(goal);
   const double chord = gap.topLeftCorner<3, 3>().norm() / std::sqrt(8);
   return {gap.topRightCorner<3, 1>().norm(), 2 * std::asin(std::min(1.0, chord))};
@@ -43,17 +43,17 @@ pose_deviation deviation_by_matrices(const chain& arm, const vector& theta,
 /// Is this a solution, and what it says about itself true?
 bool is_solution(const chain& arm, const result& found, const dual_quaternion<double>& goal,
                  double tolerance = 1e-6) {
-  const pose_deviation left = deviation_by_matrices(arm, found.joints, goal);
+  const pose_error left = deviation_by_matrices(arm, found.joints, goal);
   const double rounding = 1e-15 * std::max(10.0, translation(goal).norm());
   return found.reason == stop_reason::reached && is_within_limits(arm, found.joints) &&
-         left.length <= tolerance + rounding && left.angle <= tolerance + rounding &&
-         std::abs(left.length - found.deviation.length) < rounding &&
-         std::abs(left.angle - found.deviation.angle) < rounding;
+         left.translation <= tolerance + rounding && left.rotation <= tolerance + rounding &&
+         std::abs(left.translation - found.deviation.translation) < rounding &&
+         std::abs(left.rotation - found.deviation.rotation) < rounding;
 }
 
 bool are_identical(const result& a, const result& b) {
-  return a.joints == b.joints && a.deviation.length == b.deviation.length &&
-         a.deviation.angle == b.deviation.angle && a.iterations == b.iterations &&
+  return a.joints == b.joints && a.deviation.translation == b.deviation.translation &&
+         a.deviation.rotation == b.deviation.rotation && a.iterations == b.iterations &&
          a.restarts == b.restarts && a.reason == b.reason;
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("every kind of joint, without limits; turning joints are turned back i
   }
   const chain far = gantry(-INFINITY, INFINITY);
   const auto goal = at(1000, -2000, .5, {0, 1, 2});
-  CHECK(is_solution(far, inverse_kinematics(far, goal, vector::Zero(6).eval(), {.restarts = 0}),
+  CHECK(is_solution(far, inverse_kinematics(far, goal, vector::Zero(6).eval(), {.max_restarts = 0}),
                     goal));
 
   const chain ur5e = robots::ur5e().table();
@@ -153,7 +153,7 @@ TEST_CASE("every kind of joint, without limits; turning joints are turned back i
   // Through the limit at 2π, which is none.
   vector beyond = theta;
   beyond[5] = 6.5;
-  CHECK(is_solution(ur5e, inverse_kinematics(ur5e, ur5e.pose(beyond), theta, {.restarts = 0}),
+  CHECK(is_solution(ur5e, inverse_kinematics(ur5e, ur5e.pose(beyond), theta, {.max_restarts = 0}),
                     ur5e.pose(beyond)));
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("units of length do not matter") {
   const chain metres = in_units(1), units = in_units(1024);
   const vector theta = vector::LinSpaced(6, -1, 1);
   const vector start = vector::Constant(6, .1);
-  const inverse_kinematics_options few{.tolerance = 1e-15, .restarts = 0, .iterations = 5};
+  const inverse_kinematics_options few{.tolerance = 1e-15, .max_restarts = 0, .max_iterations = 5};
   const auto found = inverse_kinematics(units, units.pose(theta), start, few);
   CHECK(found.iterations == 5);
   CHECK(found.joints == inverse_kinematics(metres, metres.pose(theta), start, few).joints);
@@ -233,8 +233,8 @@ TEST_CASE("nor do they where joints slide, or only slide, and what is out of rea
       CHECK(x.reason == y.reason);
       CHECK(x.iterations == y.iterations);
       CHECK(x.restarts == y.restarts);
-      CHECK(y.deviation.length == unit * x.deviation.length);
-      CHECK(y.deviation.angle == x.deviation.angle);
+      CHECK(y.deviation.translation == unit * x.deviation.translation);
+      CHECK(y.deviation.rotation == x.deviation.rotation);
       for (int i = 0; i < 6; ++i) {
         CHECK(y.joints[i] == (one.kind(i) == joint_kind::prismatic ? unit : 1) * x.joints[i]);
       }
@@ -265,7 +265,7 @@ TEST_CASE("what cannot be reached, and why") {
   CHECK(slid.reason == stop_reason::joint_limit);
   CHECK(slid.restarts == 100);
   CHECK(slid.joints[0] == .5);
-  CHECK(slid.deviation.length == doctest::Approx(.3).epsilon(1e-6));
+  CHECK(slid.deviation.translation == doctest::Approx(.3).epsilon(1e-6));
   CHECK(is_within_limits(stretched, slid.joints));
 
   const chain ur5e = robots::ur5e().table();
@@ -288,7 +288,7 @@ TEST_CASE("what cannot be reached, and why") {
 
   duet_test::random_source random(35);
   const auto hurried = inverse_kinematics(panda, panda.pose(configuration(panda, random)), middle,
-                                          {.restarts = 0, .iterations = 2});
+                                          {.max_restarts = 0, .max_iterations = 2});
   CHECK(hurried.reason == stop_reason::iteration_limit);
   CHECK(hurried.iterations == 2);
   CHECK(hurried.restarts == 0);
@@ -304,13 +304,13 @@ TEST_CASE("the nearest pose to a goal out of reach") {
   }
   const chain portal = serial_chain<6>(joints);
   const auto slid = inverse_kinematics(portal, at(3, .25, -5, {.3, -.2, .4}),
-                                       vector::Zero(6).eval(), {.restarts = 0});
+                                       vector::Zero(6).eval(), {.max_restarts = 0});
   CHECK(slid.reason == stop_reason::out_of_reach);
   CHECK(slid.joints[0] == 1);
   CHECK(slid.joints[1] == doctest::Approx(.25).epsilon(1e-12));
   CHECK(slid.joints[2] == -1);
-  CHECK(slid.deviation.length == doctest::Approx(std::hypot(2, 4)).epsilon(1e-14));
-  CHECK(slid.deviation.angle < 1e-11);
+  CHECK(slid.deviation.translation == doctest::Approx(std::hypot(2, 4)).epsilon(1e-14));
+  CHECK(slid.deviation.rotation < 1e-11);
   CHECK(slid.restarts == 0);
 
   // Of arms: nothing near is nearer, to first order by duals, nor anything of thousands elsewhere.
@@ -332,12 +332,12 @@ TEST_CASE("the nearest pose to a goal out of reach") {
         return way.squaredNorm() / (scale * scale) + turn.squaredNorm();
       };
       const vector start = configuration(arm, random);
-      const auto found = inverse_kinematics(arm, goal, start, {.restarts = 50});
+      const auto found = inverse_kinematics(arm, goal, start, {.max_restarts = 50});
       CHECK(found.reason == stop_reason::out_of_reach);
       CHECK(is_within_limits(arm, found.joints));
-      const pose_deviation left = deviation_by_matrices(arm, found.joints, goal);
-      CHECK(left.length == doctest::Approx(found.deviation.length).epsilon(1e-12));
-      CHECK(left.angle == doctest::Approx(found.deviation.angle).epsilon(1e-7));
+      const pose_error left = deviation_by_matrices(arm, found.joints, goal);
+      CHECK(left.translation == doctest::Approx(found.deviation.translation).epsilon(1e-12));
+      CHECK(left.rotation == doctest::Approx(found.deviation.rotation).epsilon(1e-7));
       const auto [value, slope] = gradient(error, found.joints);
       for (int i = 0; i < arm.size(); ++i) {
         const bool is_held = slope[i] > 0 ? found.joints[i] == arm.limits(i).lower
@@ -399,7 +399,7 @@ TEST_CASE("many goals: as one by one, on any number of cores") {
     goals.push_back(arm.pose(configuration(arm, random)));
   }
   goals[3] = at(.9, .2, .9);
-  const inverse_kinematics_options options{.restarts = 10, .seed = 5};
+  const inverse_kinematics_options options{.max_restarts = 10, .seed = 5};
   std::vector<result> one_by_one, out(goals.size());
   for (const auto& goal : goals) {
     one_by_one.push_back(inverse_kinematics(arm, goal, start, options));
@@ -460,15 +460,15 @@ TEST_CASE("bad problems") {
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, broken),
                        "duet: inverse_kinematics: the start has inf for joint 4", invalid_input);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = 0}),
-                       "duet: inverse_kinematics: tolerance.length is 0, not a number above 0",
+                       "duet: inverse_kinematics: tolerance.translation is 0, not a number above 0",
                        invalid_input);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = {1e-6, -1}}),
-                       "duet: inverse_kinematics: tolerance.angle is -1, not a number above 0",
+                       "duet: inverse_kinematics: tolerance.rotation is -1, not a number above 0",
                        invalid_input);
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = std::nan("")}),
                   invalid_input);
-  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.restarts = -1}), invalid_input);
-  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.iterations = 0}), invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.max_restarts = -1}), invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.max_iterations = 0}), invalid_input);
 }
 
 TEST_CASE("the error of a pose is the twist of the shorter screw motion to another") {
@@ -488,9 +488,9 @@ TEST_CASE("the error of a pose is the twist of the shorter screw motion to anoth
       const auto there =
           exp(make_dual_vector(vector3<double>(omega / 2), vector3<double>(spatial / 2))) *
           detail::pose_at(from);
-      const auto left = deviation_between(there, detail::pose_at(to));
-      CHECK(left.length < 1e-14);
-      CHECK(left.angle < 1e-14);
+      const auto left = pose_error_between(there, detail::pose_at(to));
+      CHECK(left.translation < 1e-14);
+      CHECK(left.rotation < 1e-14);
     }
   }
 }
@@ -508,7 +508,7 @@ TEST_CASE("nothing is allocated, restarts included") {
   const auto goal = arm.pose(theta), none = at(-1, 0, 0);
   const std::size_t before = duet_test::allocations;
   const auto found = inverse_kinematics(arm, goal, start);
-  const auto tried = inverse_kinematics(arm, none, start, {.restarts = 5});
+  const auto tried = inverse_kinematics(arm, none, start, {.max_restarts = 5});
   const std::size_t during = duet_test::allocations - before;
   CHECK(during == 0);
   CHECK(is_solution(arm, found, goal));

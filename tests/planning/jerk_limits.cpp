@@ -69,7 +69,7 @@ std::vector<vector> random_waypoints(duet_test::random_source& random, int kind)
     if (kind == 1) {
       step = random.normal() * vector::Unit(random.integer(0, 2));
     } else if (kind == 2) {
-      step *= random.magnitude(1e-3, 1);
+      step *= random.log_uniform(1e-3, 1);
     } else if (kind == 3) {
       step = (i % 2 == 0 ? 1 : -.7) * vector(1, 2, .5);
     }
@@ -89,7 +89,7 @@ TEST_CASE("one joint: the seven phases of the closed form, and fewer") {
         CAPTURE(j);
         const double a = 5, exact = seven_phases(way, v, a, j);
         const std::vector<one> ends{one(1.0), one(1 + way)};
-        const auto q = time_parametrised(ends, std::array{v}, std::array{a}, {.jerk = {j}});
+        const auto q = time_optimal_trajectory(ends, std::array{v}, std::array{a}, {.jerk = {j}});
         CHECK(q.duration() >= exact * (1 - 1e-12));
         CHECK(q.duration() < exact * 1.02);
         CHECK(largest_share(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
@@ -100,9 +100,9 @@ TEST_CASE("one joint: the seven phases of the closed form, and fewer") {
   // Backwards, by way of a waypoint, and in other units: the same motion.
   const auto time = [](double scale, double units) {
     const std::vector<one> line{one(0.0), one(-.3 * scale), one(-1 * scale)};
-    return units * time_parametrised(line, std::array{2 * scale * units},
-                                     std::array{5 * scale * units * units},
-                                     {.jerk = {40 * scale * units * units * units}})
+    return units * time_optimal_trajectory(line, std::array{2 * scale * units},
+                                           std::array{5 * scale * units * units},
+                                           {.jerk = {40 * scale * units * units * units}})
                        .duration();
   };
   CHECK(time(1, 1) < seven_phases(1, 2, 5, 40) * 1.02);
@@ -115,7 +115,7 @@ TEST_CASE("straight on, the slowest joint sets the pace") {
   const vector v(1, 1, 1e-3), a(4, .5, 1e-3);
   for (const double j : {1.0, 20.0}) {
     const vector jerk(3 * j, j, 1e-3);
-    const auto q = time_parametrised(ends, v, a, {.jerk = numbers(jerk)});
+    const auto q = time_optimal_trajectory(ends, v, a, {.jerk = numbers(jerk)});
     // The second joint goes half as far.
     const double exact = seven_phases(1, 1, 1, std::min(3 * j, 2 * j));
     CHECK(q.duration() >= exact * (1 - 1e-12));
@@ -129,16 +129,16 @@ TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends")
     CAPTURE(k);
     const auto waypoints = random_waypoints(random, k % 4);
     const auto limits = [&](double from, double to) {
-      return vector(random.magnitude(from, to), random.magnitude(from, to),
-                    random.magnitude(from, to));
+      return vector(random.log_uniform(from, to), random.log_uniform(from, to),
+                    random.log_uniform(from, to));
     };
     const vector v = limits(.3, 3), a = limits(.5, 20);
     vector j = limits(1, 500);
     if (k % 7 == 0) {
       j[k % 3] = infinity;
     }
-    const time_options options{.parts = 60 + k % 50, .jerk = numbers(j)};
-    const auto q = time_parametrised(waypoints, v, a, options);
+    const time_parametrisation_options options{.min_intervals = 60 + k % 50, .jerk = numbers(j)};
+    const auto q = time_optimal_trajectory(waypoints, v, a, options);
     const double share = largest_share(q, v, a, j, 500);
     CHECK(share <= 1 + 1e-10);
     CHECK(share > .9);
@@ -152,7 +152,8 @@ TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends")
     }
     // Never quicker than without limits of jerk.
     CHECK(q.duration() >
-          .99 * time_parametrised(waypoints, v, a, {.curve = joint_curve::smooth}).duration());
+          .99 * time_optimal_trajectory(waypoints, v, a, {.curve = waypoint_interpolation::smooth})
+                    .duration());
   }
 }
 
@@ -163,7 +164,7 @@ TEST_CASE(
     CAPTURE(k);
     std::vector<double> places{1.0};
     for (int i = random.integer(4, 30); i > 0; --i) {
-      places.push_back(places.back() + random.magnitude(1e-3, 1));
+      places.push_back(places.back() + random.log_uniform(1e-3, 1));
     }
     const detail::reference_law law(places, {k % 2 == 0, k % 4 < 2});
     const std::vector<double> knots{places.front(), places.back()};
@@ -202,9 +203,9 @@ TEST_CASE("one joint from rate to rate: the phases of the closed form") {
       const double exact = up[0] + down[0] + (way - up[1] - down[1]) / v;
       for (const double sign : {-1.0, 1.0}) {
         const std::vector<one> ends{one(1.0), one(1 + sign * way)};
-        const auto q = time_parametrised(
+        const auto q = time_optimal_trajectory(
             ends, std::array{v}, std::array{a},
-            {.initial_rates = {sign * first}, .final_rates = {sign * last}, .jerk = {j}});
+            {.initial_velocities = {sign * first}, .final_velocities = {sign * last}, .jerk = {j}});
         CHECK(q.duration() >= exact * (1 - 1e-12));
         CHECK(q.duration() < exact * (first < .1 ? 1.03 : 1.01)); // nearly at rest: by coarse steps
         CHECK(largest_share(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
@@ -216,16 +217,18 @@ TEST_CASE("one joint from rate to rate: the phases of the closed form") {
   // At its limit at both ends: as fast all the way.
   const std::vector<one> ends{one(0.0), one(0.0), one(1.0), one(2.0)};
   for (const double v : {.3, 1.0, 7.0}) {
-    const auto q = time_parametrised(ends, std::array{v}, std::array{2.0},
-                                     {.initial_rates = {v}, .final_rates = {v}, .jerk = {5}});
+    const auto q =
+        time_optimal_trajectory(ends, std::array{v}, std::array{2.0},
+                                {.initial_velocities = {v}, .final_velocities = {v}, .jerk = {5}});
     CHECK(q.duration() >= 2 / v * (1 - 1e-12));
     CHECK(q.duration() < 2 / v * 1.002);
     CHECK(largest_share(q, one(v), one(2.0), one(5.0), 3000) <= 1 + 1e-12);
   }
   // Away from the goal at first, and back from beyond it.
   const std::vector<one> line{one(0.0), one(1.0)};
-  const auto q = time_parametrised(line, std::array{1.0}, std::array{2.0},
-                                   {.initial_rates = {-.2}, .final_rates = {-.1}, .jerk = {20}});
+  const auto q = time_optimal_trajectory(
+      line, std::array{1.0}, std::array{2.0},
+      {.initial_velocities = {-.2}, .final_velocities = {-.1}, .jerk = {20}});
   CHECK(largest_share(q, one(1.0), one(2.0), one(20.0), 3000) <= 1 + 1e-12);
   CHECK(q(0).velocity[0] == doctest::Approx(-.2).epsilon(1e-12));
   CHECK(q(.01).value[0] < 0);
@@ -237,12 +240,12 @@ TEST_CASE("from rates of motions that are known, along a middle piece, none is r
   for (int k = 0; k < 24; ++k) {
     CAPTURE(k);
     const auto limits = [&](double from, double to) {
-      return vector(random.magnitude(from, to), random.magnitude(from, to),
-                    random.magnitude(from, to));
+      return vector(random.log_uniform(from, to), random.log_uniform(from, to),
+                    random.log_uniform(from, to));
     };
     const vector v = limits(.3, 3), a = limits(.5, 20), j = limits(1, 500);
     const auto waypoints = random_waypoints(random, k % 4);
-    const time_options options{.parts = 120, .jerk = numbers(j)};
+    const time_parametrisation_options options{.min_intervals = 120, .jerk = numbers(j)};
     auto problem = detail::timing_problem_of(waypoints, v, a, options);
     auto& polygon = problem.polygon;
     const auto curve = detail::hermite_curve(polygon, detail::smooth_slopes(polygon));
@@ -300,11 +303,11 @@ TEST_CASE(
     vector last = size * vector(random.normal(), random.normal(), .2);
     (k % 3 == 1 ? first : last) *= k % 3 == 2 ? 1 : 0;
     const auto timed = [&] {
-      return time_parametrised(waypoints, v, a,
-                               {.parts = 120,
-                                .initial_rates = numbers(first),
-                                .final_rates = numbers(last),
-                                .jerk = numbers(j)});
+      return time_optimal_trajectory(waypoints, v, a,
+                                     {.min_intervals = 120,
+                                      .initial_velocities = numbers(first),
+                                      .final_velocities = numbers(last),
+                                      .jerk = numbers(j)});
     };
     std::string message = duet_test::message_of([&] { (void)timed(); });
     if (message.find("beyond its limit") != std::string::npos) {
@@ -352,10 +355,10 @@ TEST_CASE("seven joints in motion at ends, and one that has no way to stop") {
     const seven v = some().cwiseAbs() + seven::Constant(.5), a = seven::Constant(4),
                 j = seven::Constant(50);
     const seven first = .2 * some().cwiseMin(1).cwiseMax(-1);
-    const auto q = time_parametrised(waypoints, v, a,
-                                     {.parts = 120,
-                                      .initial_rates = {first.begin(), first.end()},
-                                      .jerk = {j.begin(), j.end()}});
+    const auto q = time_optimal_trajectory(waypoints, v, a,
+                                           {.min_intervals = 120,
+                                            .initial_velocities = {first.begin(), first.end()},
+                                            .jerk = {j.begin(), j.end()}});
     CHECK(largest_share(q, v, a, j, 500) <= 1 + 1e-10);
     CHECK((q(0).velocity - first).norm() < 1e-12);
   }
@@ -364,16 +367,16 @@ TEST_CASE("seven joints in motion at ends, and one that has no way to stop") {
   const auto stop = [&](double way) {
     const std::vector<one> line{one(0.0), one(way)};
     return duet_test::message_of([&] {
-      (void)time_parametrised(line, std::array{2.0}, std::array{100.0},
-                              {.initial_rates = {1}, .jerk = {8}});
+      (void)time_optimal_trajectory(line, std::array{2.0}, std::array{100.0},
+                                    {.initial_velocities = {1}, .jerk = {8}});
     });
   };
   CHECK(stop(least * 1.01) == "");
   const std::string message = stop(least * .9);
   CAPTURE(message);
-  CHECK(
-      message.find("duet: time_parametrised: the limits could not be kept from the initial rates, "
-                   "only from 0.9") == 0);
+  CHECK(message.find(
+            "duet: time_optimal_trajectory: the limits could not be kept from the initial rates, "
+            "only from 0.9") == 0);
   CHECK(message.find(" of them, by reason of joint 0, whose rate is 1") != std::string::npos);
 }
 
@@ -382,7 +385,7 @@ TEST_CASE("accelerations don't jump, and velocities, accelerations and jerks are
   const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
   for (int k = 0; k < 4; ++k) {
     const auto waypoints = random_waypoints(random, k);
-    const auto q = time_parametrised(waypoints, v, a, {.jerk = numbers(j)});
+    const auto q = time_optimal_trajectory(waypoints, v, a, {.jerk = numbers(j)});
     const int count = 4000;
     const double h = q.duration() / count;
     int smooth = 0;
@@ -544,29 +547,34 @@ TEST_CASE("infinite limits are none; what can't be done is said") {
   const vector v(1, 1, 1), a(2, 3, 4);
   const std::vector<double> none(3, infinity), j{20, 20, 20};
   const double smooth =
-      time_parametrised(waypoints, v, a, {.curve = joint_curve::smooth}).duration();
-  CHECK(time_parametrised(waypoints, v, a, {.jerk = none}).duration() == smooth);
-  CHECK(time_parametrised(waypoints, v, a, {.jerk = j}).duration() > smooth);
-  const auto refusal = [&](const time_options& options) {
-    return duet_test::message_of([&] { (void)time_parametrised(waypoints, v, a, options); });
+      time_optimal_trajectory(waypoints, v, a, {.curve = waypoint_interpolation::smooth})
+          .duration();
+  CHECK(time_optimal_trajectory(waypoints, v, a, {.jerk = none}).duration() == smooth);
+  CHECK(time_optimal_trajectory(waypoints, v, a, {.jerk = j}).duration() > smooth);
+  const auto refusal = [&](const time_parametrisation_options& options) {
+    return duet_test::message_of([&] { (void)time_optimal_trajectory(waypoints, v, a, options); });
   };
-  CHECK(refusal({.jerk = {1, 2}}) == "duet: time_parametrised: 2 jerk limits for 3 joints");
-  CHECK(refusal({.jerk = {1, 2, 0}}) == "duet: time_parametrised: the jerk limit of joint 2 is 0");
-  CHECK(refusal({.initial_rates = {.1, 0, -1.5}, .jerk = j}) ==
-        "duet: time_parametrised: the initial rate of joint 2 is -1.5, beyond its limit 1");
-  CHECK(refusal({.final_rates = {.1, 1.25, 0}, .jerk = j}) ==
-        "duet: time_parametrised: the final rate of joint 1 is 1.25, beyond its limit 1");
-  CHECK(time_parametrised(waypoints, v, a, {.initial_rates = {0, 0, 0}, .jerk = j}).duration() > 0);
-  CHECK(refusal({.curve = joint_curve::monotone, .jerk = j}) ==
-        "duet: time_parametrised: limits of jerk ask for a curve with continuous second "
-        "derivatives, as joint_curve::smooth where no joint leaves its range: at waypoint 1 that "
+  CHECK(refusal({.jerk = {1, 2}}) == "duet: time_optimal_trajectory: 2 jerk limits for 3 joints");
+  CHECK(refusal({.jerk = {1, 2, 0}}) ==
+        "duet: time_optimal_trajectory: the jerk limit of joint 2 is 0");
+  CHECK(refusal({.initial_velocities = {.1, 0, -1.5}, .jerk = j}) ==
+        "duet: time_optimal_trajectory: the initial rate of joint 2 is -1.5, beyond its limit 1");
+  CHECK(refusal({.final_velocities = {.1, 1.25, 0}, .jerk = j}) ==
+        "duet: time_optimal_trajectory: the final rate of joint 1 is 1.25, beyond its limit 1");
+  CHECK(time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {0, 0, 0}, .jerk = j})
+            .duration() > 0);
+  CHECK(refusal({.curve = waypoint_interpolation::monotone, .jerk = j}) ==
+        "duet: time_optimal_trajectory: limits of jerk ask for a curve with continuous second "
+        "derivatives, as waypoint_interpolation::smooth where no joint leaves its range: at "
+        "waypoint 1 that "
         "of joint 1 jumps");
   // Straight on every curve is smooth, and all waypoints in one place are no way.
   const std::vector<vector> straight{vector(0, 0, 0), vector(1, 2, 3), vector(1, 2, 3),
                                      vector(3, 6, 9)};
-  CHECK(time_parametrised(straight, v, a, {.curve = joint_curve::monotone, .jerk = j}).duration() >
-        0);
-  CHECK(time_parametrised(std::vector<vector>{v, v}, v, a, {.jerk = j}).duration() == 0);
+  CHECK(time_optimal_trajectory(straight, v, a,
+                                {.curve = waypoint_interpolation::monotone, .jerk = j})
+            .duration() > 0);
+  CHECK(time_optimal_trajectory(std::vector<vector>{v, v}, v, a, {.jerk = j}).duration() == 0);
 
   // A chain's joint that leaves its range, and with a wider range.
   for (const double range : {1.0, 2.0}) {
@@ -576,7 +584,7 @@ TEST_CASE("infinite limits are none; what can't be done is said") {
     }
     const std::vector<vector> back{vector(0, 0, 0), vector(1, .3, .2), vector(0, .4, .6)};
     const auto message = duet_test::message_of(
-        [&] { (void)time_parametrised(serial_chain<3>(joints), back, a, {.jerk = j}); });
+        [&] { (void)time_optimal_trajectory(serial_chain<3>(joints), back, a, {.jerk = j}); });
     CHECK(message.empty() == (range == 2));
     if (range == 1) {
       CHECK(message.find("at waypoint 1 that of joint 0 jumps") != std::string::npos);

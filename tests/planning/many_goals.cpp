@@ -28,8 +28,8 @@ using duet_test::configuration;
 using result = inverse_kinematics_result<chain::joints>;
 
 bool are_identical(const result& a, const result& b) {
-  return a.joints == b.joints && a.deviation.length == b.deviation.length &&
-         a.deviation.angle == b.deviation.angle && a.iterations == b.iterations &&
+  return a.joints == b.joints && a.deviation.translation == b.deviation.translation &&
+         a.deviation.rotation == b.deviation.rotation && a.iterations == b.iterations &&
          a.restarts == b.restarts && a.reason == b.reason;
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("regions, some beyond reach, with and without wishes") {
   duet_test::random_source random(91);
   for (const chain& arm : {chain(robots::panda().table()), chain(duet_test::stanford_arm(1))}) {
     const vector start = configuration(arm, random);
-    std::vector<pose_region> regions;
+    std::vector<task_space_region> regions;
     std::vector<dual_quaternion<double>> poses;
     for (int k = 0; k < 10; ++k) {
       const auto tip = arm.pose(configuration(arm, random));
@@ -90,7 +90,7 @@ TEST_CASE("regions, some beyond reach, with and without wishes") {
     }
     regions[2] = position_goal({90, 0, 0});
     poses[5] = pose(quaternion<double>(1), vector3<double>(0, 90, 0));
-    const inverse_kinematics_options options{.restarts = 5, .seed = 7, .candidates = 2};
+    const inverse_kinematics_options options{.max_restarts = 5, .seed = 7, .candidates = 2};
     scene around;
     around.bodies = {{arm.size(), sphere<>{{0, 0, 0}, .01}}};
     around.obstacles = {sphere<>{translation(poses[1]), .02}};
@@ -131,7 +131,7 @@ TEST_CASE("goals of one's own, in an array; what may be left away") {
 TEST_CASE("what is refused, before anything is begun") {
   const chain arm = robots::panda().table();
   const vector start = (vector(7) << 0, -.8, 0, -2.4, 0, 1.6, .8).finished();
-  std::vector<pose_region> regions(20, position_goal({.5, 0, .5}));
+  std::vector<task_space_region> regions(20, position_goal({.5, 0, .5}));
   std::vector<dual_quaternion<double>> poses(
       20, pose(quaternion<double>(1), vector3<double>(.5, 0, .5)));
   std::vector<result> out(20);
@@ -146,14 +146,14 @@ TEST_CASE("what is refused, before anything is begun") {
   CHECK(text_of(poses, 7, wish) == "duet: inverse_kinematics: 20 goals, but room for 7 results");
   CHECK(text_of(regions, 20, preferred_posture{vector(vector::Zero(3))}) ==
         "duet: preferred_posture: 3 coordinates for 7 joints");
-  regions[17].tilt = -1;
+  regions[17].max_tilt = -1;
   regions[18].axis = {0, 0, 2};
   poses[17] = 2 * poses[17];
   CHECK(text_of(regions, 20, no_objective{}) ==
         "duet: inverse_kinematics: the tilt of goal 17 is -1");
   CHECK(text_of(poses, 20, wish) ==
         "duet: inverse_kinematics: goal 17 is no unit dual quaternion: |p|^2 = 4, p.q = 0");
-  regions[17].tilt = 1;
+  regions[17].max_tilt = 1;
   CHECK(text_of(regions, 20, no_objective{}) ==
         "duet: inverse_kinematics: the axis of goal 18 (0, 0, 2) is no unit vector");
   CHECK(out[0].iterations == -1);

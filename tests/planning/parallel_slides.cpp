@@ -109,7 +109,7 @@ TEST_CASE("the turns that a goal is made of are found, once, and whatever a sear
       const vector theta = configuration(random, kind);
       const auto goal = arm.pose(theta);
       const result all = all_inverse_kinematics(arm, goal);
-      CHECK(all.method == branch_method::two_slides);
+      CHECK(all.method == solution_method::two_prismatic);
       CHECK_FALSE(all.is_complete);
       CHECK(all.complex_solutions == 0);
       CHECK(count_of(all, kind, theta) == 1);
@@ -121,7 +121,7 @@ TEST_CASE("the turns that a goal is made of are found, once, and whatever a sear
       }
       for (int start = 0; start < 5; ++start) {
         const auto found = inverse_kinematics(arm, goal, configuration(random, kind),
-                                              {.tolerance = 1e-11, .restarts = 3});
+                                              {.tolerance = 1e-11, .max_restarts = 3});
         if (found.reason == stop_reason::reached) {
           ++others;
           CHECK(count_of(all, kind, found.joints) == 1);
@@ -198,9 +198,9 @@ TEST_CASE("a slide of the tool along that of the base, for some goals") {
   for (int k = 0; k < 10; ++k) {
     const double angle = random.uniform(-pi, pi);
     const quaternion<double> upright(std::cos(angle), 0, 0, std::sin(angle));
-    const pose_region rotation_alone{.frame = pose(upright, vector3<double>(0, 0, 0)),
-                                     .lower = {-infinity, -infinity, -infinity},
-                                     .upper = {infinity, infinity, infinity}};
+    const task_space_region rotation_alone{.frame = pose(upright, vector3<double>(0, 0, 0)),
+                                           .lower = {-infinity, -infinity, -infinity},
+                                           .upper = {infinity, infinity, infinity}};
     const auto known = inverse_kinematics(arm, rotation_alone, configuration(random, kind),
                                           {.tolerance = {1, 1e-14}});
     if (known.reason == stop_reason::reached) {

@@ -40,9 +40,9 @@ double largest_deviation(const Chain& chain, const Plan& plan, const Path& path)
           return std::numeric_limits<double>::infinity();
         }
       }
-      const auto d = duet::deviation_between(chain.pose(theta),
-                                             path((1 - x) * plan.tau[k - 1] + x * plan.tau[k]));
-      result = std::max({result, d.length, d.angle});
+      const auto d = duet::pose_error_between(chain.pose(theta),
+                                              path((1 - x) * plan.tau[k - 1] + x * plan.tau[k]));
+      result = std::max({result, d.translation, d.rotation});
     }
   }
   return result;
@@ -61,9 +61,9 @@ void check_clear_screw(const Chain& arm, const Plan& plan,
         CHECK(theta[i] <= arm.limits(i).upper);
       }
       const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
-      const auto d = duet::deviation_between(arm.pose(theta), sclerp(plan.poses[0], goal, tau));
-      CHECK(d.length < 1e-5);
-      CHECK(d.angle < 1e-5);
+      const auto d = duet::pose_error_between(arm.pose(theta), sclerp(plan.poses[0], goal, tau));
+      CHECK(d.translation < 1e-5);
+      CHECK(d.rotation < 1e-5);
       CHECK(duet::clearance(arm, theta, around).distance >
             around.margin - (part == 2 ? 1e-6 : 1.1e-5));
     }

@@ -83,8 +83,8 @@ TEST_CASE("from the gripper-down pose to near goals, along the screw") {
     REQUIRE(plan.reason == stop_reason::reached);
     CHECK(worst(plan, goal) < 1e-5);
     CHECK(plan.joints.front() == gripper_down());
-    const pose_deviation left = deviation_between(plan.poses.back(), goal);
-    CHECK(std::max(left.length, left.angle) <= 1e-6);
+    const pose_error left = pose_error_between(plan.poses.back(), goal);
+    CHECK(std::max(left.translation, left.rotation) <= 1e-6);
     CHECK(plan.tau.back() == 1);
     CHECK(plan.iterations <
           2.3 * double(plan.joints.size())); // a step to first order, and Newton's
@@ -148,7 +148,7 @@ TEST_CASE("no joint has to make up for an unlimited one") {
     joints[i].kind = i == 3 ? joint_kind::revolute : joint_kind::continuous;
   }
   joints[3].limits = {.1, 2};
-  const serial_chain<-8> free_arm{std::span<const joint<>>(joints)};
+  const bounded_chain<8> free_arm{std::span<const joint<>>(joints)};
   vector start, end;
   start << .1, .5, .3, 1, -.4, .7, .2;
   end << .5, .2, .6, .6, 0, 1, -.2;
@@ -164,13 +164,13 @@ TEST_CASE("N24: the notes' planner reaches near goals too, but drifts from the s
   const auto goal = arm.pose(end);
   const auto plan = printed_screw_plan(arm, gripper_down(), goal);
   CHECK(plan.reason == stop_reason::reached);
-  const pose_deviation left = deviation_between(plan.poses.back(), goal);
-  CHECK(std::max(left.length, left.angle) <= 1e-4);
+  const pose_error left = pose_error_between(plan.poses.back(), goal);
+  CHECK(std::max(left.translation, left.rotation) <= 1e-4);
   // Each step goes one hundredth of what is left.
   CHECK(plan.iterations > 300);
   double drift = 0;
-  for (const pose_deviation& d : plan.deviations) {
-    drift = std::max({drift, d.length, d.angle});
+  for (const pose_error& d : plan.deviations) {
+    drift = std::max({drift, d.translation, d.rotation});
   }
   CHECK(drift > 1e-5);
 }
@@ -183,10 +183,11 @@ TEST_CASE("why it stops") {
   CHECK(plan.tau.back() < 1);
   CHECK(plan.tau.back() > .1);
   CHECK(worst(plan, far) < 1e-5);
-  CHECK(plan_screw_motion(arm, gripper_down(), far, {.iterations = 5}).reason ==
+  CHECK(plan_screw_motion(arm, gripper_down(), far, {.max_iterations = 5}).reason ==
         stop_reason::iteration_limit);
-  CHECK(plan_screw_motion(arm, gripper_down(), far, {.iterations = plan.iterations + 9}).reason ==
-        stop_reason::iteration_limit);
+  CHECK(
+      plan_screw_motion(arm, gripper_down(), far, {.max_iterations = plan.iterations + 9}).reason ==
+      stop_reason::iteration_limit);
   // A joint's limit, and no other joint to go the same way.
   std::array<joint<>, 6> joints;
   for (std::size_t i = 0; i < 6; ++i) {

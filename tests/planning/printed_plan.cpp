@@ -44,7 +44,7 @@ template <class Plan>
 double lag(const Plan& plan, std::size_t poses) {
   double result = 0;
   for (std::size_t k = poses / 2; k <= poses; ++k) {
-    result = std::max(result, plan.deviations[k].length);
+    result = std::max(result, plan.deviations[k].translation);
   }
   return result;
 }
@@ -68,8 +68,8 @@ TEST_CASE("N24: every step is one of ScLERP, then N23, from where the last one e
 
 TEST_CASE("N24: what β does, τ does: each step leaves about 1 − βτ of the way") {
   const auto goal = arm.pose(near_gripper_down());
-  const auto way = deviation_between(arm.pose(gripper_down()), goal);
-  const double left = 1e-4 / std::max(way.length, way.angle);
+  const auto way = pose_error_between(arm.pose(gripper_down()), goal);
+  const double left = 1e-4 / std::max(way.translation, way.rotation);
   for (const double tau : {.05, .1}) {
     for (const double beta : {.3, 1., 1.8, 2.5}) {
       CAPTURE(tau);
@@ -92,9 +92,9 @@ TEST_CASE("N25, note 2: inverse kinematics, whose answer depends on the start") 
                             vector(.8, -.2, -.5, .3, .4, .5, .1)}) {
     const auto plan = printed_screw_plan(arm, vector(gripper_down() + shift), goal, {.tau = .1});
     CHECK(plan.reason == stop_reason::reached);
-    const auto off = deviation_between(arm.pose(plan.joints.back()), goal);
-    CHECK(off.length <= 1e-4);
-    CHECK(off.angle <= 1e-4);
+    const auto off = pose_error_between(arm.pose(plan.joints.back()), goal);
+    CHECK(off.translation <= 1e-4);
+    CHECK(off.rotation <= 1e-4);
     answers.push_back(plan.joints.back());
   }
   CHECK((answers[0] - answers[1]).norm() > .1);
@@ -110,15 +110,16 @@ TEST_CASE("N25, note 1: along a path of poses, N23 towards one after the other")
   CHECK(plan.joints.size() == std::size_t(plan.iterations) + 1);
   CHECK(plan.joints.size() > 101); // it lags, and catches up at the end
   CHECK(plan.tau.front() == 0);
-  CHECK(plan.deviations.front().length == doctest::Approx(.2 * std::sin(3.141592653589793 / 100)));
+  CHECK(plan.deviations.front().translation ==
+        doctest::Approx(.2 * std::sin(3.141592653589793 / 100)));
   for (std::size_t k = 1; k < plan.joints.size(); ++k) {
     const std::size_t target = std::min<std::size_t>(k, 100);
     CHECK(plan.tau[k] == double(target));
     CHECK(plan.joints[k] == resolved_step(arm, plan.joints[k - 1], path[target - 1], .7));
-    CHECK(plan.deviations[k].length ==
-          deviation_between(arm.pose(plan.joints[k]), path[target - 1]).length);
+    CHECK(plan.deviations[k].translation ==
+          pose_error_between(arm.pose(plan.joints[k]), path[target - 1]).translation);
   }
-  CHECK(deviation_between(arm.pose(plan.joints.back()), path.back()).length <= 1e-4);
+  CHECK(pose_error_between(arm.pose(plan.joints.back()), path.back()).translation <= 1e-4);
 }
 
 TEST_CASE("N25, note 1: what β does along a path") {
@@ -136,7 +137,7 @@ TEST_CASE("N25, note 1: what β does along a path") {
   CHECK(exact.iterations == 200);
   CHECK(lag(coarse, 100) / lag(exact, 200) == doctest::Approx(4).epsilon(.05));
   // Errors grow by 1 − β.
-  CHECK(printed_path_plan(arm, gripper_down(), fine, {.beta = 2.5, .iterations = 300}).reason !=
+  CHECK(printed_path_plan(arm, gripper_down(), fine, {.beta = 2.5, .max_iterations = 300}).reason !=
         stop_reason::reached);
 }
 
@@ -145,7 +146,7 @@ TEST_CASE("N25: paths that cannot be followed") {
   CHECK_THROWS_WITH_AS((void)printed_path_plan(arm, gripper_down(), path),
                        "duet: plan: the path has no poses", invalid_input);
   path = circle(10);
-  CHECK(printed_path_plan(arm, gripper_down(), path, {.iterations = 4}).reason ==
+  CHECK(printed_path_plan(arm, gripper_down(), path, {.max_iterations = 4}).reason ==
         stop_reason::iteration_limit);
   path[3] = dual_quaternion<double>(2);
   CHECK_THROWS_WITH_AS(

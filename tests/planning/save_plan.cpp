@@ -45,8 +45,8 @@ TEST_CASE("a plan and its trajectory, to the last digit") {
     for (std::size_t i = 0; i < 7; ++i) {
       CHECK(x[3 + i] == gamma[Eigen::Index(i)]);
     }
-    CHECK(x[10] == plan.deviations[k].length);
-    CHECK(x[11] == plan.deviations[k].angle);
+    CHECK(x[10] == plan.deviations[k].translation);
+    CHECK(x[11] == plan.deviations[k].rotation);
   }
   std::ifstream in(path);
   std::string header;
@@ -55,7 +55,7 @@ TEST_CASE("a plan and its trajectory, to the last digit") {
                   "deviation [m],deviation [rad]");
   in.close();
 
-  const auto q = time_parametrised(plan, vector(1, 1), vector(2, 2));
+  const auto q = time_optimal_trajectory(plan, vector(1, 1), vector(2, 2));
   save_trajectory(path, q, .1);
   const csv_file timed(path, 7);
   CHECK(timed.rows().size() == std::size_t(std::ceil(q.duration() / .1)) + 1);

@@ -36,24 +36,25 @@ scene panda_bodies() {
                 {7, capsule<>({0, 0, .06}, {0, 0, .16}, .05), "hand"}},
                {},
                .02};
-  result.pairs = pairs_apart(arm, result.bodies, {{"upper arm", "base"}});
+  result.pairs = self_collision_pairs(arm, result.bodies, {{"upper arm", "base"}});
   return result;
 }
 
-bool has(const std::vector<body_pair>& pairs, std::size_t first, std::size_t second) {
-  return std::any_of(pairs.begin(), pairs.end(), [&](const body_pair& each) {
+bool has(const std::vector<collision_pair>& pairs, std::size_t first, std::size_t second) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const collision_pair& each) {
     return each.first == first && each.second == second;
   });
 }
 
 /// The gradient of the distance of a pair: nᵀ of the difference of the Jacobians of its two points.
 template <class M, class X>
-void check_gradient(const M& mechanism, const X& theta, const link_body& a, const link_body& b) {
+void check_gradient(const M& mechanism, const X& theta, const collision_body& a,
+                    const collision_body& b) {
   const auto p = closest_points(mechanism, theta, a, b);
   const auto [d, g] = distance_and_gradient(mechanism, theta, a, b);
   CHECK(std::abs(d - p.distance) < 1e-14);
   CHECK((p.on_obstacle + d * p.normal - p.on_body).norm() < 1e-14);
-  const auto rates = [&](const link_body& body, const point& x) {
+  const auto rates = [&](const collision_body& body, const point& x) {
     const auto j = jacobian(mechanism, theta, frame::spatial, body.link);
     Eigen::Matrix3Xd result(3, j.cols());
     for (Eigen::Index i = 0; i < j.cols(); ++i) {
@@ -70,7 +71,7 @@ void check_gradient(const M& mechanism, const X& theta, const link_body& a, cons
 template <class M, class X>
 void check_gradients(const M& mechanism, const X& theta, const scene& s) {
   for (const auto [first, second] : s.pairs) {
-    const link_body &a = s.bodies[first], &b = s.bodies[second];
+    const collision_body &a = s.bodies[first], &b = s.bodies[second];
     check_gradient(mechanism, theta, a, b);
     check_gradient(mechanism, theta, b, a);
     CHECK(std::abs(closest_points(mechanism, theta, a, b).distance -
@@ -85,15 +86,15 @@ TEST_CASE("pairs: neither one link, nor neighbours, nor what is excluded by name
   CHECK(s.pairs.size() == 5);
   CHECK(!has(s.pairs, 0, 1));
   CHECK(has(s.pairs, 0, 2));
-  CHECK(pairs_apart(arm, s.bodies).size() == 6);
-  CHECK(pairs_apart(arm, s.bodies, {{"hand", "forearm"}, {"hand", "foot"}}).size() == 5);
-  const std::vector<link_body> near = {
+  CHECK(self_collision_pairs(arm, s.bodies).size() == 6);
+  CHECK(self_collision_pairs(arm, s.bodies, {{"hand", "forearm"}, {"hand", "foot"}}).size() == 5);
+  const std::vector<collision_body> near = {
       {3, sphere<>{}}, {3, sphere<>{}}, {4, sphere<>{}}, {5, sphere<>{}}};
-  const auto pairs = pairs_apart(arm, near);
+  const auto pairs = self_collision_pairs(arm, near);
   CHECK(pairs.size() == 2);
   CHECK(has(pairs, 0, 3));
   CHECK(has(pairs, 1, 3));
-  CHECK_THROWS_WITH_AS((void)pairs_apart(arm, {{9, sphere<>{}}}),
+  CHECK_THROWS_WITH_AS((void)self_collision_pairs(arm, {{9, sphere<>{}}}),
                        "duet: serial_chain: no link 9 in a chain of 7 joints", invalid_input);
 }
 
@@ -133,7 +134,7 @@ TEST_CASE("a tree and itself; links that are fixed to each other are one") {
   for (std::size_t i = 0; i < tree.links().size(); ++i) {
     s.bodies.push_back({int(i), capsule<>(at(), at(), .02), tree.links()[i].name});
   }
-  s.pairs = pairs_apart(tree, s.bodies, {{"finger", "flange"}});
+  s.pairs = self_collision_pairs(tree, s.bodies, {{"finger", "flange"}});
   const auto kept_apart = [&](const char* a, const char* b) {
     const auto i = std::size_t(tree.link(a).link), k = std::size_t(tree.link(b).link);
     return has(s.pairs, std::min(i, k), std::max(i, k));

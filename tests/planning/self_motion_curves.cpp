@@ -54,9 +54,9 @@ void check_curves(const chain& arm, const vector& theta,
   for (const auto& curve : curves) {
     CHECK(curve.is_closed);
     for (std::size_t k = 0; k < curve.joints.size(); ++k) {
-      const pose_deviation left = deviation_between(arm.pose(curve.joints[k]), goal);
-      CHECK(left.length < 1e-10);
-      CHECK(left.angle < 1e-10);
+      const pose_error left = pose_error_between(arm.pose(curve.joints[k]), goal);
+      CHECK(left.translation < 1e-10);
+      CHECK(left.rotation < 1e-10);
       const vector step = difference(curve.joints[(k + 1) % curve.joints.size()], curve.joints[k]);
       CHECK(step.norm() > 0);
       CHECK(step.norm() <= resolution * (1 + 1e-9));
@@ -99,9 +99,9 @@ TEST_CASE("a general arm; finer curves are as many") {
 void check_component(const chain& arm, const self_motion_curve<7>& part,
                      const dual_quaternion<double>& goal, double resolution) {
   for (const auto& x : part.joints) {
-    const pose_deviation left = deviation_between(arm.pose(x), goal);
-    CHECK(left.length < 1e-10);
-    CHECK(left.angle < 1e-10);
+    const pose_error left = pose_error_between(arm.pose(x), goal);
+    CHECK(left.translation < 1e-10);
+    CHECK(left.rotation < 1e-10);
   }
   if (part.dimension == 1) {
     CHECK(part.is_closed);
@@ -156,7 +156,7 @@ TEST_CASE("straight elbows, shoulders and wrists: curves and tori of iiwa") {
 TEST_CASE("the upright iiwa moves with three degrees of freedom, and the sample is spread") {
   const chain arm = robots::iiwa14().table();
   const vector zero = vector::Zero(), moved = (vector() << .3, 0, -.3, 0, .4, 0, -.4).finished();
-  CHECK(deviation_between(arm.pose(moved), arm.pose(zero)).length < 1e-12);
+  CHECK(pose_error_between(arm.pose(moved), arm.pose(zero)).translation < 1e-12);
   const auto parts = self_motion_curves(arm, arm.pose(zero));
   REQUIRE(parts.size() == 1);
   CHECK(parts[0].dimension == 3);

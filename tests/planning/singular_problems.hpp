@@ -130,7 +130,7 @@ problem<N> make(const arm<N>& a, family kind, random_source& random) {
   }
   p.end = p.start;
   const double near = kind == family::across       ? 0
-                      : kind == family::past       ? random.magnitude(1e-6, 1e-2)
+                      : kind == family::past       ? random.log_uniform(1e-6, 1e-2)
                       : kind >= family::from_wrist ? 1
                                                    : .5;
   for (int i = 0; i < N; ++i) {

@@ -193,13 +193,13 @@ TEST_CASE("one joint: the trapezoid of the closed form") {
     const double exact = way > v * v / a ? way / v + v / a : 2 * std::sqrt(way / a);
     const std::vector<Eigen::Matrix<double, 1, 1>> ends{Eigen::Matrix<double, 1, 1>(1.0),
                                                         Eigen::Matrix<double, 1, 1>(1 + way)};
-    const auto q = time_parametrised(ends, std::array{v}, std::array{a});
+    const auto q = time_optimal_trajectory(ends, std::array{v}, std::array{a});
     CHECK(q.duration() >= exact * (1 - 1e-12));
     CHECK(q.duration() < exact * (1 + 3e-4));
     CHECK(q.times() == std::vector<double>{0, q.duration()});
     // No limit of velocity.
-    const auto free =
-        time_parametrised(ends, std::array{std::numeric_limits<double>::infinity()}, std::array{a});
+    const auto free = time_optimal_trajectory(
+        ends, std::array{std::numeric_limits<double>::infinity()}, std::array{a});
     CHECK(free.duration() == doctest::Approx(2 * std::sqrt(way / a)).epsilon(2e-4));
   }
 }
@@ -217,15 +217,16 @@ TEST_CASE("one joint in motion at its ends: the closed form; backwards first it 
       const double peak = std::min(v, std::sqrt(a * way + squares / 2));
       const double exact =
           (2 * peak - v_0 - v_1) / a + (way - (2 * peak * peak - squares) / (2 * a)) / peak;
-      const auto q = time_parametrised(ends, std::array{v}, std::array{a},
-                                       {.initial_rates = {v_0}, .final_rates = {v_1}});
+      const auto q =
+          time_optimal_trajectory(ends, std::array{v}, std::array{a},
+                                  {.initial_velocities = {v_0}, .final_velocities = {v_1}});
       CHECK(q.duration() >= exact * (1 - 1e-12));
       CHECK(q.duration() < exact * (1 + 1e-3));
       CHECK(q(0).velocity[0] == doctest::Approx(v_0));
       CHECK(q(q.duration()).velocity[0] == doctest::Approx(v_1));
     }
     const auto back =
-        time_parametrised(ends, std::array{v}, std::array{a}, {.initial_rates = {-.3}});
+        time_optimal_trajectory(ends, std::array{v}, std::array{a}, {.initial_velocities = {-.3}});
     CHECK(back(0).velocity[0] == doctest::Approx(-.3));
     CHECK(back(back.duration()).value[0] == doctest::Approx(1 + way));
     double least = 1;
@@ -243,7 +244,7 @@ TEST_CASE("straight on, the slowest joint sets the pace") {
   const std::vector<vector> ends{vector(0, 1, 0), vector(1, .5, 0)};
   const vector v(1, 1, 1), a(4, 1, 1e-3);
   // The second joint goes half as far at a quarter of the acceleration.
-  const auto q = time_parametrised(ends, v, a);
+  const auto q = time_optimal_trajectory(ends, v, a);
   check(q, ends, v, a);
   CHECK(q.duration() == doctest::Approx(1 / 1.0 + 1 / 2.0).epsilon(1e-4));
 }
@@ -263,10 +264,10 @@ TEST_CASE("limits are kept on smooth paths, around corners, and however unequal 
       const double x = double(i) / count;
       here = k % 3 == 0 ? vector(std::cos(5 * x), std::sin(5 * x), x)
                         : vector(here + vector(random.normal(), random.normal(), random.normal()) *
-                                            (k % 3 == 1 ? 1 : random.magnitude(1e-6, 1)));
+                                            (k % 3 == 1 ? 1 : random.log_uniform(1e-6, 1)));
     }
     CAPTURE(k);
-    CHECK(check(time_parametrised(waypoints, v, a), waypoints, v, a) > .8);
+    CHECK(check(time_optimal_trajectory(waypoints, v, a), waypoints, v, a) > .8);
   }
 }
 
@@ -280,11 +281,11 @@ TEST_CASE("more waypoints of the same path take no longer, and more parts less t
     }
     return points;
   };
-  const double coarse = time_parametrised(circle(20), v, a).duration();
-  const double fine = time_parametrised(circle(80), v, a).duration();
+  const double coarse = time_optimal_trajectory(circle(20), v, a).duration();
+  const double fine = time_optimal_trajectory(circle(80), v, a).duration();
   CHECK(std::abs(coarse - fine) < .03 * fine);
-  const double few = time_parametrised(circle(4), v, a, {.parts = 1}).duration();
-  const double many = time_parametrised(circle(4), v, a, {.parts = 800}).duration();
+  const double few = time_optimal_trajectory(circle(4), v, a, {.min_intervals = 1}).duration();
+  const double many = time_optimal_trajectory(circle(4), v, a, {.min_intervals = 800}).duration();
   CHECK(many < few);
   CHECK(few < 1.1 * many);
 }
@@ -297,7 +298,8 @@ TEST_CASE("limits hold to rounding between waypoints that nearly repeat") {
     return vector(d[0], d[1], d[2]);
   };
   for (const double tiny : {1e-6, 1e-7, 1e-9}) {
-    for (const joint_curve curve : {joint_curve::monotone, joint_curve::smooth}) {
+    for (const waypoint_interpolation curve :
+         {waypoint_interpolation::monotone, waypoint_interpolation::smooth}) {
       for (int kind = 0; kind < 4; ++kind) {
         std::vector<vector> waypoints{vector(.1, .2, .3)};
         for (int k = 0; k < 5; ++k) {
@@ -308,12 +310,12 @@ TEST_CASE("limits hold to rounding between waypoints that nearly repeat") {
           }
           waypoints.push_back(waypoints.back() + tiny * (kind == 0 || kind == 3 ? direction() : d));
         }
-        time_options options;
+        time_parametrisation_options options;
         options.curve = curve;
         const double speed = kind == 3 ? .1 : 0;
         const vector last = waypoints[1] - waypoints[0];
-        options.initial_rates = {speed * last[0], speed * last[1], speed * last[2]};
-        const auto q = time_parametrised(waypoints, v, a, options);
+        options.initial_velocities = {speed * last[0], speed * last[1], speed * last[2]};
+        const auto q = time_optimal_trajectory(waypoints, v, a, options);
         double largest = 0;
         for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
           const double from = q.times()[i], to = q.times()[i + 1];
@@ -337,7 +339,7 @@ TEST_CASE("along a plan; a plan that stays; bad input") {
   motion_plan<3> plan;
   plan.joints = {vector(0, 1, 2), vector(1, 1, 3)};
   const vector v(1, 1, 1), a(1, 1, 1);
-  const auto q = time_parametrised(plan, v, a);
+  const auto q = time_optimal_trajectory(plan, v, a);
   CHECK(q.duration() == doctest::Approx(2).epsilon(1e-4));
   CHECK_THROWS_WITH_AS((void)q(3), doctest::Contains("t is 3, outside 0 to "), invalid_input);
   CHECK_THROWS_AS((void)q(std::nan("")), invalid_input);
@@ -354,28 +356,28 @@ TEST_CASE("along a plan; a plan that stays; bad input") {
   CHECK_THROWS_AS((void)q(-9 * ulp), invalid_input);
 
   plan.joints = {vector(0, 1, 2), vector(0, 1, 2)};
-  const auto still = time_parametrised(plan, v, a);
+  const auto still = time_optimal_trajectory(plan, v, a);
   CHECK(still.duration() == 0);
   CHECK(still(0).value == vector(0, 1, 2));
   CHECK_THROWS_AS((void)still(1e-300), invalid_input);
   CHECK(still.times() == std::vector<double>{0, 0});
 
   plan.joints.clear();
-  CHECK_THROWS_WITH_AS((void)time_parametrised(plan, v, a), "duet: time_parametrised: no waypoints",
-                       invalid_input);
+  CHECK_THROWS_WITH_AS((void)time_optimal_trajectory(plan, v, a),
+                       "duet: time_optimal_trajectory: no waypoints", invalid_input);
   plan.joints = {vector(0, 1, 2), vector(0, std::nan(""), 2)};
-  CHECK_THROWS_WITH_AS((void)time_parametrised(plan, v, a),
-                       "duet: time_parametrised: waypoint 1 is not finite or of another size",
+  CHECK_THROWS_WITH_AS((void)time_optimal_trajectory(plan, v, a),
+                       "duet: time_optimal_trajectory: waypoint 1 is not finite or of another size",
                        invalid_input);
   plan.joints.pop_back();
-  CHECK_THROWS_WITH_AS((void)time_parametrised(plan, v, vector(1, 0, 1)),
-                       "duet: time_parametrised: the acceleration limit of joint 1 is 0",
+  CHECK_THROWS_WITH_AS((void)time_optimal_trajectory(plan, v, vector(1, 0, 1)),
+                       "duet: time_optimal_trajectory: the acceleration limit of joint 1 is 0",
                        invalid_input);
-  CHECK_THROWS_AS((void)time_parametrised(plan, v, vector(1, INFINITY, 1)), invalid_input);
-  CHECK_THROWS_AS((void)time_parametrised(plan, vector(1, 1, -1), a), invalid_input);
-  CHECK_THROWS_AS((void)time_parametrised(plan, v, a, {.parts = 0}), invalid_input);
+  CHECK_THROWS_AS((void)time_optimal_trajectory(plan, v, vector(1, INFINITY, 1)), invalid_input);
+  CHECK_THROWS_AS((void)time_optimal_trajectory(plan, vector(1, 1, -1), a), invalid_input);
+  CHECK_THROWS_AS((void)time_optimal_trajectory(plan, v, a, {.min_intervals = 0}), invalid_input);
   const std::vector<double> two{1, 2};
-  CHECK_THROWS_AS((void)time_parametrised(plan, v, Eigen::VectorXd(Eigen::Vector2d(1, 2))),
+  CHECK_THROWS_AS((void)time_optimal_trajectory(plan, v, Eigen::VectorXd(Eigen::Vector2d(1, 2))),
                   invalid_input);
 }
 
@@ -389,15 +391,15 @@ TEST_CASE("on the same curve hardly longer than where limits are kept at many pl
     for (int i = random.integer(2, 7); i > 0; --i) {
       const vector step = k % 3 == 1 ? vector(random.normal() * vector::Unit(random.integer(0, 2)))
                                      : vector(random.normal(), random.normal(), random.normal());
-      waypoints.push_back(waypoints.back() + (k % 3 == 2 ? random.magnitude(1e-4, 1) : 1) * step);
+      waypoints.push_back(waypoints.back() + (k % 3 == 2 ? random.log_uniform(1e-4, 1) : 1) * step);
     }
-    for (const auto kind : {joint_curve::monotone, joint_curve::smooth}) {
+    for (const auto kind : {waypoint_interpolation::monotone, waypoint_interpolation::smooth}) {
       const detail::joint_polygon<vector> polygon(waypoints);
-      const auto curve = detail::hermite_curve(polygon, kind == joint_curve::smooth
+      const auto curve = detail::hermite_curve(polygon, kind == waypoint_interpolation::smooth
                                                             ? detail::smooth_slopes(polygon)
                                                             : detail::monotone_slopes(polygon));
       const double sampled = sampled_optimum(curve, v, a);
-      const double time = time_parametrised(waypoints, v, a, {.curve = kind}).duration();
+      const double time = time_optimal_trajectory(waypoints, v, a, {.curve = kind}).duration();
       CHECK(time < 1.03 * sampled);
       CHECK(time > .99 * sampled);
     }
@@ -441,11 +443,11 @@ TEST_CASE(
 TEST_CASE("starts and ends in motion") {
   const std::vector<vector> waypoints{vector(0, 1, 0), vector(1, .5, .3), vector(2, .7, -.2)};
   const vector v(1, 1, 1), a(2, 3, 4);
-  time_options options{.parts = 60};
-  const double from_rest = time_parametrised(waypoints, v, a, options).duration();
-  options.initial_rates = {.5, -.2, .1};
-  options.final_rates = {.3, .1, -.2};
-  const auto q = time_parametrised(waypoints, v, a, options);
+  time_parametrisation_options options{.min_intervals = 60};
+  const double from_rest = time_optimal_trajectory(waypoints, v, a, options).duration();
+  options.initial_velocities = {.5, -.2, .1};
+  options.final_velocities = {.3, .1, -.2};
+  const auto q = time_optimal_trajectory(waypoints, v, a, options);
   CHECK(q.duration() < from_rest);
   CHECK((q(0).velocity - vector(.5, -.2, .1)).norm() < 1e-12);
   CHECK((q(q.duration()).velocity - vector(.3, .1, -.2)).norm() < 1e-12);
@@ -454,43 +456,45 @@ TEST_CASE("starts and ends in motion") {
   check_shares(q, v, a);
 
   // Rates of 0 are rest.
-  options.initial_rates = {0, 0, 0};
-  options.final_rates = {};
-  CHECK(time_parametrised(waypoints, v, a, options).duration() == from_rest);
+  options.initial_velocities = {0, 0, 0};
+  options.final_velocities = {};
+  CHECK(time_optimal_trajectory(waypoints, v, a, options).duration() == from_rest);
 
   // Too fast to slow down; with what is said to be possible it is, a little faster not.
   for (const bool at_end : {false, true}) {
     CAPTURE(at_end);
     const std::vector<vector> short_way{vector(0, 0, 0), vector(.02, 0, 0)};
-    auto& rates = at_end ? options.final_rates : options.initial_rates;
-    auto& other = at_end ? options.initial_rates : options.final_rates;
+    auto& rates = at_end ? options.final_velocities : options.initial_velocities;
+    auto& other = at_end ? options.initial_velocities : options.final_velocities;
     other.clear();
     rates = {.9, 0, 0};
     const auto message =
-        duet_test::message_of([&] { (void)time_parametrised(short_way, v, a, options); });
-    const std::string before = std::string("duet: time_parametrised: the ") +
+        duet_test::message_of([&] { (void)time_optimal_trajectory(short_way, v, a, options); });
+    const std::string before = std::string("duet: time_optimal_trajectory: the ") +
                                (at_end ? "final" : "initial") + " rates are too fast: at most ";
     REQUIRE(message.substr(0, before.size()) == before);
     const double part = std::stod(message.substr(before.size()));
     CHECK(message.substr(message.find(" of")) == " of them can be kept");
     rates[0] = .9 * part;
-    CHECK(time_parametrised(short_way, v, a, options).duration() > 0);
+    CHECK(time_optimal_trajectory(short_way, v, a, options).duration() > 0);
     rates[0] = .9 * part * 1.003;
-    CHECK_THROWS_AS((void)time_parametrised(short_way, v, a, options), invalid_input);
+    CHECK_THROWS_AS((void)time_optimal_trajectory(short_way, v, a, options), invalid_input);
     // v² = 2 a s
     CHECK(.9 * part == doctest::Approx(std::sqrt(2 * 2 * .02)).epsilon(1e-3));
   }
-  CHECK_THROWS_WITH_AS((void)time_parametrised(waypoints, v, a, {.initial_rates = {1, 2}}),
-                       "duet: time_parametrised: 2 initial rates for 3 joints", invalid_input);
-  CHECK_THROWS_WITH_AS((void)time_parametrised(waypoints, v, a, {.final_rates = {1, 2, NAN}}),
-                       "duet: time_parametrised: the final rates are not finite", invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {1, 2}}),
+      "duet: time_optimal_trajectory: 2 initial rates for 3 joints", invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)time_optimal_trajectory(waypoints, v, a, {.final_velocities = {1, 2, NAN}}),
+      "duet: time_optimal_trajectory: the final rates are not finite", invalid_input);
   const std::vector<vector> still{vector(0, 0, 0), vector(0, 0, 0)};
-  CHECK_THROWS_AS((void)time_parametrised(still, v, a, {.initial_rates = {1, 2, 3}}),
+  CHECK_THROWS_AS((void)time_optimal_trajectory(still, v, a, {.initial_velocities = {1, 2, 3}}),
                   invalid_input);
   // Faster than a joint may be.
-  CHECK_THROWS_WITH_AS((void)time_parametrised(waypoints, v, a, {.initial_rates = {2, 0, 0}}),
-                       doctest::Contains("the initial rates are too fast: at most 0."),
-                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {2, 0, 0}}),
+      doctest::Contains("the initial rates are too fast: at most 0."), invalid_input);
 }
 
 TEST_CASE("a smooth curve stays within ranges that all waypoints keep") {
@@ -502,7 +506,7 @@ TEST_CASE("a smooth curve stays within ranges that all waypoints keep") {
     vector here(0, 0, 0);
     for (int i = random.integer(2, 15); i >= 0; --i) {
       const vector step(random.normal(), random.normal(), random.normal());
-      here = (here + random.magnitude(.01, 2) * step).cwiseMin(1).cwiseMax(-1);
+      here = (here + random.log_uniform(.01, 2) * step).cwiseMin(1).cwiseMax(-1);
       waypoints.push_back(here);
     }
     const detail::joint_polygon<vector> polygon(waypoints);
@@ -533,13 +537,14 @@ TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
   const vector a(9, 9, 9);
   motion_plan<3> plan;
   plan.joints = {vector(0, 0, 0), vector(.9, .2, .1), vector(.5, .4, .2), vector(.2, .8, .7)};
-  const auto q = time_parametrised(chain, plan, a);
+  const auto q = time_optimal_trajectory(chain, plan, a);
   const vector v(1, 2, 3);
   CHECK(check_shares(q, v, a) > .99);
-  CHECK(q.duration() == time_parametrised(plan, v, a, {.curve = joint_curve::smooth}).duration());
-  CHECK(q.duration() == time_parametrised(chain, plan.joints, a).duration());
-  CHECK(time_parametrised(chain, plan, a, {.curve = joint_curve::monotone}).duration() ==
-        time_parametrised(plan, v, a).duration());
+  CHECK(q.duration() ==
+        time_optimal_trajectory(plan, v, a, {.curve = waypoint_interpolation::smooth}).duration());
+  CHECK(q.duration() == time_optimal_trajectory(chain, plan.joints, a).duration());
+  CHECK(time_optimal_trajectory(chain, plan, a, {.curve = waypoint_interpolation::monotone})
+            .duration() == time_optimal_trajectory(plan, v, a).duration());
 
   // The first joint turns back at its limit: beyond it on the spline.
   plan.joints[1][0] = 1;
@@ -551,23 +556,26 @@ TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
     }
     return result;
   };
-  CHECK(largest(time_parametrised(plan, v, a, {.curve = joint_curve::smooth}))[0] > 1.01);
-  CHECK(largest(time_parametrised(chain, plan, a)).maxCoeff() < 1 + 1e-12);
+  CHECK(largest(time_optimal_trajectory(plan, v, a, {.curve = waypoint_interpolation::smooth}))[0] >
+        1.01);
+  CHECK(largest(time_optimal_trajectory(chain, plan, a)).maxCoeff() < 1 + 1e-12);
   // From its limit on outwards: on every curve.
   plan.joints[0][0] = 1;
   plan.joints[1][0] = .8;
-  for (const auto kind : {joint_curve::smooth, joint_curve::monotone}) {
+  for (const auto kind : {waypoint_interpolation::smooth, waypoint_interpolation::monotone}) {
     const auto message = duet_test::message_of([&] {
-      (void)time_parametrised(chain, plan, a, {.initial_rates = {.1, 0, 0}, .curve = kind});
+      (void)time_optimal_trajectory(chain, plan, a,
+                                    {.initial_velocities = {.1, 0, 0}, .curve = kind});
     });
-    CHECK(message.find("duet: time_parametrised: between waypoints 0 and 1 joint 0 would be 0.0") ==
+    CHECK(message.find(
+              "duet: time_optimal_trajectory: between waypoints 0 and 1 joint 0 would be 0.0") ==
           0);
     CHECK(message.find(" outside its limits, by its rate at an end") != std::string::npos);
-    CHECK(time_parametrised(plan, v, a, {.initial_rates = {.1, 0, 0}, .curve = kind}).duration() >
-          0);
+    CHECK(time_optimal_trajectory(plan, v, a, {.initial_velocities = {.1, 0, 0}, .curve = kind})
+              .duration() > 0);
   }
-  CHECK_THROWS_AS((void)time_parametrised(chain, std::vector<Eigen::Vector2d>{{0, 0}, {1, 1}},
-                                          Eigen::Vector2d(1, 1)),
+  CHECK_THROWS_AS((void)time_optimal_trajectory(chain, std::vector<Eigen::Vector2d>{{0, 0}, {1, 1}},
+                                                Eigen::Vector2d(1, 1)),
                   invalid_input);
 }
 

@@ -149,9 +149,9 @@ TEST_CASE("an objective, differentiated by duals, among the branches of a pose")
       const vector known = configuration(arm, random), start = configuration(arm, random);
       const auto goal = arm.pose(known);
       const auto found = inverse_kinematics(arm, goal, start, {.candidates = 20}, wish);
-      const auto left = deviation_between(arm.pose(found.joints), goal);
-      solved += found.reason == stop_reason::reached && left.length <= 1e-6 * (1 + 1e-9) &&
-                left.angle <= 1e-6 * (1 + 1e-9) && is_within_limits(arm, found.joints);
+      const auto left = pose_error_between(arm.pose(found.joints), goal);
+      solved += found.reason == stop_reason::reached && left.translation <= 1e-6 * (1 + 1e-9) &&
+                left.rotation <= 1e-6 * (1 + 1e-9) && is_within_limits(arm, found.joints);
       better += wish(found.joints) <= wish(known) + 1e-6;
       CHECK(wish(found.joints) <= wish(inverse_kinematics(arm, goal, start).joints) + 1e-6);
     }
@@ -197,9 +197,9 @@ TEST_CASE("a bound for each joint, about the start") {
       }
       const auto goal = arm.pose(known);
       const auto found = inverse_kinematics(with_limits_about(arm, start, most), goal, start);
-      const auto left = deviation_between(arm.pose(found.joints), goal);
+      const auto left = pose_error_between(arm.pose(found.joints), goal);
       const double rounding = 1e-14;
-      solved += found.reason == stop_reason::reached && left.length <= 1.001e-6 &&
+      solved += found.reason == stop_reason::reached && left.translation <= 1.001e-6 &&
                 ((found.joints - start).cwiseAbs() - most).maxCoeff() <= rounding &&
                 is_within_limits(arm, found.joints);
     }
@@ -258,7 +258,7 @@ TEST_CASE("a solution too close to an obstacle moves aside, without another star
     CHECK(clearance(arm, start, around).distance == doctest::Approx(.02));
     const auto goal = arm.pose(start);
     const auto found =
-        inverse_kinematics(arm, goal, start, {.restarts = 0}, no_objective{}, around);
+        inverse_kinematics(arm, goal, start, {.max_restarts = 0}, no_objective{}, around);
     CHECK(found.reason == stop_reason::reached);
     CHECK(clearance(arm, found.joints, around).distance >= .05 - 1e-6);
     CHECK((found.joints - start).norm() < .5);
@@ -272,15 +272,17 @@ TEST_CASE("a goal within an obstacle is refused for that reason") {
   scene around = bodies(arm);
   const auto goal = arm.pose(known);
   around.obstacles = {sphere<double>{translation(goal), .2}};
-  const auto found = inverse_kinematics(arm, goal, known, {.restarts = 20}, no_objective{}, around);
+  const auto found =
+      inverse_kinematics(arm, goal, known, {.max_restarts = 20}, no_objective{}, around);
   CHECK(found.reason == stop_reason::obstacle);
   CHECK(found.restarts == 20);
-  CHECK(found.deviation.length <= 1e-6);
+  CHECK(found.deviation.translation <= 1e-6);
   // Out of reach is that, with obstacles or not, and the nearest pose is told.
   const auto far = pose(quaternion<double>(1), vector3<double>(3, 0, 0));
-  const auto beyond = inverse_kinematics(arm, far, known, {.restarts = 2}, no_objective{}, around);
+  const auto beyond =
+      inverse_kinematics(arm, far, known, {.max_restarts = 2}, no_objective{}, around);
   CHECK(beyond.reason == stop_reason::out_of_reach);
-  CHECK(beyond.joints == inverse_kinematics(arm, far, known, {.restarts = 2}).joints);
+  CHECK(beyond.joints == inverse_kinematics(arm, far, known, {.max_restarts = 2}).joints);
 }
 
 TEST_CASE("joints that turn all round are turned to where the objective is lower") {
@@ -379,7 +381,7 @@ TEST_CASE("where joints slide solutions do not depend on the unit of length") {
     goal.upper[0] = .05 * unit;
     scene around;
     around.margin = .03 * unit;
-    around.horizon = .3 * unit;
+    around.influence_distance_offset = .3 * unit;
     around.bodies = {{5, {vector3<double>(0, 0, 0), vector3<double>(0, 0, 0), .04 * unit}}};
     around.obstacles = {
         sphere<double>{translation(tip) + unit * vector3<double>(.05, .1, 0), .05 * unit}};
@@ -400,7 +402,7 @@ TEST_CASE("where joints slide solutions do not depend on the unit of length") {
     auto found = k % 2 == 0 ? inverse_kinematics(arm, goal, start, options, squares, around)
                             : inverse_kinematics(arm, equations, start, options, squares);
     found.joints[2] /= unit;
-    found.deviation.length /= unit;
+    found.deviation.translation /= unit;
     return found;
   };
   int reached = 0;
@@ -409,7 +411,7 @@ TEST_CASE("where joints slide solutions do not depend on the unit of length") {
     reached += x.reason == stop_reason::reached;
     CHECK(x.reason == same.reason);
     CHECK(x.joints == same.joints);
-    CHECK(x.deviation.length == same.deviation.length);
+    CHECK(x.deviation.translation == same.deviation.translation);
     CHECK(x.iterations == same.iterations);
     CHECK(x.reason == close.reason);
     CHECK((x.joints - close.joints).cwiseAbs().maxCoeff() < 1e-5);
@@ -466,8 +468,9 @@ TEST_CASE("what is nan is told where it is so everywhere, and else is no solutio
   const chain arm = robots::panda().table();
   const vector start = (vector(7) << 0, -.75, 0, -2.5, 0, 1.5, .75).finished();
   const auto message = [&](const auto& goal, const auto& wish) {
-    return duet_test::message_of<invalid_input>(
-        [&] { static_cast<void>(inverse_kinematics(arm, goal, start, {.restarts = 5}, wish)); });
+    return duet_test::message_of<invalid_input>([&] {
+      static_cast<void>(inverse_kinematics(arm, goal, start, {.max_restarts = 5}, wish));
+    });
   };
   const std::string at_start = " joints (0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
   const std::string all =
@@ -483,8 +486,9 @@ TEST_CASE("what is nan is told where it is so everywhere, and else is no solutio
   CHECK(message(arm.pose(start), root) == all + at_start);
   CHECK(message(position_goal({.5, 0, .5}), root).starts_with(all + " joints ("));
   // Nothing is found: the objective was not asked.
-  CHECK(inverse_kinematics(arm, position_goal({3, 0, 0}), start, {.restarts = 1}, root).reason ==
-        stop_reason::out_of_reach);
+  CHECK(
+      inverse_kinematics(arm, position_goal({3, 0, 0}), start, {.max_restarts = 1}, root).reason ==
+      stop_reason::out_of_reach);
 
   const equation_goal nowhere{[]<class S>(const dual_quaternion<S>& a) {
     return std::array<S, 6>{translation(a).norm() * std::nan("")};

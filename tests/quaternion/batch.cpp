@@ -106,9 +106,10 @@ TEST_CASE_TEMPLATE("slerp", T, double, dual<double>) {
   std::swap(b[1], b[4]);
   std::swap(b[6], b[12]);
   b[13] = -b[13];
-  for (const auto way : {duet::way::shortest, duet::way::longest, duet::way::as_given}) {
+  for (const auto way :
+       {duet::slerp_arc::shortest, duet::slerp_arc::longest, duet::slerp_arc::as_given}) {
     // The longest way between equal orientations is undetermined.
-    if (way == duet::way::shortest) {
+    if (way == duet::slerp_arc::shortest) {
       check_lanes<4>([&](const auto& p, const auto& r) { return slerp(p, r, 0.3, way); }, limit, a,
                      b);
     } else {
@@ -211,11 +212,13 @@ TEST_CASE("curves, Euler angles, rates and Jacobians of exp") {
                  limit, angles, numbers);
   check_lanes<4>([](const auto& v, const auto& a) { return duet::from_axis_angle(v, a); }, limit,
                  std::vector<vector3<double>>{{0, 0.6, 0.8}, {1, 0, 0}, {0, 0, -1}}, angles);
-  check_lanes<4>([](const auto& a) { return rate_matrix(a, duet::frame::body); }, limit, q);
+  check_lanes<4>([](const auto& a) { return quaternion_rate_matrix(a, duet::frame::body); }, limit,
+                 q);
   check_lanes<4>(
       [](const auto& a, const auto& v) { return quaternion_rate(a, v, duet::frame::spatial); },
       limit, q, vectors<double>());
-  check_lanes<4>([](const auto& a, const auto& b) { return dot(a, b) + norm2(a); }, limit, q, p);
+  check_lanes<4>([](const auto& a, const auto& b) { return dot(a, b) + squared_norm(a); }, limit, q,
+                 p);
   check_lanes<4>([](const auto& r) { return duet::left_jacobian(r); }, limit, turns);
   check_lanes<4>([](const auto& r) { return duet::right_jacobian(r); }, limit, turns);
   check_lanes<4>([](const auto& r) { return duet::left_jacobian_inverse(r); }, 2 * limit, turns);

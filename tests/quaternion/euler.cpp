@@ -117,7 +117,7 @@ TEST_CASE("angles survive the way there and back") {
       const double a = random.uniform(-pi, pi), c = random.uniform(-pi, pi);
       const double b = second_angle<S>(random, 0.01);
       const auto q = duet::from_euler<S>(a, b, c);
-      const double size = random.magnitude(1e-100, 1e100);
+      const double size = random.log_uniform(1e-100, 1e100);
       for (const auto& same_rotation : {q, -q, q * size}) {
         const auto [a2, b2, c2] = duet::euler<S>(same_rotation);
         CHECK(std::abs(std::remainder(a2 - a, 2 * pi)) <= 2e-13);
@@ -235,15 +235,15 @@ std::vector<quaternion<double>> hard_attitudes() {
           return random.uniform(0, 1) < 0.5 ? -there : there;
         };
         result.push_back(duet::from_euler<S>(turned(a), turned(b), turned(c)));
-        const double size = random.magnitude(1e-150, 1e150);
+        const double size = random.log_uniform(1e-150, 1e150);
         result.push_back(duet::from_euler<S>(turned(a), turned(b - pi / 2), turned(c)) * size);
       }
     }
   }
   for (int k = 0; k < 20; ++k) {
     const auto d = random.direction<4>();
-    const double small[] = {random.magnitude(1e-300, 1), random.magnitude(1e-20, 1),
-                            random.magnitude(1e-3, 1), 1};
+    const double small[] = {random.log_uniform(1e-300, 1), random.log_uniform(1e-20, 1),
+                            random.log_uniform(1e-3, 1), 1};
     result.push_back({d[0] * small[k % 4], d[1] * small[k / 2 % 4], d[2] * small[k / 3 % 4],
                       d[3] * small[k / 5 % 4]});
   }

@@ -73,7 +73,7 @@ TEST_CASE("derivatives by the multiple") {
     series.set_coefficient(2, 0.7);
     series.set_coefficient(4, -0.2);
     check(series, v, 4e-15 * scale);
-    check(second_dual<double, 1>::variable(b) * second_dual<double, 1>::variable(b), v,
+    check(second_order_dual<double, 1>::variable(b) * second_order_dual<double, 1>::variable(b), v,
           2e-15 * scale);
   });
 }
@@ -85,7 +85,7 @@ TEST_CASE("screws, and derivatives by both") {
     const dual_vector<double> line = make_dual_vector(v, vector3<double>(0.3, 1, -0.5));
     check(b, line, 2e-15 * scale);
     check(taylor<double, 3>::variable(b), line, 4e-15 * scale);
-    check(second_dual<double, 1>::variable(b), line, 4e-15 * scale);
+    check(second_order_dual<double, 1>::variable(b), line, 4e-15 * scale);
     const vector3<moving> varied(moving(v[0], 1), moving(v[1], -0.4), moving(v[2], 0));
     check(b, varied, 2e-15 * scale);
     check(moving(b, 0.6), varied, 2e-15 * scale);

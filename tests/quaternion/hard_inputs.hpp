@@ -49,7 +49,7 @@ namespace duet_test {
   }
   for (int i = 0; i < 50; ++i) {
     const auto d = random.direction<4>();
-    const double norm = i % 2 == 0 ? 1 : random.magnitude(1e-140, 1e140);
+    const double norm = i % 2 == 0 ? 1 : random.log_uniform(1e-140, 1e140);
     result.push_back({norm * d[0], norm * d[1], norm * d[2], norm * d[3]});
   }
   return result;

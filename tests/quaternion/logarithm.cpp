@@ -78,7 +78,7 @@ TEST_CASE("exp and log are inverse") {
   random_source random(4);
   for (int i = 0; i < 1000; ++i) {
     const auto d = random.direction<3>();
-    const double length = i % 2 == 0 ? random.uniform(0, 3.1) : random.magnitude(1e-300, 3.1);
+    const double length = i % 2 == 0 ? random.uniform(0, 3.1) : random.log_uniform(1e-300, 3.1);
     const quaternion<double> l(random.uniform(-3, 3), length * d[0], length * d[1], length * d[2]);
     back.add(norm(log(exp(l)) - l) / 0x1p-53 / (1 + norm(l)) * (3.15 - length), l);
   }

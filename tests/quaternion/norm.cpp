@@ -108,7 +108,7 @@ TEST_CASE("N3: q times its inverse is 1; the inverse of a unit is its conjugate"
   random_source random(42);
   for (int i = 0; i < 100; ++i) {
     const auto d = random.direction<4>();
-    const double size = random.magnitude(1e-140, 1e140);
+    const double size = random.log_uniform(1e-140, 1e140);
     const quaternion<double> q(size * d[0], size * d[1], size * d[2], size * d[3]);
     CHECK(norm(q * inverse(q) - quaternion<double>(1)) <= 1e-15);
     CHECK(norm(inverse(q) * q - quaternion<double>(1)) <= 1e-15);

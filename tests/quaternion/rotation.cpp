@@ -50,7 +50,7 @@ TEST_CASE("rotate is v -> q v q*, active") {
   worst_error by_matrix("rotation_matrix");
   for (int i = 0; i < 200; ++i) {
     const auto q = random_rotation(random);
-    const vector3<double> v = random.magnitude(1e-100, 1e100) * direction(random);
+    const vector3<double> v = random.log_uniform(1e-100, 1e100) * direction(random);
     const auto wide_q = truth::wide(q);
     // Made a unit in wide arithmetic: a norm that is off by a rounding scales q v q*.
     const auto unit = truth::times(wide_q, 1 / truth::length(wide_q));
@@ -92,12 +92,12 @@ TEST_CASE("axis and angle") {
 TEST_CASE("rotation vectors: there and back, the same for q and -q, at most pi long") {
   random_source random(103);
   for (int i = 0; i < 200; ++i) {
-    const double angle = i % 2 == 0 ? random.uniform(0, pi) : random.magnitude(1e-300, pi);
+    const double angle = i % 2 == 0 ? random.uniform(0, pi) : random.log_uniform(1e-300, pi);
     const vector3<double> r = angle * direction(random);
     const auto q = duet::from_rotation_vector(r);
     CHECK((rotation_vector(q) - r).norm() <= 1e-15 * std::max(1.0, r.norm()) * r.norm() + 1e-320);
     CHECK(rotation_vector(q) == rotation_vector(-q));
-    const auto any = random_rotation(random) * random.magnitude(1e-100, 1e100);
+    const auto any = random_rotation(random) * random.log_uniform(1e-100, 1e100);
     CHECK(rotation_vector(any).norm() <= pi * (1 + 2e-16));
     CHECK(rotation_vector(any) == rotation_vector(-any));
     CHECK((rotation_matrix(duet::from_rotation_vector(rotation_vector(any))) -
@@ -139,8 +139,8 @@ TEST_CASE("from_two_vectors takes a to b by the shortest way") {
       const vector3<double> a = direction(random);
       const vector3<double> n = a.cross(direction(random)).normalized();
       const vector3<double> b = std::cos(angle) * a + std::sin(angle) * n.cross(a);
-      const double size_a = random.magnitude(1e-100, 1e100),
-                   size_b = random.magnitude(1e-100, 1e100);
+      const double size_a = random.log_uniform(1e-100, 1e100),
+                   size_b = random.log_uniform(1e-100, 1e100);
       const auto q =
           duet::from_two_vectors(vector3<double>(size_a * a), vector3<double>(size_b * b));
       CHECK(norm(q) == doctest::Approx(1).epsilon(1e-15));

@@ -37,7 +37,7 @@ void for_each_branch(const Visit& visit) {
     for (int i = 0; i < 50; ++i) {
       double c[4];
       for (double& x : c) {
-        x = i % 5 == 0 ? random.signed_magnitude(1e-300, 0.5) : random.uniform(-0.99, 0.99);
+        x = i % 5 == 0 ? random.signed_log_uniform(1e-300, 0.5) : random.uniform(-0.99, 0.99);
       }
       c[largest] = 1;
       if (i == 1) { // a half turn, or the identity

@@ -21,15 +21,15 @@ TEST_CASE("evaluation allocates nothing") {
                                            duet_test::random_orientations(knots.size() - 4, 1));
   const auto parameters = duet_test::parameters_on(knots, 4);
   std::vector<duet::dual_quaternion<double>> poses;
-  for (const auto& q : s.controls()) {
+  for (const auto& q : s.control_points()) {
     poses.push_back(duet::pose(q, duet::vector3<double>(1, 2, 3)));
   }
   const duet::cumulative_bspline<duet::screw_dual<double>> p(knots, poses);
   // Curves of rotation vectors over the same domain.
   const std::vector<double> ends{parameters.front(), parameters.back()};
   const duet::vector3<double> w(0.1, 0.2, -0.3);
-  const duet::rotation_vector_spline<double, 6> r(ends, {s.controls()[0], s.controls()[1]},
-                                                  {{w, w}, {w, w}});
+  const duet::rotation_vector_spline<double, 6> r(
+      ends, {s.control_points()[0], s.control_points()[1]}, {{w, w}, {w, w}});
   using dual_vector = duet::dual_vector<double>;
   const dual_vector v = duet::make_dual_vector(w, w);
   const duet::rotation_vector_spline<duet::screw_dual<double>> rp(ends, {poses[0], poses[1]},

@@ -28,7 +28,7 @@ constexpr double tolerance = 1e-13;
 /// The cumulative functions of a basis, one by one.
 template <int Order>
 double cumulative(const duet::bspline_basis<Order>& basis, std::size_t i, double u) {
-  const std::size_t span = basis.span_of(u);
+  const std::size_t span = basis.find_span(u);
   const std::size_t first = basis.first_function(span);
   if (i <= first) {
     return 1;
@@ -67,7 +67,7 @@ TEST_CASE("P1: the recurrence and the stored polynomials are the same functions"
     for (const double u : parameters_on(knots, k)) {
       for (std::size_t i = 0; i < basis.size(); ++i) {
         const double stored = cumulative(basis, i, u) - cumulative(basis, i + 1, u);
-        worst = std::max(worst, std::abs(stored - duet::bspline_value(knots, i, k, u)));
+        worst = std::max(worst, std::abs(stored - duet::basis_function(knots, i, k, u)));
         const double definition = duet_test::b_definition(knots, i, k, u, u, knots[basis.size()]);
         worst = std::max(worst, std::abs(stored - definition));
       }
@@ -84,7 +84,7 @@ TEST_CASE("P1: the functions are not negative, local, and sum to 1") {
       double sum = 0;
       bool proper = true;
       for (std::size_t i = 0; i < size; ++i) {
-        const double b = duet::bspline_value(knots, i, k, u);
+        const double b = duet::basis_function(knots, i, k, u);
         sum += b;
         proper = proper && b >= 0;
         const bool in_support = knots[i] <= u && u <= knots[i + std::size_t(k)];
@@ -119,7 +119,7 @@ TEST_CASE("P3, P4: derivatives of the weights, closed form against Taylor and du
     double worst = 0;
     double worst_of_definition = 0;
     for (const double u : parameters_on(knots, k, 2)) {
-      const std::size_t span = basis.span_of(u);
+      const std::size_t span = basis.find_span(u);
       const auto closed = basis.template weights<3>(span, u);
       const auto weights = [&](const auto& x) { return basis.template weights<0>(span, x)[0]; };
       const auto taylor = duet::derivatives<3>(weights, u);

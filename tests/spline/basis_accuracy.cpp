@@ -67,7 +67,7 @@ void check_order() {
     const auto wide = cast<real_50>(knots);
     std::vector<real_50> largest_second(basis.breaks().size(), 0);
     const auto measure = [&](double u, auto&& use) {
-      const std::size_t span = basis.span_of(u);
+      const std::size_t span = basis.find_span(u);
       const auto computed = basis.template weights<3>(span, u);
       std::array<std::array<real_50, k - 1>, 3> exact;
       squared_norms squares = {1, 0, 0, 0};

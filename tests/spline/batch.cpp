@@ -53,8 +53,8 @@ TEST_CASE_TEMPLATE("lanes on different spans, at knots and beyond the ends", Spl
 
   const std::vector<double> all{-0.5, 3.3, 13, 0.2};
   CHECK_THROWS_AS(check_lanes<4>(value, limit, all), invalid_input);
-  for (const auto way : {outside::clamp, outside::extrapolate}) {
-    s.set_outside_domain(way);
+  for (const auto way : {out_of_domain::clamp, out_of_domain::extrapolate}) {
+    s.set_out_of_domain(way);
     check_lanes<4>(value, limit, all);
     check_lanes<4>(velocity, limit, all);
   }

@@ -44,14 +44,15 @@ void check_order() {
     CAPTURE(Order);
     CAPTURE(times);
     const auto s = curve_with<Order>(times);
-    REQUIRE(s.basis().span_of(just_before) + 1 == s.basis().span_of(knot));
+    REQUIRE(s.basis().find_span(just_before) + 1 == s.basis().find_span(knot));
     const auto curve = [&](const auto& u) { return s(u); };
     const auto left = duet::derivatives<Order - 1>(curve, just_before);
     const auto right = duet::derivatives<Order - 1>(curve, knot);
     for (int d = 0; d < Order; ++d) {
       CAPTURE(d);
       const auto k = std::size_t(d);
-      const double size = std::max(std::sqrt(norm2(left[k])), std::sqrt(norm2(right[k])));
+      const double size =
+          std::max(std::sqrt(squared_norm(left[k])), std::sqrt(squared_norm(right[k])));
       const double jump = gap(left[k], right[k]) / size;
       if (d <= Order - 1 - times) {
         CHECK(jump < 1e-11);

@@ -77,13 +77,13 @@ TEST_CASE("P2: the curve is the product over all control quaternions") {
       CAPTURE(k);
       CAPTURE(name);
       const auto s = random_curve<k>(knots, 1.5);
-      const auto increments = duet_test::increments_of(s.controls());
+      const auto increments = duet_test::increments_of(s.control_points());
       double worst = 0;
       for (const double u : parameters_on(knots, k, 3)) {
         const auto product =
-            duet_test::product_definition(knots, k, s.controls()[0], increments, u, u);
+            duet_test::product_definition(knots, k, s.control_points()[0], increments, u, u);
         worst = std::max(worst, gap(s(u), product));
-        worst = std::max(worst, std::abs(norm2(s(u)) - 1));
+        worst = std::max(worst, std::abs(squared_norm(s(u)) - 1));
       }
       CHECK(worst <= 1e-14);
     }
@@ -94,15 +94,15 @@ TEST_CASE("P2 as printed, functions from B_{−1}: the first exponent B̃_0 is r
           "span") {
   const auto knots = knot_vectors(4)[1].knots;
   const auto s = random_curve<4>(knots, 1);
-  const quaternion first = s.controls().front();
+  const quaternion first = s.control_points().front();
   int in_first_span = 0, beyond = 0;
   for (const double u : parameters_on(knots, 4)) {
     const double exponent = duet_test::cumulative_definition(knots, 1, 4, u, u);
     const quaternion printed = pow(first, exponent) * (conj(first) * s(u));
-    if (s.basis().span_of(u) == 0 && exponent < 0.999) {
+    if (s.basis().find_span(u) == 0 && exponent < 0.999) {
       CHECK(gap(printed, s(u)) > 1e-6);
       ++in_first_span;
-    } else if (s.basis().span_of(u) > 0) {
+    } else if (s.basis().find_span(u) > 0) {
       CHECK(exponent == doctest::Approx(1).epsilon(1e-15));
       CHECK(gap(printed, s(u)) < 1e-14);
       ++beyond;
@@ -116,9 +116,9 @@ TEST_CASE("order 2 is spherical interpolation between neighbours") {
   const std::vector<double> knots = {0, 0, 1, 3, 3.5, 3.5};
   const auto s = random_curve<2>(knots, 2);
   for (const double t : {0.0, 0.2, 0.7, 0.99}) {
-    CHECK(gap(s(t), slerp(s.controls()[0], s.controls()[1], t)) < 1e-15);
-    CHECK(gap(s(1 + 2 * t), slerp(s.controls()[1], s.controls()[2], t)) < 1e-15);
-    CHECK(gap(s(3 + t / 2), slerp(s.controls()[2], s.controls()[3], t)) < 1e-15);
+    CHECK(gap(s(t), slerp(s.control_points()[0], s.control_points()[1], t)) < 1e-15);
+    CHECK(gap(s(1 + 2 * t), slerp(s.control_points()[1], s.control_points()[2], t)) < 1e-15);
+    CHECK(gap(s(3 + t / 2), slerp(s.control_points()[2], s.control_points()[3], t)) < 1e-15);
   }
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("about one axis the angle is the plain B-spline of the control angles"
   for (const double u : parameters_on(knots, 4)) {
     double angle = 0;
     for (std::size_t i = 0; i < angles.size(); ++i) {
-      angle += angles[i] * duet::bspline_value(knots, i, 4, u);
+      angle += angles[i] * duet::basis_function(knots, i, 4, u);
     }
     CHECK(gap(s(u), duet::from_axis_angle(axis, angle)) < 1e-15);
   }
@@ -143,16 +143,16 @@ TEST_CASE("about one axis the angle is the plain B-spline of the control angles"
 TEST_CASE("the curve meets its first and last control quaternion and one at every triple knot") {
   const auto knots = duet::clamped_knots(std::vector<double>{0, 1, 1, 1, 2, 3}, 4);
   const auto s = random_curve<4>(knots, 2);
-  CHECK(gap(s(0.0), s.controls()[0]) < 1e-15);
-  CHECK(gap(s(1.0), s.controls()[3]) < 1e-15);
-  CHECK(gap(s(3.0), s.controls().back()) < 1e-15);
+  CHECK(gap(s(0.0), s.control_points()[0]) < 1e-15);
+  CHECK(gap(s(1.0), s.control_points()[3]) < 1e-15);
+  CHECK(gap(s(3.0), s.control_points().back()) < 1e-15);
 }
 
 TEST_CASE("moving all control quaternions moves the curve") {
   const auto knots = knot_vectors(4)[0].knots;
   const auto s = random_curve<4>(knots, 1.2);
   const quaternion p = random_orientations(1, 1, 5).front();
-  std::vector<quaternion> moved = s.controls();
+  std::vector<quaternion> moved = s.control_points();
   for (quaternion& q : moved) {
     q = p * q;
   }
@@ -165,7 +165,7 @@ TEST_CASE("moving all control quaternions moves the curve") {
 TEST_CASE("signs of control quaternions do not matter, but for the first one's") {
   const auto knots = knot_vectors(4)[1].knots;
   const auto s = random_curve<4>(knots, 2.5);
-  std::vector<quaternion> flipped = s.controls();
+  std::vector<quaternion> flipped = s.control_points();
   for (std::size_t i = 1; i < flipped.size(); i += 2) {
     flipped[i] = -flipped[i];
   }
@@ -173,7 +173,7 @@ TEST_CASE("signs of control quaternions do not matter, but for the first one's")
   flipped[0] = -flipped[0];
   const cumulative_bspline<double> opposite(knots, flipped);
   for (std::size_t i = 0; i < flipped.size(); ++i) {
-    CHECK(t.controls()[i] == s.controls()[i]);
+    CHECK(t.control_points()[i] == s.control_points()[i]);
     CHECK(t.increments()[i] == s.increments()[i]);
     CHECK(s.increments()[i].norm() <= 1.5707963268); // half angles of at most half a turn
   }
@@ -195,17 +195,17 @@ TEST_CASE("control quaternions that are not there, not one, or a half turn apart
         "duet: cumulative_bspline: 7 knots of order 3 take 4 control elements, got 3");
   CHECK(message_of<duet::invalid_input>(make({})) ==
         "duet: cumulative_bspline: 7 knots of order 3 take 4 control elements, got 0");
-  CHECK(message_of<duet::invalid_row>(make({one, one * 1.1, one, one})) ==
+  CHECK(message_of<duet::invalid_sample>(make({one, one * 1.1, one, one})) ==
         "duet: row 1: quaternion (1.1, 0, 0, 0) has norm 1.1, not 1");
-  CHECK(message_of<duet::invalid_row>(make({one, one, quaternion(), one})) ==
+  CHECK(message_of<duet::invalid_sample>(make({one, one, quaternion(), one})) ==
         "duet: row 2: quaternion (0, 0, 0, 0) has norm 0, not 1");
-  CHECK(message_of<duet::invalid_row>(make({one, one, one, {0, not_a_number, 0, 1}})) ==
+  CHECK(message_of<duet::invalid_sample>(make({one, one, one, {0, not_a_number, 0, 1}})) ==
         "duet: row 3: quaternion (0, nan, 0, 1) is not finite");
-  CHECK(message_of<duet::invalid_row>(make({one, {0, 0.6, 0.8, 0}, one, one})) ==
+  CHECK(message_of<duet::invalid_sample>(make({one, {0, 0.6, 0.8, 0}, one, one})) ==
         "duet: row 1: half a turn from the row before: either way round is as short");
   // A norm that is off by the digits of a printed table is put right.
   const spline s(knots, {one * 1.0004, one, one, one});
-  CHECK(s.controls()[0] == one);
+  CHECK(s.control_points()[0] == one);
 }
 
 } // namespace test_spline_curve

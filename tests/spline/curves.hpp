@@ -37,7 +37,7 @@ struct named_knots {
     uniform.push_back((i - order) * 0.25);
     u += random.uniform(0.2, 1);
     simple.push_back(u);
-    v += random.magnitude(1e-2, 2);
+    v += random.log_uniform(1e-2, 2);
     uneven.push_back(v);
   }
   std::vector<named_knots> result = {

@@ -26,7 +26,7 @@
 namespace test_spline_ends_by_rounding {
 namespace {
 
-using duet::outside;
+using duet::out_of_domain;
 using duet_test::message_of;
 using cumulative = duet::cumulative_bspline<double>;
 using quintic = duet::rotation_vector_spline<double, 6>;
@@ -68,8 +68,9 @@ TEST_CASE_TEMPLATE("up to 8 ulp of the larger end outside, a curve is at its end
       const auto slope = s(duet::dual<double>(end, 1));
       for (const int k : {1, 2, 5, 8}) {
         const double u = beyond(end, ulp, k, is_last);
-        for (const auto way : {outside::error, outside::clamp, outside::extrapolate}) {
-          s.set_outside_domain(way);
+        for (const auto way :
+             {out_of_domain::error, out_of_domain::clamp, out_of_domain::extrapolate}) {
+          s.set_out_of_domain(way);
           CHECK(s(u) == s(end));
           duet::span_hint hint{7};
           const auto m = s.motion(u, duet::frame::body, hint);
@@ -82,7 +83,7 @@ TEST_CASE_TEMPLATE("up to 8 ulp of the larger end outside, a curve is at its end
           some.set(2, u);
           CHECK(duet::lane(s(some), 2) == duet::lane(s(duet::batch<double, 4>(end)), 2));
         }
-        s.set_outside_domain(outside::error);
+        s.set_out_of_domain(out_of_domain::error);
         std::vector<double> column(9, end);
         column[5] = u;
         std::vector<decltype(s(end))> out(9);
@@ -93,10 +94,10 @@ TEST_CASE_TEMPLATE("up to 8 ulp of the larger end outside, a curve is at its end
       CHECK(message_of([&] { static_cast<void>(s(u)); }) ==
             "duet: spline evaluated at " + duet::to_text(u) + ", outside its domain [" +
                 duet::to_text(first) + ", " + duet::to_text(last) +
-                "]; set_outside_domain(outside::clamp) makes a curve stay at its end");
-      s.set_outside_domain(outside::clamp);
+                "]; set_out_of_domain(out_of_domain::clamp) makes a curve stay at its end");
+      s.set_out_of_domain(out_of_domain::clamp);
       CHECK(s.motion(u, duet::frame::body).velocity.isZero(0));
-      s.set_outside_domain(outside::extrapolate);
+      s.set_out_of_domain(out_of_domain::extrapolate);
       CHECK_NOTHROW(static_cast<void>(s(u)));
     }
   }
@@ -138,8 +139,8 @@ TEST_CASE("a step of 3e-16 beyond the end; float; the printed formulas; rows of 
                   duet::invalid_input);
 
   const duet::bspline_basis<2, float> basis({0, 0, 3, 3});
-  CHECK(basis.span_of(std::nextafter(3.f, 4.f)) == 0);
-  CHECK_THROWS_WITH_AS(static_cast<void>(basis.span_of(3.00001f)),
+  CHECK(basis.find_span(std::nextafter(3.f, 4.f)) == 0);
+  CHECK_THROWS_WITH_AS(static_cast<void>(basis.find_span(3.00001f)),
                        doctest::Contains("evaluated at 3.00001, outside its domain [0, 3]"),
                        duet::invalid_input);
 

@@ -143,10 +143,10 @@ TEST_CASE_TEMPLATE("noise is smoothed, and no nearby curve is nearer", Q, rotati
   };
   if constexpr (std::is_same_v<Q, rotation>) { // of poses the metric is another one
     const double least = sum_of_squares(result.curve);
-    for (std::size_t k = 0; k < result.curve.controls().size(); ++k) {
+    for (std::size_t k = 0; k < result.curve.control_points().size(); ++k) {
       for (const double size : {1e-4, -1e-4}) {
         for (int axis = 0; axis < 3; ++axis) {
-          auto controls = result.curve.controls();
+          auto controls = result.curve.control_points();
           controls[k] = controls[k] * duet::from_rotation_vector(
                                           vector3<double>(vector3<double>::Unit(axis) * size));
           CHECK(sum_of_squares({truth.basis(), controls}) > least);
@@ -166,8 +166,8 @@ TEST_CASE_TEMPLATE("outliers pull with a bounded force", Q, rotation, pose_type)
     rows[i] = moved(rows[i], random, i % 20 == 10 ? 1.5 : noise);
   }
   const auto plain = duet::fit<curve<Q>>(u, rows, truth.basis().knots());
-  const auto robust =
-      duet::fit<curve<Q>>(u, rows, truth.basis().knots(), {.length = 1, .outlier = 3 * noise});
+  const auto robust = duet::fit<curve<Q>>(u, rows, truth.basis().knots(),
+                                          {.length = 1, .outlier_threshold = 3 * noise});
   CHECK(largest_distance(plain.curve, truth) > 0.1);
   CHECK(largest_distance(robust.curve, truth) < 2 * noise);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -212,12 +212,12 @@ TEST_CASE_TEMPLATE("outliers of any size leave the curve where it is", Q, rotati
         good.push_back(rows[i]);
       }
     }
-    const auto expected = duet::fit<curve<Q>>(good_u, good, knots, {.outlier = limit});
-    const auto found = duet::fit<curve<Q>>(u, rows, knots, {.outlier = outlier});
+    const auto expected = duet::fit<curve<Q>>(good_u, good, knots, {.outlier_threshold = limit});
+    const auto found = duet::fit<curve<Q>>(u, rows, knots, {.outlier_threshold = outlier});
     CHECK(largest_distance(found.curve, expected.curve) <= most);
     CHECK(found.residuals[57] > 4 * limit);
     CHECK(std::isfinite(found.rms));
-    CHECK(found.outlier == doctest::Approx(limit).epsilon(0.5));
+    CHECK(found.outlier_threshold == doctest::Approx(limit).epsilon(0.5));
   };
   // Where the good rows alone take it, to what the iteration leaves; if a limit is to be found that
   // is another one, to a part of the noise.
@@ -235,7 +235,8 @@ TEST_CASE("where a residual is beyond the range of numbers, so is their mean") {
   const auto u = steps(8, 100);
   auto rows = rows_of(truth, u);
   rows[40] = duet::pose(rotation(1.0), vector3<double>(1.2e308, 1.2e308, 1.2e308));
-  const auto found = duet::fit<curve<pose_type>>(u, rows, truth.basis().knots(), {.outlier = 0.01});
+  const auto found =
+      duet::fit<curve<pose_type>>(u, rows, truth.basis().knots(), {.outlier_threshold = 0.01});
   CHECK(std::isinf(found.residuals[40]));
   CHECK(std::isinf(found.rms));
 }
@@ -245,12 +246,12 @@ TEST_CASE("least squares name the row that is too far to be squared") {
   const auto u = steps(8, 100);
   auto rows = rows_of(truth, u);
   rows[40] = duet::pose(rotation(1.0), vector3<double>(1e160, 0, 0));
-  const auto message = duet_test::message_of<duet::invalid_row>(
+  const auto message = duet_test::message_of<duet::invalid_sample>(
       [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, rows, truth.basis().knots())); });
   CHECK(message.rfind("duet: row 40: is 1", 0) == 0);
-  CHECK(
-      message.find("e+160 from the rows around it, too far for least squares: fit_options::outlier "
-                   "makes the fit robust") != std::string::npos);
+  CHECK(message.find("e+160 from the rows around it, too far for least squares: "
+                     "fit_options::outlier_threshold "
+                     "makes the fit robust") != std::string::npos);
 }
 
 TEST_CASE("rows that are all the same, and two kinds of them") {
@@ -259,8 +260,8 @@ TEST_CASE("rows that are all the same, and two kinds of them") {
   const rotation q = duet::from_rotation_vector(vector3<double>(1, 2, 3));
   for (const double outlier : {0.0, 0.1, double(std::numeric_limits<double>::infinity())}) {
     CAPTURE(outlier);
-    const auto result =
-        duet::fit<curve<rotation>>(u, std::vector<rotation>(101, q), knots, {.outlier = outlier});
+    const auto result = duet::fit<curve<rotation>>(u, std::vector<rotation>(101, q), knots,
+                                                   {.outlier_threshold = outlier});
     CHECK(result.rms <= 1e-15);
     CHECK(between(result.curve(4.3), q) <= 1e-15);
   }
@@ -283,7 +284,7 @@ TEST_CASE("messages give the last step") {
   }
   const auto robust = duet_test::message_of<duet::no_convergence>([&] {
     static_cast<void>(duet::fit<curve<rotation>>(u, noisy, truth.basis().knots(),
-                                                 {.outlier = 0.02, .max_iterations = 1}));
+                                                 {.outlier_threshold = 0.02, .max_iterations = 1}));
   });
   CHECK(robust.rfind("duet: fit: the iteration does not converge after ", 0) == 0);
   CHECK(robust.find(" after 1 steps") == std::string::npos);
@@ -354,16 +355,16 @@ TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
       double sum = 0;
       for (std::size_t i = 0; i < u.size(); ++i) {
         const double r = residual(s, i);
-        const double c = of.outlier;
+        const double c = of.outlier_threshold;
         sum += (of.weights.empty() ? 1 : of.weights[i]) * (r <= c ? r * r / 2 : c * (r - c / 2));
       }
       return sum;
     };
     const double least = cost(fitted.curve);
-    for (std::size_t k = 0; k < fitted.curve.controls().size(); ++k) {
+    for (std::size_t k = 0; k < fitted.curve.control_points().size(); ++k) {
       for (const double size : {1e-4, -1e-4}) {
         for (int axis = 0; axis < n; ++axis) {
-          auto controls = fitted.curve.controls();
+          auto controls = fitted.curve.control_points();
           const vector3<double> step = vector3<double>::Unit(axis % 3) * size;
           if constexpr (std::is_same_v<Q, rotation>) {
             controls[k] = controls[k] * duet::from_rotation_vector(step);
@@ -381,7 +382,7 @@ TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
   };
   check_least(duet::fit<curve<Q>>(u, rows, knots, options), options);
   duet::fit_options robust = options;
-  robust.outlier = 2;
+  robust.outlier_threshold = 2;
   check_least(duet::fit<curve<Q>>(u, rows, knots, robust), robust);
   duet::fit_options one_for_all{.weights = options.weights};
   one_for_all.covariances.push_back(options.covariances[0]);
@@ -422,11 +423,12 @@ TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
       const rotation& q = rows.back();
       wide_rows.push_back(normalized(duet::quaternion<wide>(q.w(), q.x(), q.y(), q.z())));
     }
-    const auto s = duet::fit<curve<rotation>>(u, rows, knots, {.outlier = outlier}).curve;
-    const auto exact = duet::fit<duet::cumulative_bspline<wide>>(
-                           std::vector<wide>(u.begin(), u.end()), wide_rows,
-                           std::vector<wide>(knots.begin(), knots.end()), {.outlier = outlier})
-                           .curve;
+    const auto s = duet::fit<curve<rotation>>(u, rows, knots, {.outlier_threshold = outlier}).curve;
+    const auto exact =
+        duet::fit<duet::cumulative_bspline<wide>>(std::vector<wide>(u.begin(), u.end()), wide_rows,
+                                                  std::vector<wide>(knots.begin(), knots.end()),
+                                                  {.outlier_threshold = outlier})
+            .curve;
     for (const double x : steps(8, 50)) {
       const auto q = s(x);
       const auto miss = duet::quaternion<wide>(q.w(), q.x(), q.y(), q.z()) - exact(wide(x));
@@ -484,7 +486,7 @@ TEST_CASE("fit: residuals of the size of the motion, half of them bounded, still
     rows.push_back(moved(at, random, i % 10 < 3 ? 2.5 : .5));
   }
   const auto result =
-      duet::fit<curve<pose_type>>(u, rows, duet::knots_at_rows(u, 5, 4), {.outlier = 1e-3});
+      duet::fit<curve<pose_type>>(u, rows, duet::knots_every(u, 5, 4), {.outlier_threshold = 1e-3});
   CHECK_LT(result.iterations, 100);
 }
 
@@ -497,32 +499,32 @@ TEST_CASE("fit: what keeps plain least squares from converging is named") {
                               vector3<double>(u.back(), 0, 0)));
   }
   rows[23] = duet::pose(duet::rotation(rows[23]), vector3<double>(1e6, -2e6, 5e5));
-  const auto knots = duet::knots_at_rows(u, 5, 4);
+  const auto knots = duet::knots_every(u, 5, 4);
   const std::string message = duet_test::message_of<duet::no_convergence>(
       [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, rows, knots)); });
   CHECK_MESSAGE(message.find(": row 23 is 2.29") != std::string::npos, message);
-  CHECK(
-      message.ends_with(" from the rows around it, and fit_options::outlier makes the fit robust"));
-  CHECK(duet::fit<curve<pose_type>>(u, rows, knots, {.outlier = .1}).residuals[22] < 1e-3);
+  CHECK(message.ends_with(
+      " from the rows around it, and fit_options::outlier_threshold makes the fit robust"));
+  CHECK(duet::fit<curve<pose_type>>(u, rows, knots, {.outlier_threshold = .1}).residuals[22] <
+        1e-3);
 }
 
 TEST_CASE("a knot at every n-th row") {
   using knots = std::vector<double>;
   const knots u{0, 1, 2, 4, 8, 9, 10};
-  CHECK(duet::knots_at_rows(u, 3) == knots{0, 0, 0, 0, 4, 10, 10, 10, 10});
-  CHECK(duet::knots_at_rows(u, 2, 3) == knots{0, 0, 0, 2, 8, 10, 10, 10});
-  CHECK(duet::knots_at_rows(u, 4, 2) == knots{0, 0, 10, 10}); // 2 rows are too few for one more
-  CHECK(duet::knots_at_rows(u, 1, 2) == knots{0, 0, 1, 2, 4, 8, 9, 10, 10});
+  CHECK(duet::knots_every(u, 3) == knots{0, 0, 0, 0, 4, 10, 10, 10, 10});
+  CHECK(duet::knots_every(u, 2, 3) == knots{0, 0, 0, 2, 8, 10, 10, 10});
+  CHECK(duet::knots_every(u, 4, 2) == knots{0, 0, 10, 10}); // 2 rows are too few for one more
+  CHECK(duet::knots_every(u, 1, 2) == knots{0, 0, 1, 2, 4, 8, 9, 10, 10});
   for (const std::size_t many : {6UL, 7UL, std::size_t(-1)}) {
-    CHECK(duet::knots_at_rows(u, many, 2) == knots{0, 0, 10, 10});
+    CHECK(duet::knots_every(u, many, 2) == knots{0, 0, 10, 10});
   }
   const auto complaint = [](const knots& parameters, std::size_t n) {
-    return duet_test::message_of([&] { static_cast<void>(duet::knots_at_rows(parameters, n)); });
+    return duet_test::message_of([&] { static_cast<void>(duet::knots_every(parameters, n)); });
   };
-  CHECK(complaint(u, 0) ==
-        "duet: knots_at_rows: n = 0 and 7 rows: n must be positive, and at least "
-        "two rows there");
-  CHECK(complaint({1}, 3) == "duet: knots_at_rows: n = 3 and 1 rows: n must be positive, and at "
+  CHECK(complaint(u, 0) == "duet: knots_every: n = 0 and 7 rows: n must be positive, and at least "
+                           "two rows there");
+  CHECK(complaint({1}, 3) == "duet: knots_every: n = 3 and 1 rows: n must be positive, and at "
                              "least two rows there");
   CHECK(!complaint({}, 3).empty());
 
@@ -534,8 +536,7 @@ TEST_CASE("a knot at every n-th row") {
       x = x * x / 8;
     }
     for (const std::size_t n : {2UL, 3UL, 7UL}) {
-      const auto result =
-          duet::fit<curve<rotation>>(t, rows_of(truth, t), duet::knots_at_rows(t, n));
+      const auto result = duet::fit<curve<rotation>>(t, rows_of(truth, t), duet::knots_every(t, n));
       CHECK(result.residuals.size() == t.size());
     }
   }
@@ -564,8 +565,8 @@ TEST_CASE("bad input is named") {
   CHECK(message(steps(1, 40), rows) ==
         "duet: fit: too few rows for control element 4, which acts on parameters from 1 to 5: use "
         "fewer knots there");
-  CHECK(message(u, rows, {.length = 0}) ==
-        "duet: fit: length 0 and outlier inf: the length must be positive, the limit not negative");
+  CHECK(message(u, rows, {.length = 0}) == "duet: fit: length 0 and outlier_threshold inf: the "
+                                           "length must be positive, the limit not negative");
   CHECK(message(u, rows, {.weights = {1, 2}}) == "duet: fit: 2 weights for 41 rows");
   std::vector<double> weights(41, 1.0);
   weights[7] = 0;

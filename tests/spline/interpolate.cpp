@@ -40,7 +40,7 @@ parameters uneven(std::size_t rows) {
   duet_test::random_source random(rows);
   parameters result = {3};
   for (std::size_t i = 1; i < rows; ++i) {
-    result.push_back(result.back() + random.magnitude(0.1, 1));
+    result.push_back(result.back() + random.log_uniform(0.1, 1));
   }
   return result;
 }
@@ -124,10 +124,11 @@ TEST_CASE("steps of 2.9 rad between rows, on slowly turning axes") {
 TEST_CASE("a curve is copied by its knots, control quaternions and increments") {
   const table q = duet_test::turned_by(2, 20, 1);
   const spline s = interpolate<spline>(uniform(20), q);
-  const spline copy(s.basis().knots(), s.controls(), s.increments());
+  const spline copy(s.basis().knots(), s.control_points(), s.increments());
   bool beyond_half_a_turn = false;
-  for (std::size_t i = 1; i < s.controls().size(); ++i) {
-    beyond_half_a_turn = beyond_half_a_turn || dot(s.controls()[i - 1], s.controls()[i]) < 0;
+  for (std::size_t i = 1; i < s.control_points().size(); ++i) {
+    beyond_half_a_turn =
+        beyond_half_a_turn || dot(s.control_points()[i - 1], s.control_points()[i]) < 0;
   }
   CHECK(beyond_half_a_turn); // so that aligning signs would make it another curve
   for (double u = s.basis().front(); u <= s.basis().back(); u += 0.07) {
@@ -172,7 +173,7 @@ TEST_CASE("at an inner knot of uniform ones: Q_i = q_i exp(−ω_i/6) exp(ω_{i+
   int count = 0;
   for (std::size_t row = 3; row + 3 < rows; ++row) { // where repeated end knots do not reach
     const std::size_t i = row + 1;                   // the control quaternion of that knot
-    const quaternion expected = s.controls()[i] * sixth(i, -1) * sixth(i + 1, 1);
+    const quaternion expected = s.control_points()[i] * sixth(i, -1) * sixth(i + 1, 1);
     CHECK(gap(s(uniform(rows)[row]), expected) < 1e-14);
     ++count;
   }

@@ -31,7 +31,7 @@ const quaternion one(1);
 std::string bad_row(const parameters& u, const table& q) {
   try {
     static_cast<void>(duet::interpolate<spline>(u, q));
-  } catch (const duet::invalid_row& e) {
+  } catch (const duet::invalid_sample& e) {
     const std::string text = std::to_string(e.row()) + ": " + e.reason();
     CHECK(e.what() == "duet: row " + text);
     return text;
@@ -88,9 +88,9 @@ TEST_CASE("too few rows, and columns of different length") {
 
 TEST_CASE("periodic ends that do not meet") {
   const quaternion turned = normalized(quaternion(1, 0.001, 0, 0));
-  CHECK(message_of<duet::invalid_row>({1, 2, 3}, {one, turned, turned}, duet::periodic{}) ==
+  CHECK(message_of<duet::invalid_sample>({1, 2, 3}, {one, turned, turned}, duet::periodic{}) ==
         "duet: row 2: periodic ends: differs from row 0 by 0.002 rad, but must repeat it");
-  CHECK(message_of<duet::invalid_row>({1, 2, 3}, {one, turned, -one}, duet::periodic{}) ==
+  CHECK(message_of<duet::invalid_sample>({1, 2, 3}, {one, turned, -one}, duet::periodic{}) ==
         "nothing was thrown");
 
   using pose = duet::dual_quaternion<double>;
@@ -100,7 +100,7 @@ TEST_CASE("periodic ends that do not meet") {
     static_cast<void>(duet::interpolate<duet::cumulative_bspline<pose::scalar_type>>(
         parameters{1, 2, 3}, poses, duet::periodic{}));
     FAIL("nothing was thrown");
-  } catch (const duet::invalid_row& e) {
+  } catch (const duet::invalid_sample& e) {
     CHECK(e.row() == 2);
     CHECK(e.reason() ==
           "periodic ends: differs from row 0 by 0.005 in translation, but must repeat it");

@@ -20,9 +20,10 @@
 namespace test_spline_location {
 namespace {
 
-const std::string and_clamp = "; set_outside_domain(outside::clamp) makes a curve stay at its end";
+const std::string and_clamp =
+    "; set_out_of_domain(out_of_domain::clamp) makes a curve stay at its end";
 
-using duet::outside;
+using duet::out_of_domain;
 using duet_test::gap;
 using spline = duet::cumulative_bspline<double>;
 
@@ -31,9 +32,9 @@ const spline s(knots, duet_test::random_orientations(knots.size() - 4, 1));
 const std::vector<double> parameters = duet_test::parameters_on(knots, 4);
 const double first = s.basis().front(), last = s.basis().back();
 
-spline that(outside way) {
+spline that(out_of_domain way) {
   spline t = s;
-  t.set_outside_domain(way);
+  t.set_out_of_domain(way);
   return t;
 }
 
@@ -48,7 +49,7 @@ TEST_CASE("a hint changes nothing but the way to the span") {
   duet_test::random_source source(1);
   const auto check = [](double u, duet::span_hint& hint) {
     CHECK(s(u, hint) == s(u));
-    CHECK(hint.span == s.basis().span_of(u));
+    CHECK(hint.span == s.basis().find_span(u));
     const auto m = s.motion(u, duet::frame::spatial, hint);
     CHECK(m.jerk == s.motion(u, duet::frame::spatial).jerk);
   };
@@ -65,12 +66,13 @@ TEST_CASE("a hint changes nothing but the way to the span") {
 TEST_CASE("outside the domain: an error by default, with the value") {
   const std::vector<double> round = {0, 0, 0, 0, 1, 2, 2, 2, 2};
   spline t(round, duet_test::random_orientations(5, 1));
-  CHECK(t.outside_domain() == outside::error);
+  CHECK(t.behaviour_out_of_domain() == out_of_domain::error);
   CHECK(message_of(t, 2.5) ==
         "duet: spline evaluated at 2.5, outside its domain [0, 2]" + and_clamp);
   CHECK(message_of(t, -1) == "duet: spline evaluated at -1, outside its domain [0, 2]" + and_clamp);
-  for (const outside way : {outside::error, outside::clamp, outside::extrapolate}) {
-    t.set_outside_domain(way);
+  for (const out_of_domain way :
+       {out_of_domain::error, out_of_domain::clamp, out_of_domain::extrapolate}) {
+    t.set_out_of_domain(way);
     CHECK(message_of(t, std::numeric_limits<double>::quiet_NaN()) ==
           "duet: spline evaluated at nan, outside its domain [0, 2]");
   }
@@ -80,7 +82,7 @@ TEST_CASE("outside the domain: an error by default, with the value") {
 }
 
 TEST_CASE("clamp: the curve rests at its ends") {
-  const spline t = that(outside::clamp);
+  const spline t = that(out_of_domain::clamp);
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double far : {1e-9, 0.5, 100.0, infinity}) {
     for (const double end : {first, last}) {
@@ -101,7 +103,7 @@ TEST_CASE("clamp: the curve rests at its ends") {
 }
 
 TEST_CASE("extrapolate: the last piece goes on, and so do its derivatives") {
-  const spline t = that(outside::extrapolate);
+  const spline t = that(out_of_domain::extrapolate);
   for (const double end : {first, last}) {
     const double out = end == first ? -1 : 1;
     // Its Taylor series about the end, of a curve whose third derivative does not jump there.
@@ -126,7 +128,7 @@ TEST_CASE("ω = δu̇, ω̇ = δ′u̇² + δü, ω̈ = δ″u̇³ + 3δ′u̇ü
   for (const double u : {middle, first + 0.1, last - 0.2}) {
     const double rates[] = {0.7, -1.3, 0.4};
     const auto by_u = s.motion(u, duet::frame::spatial);
-    const auto m = duet::chain_rule(by_u, rates[0], rates[1], rates[2]);
+    const auto m = duet::apply_time_scaling(by_u, rates[0], rates[1], rates[2]);
     const duet::taylor<double, 3> drive({u, rates[0], rates[1] / 2, rates[2] / 6});
     const auto q = s(drive);
     const auto derivative = [&](int k) {
@@ -156,7 +158,7 @@ TEST_CASE("increments of any length: the long way round, and several times") {
   CHECK((t.motion(1.5, duet::frame::body).velocity + 6 * pi * axis).norm() < 1e-14);
   CHECK_THROWS_WITH_AS(line(round, {one, one, one}, {axis, 2 * pi * axis, -3 * pi * axis}),
                        "duet: row 2: the increment does not lead here from the control before",
-                       duet::invalid_row);
+                       duet::invalid_sample);
   CHECK_THROWS_WITH_AS(line(round, {one, one, one}, {axis, axis}),
                        "duet: cumulative_bspline: 5 knots of order 2 take 3 increments, got 2",
                        duet::invalid_input);

@@ -44,8 +44,8 @@ double largest_error(const Spline& s, const F& f) {
 }
 
 template <class T, class F>
-duet::look_up_table<T> uniform_table(const F& f, int rows) {
-  duet::look_up_table<T> table;
+duet::lookup_table<T> uniform_table(const F& f, int rows) {
+  duet::lookup_table<T> table;
   for (int i = 0; i <= rows; ++i) {
     table.parameters.push_back(3.0 * i / rows);
     table.elements.push_back(f(table.parameters.back()));
@@ -112,7 +112,7 @@ TEST_CASE_TEMPLATE("estimated_errors: never below the error, with steps of every
   for (const int rows : {60, 61}) {
     for (int steps = 0; steps < 4; ++steps) {
       for (int kind = 0; kind < 6; ++kind) {
-        duet::look_up_table<double> table;
+        duet::lookup_table<double> table;
         for (int i = 0; i <= rows; ++i) {
           const double x = double(i) / rows;
           const double u = steps == 0   ? x
@@ -181,7 +181,7 @@ TEST_CASE("bad bounds are named") {
   const auto message = [](double first, double last, double tolerance, std::size_t most) {
     try {
       static_cast<void>(duet::adaptive_table<rotation_curve>(
-          turning, first, last, tolerance, duet::not_a_knot{}, {.most_rows = most}));
+          turning, first, last, tolerance, duet::not_a_knot{}, {.max_samples = most}));
     } catch (const std::exception& error) {
       return std::string(error.what());
     }

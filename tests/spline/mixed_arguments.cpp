@@ -58,12 +58,12 @@ TEST_CASE("constants mix with derivatives: curves") {
       },
       rows, 1.3);
   check(
-      "chain_rule",
+      "apply_time_scaling",
       [&](const auto& given, const auto& du, const auto& ddu, const auto& dddu) {
         using D = typename std::decay_t<decltype(given[0])>::scalar_type;
-        const auto m =
-            chain_rule(interpolate<cumulative_bspline<D>>(times, given).motion(1.3, frame::body),
-                       du, ddu, dddu);
+        const auto m = apply_time_scaling(
+            interpolate<cumulative_bspline<D>>(times, given).motion(1.3, frame::body), du, ddu,
+            dddu);
         return std::tuple(m.value, m.velocity, m.acceleration, m.jerk);
       },
       rows, 0.4, 0.3, -0.2);

@@ -63,7 +63,7 @@ double difference(const vector& a, const vector& b) {
   return (a - b).norm() / std::max(1e-3, a.norm());
 }
 double difference(const quaternion& a, const quaternion& b) {
-  return gap(a, b) / std::max(1e-3, std::sqrt(norm2(a)));
+  return gap(a, b) / std::max(1e-3, std::sqrt(squared_norm(a)));
 }
 
 template <class Spline, class Frame>

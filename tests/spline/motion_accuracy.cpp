@@ -59,7 +59,7 @@ void measure(worst_errors& worst, const std::string& name, const std::vector<dou
   const duet::cumulative_bspline<double, Order> s(
       knots, duet_test::random_orientations(knots.size() - std::size_t(Order), step));
   const auto wide_knots = duet_test::cast<real_100>(knots);
-  const auto controls = duet_test::cast<real_100>(s.controls());
+  const auto controls = duet_test::cast<real_100>(s.control_points());
   const auto true_increments = duet_test::increments_of(controls);
   // The rates follow from the ω_i as they are. (Neighbours closer than rounding have ω_i that are
   // right on the scale of the quaternions, and no better.)
@@ -73,7 +73,7 @@ void measure(worst_errors& worst, const std::string& name, const std::vector<dou
     const auto q = exact(wide_knots, Order, controls[0], increments, u);
     // The sum of absolute terms: what the rates would be if nothing cancelled.
     std::array<real_100, 4> size = {1, 0, 0, 0};
-    const std::size_t span = s.basis().span_of(u);
+    const std::size_t span = s.basis().find_span(u);
     const auto weights = s.basis().template weights<3>(span, u);
     for (std::size_t j = 0; j + 1 < std::size_t(Order); ++j) {
       const double omega = s.increments()[s.basis().first_function(span) + 1 + j].norm();
@@ -93,9 +93,9 @@ void measure(worst_errors& worst, const std::string& name, const std::vector<dou
               components(q[d]), d, next);
     };
     const auto d = s.derivatives(u);
-    of_quaternion(worst.value, s(u), 0, norm2(q[1]));
-    of_quaternion(worst.first, d[1], 1, sqrt(norm2(q[2])));
-    of_quaternion(worst.second, d[2], 2, sqrt(norm2(q[3])));
+    of_quaternion(worst.value, s(u), 0, squared_norm(q[1]));
+    of_quaternion(worst.first, d[1], 1, sqrt(squared_norm(q[2])));
+    of_quaternion(worst.second, d[2], 2, sqrt(squared_norm(q[3])));
 
     const auto& c = q;
     const vector omega = twice_the_vector(conj(c[0]) * c[1]);

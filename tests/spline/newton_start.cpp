@@ -134,7 +134,7 @@ void check_jacobians(double away, double most) {
     data.orientations.push_back(
         duet::exp(vector3(.9 * std::sin(i), .8 * std::cos(1.3 * i), .5 * std::sin(.7 * i + 1))));
   }
-  data.orientations = duet::aligned_orientations(data.orientations);
+  data.orientations = duet::align_quaternion_signs(data.orientations);
   const vector3 v(.3, -.2, .5), w(.1, .4, -.2);
   const auto check = [&](const char* name, const duet::curve_ends<double>& ends) {
     CAPTURE(name);
@@ -148,7 +148,7 @@ void check_jacobians(double away, double most) {
     check("fully_clamped", duet::fully_clamped{duet::clamped{v, w}, duet::end_acceleration{w, v}});
   }
   data.orientations.back() = data.orientations.front();
-  data.orientations = duet::aligned_orientations(data.orientations);
+  data.orientations = duet::align_quaternion_signs(data.orientations);
   check("periodic", duet::periodic{});
 }
 

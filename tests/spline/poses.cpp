@@ -47,7 +47,7 @@ double difference(const twist& a, const twist& b) { return (a - b).norm() / (1 +
 
 TEST_CASE("the rotation of a pose curve is the curve of the rotations; all are units") {
   std::vector<duet::quaternion<double>> rotations;
-  for (const pose& a : s.controls()) {
+  for (const pose& a : s.control_points()) {
     rotations.push_back(rotation(a));
   }
   const duet::cumulative_bspline<double> r(knots, rotations);
@@ -69,7 +69,7 @@ TEST_CASE("P1: of pure translations it is the B-spline of their vectors") {
   for (const double u : parameters) {
     vector sum = vector::Zero();
     for (std::size_t i = 0; i < points.size(); ++i) {
-      sum += points[i] * duet::bspline_value(knots, i, 4, u);
+      sum += points[i] * duet::basis_function(knots, i, 4, u);
     }
     CHECK((translation(t(u)) - sum).norm() < 1e-14);
     CHECK(duet_test::gap(rotation(t(u)), duet::quaternion<double>(1)) == 0);
@@ -80,13 +80,13 @@ TEST_CASE("order 2 is the screw motion between neighbours") {
   const std::vector<double> uneven = {0, 0, 1, 3, 3.5, 3.5};
   const duet::cumulative_bspline<number, 2> t(uneven, duet_test::random_poses(4, 2));
   for (const double x : {0.0, 0.2, 0.7, 0.99}) {
-    CHECK(gap(t(1 + 2 * x), duet::sclerp(t.controls()[1], t.controls()[2], x)) < 1e-14);
+    CHECK(gap(t(1 + 2 * x), duet::sclerp(t.control_points()[1], t.control_points()[2], x)) < 1e-14);
   }
 }
 
 TEST_CASE("moving all control poses moves the curve, and leaves body twists alone") {
   const pose p = duet_test::random_poses(1, 1).front();
-  std::vector<pose> moved = s.controls();
+  std::vector<pose> moved = s.control_points();
   for (pose& a : moved) {
     a = p * a;
   }

@@ -29,7 +29,7 @@ using vector = duet::vector3<double>;
 
 namespace {
 
-double size(const quaternion& q) { return std::sqrt(norm2(q)); }
+double size(const quaternion& q) { return std::sqrt(squared_norm(q)); }
 double relative(const quaternion& truth, const quaternion& q) {
   return size(truth - q) / size(truth);
 }
@@ -137,7 +137,7 @@ TEST_CASE("P3 to the letter is right only where the ω_i are parallel and B̃′
     const double error =
         relative(parallel.derivatives(u)[1], printed_derivative(parallel, u).literal_first);
     CAPTURE(u);
-    if (parallel.basis().span_of(u) == 0) {
+    if (parallel.basis().find_span(u) == 0) {
       if (lone < 1e-3) {
         continue;
       } // its two ends
@@ -162,12 +162,12 @@ TEST_CASE("P2 with functions from B_0: q_{-1} cancels") {
     const std::size_t count = knots.size() - 4;
     const cumulative_bspline<double> s(knots, duet_test::random_orientations(count, 1));
     const quaternion before = duet::from_axis_angle(vector(0, 1, 0), 1.3); // any q_{-1}
-    const auto omega_0 = log(conj(before) * s.controls()[0]).vec();
+    const auto omega_0 = log(conj(before) * s.control_points()[0]).vec();
     for (const double u : parameters_on(knots, 4)) {
       const auto cumulative = [&](std::size_t i) {
         double sum = 0;
         for (; i < count; ++i) {
-          sum += duet::bspline_value(knots, i, 4, u);
+          sum += duet::basis_function(knots, i, 4, u);
         }
         return sum;
       };
@@ -188,7 +188,7 @@ TEST_CASE("P4: Q″ = Q (a + w²), and w² = −|w|²") {
     const quaternion w(0, m.velocity / 2), a(0, m.acceleration / 2);
     const auto truth = s.derivatives(u)[2];
     CHECK(gap(truth, m.value * (a + w * w)) <= 1e-13 * (1 + size(truth)));
-    CHECK(gap(w * w, quaternion(-norm2(w))) <= 1e-14 * (1 + norm2(w)));
+    CHECK(gap(w * w, quaternion(-squared_norm(w))) <= 1e-14 * (1 + squared_norm(w)));
     CHECK(relative(truth, m.value * (a - w * w)) > 1e-3);
   }
 }
@@ -198,7 +198,7 @@ TEST_CASE("P4 to the letter is wrong even for parallel ω_i: its B̃″_i is one
   const cumulative_bspline<double> s(knots, about_one_axis(knots.size() - 4));
   int count = 0;
   for (const double u : parameters_on(knots, 4)) {
-    if (s.basis().span_of(u) > 0 && u != s.basis().back()) {
+    if (s.basis().find_span(u) > 0 && u != s.basis().back()) {
       CAPTURE(u);
       CHECK(relative(s.derivatives(u)[2], printed_derivative(s, u).literal_second) > 1e-3);
       ++count;

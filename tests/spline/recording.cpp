@@ -32,7 +32,7 @@ void write(const std::string& text, const std::string& to = path) {
 /// Faults, a line each.
 std::string faults_of(const duet::recording<screw>& r) {
   std::string text;
-  for (const duet::recording_fault& each : r.faults) {
+  for (const duet::recording_issue& each : r.faults) {
     text += std::to_string(each.line) + ": " + each.reason + "\n";
   }
   return text;

@@ -35,7 +35,7 @@ parameters uneven(std::size_t rows) {
   duet_test::random_source random(rows);
   parameters u = {-0.3};
   while (u.size() < rows) {
-    u.push_back(u.back() + random.magnitude(0.2, 0.8));
+    u.push_back(u.back() + random.log_uniform(0.2, 0.8));
   }
   return u;
 }
@@ -230,7 +230,7 @@ TEST_CASE("far neighbours on random axes: a curve through the data or a clear er
 }
 
 TEST_CASE("how it went") {
-  duet::fit_report report;
+  duet::interpolation_report report;
   const table q = duet_test::random_orientations(30, 0.003, 4);
   static_cast<void>(interpolate<spline<6>>(uneven(30), q, duet::natural{}, report));
   CHECK(report.iterations >= 1);

@@ -104,7 +104,7 @@ TEST_CASE("a copy from pieces is the same curve") {
   pieces[2][1] += vector(0.1, 0, 0);
   CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>::from_pieces(s.knots(), s.elements(), pieces)),
                        doctest::Contains("row 3: the piece before does not lead here"),
-                       duet::invalid_row);
+                       duet::invalid_sample);
   pieces.pop_back();
   CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>::from_pieces(s.knots(), s.elements(), pieces)),
                        doctest::Contains("7 rows need 6 pieces, got 5"), duet::invalid_input);
@@ -122,11 +122,11 @@ TEST_CASE("hints change nothing; outside its domain the curve does as told") {
     CHECK_THROWS_WITH_AS(static_cast<void>(s(u)),
                          doctest::Contains("outside its domain [-0.5, 2.9]"), duet::invalid_input);
   }
-  s.set_outside_domain(duet::outside::clamp);
+  s.set_out_of_domain(duet::out_of_domain::clamp);
   CHECK(s(7.0) == s(2.9));
   CHECK(s.motion(-3.0, duet::frame::spatial).velocity.norm() == 0);
   CHECK_THROWS_AS(static_cast<void>(s(nan)), duet::invalid_input);
-  s.set_outside_domain(duet::outside::extrapolate);
+  s.set_out_of_domain(duet::out_of_domain::extrapolate);
   const auto series = duet::derivatives<3>(s, 2.9);
   const double h = 1e-3;
   const quaternion expected =
@@ -156,7 +156,7 @@ TEST_CASE("what no curve goes through") {
       static_cast<void>(interpolate<spline<6>>(us(3), rows(3), duet::clamped{zero, zero})),
       doctest::Contains("needs 4 rows"), duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<4>>(us(7), q, duet::periodic{})),
-                       doctest::Contains("row 6: periodic ends"), duet::invalid_row);
+                       doctest::Contains("row 6: periodic ends"), duet::invalid_sample);
   const double infinity = std::numeric_limits<double>::infinity();
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<4>>(
                            us(7), q, duet::clamped{zero, vector(0, infinity, 0)})),
@@ -165,11 +165,11 @@ TEST_CASE("what no curve goes through") {
   repeated[3] = repeated[2];
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<6>>(repeated, q)),
                        doctest::Contains("row 3: parameter 0.4 does not increase"),
-                       duet::invalid_row);
+                       duet::invalid_sample);
   auto half_turn = q;
   half_turn[4] = half_turn[3] * quaternion(0, 0, 1, 0);
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<4>>(knots, half_turn)),
-                       doctest::Contains("row 4: half a turn"), duet::invalid_row);
+                       doctest::Contains("row 4: half a turn"), duet::invalid_sample);
   CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>(us(3), rows(3), {{zero}, {zero}})),
                        doctest::Contains("3 rows need 3 rates, got 2"), duet::invalid_input);
 }

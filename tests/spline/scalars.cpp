@@ -80,7 +80,7 @@ TEST_CASE("dual and Taylor parameters differentiate, on the branch of the value"
     const auto expected = reference.derivatives(u);
     const auto by_dual = reference(dual<double>::variable(u));
     const auto by_taylor = reference(taylor<double, 2>::variable(u));
-    const double size = 1 + std::sqrt(norm2(expected[2]));
+    const double size = 1 + std::sqrt(squared_norm(expected[2]));
     CHECK(by_dual.x().value() == doctest::Approx(expected[0].x()).epsilon(1e-15));
     CHECK(std::abs(by_dual.y().epsilon() - expected[1].y()) < 1e-14 * size);
     CHECK(std::abs(by_taylor.z().derivative(1) - expected[1].z()) < 1e-14 * size);

@@ -31,8 +31,8 @@ using duet::table_format;
 using duet::vector3;
 using rotation = duet::quaternion<double>;
 using screw = duet::screw_dual<double>;
-using rotations = duet::look_up_table<double>;
-using poses = duet::look_up_table<screw>;
+using rotations = duet::lookup_table<double>;
+using poses = duet::lookup_table<screw>;
 
 /// A file of its own, gone at last.
 class scratch_file {
@@ -50,7 +50,7 @@ public:
 
 /// As T would be read of such a text.
 template <class T>
-duet::look_up_table<T> loaded(const std::string& text) {
+duet::lookup_table<T> loaded(const std::string& text) {
   const scratch_file file("loaded.txt", text);
   return duet::load_table<T>(file.path);
 }

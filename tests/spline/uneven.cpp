@@ -168,7 +168,7 @@ std::array<double, Count> jumps(const Spline& s, const std::vector<double>& u, m
     std::copy(q.begin(), q.end(), result.begin());
     return result;
   };
-  const auto size = [](const rotation& q) { return std::sqrt(norm2(q)); };
+  const auto size = [](const rotation& q) { return std::sqrt(squared_norm(q)); };
   std::array<double, Count> worst{};
   for (std::size_t i = 1; i + 1 < u.size(); ++i) {
     const double before = std::nextafter(u[i], u[0]);

@@ -123,7 +123,7 @@ void check_lanes(const F& f, double limit, const std::vector<X>& x,
   using duet::lane;
   for (std::size_t shift = 0; shift < x.size(); shift += W / 2) {
     const auto joined = [&](const auto& from) {
-      return duet::joined_lanes<W>(
+      return duet::from_lanes<W>(
           [&](std::size_t i) { return from[(shift + 3 * i) % from.size()]; });
     };
     const auto result = f(joined(x), joined(rest)...);

@@ -26,29 +26,29 @@
 #include <vector>
 
 /// \file
-/// The judge: is my closed form right?
+/// Checks a closed-form formula against its automatic derivative.
 
 namespace duet {
 
 /// Settings of `compare`.
 struct comparison_options {
-  /// Random points, half of them anywhere and half beside special ones; those and the caller's come
-  /// on top.
+  /// Number of random points, half of them unrestricted and half near special ones, in addition to
+  /// the special points and the caller's.
   std::size_t samples = 1000;
-  std::uint64_t seed = 1;        ///< of the random points; the same seed gives the same result
-  double tolerance = 100;        ///< in units of the last place
-  progress_callback report = {}; ///< told after every input, may end the run: see `progress_line`
+  std::uint64_t seed = 1;        ///< seed of the random points; the same seed gives the same result
+  double tolerance = 100;        ///< allowed error, in units of the last place
+  progress_callback report = {}; ///< called after every input, may end the run: see `progress_line`
 };
 
 namespace detail {
 
-/// What a function makes of the inputs.
+/// Result type of a function of the inputs.
 template <class T, class F, class Inputs>
 using result_type = decltype(result_of_call(
     std::apply(std::declval<const F&>(),
                std::declval<const Inputs&>().template make<T>(std::span<const double>()))));
 
-/// Does F take the arguments that inputs make over the first of the scalars T?
+/// True if F takes the arguments that inputs make over the first of the scalars T.
 template <class F, class Arguments>
 inline constexpr bool takes = false;
 template <class F, class... X>
@@ -57,18 +57,17 @@ template <class F, class Inputs, class T, class... More>
 inline constexpr bool takes_inputs =
     takes<F, decltype(std::declval<const Inputs&>().template make<T>(std::span<const double>()))>;
 
-/// Two formulas and their inputs, of whose types what is common to all comparisons knows nothing,
-/// so that compilers make it once.
+/// Two formulas and their inputs. The code common to all comparisons does not depend on their
+/// types, so that it is compiled once.
 class formula_pair {
 public:
   virtual ~formula_pair() = default;
   [[nodiscard]] virtual std::vector<coordinates> points(const comparison_options&) const = 0;
   [[nodiscard]] virtual bool contains(const coordinates& point) const = 0;
   [[nodiscard]] virtual std::string describe(const coordinates& point) const = 0;
-  /// In every precision.
+  /// Differences at a point in every precision.
   virtual void measure_at(const coordinates& point, std::span<difference> out) const = 0;
-  /// Errors of a component, in the first and the last precision; NaN where one result is not
-  /// finite.
+  /// Errors of a component, in the first and the last precision; NaN if one result is not finite.
   [[nodiscard]] virtual std::array<double, 2> errors_at(const coordinates& point,
                                                         std::size_t component) const = 0;
   [[nodiscard]] virtual counterexample values_at(const coordinates& point) const = 0;
@@ -122,7 +121,7 @@ private:
   double tolerance_;
 };
 
-/// \param errors  of every precision, nothing being known but their digits
+/// \param errors  of every precision, with only their digits filled in
 /// \tparam Pair   formula_pair
 template <class Pair>
 [[nodiscard]] comparison compared(const std::string& label, const Pair& pair,
@@ -140,10 +139,10 @@ template <class Pair>
   result.samples = points.size();
   result.tolerance = options.tolerance;
   result.errors = std::move(errors);
-  std::array<sample, 4> worst{}; // of every verdict
+  std::array<sample, 4> worst{}; // worst sample of every verdict
   std::vector<sample> suspects;
   bool rounds = false; // by more than is allowed, in the first precision
-  std::vector<difference> shorter(differences.size()); // where fewer digits were what counted
+  std::vector<difference> shorter(differences.size()); // measured with fewer digits, if decisive
   const auto count = [&](verdict found, const sample& s) {
     sample& w = worst[std::size_t(found)];
     w = ++result.counts[std::size_t(found)] == 1 || s.ulps > w.ulps ? s : w;
@@ -169,7 +168,7 @@ template <class Pair>
       here.error = *suspected(differences);
       suspects.push_back(here);
     }
-    rounds = rounds || (found == verdict::loses_digits &&
+    rounds = rounds || (found == verdict::loses_precision &&
                         differences.front().common_ulps() > options.tolerance);
     if (!all_finite(differences)) {
       count(verdict::not_finite, here);
@@ -184,7 +183,7 @@ template <class Pair>
   const auto is_slip_at = [&](const coordinates& point, const suspect& s) {
     return differences.size() < 2 || is_slip(pair, point, s, points.back());
   };
-  // The largest first, until one is a slip: then all are that cannot be rounding.
+  // The largest first, until one is a slip: then all are that cannot be round-off.
   std::stable_sort(suspects.begin(), suspects.end(),
                    [](const sample& a, const sample& b) { return a.ulps > b.ulps; });
   bool is_found = false;
@@ -192,10 +191,10 @@ template <class Pair>
     const bool is_slip = is_found ? !s.error.may_be_rounding : is_slip_at(points[s.point], s.error);
     is_found = is_found || is_slip;
     rounds = rounds || !is_slip;
-    count(is_slip ? verdict::disagrees : verdict::loses_digits, s);
+    count(is_slip ? verdict::disagrees : verdict::loses_precision, s);
   }
   count_in_shorter(result, shorter);
-  for (const verdict v : {verdict::loses_digits, verdict::not_finite, verdict::disagrees}) {
+  for (const verdict v : {verdict::loses_precision, verdict::not_finite, verdict::disagrees}) {
     result.outcome = result.counts[std::size_t(v)] > 0 ? v : result.outcome;
   }
   if (result.outcome != verdict::agrees) {
@@ -227,19 +226,19 @@ DUET_COMPILED_TEMPLATE comparison compared(const std::string&, const formula_pai
 
 /// Compares two functions over special and random inputs, in several precisions.
 ///
-/// \tparam T  the scalars, the least precise first; `double` and `long double` where none is given.
-///            A scalar of many digits (`real_50` of interop/multiprecision.hpp) separates best what
-///            is wrong from what is merely rounded.
-/// \param label        what the report calls the comparison
-/// \param automatic    what is taken as right: as a rule a function of duet's drivers
-/// \param closed_form  what is judged; both are templates over the scalar of their arguments and
-///                     return the same number of components
-/// \param inputs       a `sampler` of their arguments
-///
 /// A failing input is simplified, coordinate by coordinate, to the simplest one that still gets the
 /// same verdict. Deterministic for a given seed.
-/// \throws invalid_input where the two return different numbers of components; cancelled where
-/// `options.report` returned `false`
+///
+/// \tparam T  the scalars, the least precise first; `double` and `long double` by default. A scalar
+///   of many digits (`real_50` of interop/multiprecision.hpp) separates errors of a formula from
+///   round-off best.
+/// \param label        name of the comparison in the report
+/// \param automatic    the reference: usually a function of duet's drivers
+/// \param closed_form  the function under test; both are templates over the scalar of their
+///   arguments and return the same number of components
+/// \param inputs       a `sampler` of their arguments
+/// \throws invalid_input if the two return different numbers of components
+/// \throws cancelled if `options.report` returned `false`
 ///
 /// Example: `compare("d sin", [](auto x) { return derivative([](auto t) { return sin(t); }, x)
 /// .derivative; }, [](auto x) { return cos(x); }, sampler(real_numbers{-3, 3}))`
@@ -249,7 +248,8 @@ template <class... T, class F, class G, class Inputs>
   if constexpr (sizeof...(T) == 0) {
     return compare<double, long double>(label, automatic, closed_form, inputs, options);
   } else {
-    // Asked here, so that compilers name the caller's line: what is virtual they make elsewhere.
+    // Checked here, so that compilers name the caller's line: virtual functions are compiled
+    // elsewhere.
     using results [[maybe_unused]] =
         std::tuple<detail::result_type<T, F, Inputs>..., detail::result_type<T, G, Inputs>...>;
     const detail::formula_pair_of<F, G, Inputs, T...> pair(label, automatic, closed_form, inputs,

@@ -16,39 +16,39 @@
 #include <vector>
 
 /// \file
-/// What a comparison of two formulas found, and how it is printed.
+/// Results of comparing two formulas, and their text forms.
 
 namespace duet {
 
-/// What `compare` says of two formulas, from best to worst.
+/// Verdict of `compare` on two formulas, from best to worst.
 enum class verdict {
-  agrees,       ///< everywhere, within the tolerance
-  loses_digits, ///< the same formula, but rounding (or a constant of few digits) spoils it
-  not_finite,   ///< somewhere one of them is infinite or NaN and the other is not
-  disagrees     ///< the formulas are not the same
+  agrees,          ///< everywhere, within the tolerance
+  loses_precision, ///< the same formula, but spoilt by round-off (or a constant of few digits)
+  not_finite,      ///< somewhere one of them is infinite or NaN and the other is not
+  disagrees        ///< the formulas differ
 };
 
-/// A verdict in words, as reports have it.
+/// A verdict in words, as in reports.
 [[nodiscard]] inline std::string_view to_text(verdict v) {
   constexpr std::array words = {"agrees", "loses digits", "not finite", "disagrees"};
   return words[std::size_t(v)];
 }
 
-/// The largest differences of two results in one precision. The norm is the largest component;
-/// `ulps` counts units of the last place, |difference| / (ε/2 · (‖f‖ + ‖f′‖‖x‖)), where the second
-/// term is looked at only where the first does not suffice.
+/// Largest differences of two results in one precision. The norm is the largest component; `ulps`
+/// counts units of the last place, |difference| / (ε/2 · (‖f‖ + ‖f′‖‖x‖)), where the second term is
+/// computed only if the first does not suffice.
 struct worst_errors {
   int digits = 0;      ///< decimal digits of the scalar
   double absolute = 0; ///< largest |difference|
   double relative = 0; ///< largest |difference| / ‖f‖
   double ulps = 0;     ///< largest difference in units of the last place
-  std::string input{}; ///< where `ulps` is largest
-  /// where a function returned fewer digits than the scalar has, and these decided: how many. The
-  /// last place is then theirs. Otherwise 0.
+  std::string input{}; ///< input with the largest `ulps`
+  /// number of digits compared if a function returned fewer digits than the scalar has and these
+  /// were decisive: the last place is then theirs. Otherwise 0.
   int compared_digits = 0;
 };
 
-/// An input at which two formulas differ, and what they give there in double precision.
+/// An input at which two formulas differ, and their results there in double precision.
 struct counterexample {
   std::string input;               ///< the arguments, as text
   std::vector<double> automatic;   ///< components of the result of the automatic derivative
@@ -56,34 +56,34 @@ struct counterexample {
   double difference = 0; ///< largest |difference| there, in the precision that shows most of it
 };
 
-/// What `compare` found.
+/// Result of `compare`.
 struct comparison {
-  std::string label;                      ///< what `compare` was told
-  verdict outcome = verdict::agrees;      ///< the worst of all samples
-  std::size_t samples = 0;                ///< how many inputs were tried
-  std::array<std::size_t, 4> counts{};    ///< samples of every verdict
-  double tolerance = 0;                   ///< in units of the last place
+  std::string label;                      ///< label passed to `compare`
+  verdict outcome = verdict::agrees;      ///< worst verdict of all samples
+  std::size_t samples = 0;                ///< number of inputs tried
+  std::array<std::size_t, 4> counts{};    ///< number of samples of every verdict
+  double tolerance = 0;                   ///< allowed error, in units of the last place
   std::vector<worst_errors> errors;       ///< one for every scalar type
   std::optional<counterexample> simplest; ///< simplest input with the worst verdict
-  /// which function returned fewer digits than its arguments have, so that fewer were compared;
-  /// empty where that changed nothing
+  /// names the function that returned fewer digits than its arguments have, so that fewer were
+  /// compared; empty if that changed nothing
   std::string note{};
 
-  /// Do the formulas agree?
+  /// True if the formulas agree.
   [[nodiscard]] explicit operator bool() const { return outcome == verdict::agrees; }
 };
 
 namespace detail {
 
-/// A stream of its own, so that neither the locale nor the caller's format matters.
+/// A separate stream, independent of the locale and the caller's format.
 [[nodiscard]] inline std::ostringstream plain_stream(int digits) {
   std::ostringstream stream;
-  stream.imbue(std::locale::classic()); // known by <ios>
+  stream.imbue(std::locale::classic()); // declared by <ios>
   stream.precision(digits);
   return stream;
 }
 
-/// What is nothing beside the largest component is printed as 0.
+/// Text of the components; those negligible beside the largest component are printed as 0.
 [[nodiscard]] inline std::string components_text(std::span<const double> numbers, int digits) {
   double largest = 0;
   for (const double x : numbers) {
@@ -103,7 +103,7 @@ namespace detail {
   return numbers.size() == 1 ? out.str() : "(" + out.str() + ")";
 }
 
-/// What both sides give: ten digits, or as many as show where they differ.
+/// Results of both sides: ten digits, or as many as show the difference.
 [[nodiscard]] inline std::array<std::string, 2> sides_text(const counterexample& c) {
   for (int digits = 10;; ++digits) {
     std::array sides = {components_text(c.automatic, digits),
@@ -114,7 +114,7 @@ namespace detail {
   }
 }
 
-/// A field of a CSV file, in quotation marks where it needs them.
+/// A field of a CSV file, quoted if necessary.
 [[nodiscard]] inline std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) {
     return text;
@@ -132,7 +132,7 @@ namespace detail {
 [[nodiscard]] inline std::string to_text(const comparison& c) {
   auto out = detail::plain_stream(3);
   out << c.label << ": ";
-  for (const verdict v : {verdict::disagrees, verdict::not_finite, verdict::loses_digits}) {
+  for (const verdict v : {verdict::disagrees, verdict::not_finite, verdict::loses_precision}) {
     if (const std::size_t count = c.counts[std::size_t(v)]; count > 0) {
       out << to_text(v) << " at " << count << ", ";
     }
@@ -164,7 +164,7 @@ namespace detail {
   return out.str();
 }
 
-/// A table for documents, one row a comparison.
+/// A table for documents, one row per comparison.
 [[nodiscard]] inline std::string to_markdown(std::span<const comparison> comparisons) {
   std::string text = "| formula | verdict | simplest input | automatic | closed form |\n"
                      "|---|---|---|---|---|\n";
@@ -181,7 +181,7 @@ namespace detail {
   return text;
 }
 
-/// A table for programs, one line a comparison and scalar.
+/// A table for programs, one line per comparison and scalar.
 [[nodiscard]] inline std::string to_csv(std::span<const comparison> comparisons) {
   auto out = detail::plain_stream(17);
   out << "label,verdict,samples,agreeing,tolerance_ulp,digits,worst_ulp,worst_relative,"

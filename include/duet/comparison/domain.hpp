@@ -21,14 +21,14 @@
 #include <vector>
 
 /// \file
-/// Where the arguments of a compared function come from.
+/// Domains of the arguments of a compared function.
 
 namespace duet {
 
-/// A kind of argument: how many coordinates it has, which of them are in its range, the points that
-/// formulas stumble over (inputs beside these follow; the first is the one with the most of them),
-/// and how an argument over T is made of coordinates. A domain may have
-/// `related_points(point, random)`, the second arguments that are special beside a first one.
+/// A kind of argument: its number of coordinates, its range, its special points, at which formulas
+/// tend to fail (inputs near these follow; the first gets the most of them), and the construction
+/// of an argument over T from coordinates. A domain may have `related_points(point, random)`,
+/// second arguments that are special in relation to a first one.
 template <class D>
 concept InputDomain = requires(const D& domain, random_source& random,
                                std::span<const double> point) {
@@ -41,22 +41,23 @@ concept InputDomain = requires(const D& domain, random_source& random,
 };
 
 /// A real number in [lower, upper]. Special: zero, the ends, integers and halves of small size, and
-/// multiples of π/2 up to a full turn. Beside x: −x, π − x, and what is a half or full turn away.
+/// multiples of π/2 up to a full turn. Related to x: −x, π − x, and numbers a half or full turn
+/// away.
 struct real_numbers {
-  double lower = -1; ///< the least number
-  double upper = 1;  ///< the largest number
+  double lower = -1; ///< lower bound
+  double upper = 1;  ///< upper bound
 
-  /// Less the number x and what is within `radius` of it.
+  /// Excludes the number x and all numbers within `radius` of it.
   [[nodiscard]] auto without(double x, double radius = 0) const {
     return restricted(*this).without(coordinates{x}, radius);
   }
-  /// Less the numbers for which `keeps` is false.
+  /// Excludes the numbers for which `keeps` is false.
   template <class Predicate>
   [[nodiscard]] auto where(Predicate keeps) const {
     return restricted(*this).where(std::move(keeps));
   }
 
-  // For those who extend duet: what an `InputDomain` is asked.
+  // For those who extend duet: the members that `InputDomain` requires.
 
   [[nodiscard]] std::size_t size() const { return 1; }
   [[nodiscard]] bool contains(std::span<const double> point) const {
@@ -93,23 +94,23 @@ struct real_numbers {
 
 /// A vector of N components between −bound and bound. Special: zero, a corner, vectors along the
 /// axes and the diagonal, of length 1e-4 and 1e-8 times the bound, and, of three components, of
-/// length 1, π and 2π. Beside v: −v, vectors parallel and perpendicular to it, and of its length.
-/// Every fourth random one is short.
+/// length 1, π and 2π. Related to v: −v, vectors parallel and perpendicular to it, and of its
+/// length. Every fourth random one is short.
 template <int N>
 struct vectors {
-  double bound = 1; ///< the largest size of a component
+  double bound = 1; ///< maximum absolute value of a component
 
-  /// Less the point with these coordinates and what is within `radius` of it.
+  /// Excludes the point with these coordinates and all points within `radius` of it.
   [[nodiscard]] auto without(const coordinates& point, double radius = 0) const {
     return restricted(*this).without(point, radius);
   }
-  /// Less the arguments, over `double`, for which `keeps` is false.
+  /// Excludes the arguments, over `double`, for which `keeps` is false.
   template <class Predicate>
   [[nodiscard]] auto where(Predicate keeps) const {
     return restricted(*this).where(std::move(keeps));
   }
 
-  // For those who extend duet: what an `InputDomain` is asked.
+  // For those who extend duet: the members that `InputDomain` requires.
 
   [[nodiscard]] std::size_t size() const { return std::size_t(N); }
   [[nodiscard]] bool contains(std::span<const double> point) const {
@@ -157,7 +158,7 @@ struct vectors {
     return points;
   }
   [[nodiscard]] coordinates random_point(random_source& random) const {
-    const double size = random.integer(0, 3) == 0 ? random.magnitude(1e-8, 1) : 1.0;
+    const double size = random.integer(0, 3) == 0 ? random.log_uniform(1e-8, 1) : 1.0;
     coordinates point;
     for (int i = 0; i < N; ++i) {
       point.push_back(bound * size * random.uniform(-1, 1));
@@ -178,22 +179,22 @@ struct vectors {
 };
 
 /// N arguments of one kind, as a `std::array`. Special: all of them the same special point; two,
-/// and all, are as special beside each other as two arguments of that domain.
+/// and all, related as two special arguments of that domain.
 template <std::size_t N, class Domain>
 struct arrays {
-  Domain element; ///< that of each argument
+  Domain element; ///< domain of each argument
 
-  /// Less the point with these coordinates and what is within `radius` of it.
+  /// Excludes the point with these coordinates and all points within `radius` of it.
   [[nodiscard]] auto without(const coordinates& point, double radius = 0) const {
     return restricted(*this).without(point, radius);
   }
-  /// Less the arguments, over `double`, for which `keeps` is false.
+  /// Excludes the arguments, over `double`, for which `keeps` is false.
   template <class Predicate>
   [[nodiscard]] auto where(Predicate keeps) const {
     return restricted(*this).where(std::move(keeps));
   }
 
-  // For those who extend duet: what an `InputDomain` is asked.
+  // For those who extend duet: the members that `InputDomain` requires.
 
   [[nodiscard]] std::size_t size() const { return N * element.size(); }
   [[nodiscard]] bool contains(std::span<const double> point) const {

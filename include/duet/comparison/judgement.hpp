@@ -15,22 +15,22 @@
 #include <vector>
 
 /// \file
-/// What differences in several precisions say together, also where a function has fewer digits than
-/// its arguments.
+/// Verdict from the differences in several precisions, also if a function has fewer digits than its
+/// arguments.
 
 namespace duet::detail {
 
 /// The error of a component that may be a slip.
 struct suspect {
   std::size_t component = 0;
-  double error = 0;             ///< in the last precision
-  double allowed = 0;           ///< what it might be there
-  bool is_short = false;        ///< a function has fewer digits than that: rounding stays, too
-  bool may_be_rounding = false; ///< it leaves half of those digits
+  double error = 0;             ///< error in the last precision
+  double allowed = 0;           ///< allowed error there
+  bool is_short = false;        ///< a function has fewer digits than that: round-off stays, too
+  bool may_be_rounding = false; ///< the error leaves half of those digits
 };
 
 /// The component, if any, that is wrong in every precision, by an error that is the same in the
-/// first and the last of them: of several the one with the largest.
+/// first and the last of them; the one with the largest error if there are several.
 [[nodiscard]] inline std::optional<suspect> suspected(std::span<const difference> differences) {
   const difference& last = differences.back();
   std::optional<suspect> found;
@@ -51,31 +51,32 @@ struct suspect {
   return found;
 }
 
-/// Are all components finite in both results, or in none, in every precision?
+/// True if all components are finite in both results or in neither, in every precision.
 [[nodiscard]] inline bool all_finite(std::span<const difference> differences) {
   return std::all_of(differences.begin(), differences.end(),
                      [](const difference& d) { return d.is_finite; });
 }
 
-/// The verdict on the finite components, from the differences in several precisions, the least
-/// precise first.
+/// Verdict on the finite components, from the differences in several precisions, the least precise
+/// first.
 ///
-/// Rounding errors shrink with ε. A slip is seen in every scalar, and stays what it is.
+/// Round-off shrinks with ε. A slip is visible in every scalar, and stays constant.
 [[nodiscard]] inline verdict judged(std::span<const difference> differences, double tolerance) {
   return suspected(differences) ? verdict::disagrees
          : std::any_of(differences.begin(), differences.end(),
                        [&](const difference& d) { return d.common_ulps() > tolerance; })
-             ? verdict::loses_digits
+             ? verdict::loses_precision
              : verdict::agrees;
 }
 
-/// Is the error of a component at a point a slip? It may be rounding that leaves no digit in any
-/// precision, as that of 1 − cos x at 1e-12, or that is by chance the same in two.
+/// True if the error of a component at a point is a slip. It may be round-off that leaves no digit
+/// in any precision, as that of 1 − cos x at 1e-12, or that is by chance the same in two.
 ///
-/// Towards another point, at distances that grow from 2e-16 on, errors are the same in the
-/// first and the last precision for a while. Where it is rounding, the last precision then begins
-/// to have digits, and its error shrinks little by little. That of a slip goes at once, or stays to
-/// the end.
+/// Towards another point, at distances that grow from 2e-16 on, errors are the same in the first
+/// and the last precision for a while. If the error is round-off, the last precision then begins to
+/// have digits, and its error shrinks gradually. That of a slip vanishes at once, or stays to the
+/// end.
+///
 /// \param pair  a formula_pair of several precisions
 template <class Pair>
 [[nodiscard]] bool is_slip(const Pair& pair, const coordinates& point, const suspect& at_point,
@@ -86,7 +87,7 @@ template <class Pair>
     for (std::size_t i = 0; i < point.size(); ++i) {
       between[i] += s * (other[i] - point[i]);
     }
-    // What is excluded tells nothing.
+    // Excluded points carry no information.
     return pair.contains(between) ? pair.errors_at(between, at_point.component)
                                   : std::array{error, error};
   };
@@ -109,11 +110,11 @@ template <class Pair>
   double beyond = 0;
   for (int i = 0; i < 12; ++i) {
     beyond = std::max(beyond, at(std::min(1.0, outside * (1 + i / 11.0)))[1]);
-    if (at_point.is_short) { // its rounding does not shrink, but is now and then nothing
+    if (at_point.is_short) { // its round-off does not shrink, but occasionally vanishes
       beyond = std::max(beyond, at(std::min(1.0, outside * std::exp2(i / 2.0)))[1]);
     }
   }
-  // What is wrong at one point alone may be so by chance, unless it is right beside it.
+  // An error at one point alone may be chance, unless the formula is right near it.
   return beyond < error / 8 && (inside > 0 || beyond <= 8 * at_point.allowed);
 }
 
@@ -125,7 +126,7 @@ template <class Pair>
              : "numbers of " + std::to_string(digits) + " digits";
 }
 
-/// Which function returned fewer digits than its arguments have, and how to repair it.
+/// Names the function that returned fewer digits than its arguments have, and the remedy.
 [[nodiscard]] inline std::string precision_note(int digits, const difference& d) {
   const bool first = d.digits[0] < digits, second = d.digits[1] < digits;
   return std::string(first && second ? "both functions"
@@ -136,8 +137,9 @@ template <class Pair>
          ": a constant made it so, as the 0.0 of derivative(f, 0.0): write T(0)";
 }
 
-/// Says in c where fewer digits were what counted, and counts errors in those.
-/// \param shorter  of every precision, as measured where it did; untouched where it did nowhere
+/// Records in c that fewer digits were decisive, and counts errors in those.
+///
+/// \param shorter  for every precision, as measured where it did; unchanged if it did nowhere
 inline void count_in_shorter(comparison& c, std::span<const difference> shorter) {
   for (std::size_t k = 0; k < shorter.size(); ++k) {
     if (shorter[k].ulps_in_shorter > 1) {

@@ -22,12 +22,12 @@
 #include <vector>
 
 /// \file
-/// How far two functions differ at one point.
+/// Difference of two functions at one point.
 
 namespace duet::detail {
 
-/// The rows and columns of a matrix of more than one of each; else how many numbers, in one column
-/// where they are a vector of Eigen, in none where they are elements or parts of something else.
+/// Rows and columns of a matrix with more than one of each; otherwise the count of numbers, in one
+/// column for a vector of Eigen, in no column for elements or parts of something else.
 struct shape {
   Eigen::Index rows = 0;
   Eigen::Index columns = 0;
@@ -35,8 +35,8 @@ struct shape {
   [[nodiscard]] bool is_matrix() const { return columns > 1; }
 };
 
-/// The makeup of a result: the least decimal digits of its numbers, the ε of those, and its
-/// shapes, in the order of its components.
+/// Makeup of a result: the fewest decimal digits of its numbers, their ε, and its shapes, in the
+/// order of its components.
 struct makeup {
   int digits = 0;
   double epsilon = 0;
@@ -54,8 +54,8 @@ struct makeup {
   }
 };
 
-/// Do the matrices of both results agree in position and shape? What is no matrix at all, nor a
-/// vector of Eigen, has any shape.
+/// True if the matrices of both results agree in position and shape. An object that is neither a
+/// matrix nor a vector of Eigen fits any shape.
 [[nodiscard]] inline bool fit(const makeup& a, const makeup& b) {
   const auto has_any = [](const makeup& m) {
     return m.shapes.empty() || (m.shapes.size() == 1 && m.shapes[0].columns == 0);
@@ -83,7 +83,7 @@ template <class T>
   return {std::numeric_limits<T>::digits10, static_cast<double>(std::numeric_limits<T>::epsilon())};
 }
 
-/// Calls visit(x) for every matrix, and what is no container, in y.
+/// Calls visit(x) for every matrix, and every object that is not a container, in y.
 template <class Y, class Visit>
 void for_each_shaped(const Y& y, const Visit& visit) {
   if constexpr (!EigenMatrix<Y> && requires { std::tuple_size<Y>::value; }) {
@@ -98,7 +98,8 @@ void for_each_shaped(const Y& y, const Visit& visit) {
 }
 
 /// The scalars of a result in a row.
-/// \param found  becomes its makeup, but where it had fewer digits keeps those
+///
+/// \param found  becomes its makeup, but keeps fewer digits if it had them
 template <class T, class Y>
 [[nodiscard]] std::vector<T> components_of(const Y& y, makeup& found) {
   std::vector<T> components;
@@ -110,7 +111,7 @@ template <class T, class Y>
           static_assert(Real<scalar> || Arithmetic<scalar>,
                         "duet: compare: a compared function must return plain numbers; take the "
                         "derivative out of what the driver returned");
-          if constexpr (Real<scalar>) { // whole numbers are exact
+          if constexpr (Real<scalar>) { // integers are exact
             if (std::numeric_limits<scalar>::digits10 < found.digits) {
               found.digits = std::numeric_limits<scalar>::digits10;
               found.epsilon = static_cast<double>(std::numeric_limits<scalar>::epsilon());
@@ -151,21 +152,21 @@ template <class T, class F, class Inputs>
 /// The difference of two results in one precision.
 struct difference {
   bool is_finite = true; ///< no component is infinite or NaN in one result only
-  double absolute = 0;   ///< of the components that are finite in both, as all that follows
+  double absolute = 0;   ///< over components finite in both, as all that follows
   double relative = 0;
-  double ulps = 0; ///< of the arguments' scalar
-  /// How many of them are one of the shorter result, and the decimal digits of both.
+  double ulps = 0; ///< error in units of the last place of the arguments
+  /// Number of these units in one unit of the shorter result, and the decimal digits of both.
   double ulps_in_shorter = 1;
   std::array<int, 2> digits{};
-  /// Errors of all components if one exceeds the tolerance, and what they may be.
+  /// Errors of all components if one exceeds the tolerance, and the allowed error.
   std::vector<double> errors{};
   double allowed = 0;
 
-  /// What counts: the error in units that both results have.
+  /// The decisive measure: the error in units that both results have.
   [[nodiscard]] double common_ulps() const { return ulps / ulps_in_shorter; }
 };
 
-/// The largest size of a finite component.
+/// Largest absolute value of a finite component.
 template <class T>
 [[nodiscard]] T largest(const std::vector<T>& components) {
   using std::abs;
@@ -179,7 +180,7 @@ template <class T>
   return result;
 }
 
-/// |a − b| of every component; 0 where neither is finite, NaN where one is.
+/// |a − b| of every component; 0 if neither is finite, NaN if one is.
 template <class T>
 [[nodiscard]] std::vector<T> errors_of(const std::vector<T>& a, const std::vector<T>& b) {
   using std::abs;
@@ -194,7 +195,7 @@ template <class T>
   return errors;
 }
 
-/// ‖f′‖‖x‖: how much f changes, per relative change of its arguments. The smaller of both one-sided
+/// ‖f′‖‖x‖: the change of f per relative change of its arguments. The smaller of both one-sided
 /// differences, so that a jump or a kink does not excuse an error beside it.
 template <class T, class F, class Inputs>
 [[nodiscard]] T sensitivity(const F& f, const Inputs& inputs, std::span<const double> point,

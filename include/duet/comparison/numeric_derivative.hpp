@@ -19,7 +19,7 @@
 #include <vector>
 
 /// \file
-/// Derivatives without dual numbers, to compare theirs with.
+/// Numerical derivatives without dual numbers, as independent references.
 
 namespace duet {
 namespace detail {
@@ -32,19 +32,19 @@ template <class T>
 
 } // namespace detail
 
-/// f′(x) by a complex step: Im f(x + ih)/h, exact to rounding for an analytic f that is a template
-/// over `std::complex` (no branch on values, no `abs`, no conjugates).
+/// f′(x) by the complex-step method: Im f(x + ih)/h, exact to round-off for an analytic f that is a
+/// template over `std::complex` (no branch on values, no `abs`, no conjugates).
 ///
 /// f returns a complex number, an Eigen matrix or an array of them.
 template <class F, std::floating_point T>
 [[nodiscard]] auto complex_step_derivative(const F& f, const T& x) {
-  // h² vanishes beside 1 whatever the function, and h itself is far from the smallest number.
+  // h² is negligible beside 1 for every function, and h itself is far from the smallest number.
   const T h = std::ldexp(T(1), std::numeric_limits<T>::min_exponent / 2);
   return map_scalars([h](const std::complex<T>& y) { return y.imag() / h; },
                      detail::result_of_call(f(std::complex<T>(x, h))));
 }
 
-/// What `central_difference_derivative` returns.
+/// Result of `central_difference_derivative`.
 template <class Y>
 struct derivative_and_error {
   Y derivative = detail::zero_initialized<Y>(); ///< f′(x)
@@ -59,9 +59,10 @@ struct derivative_and_error {
 
 /// f′(x) by central differences, extrapolated to step zero (Richardson, Ridders' tableau).
 ///
-/// For any f of a real number, its source hidden or full of tables: steps step/1.4ᵏ are combined
-/// until rounding wins, and the entry with the smallest estimated error is returned. As a rule
-/// eleven digits in double precision.
+/// For any f of a real number, even if its source is hidden or full of tables: steps step/1.4ᵏ are
+/// combined until round-off dominates, and the entry with the smallest estimated error is returned.
+/// Usually eleven digits in double precision.
+///
 /// \return `derivative_and_error`
 template <class F, Real T>
 [[nodiscard]] auto central_difference_derivative(const F& f, const T& x, const T& step = T(0.1)) {

@@ -17,11 +17,11 @@
 #include <vector>
 
 /// \file
-/// Domains of arguments without some of their points.
+/// Domains of arguments with excluded points.
 
 namespace duet {
 
-/// A point as its coordinates, over which it can be simplified and made in any precision.
+/// A point as its coordinates, in which it can be simplified and constructed in any precision.
 using coordinates = std::vector<double>;
 
 namespace detail {
@@ -35,9 +35,10 @@ namespace detail {
   return text + ")";
 }
 
-/// Are all points but those within `radius` of this one kept?
-/// \throws invalid_input where `centre` does not have `size` coordinates or the radius is negative
-/// or NaN
+/// Predicate that is true for all points except those within `radius` of this one.
+///
+/// \throws invalid_input if `centre` does not have `size` coordinates or the radius is negative or
+///   NaN
 [[nodiscard]] inline std::function<bool(std::span<const double>)>
 beyond(coordinates centre, double radius, std::size_t size) {
   require(centre.size() == size, "duet: sampler: a point of ", centre.size(),
@@ -53,7 +54,8 @@ beyond(coordinates centre, double radius, std::size_t size) {
 }
 
 /// A random point that is kept.
-/// \throws invalid_input where a thousand in a row are not
+///
+/// \throws invalid_input if a thousand points in a row are rejected
 template <class Make, class Keeps, class Describe>
 [[nodiscard]] coordinates kept_point(const Make& make, const Keeps& keeps,
                                      const Describe& describe) {
@@ -72,22 +74,23 @@ template <class Make, class Keeps, class Describe>
 
 } // namespace detail
 
-/// A domain without some of its points: what `without` and `where` of every domain return.
+/// A domain with excluded points: the result of `without` and `where` of every domain.
 template <class Domain>
 class restricted {
 public:
   explicit restricted(Domain domain) : domain_(std::move(domain)) {}
 
-  /// Less the point with these coordinates and what is within `radius` of it.
-  /// \throws invalid_input where their number is wrong, or the radius negative
+  /// Excludes the point with these coordinates and all points within `radius` of it.
+  ///
+  /// \throws invalid_input if their number is wrong, or the radius negative
   [[nodiscard]] restricted without(const coordinates& point, double radius = 0) const {
     return and_kept(detail::beyond(point, radius, size()));
   }
-  /// Less the number x and what is within `radius` of it.
+  /// Excludes the number x and all numbers within `radius` of it.
   [[nodiscard]] restricted without(double x, double radius = 0) const {
     return without(coordinates{x}, radius);
   }
-  /// Less the arguments, over `double`, for which `keeps` is false.
+  /// Excludes the arguments, over `double`, for which `keeps` is false.
   template <class Predicate>
   [[nodiscard]] restricted where(Predicate keeps) const {
     static_assert(
@@ -99,7 +102,7 @@ public:
     });
   }
 
-  // For those who extend duet: what an `InputDomain` is asked.
+  // For those who extend duet: the members that `InputDomain` requires.
 
   /// The domain that is restricted.
   [[nodiscard]] const Domain& domain() const { return domain_; }
@@ -113,7 +116,7 @@ public:
     std::erase_if(points, [this](const coordinates& point) { return !contains(point); });
     return points;
   }
-  /// \throws invalid_input where nothing is left
+  /// \throws invalid_input if nothing is left
   [[nodiscard]] coordinates random_point(random_source& random) const {
     return detail::kept_point([&] { return domain_.random_point(random); },
                               [&](const coordinates& point) { return contains(point); },

@@ -22,22 +22,22 @@ namespace duet {
 
 /// A unit quaternion; its coordinates are its rotation vector (full angle, radians). Special:
 /// identity, tiny rotations, half turns about the axes and a diagonal, and nearly full turns.
-/// Beside q: its inverse, −q, rotations about its axis, and those that are a half turn away. A unit
-/// in every precision, since it is made in it.
+/// Related to q: its inverse, −q, rotations about its axis, and those that are a half turn away. Of
+/// unit norm in every precision, since it is constructed in it.
 struct rotations {
   double largest_angle = 6.283185; ///< just below a full turn, where the rotation vector jumps
 
-  /// Less the point with these coordinates and what is within `radius` of it.
+  /// Excludes the point with these coordinates and all points within `radius` of it.
   [[nodiscard]] auto without(const coordinates& point, double radius = 0) const {
     return restricted(*this).without(point, radius);
   }
-  /// Less the arguments, over `double`, for which `keeps` is false.
+  /// Excludes the arguments, over `double`, for which `keeps` is false.
   template <class Predicate>
   [[nodiscard]] auto where(Predicate keeps) const {
     return restricted(*this).where(std::move(keeps));
   }
 
-  // For those who extend duet: what an `InputDomain` is asked.
+  // For those who extend duet: the members that `InputDomain` requires.
 
   [[nodiscard]] std::size_t size() const { return 3; }
   [[nodiscard]] bool contains(std::span<const double> point) const {
@@ -74,7 +74,7 @@ struct rotations {
     return {angle > 0 ? scaled(-opposite / angle) : about_axis(opposite), // −q
             {away[0], away[1], away[2]},
             scaled(-1),
-            angle > 0 ? scaled(1 - pi / angle) : about_axis(pi), // a half turn about its own axis
+            angle > 0 ? scaled(1 - pi / angle) : about_axis(pi), // a half turn about its axis
             scaled(random.uniform(-2, 2))};
   }
   [[nodiscard]] coordinates random_point(random_source& random) const {
@@ -91,23 +91,23 @@ struct rotations {
   }
 };
 
-/// Any quaternion but zero, with components between −bound and bound; its coordinates are its
+/// Any quaternion except zero, with components between −bound and bound; its coordinates are its
 /// components, scalar first. Special: nearly zero ones, ±1, the imaginary units, and nearly real
-/// ones. Beside q: −q, q*, 1/q, its multiples, and what is perpendicular to it.
+/// ones. Related to q: −q, q*, 1/q, its multiples, and quaternions perpendicular to it.
 struct quaternions {
-  double bound = 2; ///< the largest size of a component
+  double bound = 2; ///< maximum absolute value of a component
 
-  /// Less the point with these coordinates and what is within `radius` of it.
+  /// Excludes the point with these coordinates and all points within `radius` of it.
   [[nodiscard]] auto without(const coordinates& point, double radius = 0) const {
     return restricted(*this).without(point, radius);
   }
-  /// Less the arguments, over `double`, for which `keeps` is false.
+  /// Excludes the arguments, over `double`, for which `keeps` is false.
   template <class Predicate>
   [[nodiscard]] auto where(Predicate keeps) const {
     return restricted(*this).where(std::move(keeps));
   }
 
-  // For those who extend duet: what an `InputDomain` is asked.
+  // For those who extend duet: the members that `InputDomain` requires.
 
   [[nodiscard]] std::size_t size() const { return 4; }
   [[nodiscard]] bool contains(std::span<const double> point) const {

@@ -21,15 +21,16 @@
 #include <vector>
 
 /// \file
-/// The points at which formulas are compared.
+/// Sampler of the points at which formulas are compared.
 
 namespace duet {
 
-/// The arguments of a function, each from a domain of its own. Points are those of the caller,
-/// special ones in all combinations (or, where those are too many, each with random company, and
-/// some combinations), and random ones, of which one half is anywhere. The other is beside special
-/// points, at distances that are log-uniform from 1e-12 on; or has arguments of one domain that are
-/// equal, nearly equal or otherwise related, or components that are zero or equal.
+/// Sampler of the arguments of a function, each from a separate domain. Points are those of the
+/// caller, special ones in all combinations (or, if those are too many, each with random others,
+/// and some combinations), and random ones. One half of the random points is unrestricted. The
+/// other half is near special points, at distances that are log-uniform from 1e-12 on; or has
+/// arguments of one domain that are equal, nearly equal or otherwise related, or components that
+/// are zero or equal.
 ///
 /// Example: `sampler(vectors<3>{3.0}, real_numbers{0, 1}).named("w", "t").including({0, 0, 1,
 /// 0.5})`
@@ -42,7 +43,7 @@ public:
     }
   }
 
-  /// What the arguments are called in reports.
+  /// Names of the arguments in reports.
   template <std::convertible_to<std::string>... Names>
     requires(sizeof...(Names) == sizeof...(Domains))
   [[nodiscard]] sampler named(Names... names) const {
@@ -52,7 +53,8 @@ public:
   }
 
   /// Adds a point: the coordinates of all arguments in a row.
-  /// \throws invalid_input where their number is wrong or one is out of range
+  ///
+  /// \throws invalid_input if their number is wrong or one is out of range
   [[nodiscard]] sampler including(const coordinates& point) const {
     detail::require(point.size() == size(), "duet: sampler: a point of ", point.size(),
                     " coordinates, but the arguments have ", size());
@@ -63,14 +65,16 @@ public:
     return result;
   }
 
-  /// Less one point, the coordinates of all arguments in a row, and what is within `radius` of it.
-  /// \throws invalid_input where their number is wrong, or the radius negative
+  /// Excludes one point, the coordinates of all arguments in a row, and all points within `radius`
+  /// of it.
+  ///
+  /// \throws invalid_input if their number is wrong, or the radius negative
   [[nodiscard]] sampler without(const coordinates& point, double radius = 0) const {
     return and_kept([keeps = detail::beyond(point, radius, size())](
                         const sampler&, std::span<const double> p) { return keeps(p); });
   }
 
-  /// Less the points for which `keeps`, a function of all arguments over `double`, is false.
+  /// Excludes the points for which `keeps`, a function of all arguments over `double`, is false.
   ///
   /// Example: `sampler(rotations{}, rotations{}).where([](const auto& a, const auto& b) { return
   /// abs(dot(a, b)) > 1e-3; })`
@@ -89,7 +93,7 @@ public:
     return std::apply([](const auto&... d) { return (d.size() + ...); }, domains_);
   }
 
-  /// Is a point, the coordinates of all arguments in a row, in their domains?
+  /// True if a point, the coordinates of all arguments in a row, is in their domains.
   [[nodiscard]] bool contains(std::span<const double> point) const {
     bool result = true;
     for_each_part(point, [&](const auto& domain, std::span<const double> part, std::size_t) {
@@ -108,9 +112,10 @@ public:
     return text;
   }
 
-  /// The points of the caller, the special ones, and then `count` random ones; more where the half
-  /// that is not anywhere would be less than four of a kind.
-  /// \throws invalid_input where nothing is left of the domains
+  /// The points of the caller, the special ones, and then `count` random ones; more if the half
+  /// that is not unrestricted would have fewer than four of a kind.
+  ///
+  /// \throws invalid_input if nothing is left of the domains
   [[nodiscard]] std::vector<coordinates> points(std::size_t count, std::uint64_t seed) const {
     random_source random(seed);
     std::vector<coordinates> result = own_points_;
@@ -138,7 +143,7 @@ public:
 
 private:
   static constexpr std::size_t max_combinations = 512;
-  static constexpr std::size_t some_combinations = 64; // where there are more
+  static constexpr std::size_t some_combinations = 64; // used if there are more
 
   using keeps_point = std::function<bool(const sampler&, std::span<const double>)>;
 

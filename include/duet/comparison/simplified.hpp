@@ -10,13 +10,13 @@
 #include <tuple>
 
 /// \file
-/// The simplest input at which two formulas differ.
+/// Simplification of an input at which two formulas differ.
 
 namespace duet::detail {
 
-/// Length of numbers as text: their digits, points and signs, the zero before a point
-/// and zeros aside. Of those with as much the simplest are nearest to 1 in size, as a ratio, and
-/// then positive: 0, 1, 2, 3 … 9, −1, ½, −2, …
+/// Length of numbers as text: their digits, points and signs, without the zero before a point and
+/// without zeros. Among those of equal length the simplest are nearest to 1 in size, as a ratio,
+/// and then positive: 0, 1, 2, 3 … 9, −1, ½, −2, …
 struct complexity {
   std::size_t characters = 0;
   double ratios = 0;
@@ -45,14 +45,15 @@ struct complexity {
   return sum;
 }
 
-/// x with so many significant decimal digits.
-/// \param round  to a whole number: to the nearest one, or towards zero
+/// x rounded to a number of significant decimal digits.
+///
+/// \param round  to an integer: to the nearest one, or towards zero
 [[nodiscard]] inline double rounded_to_digits(double x, int digits,
                                               double (*round)(double) = std::round) {
   if (x == 0 || !std::isfinite(x)) {
     return x;
   }
-  // Through a power of ten that is exact, on whichever side of 1.
+  // Uses an exact power of ten, on either side of 1.
   const int shift = digits - 1 - int(std::floor(std::log10(std::abs(x))));
   const double power = std::pow(10.0, std::abs(shift));
   return shift >= 0 ? round(x * power) / power : round(x / power) * power;
@@ -61,8 +62,8 @@ struct complexity {
 /// Replaces coordinates by simpler numbers while `fails(point)` stays true: one after the other, or
 /// all that are equal, or all that are nearly equal, which keep their differences.
 ///
-/// Every replacement takes something away that there is to read, so this ends; points are tried in
-/// a fixed order, so it ends at the same one every time.
+/// Every replacement shortens the text, so this ends; points are tried in a fixed order, so it ends
+/// at the same one every time.
 template <class Contains, class Fails>
 [[nodiscard]] coordinates simplified(coordinates point, const Contains& contains,
                                      const Fails& fails) {

@@ -13,19 +13,20 @@
 #include <vector>
 
 /// \file
-/// Inputs where formulas fail that are right elsewhere: beside special ones, equal and nearly equal
-/// arguments, components that are zero or equal.
+/// Inputs at which formulas tend to fail that are right elsewhere: near special ones, equal and
+/// nearly equal arguments, components that are zero or equal.
 
 namespace duet::detail {
 
-/// An argument and the index of its first coordinate among those of all; an array is as many as it
-/// has elements. The code common to all samplers does not know the domain's type, so it is compiled
-/// once.
+/// An argument and the index of its first coordinate among those of all; an array counts as many as
+/// it has elements. The code common to all samplers does not depend on the domain's type, so it is
+/// compiled once.
 struct sampled_argument {
   const void* kind;                 ///< the same for two that may be equal
   std::size_t first, size;          ///< its coordinates
-  std::vector<coordinates> special; ///< special points, the first the one to be near most often
-  double extent;                    ///< the largest size of a coordinate, as far as is known
+  std::vector<coordinates> special; ///< special points; inputs are most often near the first
+  /// largest absolute value of a coordinate, as far as it is known
+  double extent;
   std::function<coordinates(random_source&)> random_point;
   std::function<std::vector<coordinates>(std::span<const double>, random_source&)> related_points;
   std::function<bool(std::span<const double>)> contains;
@@ -34,7 +35,8 @@ struct sampled_argument {
 template <class Domain>
 inline constexpr char kind_of = 0;
 
-/// Appends the arguments that stand for one of this domain.
+/// Appends the arguments that represent one of this domain.
+///
 /// \param first  index of its first coordinate
 template <class Domain>
 void append_arguments(std::vector<sampled_argument>& arguments, const Domain& domain,
@@ -62,14 +64,14 @@ void append_arguments(std::vector<sampled_argument>& arguments, const arrays<N, 
     append_arguments(arguments, domain.element, first + i * domain.element.size(), random);
   }
 }
-/// The sampler knows the excluded points and asks for every point whether it is contained.
+/// The sampler stores the excluded points and checks for every point whether it is contained.
 template <class Domain>
 void append_arguments(std::vector<sampled_argument>& arguments, const restricted<Domain>& domain,
                       std::size_t first, random_source& random) {
   append_arguments(arguments, domain.domain(), first, random);
 }
 
-/// Makes such inputs out of random ones.
+/// Makes structured inputs out of random ones.
 class structured_points {
 public:
   structured_points(std::vector<sampled_argument> arguments, random_source& random)
@@ -104,12 +106,13 @@ public:
     }
   }
 
-  /// The least number of them: four of each kind.
+  /// Minimum number of structured points: four of each kind.
   [[nodiscard]] std::size_t least_count() const {
     return std::min<std::size_t>(4 * recipes_.size(), 256);
   }
 
-  /// The next one, out of a random point.
+  /// Changes a random point into the next structured point.
+  ///
   /// \param point  the coordinates of all arguments in a row
   void put_into(coordinates& point) {
     recipe& next = recipes_[count_++ % recipes_.size()];
@@ -120,7 +123,7 @@ public:
 private:
   struct recipe {
     void (structured_points::*put)(coordinates&, const recipe&);
-    std::vector<std::size_t> of; ///< of the arguments
+    std::vector<std::size_t> of; ///< indices of the arguments
     std::size_t used = 0;
     double phase = 0;
   };
@@ -130,7 +133,8 @@ private:
     recipes_.push_back(std::move(r));
   }
 
-  /// Log-uniform up to `largest`, down to 1e-12 of it or, where that is more than 1, of 1.
+  /// Log-uniform up to `largest`, down to 1e-12 times the smaller of `largest` and 1.
+  ///
   /// \param u  in [0, 1)
   [[nodiscard]] static double distance(double u, double largest) {
     const double least = 1e-12 * std::min(largest, 1.0);
@@ -189,7 +193,7 @@ private:
     return std::span(point).subspan(a.first, a.size);
   }
 
-  /// \return whether it is in the domain, and only then put there
+  /// \return true if it is in the domain; only then it is written
   static bool put(coordinates& point, const sampled_argument& a, std::span<const double> values) {
     const bool contained = a.contains(values);
     if (contained) {
@@ -198,7 +202,7 @@ private:
     return contained;
   }
 
-  /// Puts what is at that distance from `centre`, or nearer where that is out of the domain.
+  /// Writes a point at that distance from `centre`, or nearer if that is out of the domain.
   bool put_near(coordinates& point, const sampled_argument& a, std::span<const double> centre,
                 double distance) {
     const coordinates towards = direction(a.size);
@@ -214,7 +218,7 @@ private:
     return put(point, a, centre);
   }
 
-  /// Every other time beside the first special point, else beside the others in turn.
+  /// Every other time near the first special point, else near the others in turn.
   void put_near_special(coordinates& point, const recipe& r) {
     for (const std::size_t i : r.of) {
       const sampled_argument& a = arguments_[i];

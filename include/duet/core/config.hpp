@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What duet needs of the compiler and its flags. (What it knows of each is in core/compiler/.)
+/// Requirements on the compiler and its flags. (Compiler-specific code is in core/compiler/.)
 
 #ifdef _MSVC_LANG
 #define DUET_LANGUAGE _MSVC_LANG
@@ -10,7 +10,7 @@
 #define DUET_LANGUAGE __cplusplus
 #endif
 #if DUET_LANGUAGE < 202002L
-// After an #error compilers go on, with thousands of errors; where a file is missing they stop.
+// After an #error compilers continue, with thousands of errors; at a missing file they stop.
 #include "duet: needs C++20: compile with -std=c++20"
 #endif
 #undef DUET_LANGUAGE

@@ -9,24 +9,24 @@
 #include <type_traits>
 
 /// \file
-/// Errors with exceptions and without: the only header that has `throw`, `try` and `catch`. All
-/// files that are linked together are compiled with exceptions, or all without.
+/// Errors with and without exceptions: the only header with `throw`, `try` and `catch`. All files
+/// that are linked together are compiled with exceptions, or all without.
 
 namespace duet {
 
-/// What is called with an error's message where there are no exceptions.
+/// Function called with the message of an error in programs without exceptions.
 using error_handler = void (*)(const char* message);
 
 namespace detail {
 inline std::atomic<error_handler> current_error_handler = nullptr;
 } // namespace detail
 
-/// Has `handler` called with the message of an error in programs that are compiled without
-/// exceptions (`-fno-exceptions`), from the thread that found it. It does not go on from there:
-/// should the handler return, or be null, as it is at first, the message goes to the standard error
-/// stream, and `std::abort` is called. Where there are exceptions they are thrown, and the handler
-/// is not called.
-/// \return the handler before
+/// Sets the handler called with the message of an error in programs that are compiled without
+/// exceptions (`-fno-exceptions`), in the thread of the error. The program does not continue: if
+/// the handler returns, or is null (the default), the message goes to the standard error stream,
+/// and `std::abort` is called. With exceptions they are thrown, and the handler is not called.
+///
+/// \return the previous handler
 inline error_handler set_error_handler(error_handler handler) noexcept {
   return detail::current_error_handler.exchange(handler);
 }
@@ -35,7 +35,8 @@ inline error_handler set_error_handler(error_handler handler) noexcept {
 
 namespace duet::detail {
 
-/// Throws the error; without exceptions, ends in the handler that `set_error_handler` has set.
+/// Throws the error; without exceptions, calls the handler set by `set_error_handler` and ends the
+/// program.
 template <class Error>
 [[noreturn]] DUET_COLD DUET_OUT_OF_LINE void raise(Error error) {
 #ifdef __cpp_exceptions
@@ -49,8 +50,8 @@ template <class Error>
 #endif
 }
 
-/// Calls `body`, and `on_error` with an `Error` that is thrown in it; of type `void`, with nothing
-/// for whatever is thrown. Without exceptions no error leaves the body.
+/// Calls `body`, and `on_error` with an `Error` that is thrown in it; if `Error` is `void`, without
+/// argument for anything thrown. Without exceptions no error leaves the body.
 template <class Error, class Body, class Handler>
 DUET_ALWAYS_INLINE void catching(const Body& body, [[maybe_unused]] const Handler& on_error) {
 #ifdef __cpp_exceptions
@@ -72,7 +73,7 @@ DUET_ALWAYS_INLINE void catching(const Body& body, [[maybe_unused]] const Handle
 #endif
 }
 
-/// Throws again what is being handled by a `catching`.
+/// Rethrows the exception being handled by a `catching`.
 [[noreturn]] inline void raise_again() {
 #ifdef __cpp_exceptions
   throw;

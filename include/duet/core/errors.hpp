@@ -12,11 +12,11 @@
 #include <type_traits>
 
 /// \file
-/// The exceptions duet throws. Each message says what, where and which value.
+/// Exceptions thrown by duet. Each message names the function, the problem and the value.
 
 namespace duet {
 
-/// An argument that no result exists for: knots that do not increase, a quaternion that is zero …
+/// An argument without a valid result: knots that do not increase, a quaternion that is zero …
 class invalid_input : public std::invalid_argument {
 public:
   using std::invalid_argument::invalid_argument;
@@ -32,7 +32,7 @@ public:
 
 namespace duet::detail {
 
-/// A part of a message: text, or anything that is written to a stream.
+/// A part of a message: text, or any object that can be written to a stream.
 class message_part {
 public:
   message_part(std::string_view text) : text_(text) {}
@@ -56,11 +56,11 @@ private:
   void (*write_)(std::ostream&, const void*) = nullptr;
 };
 
-/// The parts in a row, whatever the locale. (Compiled once, not for every list of types.)
+/// The parts concatenated, independent of the locale. (Compiled once, not for every list of types.)
 [[nodiscard]] DUET_COLD DUET_OUT_OF_LINE inline std::string
 joined(std::initializer_list<message_part> parts) {
   std::ostringstream text;
-  text.imbue(std::locale::classic()); // known by <ios>
+  text.imbue(std::locale::classic()); // declared by <ios>
   for (const message_part& part : parts) {
     part.write(text);
   }
@@ -71,7 +71,7 @@ template <class... Parts>
   return joined({message_part(parts)...});
 }
 
-/// \throws invalid_input, which says the parts in a row, unless the condition holds
+/// \throws invalid_input with the concatenated parts, unless the condition holds
 template <class... Parts>
 void require(bool condition, const Parts&... parts) {
   if (!condition) [[unlikely]] {

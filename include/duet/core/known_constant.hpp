@@ -6,7 +6,7 @@
 
 /// \file
 /// Zero and ±1 as types, so that products with them vanish at compile time. (A compiler may not
-/// leave out 0·x by itself: x could be infinite.)
+/// drop 0·x by itself: x could be infinite.)
 
 namespace duet::detail {
 
@@ -74,7 +74,7 @@ template <int N, Number B>
   }
 }
 
-/// The constant that a stateless callable returns, as a type where that is 0 or ±1.
+/// The constant returned by a stateless callable, as a type if it is 0 or ±1.
 template <class Get>
 [[nodiscard]] constexpr auto known(Get get) {
   constexpr auto value = Get{}();
@@ -85,7 +85,7 @@ template <class Get>
   }
 }
 
-/// Any of them as a number.
+/// Conversion of any of them to a number.
 template <class S, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr S number(const X& x) {
   return S(x);

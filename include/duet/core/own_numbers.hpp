@@ -9,7 +9,7 @@
 #include <utility>
 
 /// \file
-/// Objects that hold their numbers themselves, and expressions that refer to those of others.
+/// Distinction of objects that own their numbers from expressions that refer to those of others.
 
 namespace Eigen {
 
@@ -30,9 +30,9 @@ void as_plain(const X&);
 template <class Scalar, int Options, class Index>
 void as_plain(const Eigen::SparseVector<Scalar, Options, Index>&);
 
-/// Does an X refer to numbers that it does not hold? An expression of Eigen does, to what it was
-/// made of: as a rule the local variables of the function that returned it, which are gone. So do
-/// containers of such.
+/// True if an X refers to numbers that it does not own. An expression of Eigen refers to its
+/// operands: usually the local variables of the function that returned it, which are destroyed. So
+/// do containers of expressions.
 template <class X>
 inline constexpr bool refers_elsewhere = [] {
   if constexpr (std::is_reference_v<X>) {
@@ -41,7 +41,7 @@ inline constexpr bool refers_elsewhere = [] {
     return !requires(const X& x) { as_plain(x); };
   } else if constexpr (requires { typename X::value_type; }) {
     using held = typename X::value_type;
-    if constexpr (std::is_same_v<held, X>) { // so are the numbers of Boost.Multiprecision
+    if constexpr (std::is_same_v<held, X>) { // as for the numbers of Boost.Multiprecision
       return false;
     } else {
       return refers_elsewhere<held>;
@@ -58,7 +58,7 @@ template <class A, class B>
 inline constexpr bool refers_elsewhere<std::pair<A, B>> =
     refers_elsewhere<A> || refers_elsewhere<B>;
 
-/// Refuses what a function that duet calls must not return.
+/// Rejects result types that a function called by duet must not return.
 template <class X>
 constexpr void require_own_numbers() {
   static_assert(!refers_elsewhere<X>,

@@ -15,19 +15,19 @@
 #include <vector>
 
 /// \file
-/// Many independent calls on several cores.
+/// Multithreading: many independent calls on several cores.
 
 namespace duet {
 
-/// How many threads work on a range, and who is told how far they are.
+/// Execution options: number of threads and progress report.
 struct execution {
-  unsigned threads = 1; ///< 0: as many as the machine has cores
-  /// Called after every block, by one thread at a time, with more done each time, at last with all:
+  unsigned threads = 1; ///< number of threads; 0: as many as the machine has cores
+  /// Called after every block, by one thread at a time, with increasing progress, at last with all:
   /// see `parallel_for_blocks`.
   progress_callback report = {};
 };
 
-/// All in the calling thread.
+/// Single-threaded: everything in the calling thread.
 inline constexpr execution one_core{1};
 /// As many threads as the machine has cores.
 inline constexpr execution all_cores{0};
@@ -35,8 +35,8 @@ inline constexpr execution all_cores{0};
 namespace detail {
 
 /// Blocks are handed out from the first to the last, so that when one throws all before it are
-/// finished or in work: the exception that is kept, the first block's, does not depend on timing,
-/// and what is done when a run is cancelled has no gaps.
+/// finished or running: the exception that is kept, the first block's, does not depend on timing,
+/// and the completed elements of a cancelled run have no gaps.
 class block_queue {
 public:
   block_queue(std::size_t count, std::size_t block, progress_callback report)
@@ -61,7 +61,7 @@ public:
     }
   }
 
-  /// Once all threads have ended.
+  /// Rethrows a stored exception or reports cancellation, after all threads have ended.
   void finish() const {
     if (error_) {
       std::rethrow_exception(error_);
@@ -84,7 +84,7 @@ private:
             has_stopped_ = true;
           }
         },
-        [&] { // while the others still wait for the lock, so that they do not ask again
+        [&] { // while the others still wait for the lock, so that they do not call it again
           has_stopped_ = true;
           raise_again();
         });
@@ -111,20 +111,22 @@ private:
 
 } // namespace detail
 
-/// Calls `body(first, last)` for blocks [first, last) that make up [0, count), on as many threads
-/// as asked for; one runs everything where the caller is. The threads live as long as the call.
+/// Calls `body(first, last)` for blocks [first, last) that make up [0, count), on the requested
+/// number of threads; one thread runs everything in the calling thread. The threads live as long as
+/// the call.
 ///
-/// What the blocks write must not overlap. Results then do not depend on the number of threads. Of
-/// exceptions, the one of the first block that throws is rethrown once all threads have ended;
-/// blocks behind it may not have been called.
+/// The blocks must not write to the same memory. Results then do not depend on the number of
+/// threads. If blocks throw, the exception of the first of them is rethrown once all threads have
+/// ended; blocks behind it may not have been called.
 ///
-/// `how.report` is called after each block with what is done so far, until it returns `false` or
-/// throws: blocks in work are then finished, and no more begun. Its exceptions are rethrown like
-/// those of `body`.
-/// \param block  the most elements a block has; 0: a 32nd of a thread's share, of one thread
-/// all, and with `how.report` no more than a 128th of all
-/// \throws cancelled where `how.report` returned `false` before everything was done: it says how
-/// many elements are, from the first on
+/// `how.report` is called after each block with the progress so far, until it returns `false` or
+/// throws: running blocks are then finished, and no more are started. Its exceptions are rethrown
+/// like those of `body`.
+///
+/// \param block  maximum number of elements per block; 0 (the default): a 32nd of a thread's share,
+///   with one thread all, and with `how.report` no more than a 128th of all
+/// \throws cancelled if `how.report` returned `false` before everything was done: it holds the
+///   number of completed elements, from the first on
 template <class Body>
 void parallel_for_blocks(std::size_t count, const Body& body, execution how = all_cores,
                          std::size_t block = 0) {
@@ -143,7 +145,7 @@ void parallel_for_blocks(std::size_t count, const Body& body, execution how = al
           helpers.emplace_back([&] { queue.work(body); });
         }
       },
-      [](const auto&) {}); // no more threads to be had: those there are do it all
+      [](const auto&) {}); // no more threads available: the existing ones do everything
   queue.work(body);
   for (std::thread& helper : helpers) {
     helper.join();

@@ -11,26 +11,26 @@
 #include <type_traits>
 
 /// \file
-/// How far a long run is, and how to end it early.
+/// Progress of a long run, and its early termination.
 
 namespace duet {
 
-/// How much of a range is done.
+/// Completed part of a range.
 struct progress {
-  std::size_t done = 0;  ///< elements that are done
-  std::size_t count = 0; ///< of the whole range
+  std::size_t done = 0;  ///< number of completed elements
+  std::size_t count = 0; ///< number of elements of the whole range
 
-  /// Fraction that is done, from 0 to exactly 1; 1 for an empty range.
+  /// Completed fraction, from 0 to exactly 1; 1 for an empty range.
   [[nodiscard]] double share() const { return count == 0 ? 1.0 : double(done) / double(count); }
 };
 
-/// What a long run tells its progress: a reference to a callable object that takes a `progress`.
-/// Where that returns `false`, it asks the run to end.
+/// Progress callback of a long run: a reference to a callable object that takes a `progress`. If
+/// the callable returns `false`, the run ends early.
 ///
-/// It refers to a variable, which must live as long as the run does; a lambda is given a name.
+/// It refers to a variable, which must live as long as the run does: give a lambda a name.
 class progress_callback {
 public:
-  /// Nobody is told.
+  /// No callback.
   constexpr progress_callback() = default;
   template <class F>
     requires(std::is_object_v<F> && !std::is_same_v<std::remove_cv_t<F>, progress_callback> &&
@@ -38,7 +38,7 @@ public:
   constexpr progress_callback(F& f) : object_(std::addressof(f)), call_(&call<F>) {}
 
   [[nodiscard]] constexpr explicit operator bool() const { return call_ != nullptr; }
-  /// Shall the run go on?
+  /// True if the run is to continue.
   [[nodiscard]] bool operator()(const progress& p) const { return call_(object_, p); }
 
 private:
@@ -57,7 +57,7 @@ private:
   bool (*call_)(const void*, const progress&) = nullptr;
 };
 
-/// A run that ended early because its progress callback asked for that.
+/// A run ended early by its progress callback.
 class cancelled : public std::runtime_error {
 public:
   explicit cancelled(const progress& p)
@@ -65,7 +65,7 @@ public:
                       std::to_string(p.count) + " elements done"),
         completed_(p.done) {}
 
-  /// So many elements from the first on are done, and none behind them was begun.
+  /// Number of completed elements from the first on; none behind them was started.
   [[nodiscard]] std::size_t completed() const noexcept { return completed_; }
 
 private:

@@ -7,17 +7,17 @@
 #include <limits>
 
 /// \file
-/// Comparisons that allow for rounding, and for NaN.
+/// Comparisons that tolerate round-off and NaN.
 
 namespace duet::detail {
 
-/// max(a, b); NaN where either is NaN, which `std::max` may pass over.
+/// max(a, b); NaN if either is NaN, which `std::max` may ignore.
 template <Real R>
 [[nodiscard]] R larger_or_nan(const R& a, const R& b) {
   return b <= a || a != a ? a : b;
 }
 
-/// u; the end of [low, high] that it is beyond by 8 ulp at most, of the end of larger magnitude.
+/// u, or the end of [low, high] that it exceeds by at most 8 ulp of the end of larger magnitude.
 template <Real R>
 [[nodiscard]] DUET_COLD R rounded_into(const R& u, const R& low, const R& high) {
   using std::frexp;

@@ -9,14 +9,14 @@
 #include <type_traits>
 
 /// \file
-/// The one way to branch on a value.
+/// Branches on values: `select`, the only form used in the library.
 
 namespace duet {
 
-/// `condition ? f() : g()`, with both results brought to their common type.
+/// The conditional `condition ? f() : g()`, with both results converted to their common type.
 ///
 /// A scalar evaluates one callable; a batch of lanes evaluates both and blends, so `f` and `g` must
-/// be safe to evaluate whatever the condition says.
+/// be safe to evaluate for either value of the condition.
 template <std::same_as<bool> Condition, std::invocable F, std::invocable G>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto select(Condition condition, F&& f, G&& g) {
   using result = std::common_type_t<std::invoke_result_t<F>, std::invoke_result_t<G>>;
@@ -29,7 +29,7 @@ template <std::same_as<bool> Condition, std::invocable F, std::invocable G>
 
 namespace detail {
 
-/// a < b, without a floating-point exception where one is a quiet NaN. (Of batches the target's.)
+/// a < b, without a floating-point exception if one is a quiet NaN. (For batches the target's.)
 template <class A, class B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto quiet_less(const A& a, const B& b) {
   if constexpr (std::floating_point<A> && std::floating_point<B>) {
@@ -50,9 +50,9 @@ template <class A, class B>
 
 } // namespace detail
 
-/// Is it so in any lane? Of one lane.
+/// True if the condition holds in any lane, here the only one.
 [[nodiscard]] constexpr bool any(std::same_as<bool> auto x) { return x; }
-/// Is it so in all lanes? Of one lane.
+/// True if the condition holds in all lanes, here the only one.
 [[nodiscard]] constexpr bool all(std::same_as<bool> auto x) { return x; }
 
 } // namespace duet

@@ -13,16 +13,16 @@
 #include <vector>
 
 /// \file
-/// The one walk over what holds scalars: containers of any kind say how to reach them, and lanes,
+/// Traversal of the scalars in an object: containers of any kind define access to them, and lanes,
 /// derivatives and constants of whole objects follow. For those who extend duet.
 
 namespace duet {
 
 /// Scalars inside an object: `structure<X>::map(f, x, y…)` is the same object with f of the scalars
-/// that stand at the same place of x and y…, from the first to the last (which is why results are
-/// made in braces); `structure<X>::scalar` is their type where they have one. Scalars, arrays,
-/// standard vectors, complex numbers and tuples are here; matrices of Eigen, rotations and poses
-/// add their own.
+/// at the same position in x and y…, from the first to the last (which is why results are
+/// constructed in braces); `structure<X>::scalar` is their type if they have one. Scalars, arrays,
+/// standard vectors, complex numbers and tuples are defined here; matrices of Eigen, rotations and
+/// poses separately.
 template <class X>
 struct structure;
 
@@ -103,13 +103,13 @@ struct structure<std::pair<A, B>> {
   }
 };
 
-/// Does X say where its scalars are?
+/// True if X defines access to its scalars.
 template <class X>
 concept Structured = requires {
   sizeof(structure<X>);
 };
 
-/// f of every scalar of x, and of those that stand at the same place in what else is given.
+/// f of every scalar of x, and of the scalars at the same position in the other arguments.
 template <class F, class X, class... Rest>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto map_scalars(F&& f, const X& x,
                                                             const Rest&... rest) {

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 
 /// \file
-/// The version of duet, for `#if` and for messages. docs/versions.md says what it promises.
+/// Version of duet, for `#if` and for messages. docs/versions.md states its guarantees.
 
 #define DUET_VERSION_MAJOR 1
 #define DUET_VERSION_MINOR 0

@@ -8,8 +8,8 @@
 
 namespace duet::detail {
 
-/// T(), or zeros where T is a matrix of fixed size, whose default constructor leaves its entries
-/// uninitialized.
+/// T(), or zeros if T is a matrix of fixed size, whose default constructor leaves its entries
+/// uninitialised.
 template <class T>
 [[nodiscard]] constexpr T zero_initialized() {
   if constexpr (requires { requires(T::SizeAtCompileTime > 0); }) {

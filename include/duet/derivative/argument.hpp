@@ -31,7 +31,7 @@ inline constexpr bool is_tuple<std::tuple<X...>> = true;
 template <class X>
 struct vector_argument;
 
-/// n, but what Eigen thinks too much for the stack gets a size known at run time.
+/// n, or a size known at run time if Eigen considers n too large for the stack.
 template <class D>
 constexpr int fixed_length(int n) {
   const bool is_large = n > 1 && EIGEN_STACK_ALLOCATION_LIMIT > 0 &&
@@ -39,7 +39,7 @@ constexpr int fixed_length(int n) {
   return is_large ? Eigen::Dynamic : n;
 }
 
-/// Of Eigen, with rows and columns.
+/// True for Eigen arguments with rows and columns.
 template <class X>
 inline constexpr bool is_matrix_argument = false;
 template <class X>
@@ -171,7 +171,8 @@ struct vector_argument<std::tuple<X...>> {
   }
 };
 
-/// f of x; where x is a tuple of several arguments that f does not take as one, of these.
+/// Calls f with x, or with the elements of the tuple x if f takes several arguments instead of one
+/// tuple.
 template <class F, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE decltype(auto) call(F&& f, const X& x) {
   constexpr bool takes_several = [] {
@@ -190,8 +191,8 @@ template <class F, class X>
 
 } // namespace detail
 
-/// What a function is differentiated by: an Eigen vector, a `std::array` or `std::vector` of
-/// scalars, or a `std::tuple` of these and of scalars, the components of one after the other.
+/// Variables of a differentiation: an Eigen vector, a `std::array` or `std::vector` of scalars, or
+/// a `std::tuple` of these and of scalars, whose components follow one after the other.
 template <class X>
 concept Variables = requires {
   typename detail::vector_argument<X>::scalar;
@@ -203,8 +204,8 @@ concept VectorLike = Variables<X> && !detail::is_tuple<X>;
 
 } // namespace duet
 
-/// What `driver` is not differentiated by: matrices, several arguments that are no tuple, and one
-/// number, of which there is `of_one`; then the type of its result.
+/// Rejects variables that `driver` does not support: matrices, several arguments that are not a
+/// tuple, and a single number, for which there is `of_one`; then the type of its result.
 #define DUET_REFUSES_ARGUMENTS(driver, of_one, ...)                                                \
   template <class Tag = void, detail::FunctionOfAny F, class X>                                    \
     requires(detail::is_matrix_argument<X> && !HasOwnJacobian<F>)                                  \
@@ -220,7 +221,7 @@ concept VectorLike = Variables<X> && !detail::is_tuple<X>;
   DUET_REFUSED(#driver " is by a vector, by one number there is " of_one)                          \
   __VA_ARGS__ driver(F&&, const X&);
 
-/// Where `driver` has more arguments than these, `rest` among the words.
+/// Rejects matrices for a `driver` with more arguments, `rest` in the message.
 #define DUET_REFUSES_MATRICES(driver, rest, ...)                                                   \
   template <class Tag = void, detail::FunctionOfAny F, class X, class... Rest>                     \
     requires(detail::is_matrix_argument<X> && sizeof...(Rest) > 0)                                 \

@@ -18,7 +18,7 @@
 
 namespace duet {
 
-/// What `derivative` returns: y = f(x), and dy/dx of the same shape.
+/// Result of `derivative`: y = f(x), and dy/dx of the same shape.
 template <class Y, class DY>
 struct value_and_derivative {
   Y value = detail::zero_initialized<Y>();        ///< f(x)
@@ -39,11 +39,12 @@ struct value_and_derivative {
 template <class Y, class DY>
 value_and_derivative(Y, DY) -> value_and_derivative<Y, DY>;
 
-/// f(x) and f′(x), of a function of one scalar.
+/// f(x) and f′(x) of a function of one scalar.
 ///
 /// The result may be a scalar, an Eigen matrix, an array, a tuple, a quaternion or a dual
 /// quaternion; the derivative has the same shape. Calls may nest: each marks its ε with the type of
-/// its function, or with `Tag` where the caller gives one.
+/// its function, or with `Tag` if the caller gives one.
+///
 /// \return `value_and_derivative`
 ///
 /// Example: `auto [y, dy] = derivative([](auto x) { return sin(x); }, 0.3);`
@@ -60,6 +61,7 @@ template <class Tag = void, detail::FunctionOfAny F, class X>
 }
 
 /// f(x), f′(x), …, f^(K)(x) in one pass over Taylor numbers; element k is the k-th derivative.
+///
 /// \return a `std::array` of K + 1 values, each of the shape of f(x)
 template <int K, class Tag = void, detail::FunctionOfAny F, class X>
   requires(Scalar<X> || Arithmetic<X>)

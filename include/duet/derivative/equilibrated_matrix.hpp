@@ -13,14 +13,14 @@
 #include <utility>
 
 /// \file
-/// Inverses of small matrices whose rows and columns have units of their own.
+/// Inverses of small matrices whose rows and columns have different units.
 
 namespace duet::detail {
 
-/// A matrix J and its inverse, by Gauss and Jordan's elimination with full pivoting of R J C, where
-/// the diagonal matrices R and C bring the largest entry of every row, then of every column to 1:
-/// whether J counts as singular does not depend on units. (g++ takes 1.5 s for Eigen's FullPivLU,
-/// 0.2 s for this.)
+/// A matrix J and its inverse, by Gauss–Jordan elimination with full pivoting of R J C, where the
+/// diagonal matrices R and C bring the largest entry of every row, then of every column to 1
+/// (equilibration): whether J counts as singular does not depend on units. (g++ takes 1.5 s for
+/// Eigen's FullPivLU, 0.2 s for this.)
 template <int N>
 class equilibrated_matrix {
 public:
@@ -47,23 +47,23 @@ public:
     }
   }
 
-  /// Is the least pivot more than what rounding makes of zero?
+  /// True if the smallest pivot exceeds the round-off of a zero.
   [[nodiscard]] bool is_invertible() const { return is_invertible_; }
   [[nodiscard]] double determinant() const { return determinant_; }
-  /// J⁻¹, infinite where a pivot is zero
+  /// J⁻¹, infinite if a pivot is zero
   [[nodiscard]] const matrix& inverse() const { return inverse_; }
   /// x with J x = right
   [[nodiscard]] vector solve(const vector& right) const { return inverse_ * right; }
 
 private:
-  /// 1/x, and 1 for what cannot be scaled: zero, infinite or not a number.
+  /// 1/x, or 1 for what cannot be scaled: zero, infinite or not a number.
   static double inverse_of_size(double x) {
     const bool is_usable = x >= std::numeric_limits<double>::min() && x - x == 0;
     return is_usable ? 1 / x : 1.0;
   }
 
-  /// In place: with row and column k exchanged for those of the pivot p, column k becomes that of
-  /// the unit matrix, which is then the inverse's.
+  /// Elimination in place: with row and column k exchanged for those of the pivot p, column k
+  /// becomes that of the unit matrix, which is then the inverse's.
   void eliminate() {
     std::array<int, std::size_t(N)> rows{}, columns{};
     double largest = 0, least = HUGE_VAL;
@@ -82,7 +82,7 @@ private:
       rows[std::size_t(k)] = row;
       columns[std::size_t(k)] = column;
       const double pivot = inverse_(k, k);
-      if (pivot == 0) { // and all that are left
+      if (pivot == 0) { // all remaining pivots are zero too
         determinant_ = 0;
         is_invertible_ = false;
         inverse_.setConstant(HUGE_VAL);

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 /// \file
-/// In which axes a velocity is expressed, as constants of distinct types: `frame::spatial` …
+/// Frames in which velocities are expressed, as constants of distinct types: `frame::spatial` …
 
 namespace duet {
 
@@ -36,7 +36,7 @@ concept FrameConstant = std::same_as<Frame, spatial_frame> || std::same_as<Frame
 
 namespace detail {
 
-/// The frame of ω alone: rotations have no origin, and the axes of `frame::hybrid` are fixed.
+/// Frame of ω alone: rotations have no origin, and the axes of `frame::hybrid` are fixed.
 template <class Frame>
 [[nodiscard]] constexpr auto frame_of_turning(Frame frame) {
   if constexpr (std::is_same_v<Frame, hybrid_frame>) {
@@ -46,7 +46,7 @@ template <class Frame>
   }
 }
 
-/// Spatial or body; what turns only knows these two.
+/// True for spatial, false for body axes, the only two frames of pure rotation.
 template <class Frame>
 [[nodiscard]] constexpr bool is_spatial(Frame) {
   static_assert(std::is_same_v<Frame, spatial_frame> || std::is_same_v<Frame, body_frame>,

@@ -17,12 +17,12 @@
 #include <utility>
 
 /// \file
-/// What drivers make of a function: of the types of its arguments, of its own for a tag of their
-/// infinitesimals, and of what it returns.
+/// Function traits used by the drivers: argument types, tags of infinitesimals, and returned
+/// values.
 
 namespace duet::detail {
 
-/// X, but of an expression of Eigen the vector or matrix that it stands for.
+/// X, or the vector or matrix that X evaluates to if it is an expression of Eigen.
 template <class X>
 struct own {
   using type = X;
@@ -56,19 +56,19 @@ template <class R, class C, class... A>
 std::bool_constant<(sizeof...(A) > 0 && (RealParameter<std::decay_t<A>> && ...))>
 has_real_parameters(R (C::*)(A...) const);
 
-/// A function, or an object with one `operator()`, of real numbers: there is no derivative of it.
+/// A function, or an object with one `operator()`, of real numbers, which cannot be differentiated.
 template <class F>
 concept FunctionOfReals = requires(std::decay_t<F> f) {
   requires decltype(has_real_parameters(f))::value;
 }
 || requires { requires decltype(has_real_parameters(&std::decay_t<F>::operator()))::value; };
 
-/// Any other: what drivers differentiate. (Formulas have drivers of their own.)
+/// Any other function: accepted by the drivers. (Formulas have separate drivers.)
 template <class F>
 concept FunctionOfAny = !FunctionOfReals<F> && !is_symbolic<std::remove_cvref_t<F>>;
 
-/// What a function of the caller's returned, as an object of its own. (Its type is deduced, so that
-/// compilers say first of all what is wrong, also where only the type is asked for.)
+/// Result of a user's function, as an owning object. (Its type is deduced, so that compilers report
+/// the error first, even if only the type is needed.)
 template <class X>
 [[nodiscard]] constexpr auto result_of_call(X&& x) {
   using result = std::remove_cvref_t<X>;
@@ -84,8 +84,8 @@ template <class X>
 
 namespace duet {
 
-/// What has a function `jacobian` of its own, as a mechanism, and is not differentiated as a
-/// callable. For those who extend duet.
+/// Callable with a separate function `jacobian`, such as a mechanism, which is not differentiated
+/// as a callable. For those who extend duet.
 template <class F>
 concept HasOwnJacobian = requires {
   typename std::remove_cvref_t<F>::own_jacobian;
@@ -93,6 +93,6 @@ concept HasOwnJacobian = requires {
 
 } // namespace duet
 
-/// Said where `driver` is given one.
+/// Message for a function of real numbers passed to `driver`.
 #define DUET_REFUSED_FUNCTION(driver)                                                              \
   DUET_REFUSED(#driver ": the function must take any scalar: [](const auto& x) { ... }")

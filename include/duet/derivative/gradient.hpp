@@ -23,12 +23,12 @@
 #include <utility>
 
 /// \file
-/// Gradients and Hessians of scalar functions of a vector; gradients by thousands of components in
-/// passes of a chosen size, into memory of the caller.
+/// Gradients and Hessians of scalar functions of a vector; gradients with respect to thousands of
+/// components in passes of a chosen size, into memory of the caller.
 
 namespace duet {
 
-/// What `gradient` returns: f(x), and ∇f as a column.
+/// Result of `gradient`: f(x), and ∇f as a column.
 template <class Y, class G>
 struct value_and_gradient {
   Y value = detail::zero_initialized<Y>();    ///< f(x)
@@ -47,7 +47,7 @@ struct value_and_gradient {
   operator M() const;
 };
 
-/// What `hessian` returns: f(x), ∇f as a column, and the symmetric matrix of second derivatives.
+/// Result of `hessian`: f(x), ∇f as a column, and the symmetric matrix of second derivatives.
 template <class Y, class G, class H>
 struct value_gradient_and_hessian {
   Y value = detail::zero_initialized<Y>();    ///< f(x)
@@ -68,16 +68,16 @@ struct value_gradient_and_hessian {
   operator M() const;
 };
 
-/// f(x); writes ∇f into `gradient`, any writable Eigen vector of as many components as x.
+/// Returns f(x); writes ∇f into `gradient`, any writable Eigen vector of as many components as x.
 ///
-/// \tparam Chunk  components differentiated per evaluation of f; 0 takes what was measured to be
-///                best, see docs/benchmarks.md. More partials per pass evaluate f less often, but
-///                every number of f holds them all.
+/// One vector of seeds is allocated per call if the size of x is known only at run time, otherwise
+/// nothing; f takes it by reference.
 ///
-/// One vector of seeds is allocated per call where x has its size at run time, none otherwise; f
-/// takes it by reference.
+/// \tparam Chunk  components differentiated per evaluation of f; 0 (the default) selects the
+///   measured optimum, see docs/benchmarks.md. More partials per pass evaluate f less often, but
+///   every number of f holds them all.
 /// \return f(x)
-/// \throws invalid_input where the sizes do not match or x is empty
+/// \throws invalid_input if the sizes do not match or x is empty
 ///
 /// Example: `Eigen::VectorXd g(n); const double y = gradient_into<16>(f, x, g);`
 template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X, class G>
@@ -102,11 +102,12 @@ template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X,
 }
 
 /// f(x) and the gradient ∇f(x). x is an Eigen vector, a `std::array` or `std::vector` of n
-/// components, f(x) a scalar; the gradient is a column of n. Of several arguments x is a tuple,
-/// `gradient(f, std::tuple(a, b))` of f(a, b), scalars and vectors, and the gradient is by the
-/// components of one after the other.
+/// components, f(x) a scalar; the gradient is a column of n. For several arguments, scalars and
+/// vectors, x is a tuple, `gradient(f, std::tuple(a, b))` of f(a, b), and the gradient lists the
+/// derivatives with respect to their components one after the other.
 ///
 /// Up to 32 components known at compile time take one evaluation of f.
+///
 /// \return `value_and_gradient`
 template <class Tag = void, detail::FunctionOfAny F, Variables X>
 [[nodiscard]] auto gradient(F&& f, const X& x) {
@@ -129,11 +130,11 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
 
 namespace detail {
 
-/// Components in a block, where a Hessian takes more than one pass.
+/// Components per block of a Hessian that takes more than one pass.
 inline constexpr int hessian_block = 8;
 
-/// Value, gradient and Hessian by blocks of components: those on the diagonal by numbers with
-/// second derivatives, those beside it by f(x + ε + η), ε of one block and η of another.
+/// Value, gradient and Hessian by blocks of components: diagonal blocks by numbers with second
+/// derivatives, off-diagonal blocks by f(x + ε + η), ε of one block and η of another.
 template <class Tag, class F, class X, class Result>
 void hessian_in_blocks(F&& f, const X& x, Result& result) {
   using argument = vector_argument<X>;
@@ -145,7 +146,7 @@ void hessian_in_blocks(F&& f, const X& x, Result& result) {
       visit(first + i, i);
     }
   };
-  // From one pass to the next only what is no constant changes.
+  // Resets the variables of a block after its pass; all others are constants already.
   const auto set_constants = [&](auto& variables, Eigen::Index block) {
     for_block(block, [&](Eigen::Index at, int) {
       auto& variable = component(variables, at);
@@ -153,7 +154,7 @@ void hessian_in_blocks(F&& f, const X& x, Result& result) {
     });
   };
   {
-    using D = second_dual<T, n, Tag>;
+    using D = second_order_dual<T, n, Tag>;
     auto variables = constants<D>(x);
     for (Eigen::Index block = 0; block < size; block += n) {
       for_block(block, [&](Eigen::Index at, int i) {
@@ -202,8 +203,8 @@ void hessian_in_blocks(F&& f, const X& x, Result& result) {
 ///
 /// Up to 32 components known at compile time take one evaluation of f. Otherwise f is evaluated for
 /// every pair of blocks of eight components, p (p + 1) / 2 times for p blocks, and beyond 32 the
-/// matrix is one of a size known at run time. Where most entries are known to be zero there is
-/// `sparse_hessian`.
+/// matrix has a size known at run time. If most entries are known to be zero use `sparse_hessian`.
+///
 /// \return `value_gradient_and_hessian`
 template <class Tag = void, detail::FunctionOfAny F, Variables X>
 [[nodiscard]] auto hessian(F&& f, const X& x) {
@@ -212,7 +213,7 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
   using tag = detail::tag_for<Tag, F>;
   constexpr int n = argument::size_at_compile_time;
   constexpr bool is_single_pass = 0 < n && n <= detail::single_pass_limit;
-  using number = second_dual<T, is_single_pass ? n : detail::hessian_block, tag>;
+  using number = second_order_dual<T, is_single_pass ? n : detail::hessian_block, tag>;
   using output =
       std::decay_t<decltype(detail::result_of_call(detail::call(f, detail::constants<number>(x))))>;
   static_assert(Scalar<output>, "duet: hessian needs a function that returns a scalar");

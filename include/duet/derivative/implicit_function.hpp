@@ -24,14 +24,14 @@
 
 namespace duet {
 
-/// When Newton's method gives up.
+/// Limits of Newton's method in `implicit_solution`.
 struct newton_options {
-  int max_iterations = 50; ///< steps
+  int max_iterations = 50; ///< maximum number of Newton steps
 };
 
 namespace detail {
 
-/// What F returned, as something that counts as many residuals as the unknown has coordinates.
+/// The result of F, as an object that counts as many residuals as the unknown has coordinates.
 template <int N, class R>
 [[nodiscard]] auto residuals(R&& returned) {
   auto r = result_of_call(std::forward<R>(returned));
@@ -56,7 +56,7 @@ template <int N, class R>
 /// Damped Newton's method with AD Jacobian on the innermost real values: the solution and the
 /// inverse of the Jacobian there.
 ///
-/// Progress is measured by how far the old Jacobian would still move x, ‖J⁻¹F(x_new)‖, which
+/// Progress is measured by the step that the old Jacobian would still take, ‖J⁻¹F(x_new)‖, which
 /// depends neither on the units nor on the mixture of the residuals.
 template <class F, class X, class P>
 class newton {
@@ -78,7 +78,7 @@ public:
   }
 
   [[nodiscard]] bool has_converged() const { return failure_ == nullptr; }
-  /// \throws no_convergence unless it has
+  /// \throws no_convergence unless the iteration has converged
   void require_converged() const {
     if (!has_converged()) {
       raise(no_convergence(message("duet: implicit_function: Newton's method ", failure_, " after ",
@@ -89,7 +89,7 @@ public:
   X x;
   equilibrated_matrix<n> jacobian;
 
-  /// The largest number in x.
+  /// Largest absolute value among the components of x.
   [[nodiscard]] double magnitude() const {
     double largest = 0;
     static_cast<void>(map_scalars(
@@ -107,8 +107,8 @@ private:
   const char* failure_ = nullptr;
   int iterations_ = 0;
 
-  /// One step, halved while it does not bring x nearer to the solution. True where x is as accurate
-  /// as it gets, and on failure.
+  /// One step, halved until it brings x nearer to the solution. Returns true if x is as accurate as
+  /// possible, and on failure.
   [[nodiscard]] bool advance(const F& f, const P& p) {
     const vector step = jacobian.solve(-residual);
     if (!jacobian.is_invertible() || !step.allFinite()) {
@@ -128,8 +128,8 @@ private:
       if (remaining.norm() <= (1 - fraction / 4) * step.norm()) {
         return false;
       }
-      // Small steps over which the Jacobian does not change, and yet no gain: what is left of the
-      // residual is rounding.
+      // Small steps over which the Jacobian does not change, and yet no gain: the rest of the
+      // residual is round-off.
       const vector next = jacobian.solve(-residual);
       if (fraction == 1 && step.norm() <= std::sqrt(epsilon) * std::max(1.0, magnitude()) &&
           (next - remaining).norm() <= next.norm() / 2 && jacobian.is_invertible()) {
@@ -185,18 +185,18 @@ template <class F, class Newton, class P>
 
 } // namespace detail
 
-/// The x with F(x, p) = 0 near x0, over the scalars of p and of whatever F captures.
+/// The x with F(x, p) = 0 near the initial guess x0, over the scalars of p and of all that F
+/// captures.
+///
+/// Newton's method with AD Jacobian runs on the real values only, in double precision, to machine
+/// precision. The derivatives follow by the implicit function theorem, order by order.
 ///
 /// \param f   F(x, p), templated over the scalars of both: an Eigen vector or array of as many
-///            residuals as x has coordinates, or a scalar where that is one
-/// \param x0  start: a scalar, a fixed-size vector, a unit quaternion, or a tuple of them
+///   residuals as x has coordinates, or a scalar if that is one
+/// \param x0  initial guess: a scalar, a fixed-size vector, a unit quaternion, or a tuple of them
 /// \param p   parameters, of any scalars of duet and any shape
-///
-/// Newton's method with AD Jacobian runs on the real values only, in double precision, to the level
-/// of rounding. The derivatives follow by the implicit function theorem, order by order.
-///
 /// \return x, of the shape of x0
-/// \throws no_convergence where there is no solution near x0 or ∂F/∂x is singular.
+/// \throws no_convergence if there is no solution near x0 or ∂F/∂x is singular.
 template <class F, class X, class P>
 [[nodiscard]] auto implicit_solution(const F& f, const X& x0, const P& p,
                                      const newton_options& options = {}) {

@@ -19,12 +19,12 @@
 #include <utility>
 
 /// \file
-/// Jacobians and directional derivatives of functions of a vector; Jacobians by thousands of
-/// components in passes of a chosen size, into memory of the caller.
+/// Jacobians and directional derivatives of functions of a vector; Jacobians with respect to
+/// thousands of components in passes of a chosen size, into memory of the caller.
 
 namespace duet {
 
-/// What `jacobian` returns: y = f(x), and ∂y/∂x, a row for each component of y.
+/// Result of `jacobian`: y = f(x), and ∂y/∂x, a row for each component of y.
 template <class Y, class J>
 struct value_and_jacobian {
   Y value = detail::zero_initialized<Y>();    ///< f(x)
@@ -45,7 +45,7 @@ struct value_and_jacobian {
 
 namespace detail {
 
-/// f(x); writes ∂f_i/∂x_j into `jacobian`, once `prepare(rows)` has made it fit.
+/// Returns f(x); writes ∂f_i/∂x_j into `jacobian` after `prepare(rows)` has resized it.
 template <class Tag, int Chunk, class Output, class F, class X, class J, class Prepare>
 [[nodiscard]] auto write_jacobian(F&& f, const X& x, J& jacobian, const Prepare& prepare) {
   std::decay_t<decltype(parts<Tag>(std::declval<const Output&>(), 0))> value{};
@@ -64,7 +64,7 @@ template <class Tag, int Chunk, class Output, class F, class X, class J, class P
   return value;
 }
 
-/// Rows times columns of what the caller gave for a result.
+/// Checks the rows and columns of the caller's memory for a result.
 template <class Out>
 void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::Index columns) {
   const auto text = [](Eigen::Index r, Eigen::Index c) {
@@ -79,8 +79,10 @@ void require_size(const char* driver, const Out& out, Eigen::Index rows, Eigen::
 } // namespace detail
 
 /// f(x) and the Jacobian, the matrix ∂f_i/∂x_j, m × n. x and f(x) are Eigen vectors, `std::array`s
-/// or `std::vector`s; of several arguments x is a tuple, `jacobian(f, std::tuple(a, b))` of f(a,
-/// b), and the columns are by the components of one after the other. \return `value_and_jacobian`
+/// or `std::vector`s; for several arguments x is a tuple, `jacobian(f, std::tuple(a, b))` of f(a,
+/// b), with columns for their components one after the other.
+///
+/// \return `value_and_jacobian`
 template <class Tag = void, detail::FunctionOfAny F, Variables X>
   requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x) {
@@ -104,8 +106,9 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
   return result;
 }
 
-/// f(x); writes ∂f_i/∂x_j into `jacobian`, any writable Eigen matrix of as many rows as f(x) has
-/// components and as many columns as x. Everything else as `gradient_into`.
+/// Returns f(x); writes ∂f_i/∂x_j into `jacobian`, any writable Eigen matrix of as many rows as
+/// f(x) has components and as many columns as x. Everything else as `gradient_into`.
+///
 /// \return f(x)
 template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X, class J>
 [[nodiscard]] auto jacobian_into(F&& f, const X& x, J&& jacobian) {
@@ -121,8 +124,9 @@ template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X,
   });
 }
 
-/// f(x) and d/dt f(x + t v) at t = 0: x and v scalars, or vectors of one size, or
-/// tuples of them; f(x) of any shape.
+/// f(x) and the directional derivative d/dt f(x + t v) at t = 0: x and v scalars, or vectors of one
+/// size, or tuples of them; f(x) of any shape.
+///
 /// \return `value_and_derivative`
 template <class Tag = void, detail::FunctionOfAny F, class X, class V>
   requires(Variables<X>&& Variables<V>)

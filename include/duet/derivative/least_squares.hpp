@@ -19,7 +19,7 @@
 namespace duet {
 namespace detail {
 
-/// \throws invalid_input where no least-squares solution of A x = b can be asked for.
+/// \throws invalid_input if A x = b is not a valid least-squares problem.
 template <class A, class B>
 void require_tall(const A& a, const B& b) {
   static_assert(int(A::RowsAtCompileTime) >= int(A::ColsAtCompileTime) ||
@@ -34,8 +34,8 @@ void require_tall(const A& a, const B& b) {
 }
 
 /// qr.solve(b) for A of full rank, the same operations as Eigen's with fewer than 48 columns: one
-/// reflection after the other. The products of blocks of them that there are for more take
-/// compilers longer than all else here.
+/// Householder reflection after the other. The blocked products for more columns take compilers
+/// longer than all else here.
 template <class QR, class B>
 [[nodiscard]] auto solve_by_reflections(const QR& qr, const B& b) {
   using R = typename B::Scalar;
@@ -67,7 +67,7 @@ template <class QR, class G>
   return qr.colsPermutation() * x;
 }
 
-/// Every entry times a real number; infinite ones have no part 0 · ∞.
+/// Every entry times a real number; infinite entries have no part 0 · ∞.
 template <class Derived, class R>
 [[nodiscard]] auto times(const Eigen::MatrixBase<Derived>& a, const R& factor) {
   using S = typename Derived::Scalar;
@@ -100,18 +100,19 @@ template <class S, class A, class X>
 /// \param b  a vector, or a matrix of right-hand sides
 ///
 /// The values are those of `Eigen::ColPivHouseholderQR` over real numbers: of Eigen 3.4 to the last
-/// bit, where b is a vector or A has fewer than 48 columns and the compiler does not fuse products
-/// and sums. The derivatives follow from Aᵀ(b − A x) = 0,
+/// bit, if b is a vector or A has fewer than 48 columns and the compiler does not fuse products and
+/// sums. The derivatives follow from Aᵀ(b − A x) = 0,
 ///
 ///   dx = A⁺(db − dA x) + (AᵀA)⁻¹dAᵀ(b − A x),
 ///
 /// and so on order by order with the one factorisation A₀P = QR of the values: each step
 /// x ← x + (A₀ᵀA₀)⁻¹Aᵀ(b − A x) in the algebra of the infinitesimals makes one more order exact.
-/// A₀ᵀ(b − A x) is never formed, so that the square of cond(A) multiplies only what is left of b.
+/// A₀ᵀ(b − A x) is never formed, so that the square of the condition number cond(A) multiplies only
+/// the residual of b.
 ///
-/// \throws invalid_input where sizes do not match, where A has entries that are not finite, and
-/// where the rank that Eigen finds is not n. Columns whose sizes differ by 1/ε count as dependent:
-/// choose the units of the unknowns accordingly.
+/// \throws invalid_input if sizes do not match, if A has entries that are not finite, and if the
+///   rank that Eigen finds is not n. Columns whose sizes differ by 1/ε count as dependent: choose
+///   the units of the unknowns accordingly.
 template <class A, class B>
 [[nodiscard]] auto least_squares(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   using S = detail::common_scalar_t<A, B>;

@@ -23,8 +23,8 @@
 namespace duet {
 namespace detail {
 
-/// What `Eigen::PartialPivLU` is to one matrix. Rows are exchanged by blending, so each lane has
-/// the pivots that it would have alone.
+/// LU decomposition with partial pivoting of one matrix per lane, as `Eigen::PartialPivLU` for one
+/// matrix. Rows are exchanged by blending, so each lane has the pivots that it would have alone.
 template <class M>
 class lane_lu {
 public:
@@ -43,7 +43,7 @@ public:
       }
       pivot_rows_[k] = row;
       exchange(factors_, k);
-      // Where the pivot is zero, so is the column.
+      // If the pivot is zero, so is the column.
       const Scalar pivot = blended(largest == 0, Scalar(1), factors_(k, k));
       for (Eigen::Index i = k + 1; i < n; ++i) {
         factors_(i, k) /= pivot;
@@ -80,7 +80,7 @@ public:
   }
 
 private:
-  /// Row k and the row of the k-th pivot.
+  /// Exchanges row k with the row of the k-th pivot.
   template <class X>
   void exchange(X& x, Eigen::Index k) const {
     for (Eigen::Index i = k + 1; i < x.rows(); ++i) {
@@ -99,11 +99,13 @@ private:
   Eigen::Matrix<Scalar, M::RowsAtCompileTime, 1> pivot_rows_;
 };
 
-/// \throws invalid_input where a pivot is nothing but rounding.
+/// Rejects pivots that are only round-off.
 ///
-/// The rounding of u_kk is that of the sum it is what remains of, so neither the units of the
+/// The round-off of u_kk is that of the sum it is the remainder of, so neither the units of the
 /// equations nor those of the unknowns matter. The factor 4 catches all but one in a hundred of
 /// random singular matrices; LU alone, which waits for a zero, would pass half of them.
+///
+/// \throws invalid_input if a pivot is only round-off
 template <class LU>
 void require_regular(const LU& lu) {
   using std::abs;
@@ -125,7 +127,7 @@ void require_regular(const LU& lu) {
 template <class M>
 using lu_of = std::conditional_t<Batched<typename M::Scalar>, lane_lu<M>, Eigen::PartialPivLU<M>>;
 
-/// \throws invalid_input where no solution of A x = b can be asked for.
+/// \throws invalid_input if A x = b is not a valid system of equations.
 template <class A, class B>
 void require_square(const A& a, const B& b) {
   static_assert(can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
@@ -152,11 +154,12 @@ void require_square(const A& a, const B& b) {
 ///
 /// and so on order by order with the one factorisation of the values A₀: each step
 /// x ← x + A₀⁻¹(b − A x) in the algebra of the infinitesimals makes one more order exact. Their
-/// relative error is that of x, about cond(A) ε, but may grow with every order by another cond(A).
+/// relative error is that of x, about cond(A) ε, with cond(A) the condition number, but may grow
+/// with every order by another cond(A).
 ///
-/// \throws invalid_input where sizes do not match, where A has entries that are not finite, and
-/// where A is singular: where a pivot is at most 4nε times the sum of the absolute terms that it is
-/// the sum of. What is nearly singular passes, and has an error to match.
+/// \throws invalid_input if sizes do not match, if A has entries that are not finite, and if A is
+///   singular: if a pivot is at most 4nε times the sum of the absolute terms that it is the sum of.
+///   A nearly singular (ill-conditioned) matrix passes, with a correspondingly large error.
 template <class A, class B>
 [[nodiscard]] auto solve(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   using S = detail::common_scalar_t<A, B>;
@@ -179,7 +182,7 @@ template <class A, class B>
     const auto& coefficients = a.eval();
     const auto right = detail::converted<S>(b);
     for (int order = 1; order <= scalar_traits<S>::order; ++order) {
-      // By name, the type that Eigen has solved for already where b is a vector.
+      // A named type, which Eigen has already instantiated if b is a vector.
       detail::correct_infinitesimals(
           x, [&](const auto& column) { return lu.solve(column).eval(); },
           detail::residual(coefficients, right, x));

@@ -19,21 +19,21 @@
 #include <vector>
 
 /// \file
-/// Tangent spaces: how an object is moved by a small vector, and which vector its rate is.
+/// Tangent spaces: perturbation of an object by a small vector, and the tangent vector of its rate.
 /// For those who extend duet.
 
 namespace duet {
 
-/// The coordinates in which an X is moved and its rate is told:
+/// Tangent space of an X: the coordinates of its perturbations and rates.
 ///
-/// - `dimension`: their number, `Eigen::Dynamic` where only known at run time
-/// - `scalar`: what an X is made of
+/// - `dimension`: their number, `Eigen::Dynamic` if known only at run time
+/// - `scalar`: the scalar of an X
 /// - `plus(x, δ, frame)`: x moved by the tangent vector δ, whose scalar may be any
 /// - `velocity(x, ẋ, frame)`: the tangent vector of the rate ẋ, an Eigen column
 /// - `takes_rates_of_any_scalar`, if it does: ẋ over dual numbers, many rates at once
 ///
-/// Scalars, vectors, arrays and tuples are here, for which `frame` means nothing; rotations add
-/// their own, so that Newton's method and Jacobians never see redundant coordinates.
+/// Scalars, vectors, arrays and tuples are defined here and ignore `frame`; rotations are
+/// specialised separately, so that Newton's method and Jacobians never see redundant coordinates.
 template <class X>
 struct manifold;
 
@@ -156,7 +156,7 @@ struct manifold<std::tuple<X...>> {
 private:
   static constexpr auto indices = std::index_sequence_for<X...>{};
 
-  /// Where the coordinates of the I-th element start.
+  /// Index of the first coordinate of the I-th element.
   template <std::size_t I>
   static constexpr int offset = [] {
     constexpr int dimensions[] = {manifold<X>::dimension...};

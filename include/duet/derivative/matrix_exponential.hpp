@@ -13,7 +13,7 @@
 #include <type_traits>
 
 /// \file
-/// The exponential of a matrix, whose derivatives are right at every matrix.
+/// Exponential of a matrix, with exact derivatives at every matrix.
 
 namespace duet {
 namespace detail {
@@ -24,10 +24,10 @@ template <class A>
   return a.cwiseAbs().colwise().sum().maxCoeff();
 }
 
-/// The number of halvings of A until its powers shrink as those of 1/2 do.
+/// Number of halvings of A until its powers decrease as those of 1/2 do.
 ///
-/// α = max(‖A^p‖^{1/p}, ‖A^{p+1}‖^{1/(p+1)}) bounds ‖A^k‖^{1/k} for k ≥ p(p − 1); of a matrix that
-/// is far from normal it is much less than ‖A‖, and halving it more often would lose digits.
+/// α = max(‖A^p‖^{1/p}, ‖A^{p+1}‖^{1/(p+1)}) bounds ‖A^k‖^{1/k} for k ≥ p(p − 1); for a matrix far
+/// from normal it is much less than ‖A‖, and more halvings would cause cancellation.
 template <class A>
 [[nodiscard]] int halvings(const A& a) {
   using std::frexp;
@@ -53,8 +53,8 @@ template <class A>
   return least > 0 ? std::max(0, exponent + more + 1) : 0;
 }
 
-/// The number of terms that make the series of exp at 1/2, and its derivatives up to `order`,
-/// exact to R.
+/// Number of terms that make the series of exp at 1/2, and its derivatives up to `order`, exact to
+/// R.
 template <class R>
 [[nodiscard]] int terms_of_exponential(int order) {
   int count = 0;
@@ -93,22 +93,23 @@ template <class S, class A>
 
 } // namespace detail
 
-/// The exponential of a square matrix, exp A = 1 + A + A²/2! + ….
+/// Exponential of a square matrix, exp A = 1 + A + A²/2! + ….
 ///
 /// \param a  A, n × n, of any scalars, complex ones and batches among them
 ///
-/// Scaling and squaring: exp A = (exp(A/2^s))^(2^s), s chosen for the values of A by the norms
-/// of its powers (A. H. Al-Mohy, N. J. Higham, SIAM J. Matrix Anal. Appl. 31 (2009) 970–989), and
-/// the series of A/2^s in the algebra of the infinitesimals, which nothing is divided by: so every
-/// derivative is right at every A, also at 0 and at equal eigenvalues,
+/// Scaling and squaring: exp A = (exp(A/2^s))^(2^s), s chosen for the values of A by the norms of
+/// its powers (A. H. Al-Mohy, N. J. Higham, SIAM J. Matrix Anal. Appl. 31 (2009) 970–989), and the
+/// series of A/2^s in the algebra of the infinitesimals, without divisions: so every derivative is
+/// exact at every A, also at 0 and at equal eigenvalues,
 ///
 ///   d exp A = ∫₀¹ exp(τA) dA exp((1 − τ)A) dτ.
 ///
-/// The relative error of what is no further from normal than its powers show is about 2nε(1 + ‖A‖).
+/// The relative error for a matrix no further from normal than its powers show is about
+/// 2nε(1 + ‖A‖).
 ///
 /// \return an n × n matrix
-/// \throws invalid_input if A is not square, empty or not finite, if its norm leaves no digit
-/// (2^s ≥ 1/ε), or if exp A overflows
+/// \throws invalid_input if A is not square, empty or not finite, if its norm leaves no digit (2^s
+///   ≥ 1/ε), or if exp A overflows
 template <class A>
 [[nodiscard]] auto matrix_exponential(const Eigen::MatrixBase<A>& a) {
   using S = detail::common_scalar_t<A, A>;

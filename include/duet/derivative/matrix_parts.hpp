@@ -16,12 +16,12 @@
 #include <type_traits>
 
 /// \file
-/// Matrices of scalars as real matrices, one of the values and one of every infinitesimal part:
-/// what is factorised once for the values serves all parts.
+/// Matrices of scalars as real matrices, one of the values and one of every infinitesimal part: one
+/// factorisation of the values serves all parts.
 
 namespace duet::detail {
 
-/// How many infinitesimal parts a scalar has at most, over all levels.
+/// Maximum number of infinitesimal parts of a scalar, over all nesting levels.
 template <class S>
 inline constexpr int infinitesimal_count = 0;
 template <Infinitesimal S>
@@ -31,19 +31,19 @@ inline constexpr int infinitesimal_count<S> =
                                                                           : S::part_count) -
     1;
 
-/// Does the number of some level's parts depend on the number?
+/// True if the number of parts of some nesting level depends on the number itself.
 template <class S>
 inline constexpr bool varies_in_parts = false;
 template <Infinitesimal S>
 inline constexpr bool varies_in_parts<S> =
     S::part_count < 0 || varies_in_parts<typename scalar_traits<S>::value_type>;
 
-/// The scalar that a matrix of A and one of B have in common; integers are differentiated as reals.
+/// Common scalar of a matrix of A and one of B; integers are differentiated as reals.
 template <class A, class B>
 using common_scalar_t =
     promote_t<differentiable_t<typename A::Scalar>, differentiable_t<typename B::Scalar>>;
 
-/// Can sizes be the same, as far as they are known at compile time?
+/// True if two sizes can be equal, as far as they are known at compile time.
 [[nodiscard]] constexpr bool can_be_same(int a, int b) {
   return a == b || a == Eigen::Dynamic || b == Eigen::Dynamic;
 }
@@ -60,7 +60,7 @@ template <class R, class Derived>
   return a.unaryExpr([](const auto& x) { return static_cast<R>(innermost(x)); }).eval();
 }
 
-/// Are all infinitesimal parts exactly zero?
+/// True if all infinitesimal parts are exactly zero.
 template <class Derived>
 [[nodiscard]] bool is_constant(const Eigen::MatrixBase<Derived>& a) {
   using S = typename Derived::Scalar;
@@ -71,14 +71,14 @@ template <class Derived>
   return result;
 }
 
-/// One real column for every infinitesimal part: off the heap where their length is known, and they
-/// are little enough for the stack.
+/// One real column for every infinitesimal part: not on the heap if their length is known and they
+/// are small enough for the stack.
 template <class R, int Rows, int Count>
 using part_columns =
     Eigen::Matrix<R, Rows, (Rows > 0 && Rows * Count <= 1024) ? Count : Eigen::Dynamic,
                   Rows == 1 && Count != 1 ? Eigen::RowMajor : Eigen::ColMajor>;
 
-/// Gives every entry of either matrix the parts that any has, where that varies.
+/// Gives every entry of either matrix the parts that any entry has, if their number varies.
 template <class X, class Residual>
 void even_out_parts(X& x, Residual& r) {
   using S = typename X::Scalar;
@@ -99,7 +99,7 @@ void even_out_parts(X& x, Residual& r) {
 }
 
 /// Adds map(r) to the infinitesimal parts of x, where the real-linear map takes and returns a real
-/// column. The values of x stay as they are, and so do parts that r does not have.
+/// column. The values of x are unchanged, and so are parts that r does not have.
 template <class X, class Map, class Residual>
 void correct_infinitesimals(X& x, const Map& map, Residual r) {
   using R = real_type_t<typename X::Scalar>;
@@ -158,7 +158,7 @@ template <class A, class B, class X>
   return r;
 }
 
-/// A power of two that brings the largest entry of a matrix near 1: squares then stay in the range.
+/// A power of two that brings the largest entry of a matrix near 1: squares then stay in range.
 template <class R, class A>
 [[nodiscard]] R scale_of(const A& a) {
   using std::frexp;
@@ -168,7 +168,7 @@ template <class R, class A>
   return ldexp(R(1), std::min(-exponent, std::numeric_limits<R>::max_exponent - 1));
 }
 
-/// \throws invalid_input where a real matrix has an entry that is infinite or not a number.
+/// \throws invalid_input if a real matrix has an entry that is infinite or not a number.
 template <class Derived>
 void require_finite(const char* function, const Eigen::MatrixBase<Derived>& a) {
   for (Eigen::Index j = 0; j < a.cols(); ++j) {

@@ -100,14 +100,14 @@ template <class S, class Polar, class A>
 
 } // namespace detail
 
-/// The rotation R that minimises ‖A − R‖ (Frobenius), det R = +1.
+/// Rotation R that minimises ‖A − R‖ (Frobenius norm), det R = +1: orthogonal Procrustes problem.
 ///
 /// \param a  A, n × n
 ///
 /// With the singular value decomposition A = U diag(σ)Vᵀ, R = U diag(1, …, 1, s)Vᵀ, s the sign of
-/// det U det V; where det A > 0 it is the rotation of the polar decomposition A = RS. (S. Umeyama,
-/// IEEE Trans. PAMI 13 (1991) 376–380.) The derivatives follow from RᵀA = AᵀR and RᵀR = 1, order
-/// by order:
+/// det U det V; if det A > 0 it is the rotation of the polar decomposition A = RS. (S. Umeyama,
+/// IEEE Trans. PAMI 13 (1991) 376–380.) The derivatives follow from RᵀA = AᵀR and RᵀR = 1, order by
+/// order:
 ///
 ///   dR = R V W Vᵀ,  W_ij = (B_ij − B_ji)/(λ_i + λ_j),  B = VᵀRᵀdA V,  λ = (σ₁, …, s σ_n).
 ///
@@ -115,9 +115,9 @@ template <class S, class Polar, class A>
 /// 0. R is unique if σ_{n−1} + s σ_n > 0: not for a reflection whose two smallest singular values
 /// are equal, as −1, nor for a matrix of rank n − 2.
 ///
-/// \return an n × n matrix; for n = 3 `from_rotation_matrix` makes a quaternion of it
+/// \return an n × n matrix; for n = 3 `from_rotation_matrix` converts it to a quaternion
 /// \throws invalid_input if A is not square, empty or not finite, or if σ_{n−1} + s σ_n is at most
-/// 4nε σ₁
+///   4nε σ₁
 template <class A>
 [[nodiscard]] auto nearest_rotation(const Eigen::MatrixBase<A>& a) {
   using S = detail::common_scalar_t<A, A>;

@@ -33,12 +33,12 @@ struct value_gradient_and_product {
   }
 };
 
-/// f(x), ∇f and H v, the Hessian at x times a vector: the derivative of the gradient along
-/// v, at about twice the cost of the gradient, for any number of components.
+/// f(x), ∇f and H v, the Hessian at x times a vector: the derivative of the gradient along v, at
+/// about twice the cost of the gradient, for any number of components.
 ///
-/// \param x, v  as of `gradient`, of one size; f returns a scalar
+/// \param x, v  as for `gradient`, of one size; f returns a scalar
 /// \return `value_gradient_and_product`
-/// \throws invalid_input where the sizes differ or x is empty
+/// \throws invalid_input if the sizes differ or x is empty
 template <class Tag = void, detail::FunctionOfAny F, Variables X, Variables V>
 [[nodiscard]] auto hessian_vector_product(F&& f, const X& x, const V& v) {
   using T = promote_t<typename detail::vector_argument<X>::scalar,
@@ -68,11 +68,11 @@ struct value_and_mixed_hessian {
   }
 };
 
-/// f(x, y) and the matrix ∂²f/∂xᵢ∂yⱼ, n × m, of two groups of up to 32 variables each: what only
-/// one group goes into is computed with the derivatives of that group alone.
+/// f(x, y) and the matrix ∂²f/∂xᵢ∂yⱼ, n × m, of two groups of up to 32 variables each: terms that
+/// depend on one group only are computed with the derivatives of that group alone.
 ///
 /// \param x, y  Eigen vectors or `std::array`s of sizes known at compile time; f(x, y), over
-///              different scalars for x and y, returns a scalar
+///   different scalars for x and y, returns a scalar
 /// \return `value_and_mixed_hessian`
 template <class Tag = void, detail::FunctionOfAny F, VectorLike X, VectorLike Y>
 [[nodiscard]] auto mixed_hessian(F&& f, const X& x, const Y& y) {

@@ -19,26 +19,28 @@
 #include <utility>
 
 /// \file
-/// How the components of arguments are made the variables of a differentiation.
+/// Seeding: makes the components of arguments the variables of a differentiation.
 
 namespace duet {
 namespace detail {
 
-/// Up to this many components are differentiated in one pass.
+/// Maximum number of components differentiated in a single pass.
 inline constexpr int single_pass_limit = 32;
-/// More of them in as few passes of at most this many as it takes. Measured: each pass computes all
-/// values anew, but longer rows cost more per partial, the sooner the shorter vectors are.
+/// Maximum number of components per pass if there are several passes, which are as few as possible.
+/// Measured: each pass computes all values again, but longer rows cost more per partial, the sooner
+/// the shorter vectors are.
 inline constexpr int pass_limit = DUET_BATCH_BYTES < 64 ? 50 : 64;
-/// A pass over a vector whose size is known at run time only: a short one pays for all of it.
+/// Components per pass over a vector whose size is known only at run time: a short one pays for
+/// all.
 inline constexpr int chunk = 16;
 
-/// Passes of equal size.
+/// Partials per pass, for passes of equal size.
 [[nodiscard]] constexpr int balanced_chunk(int size) {
   const int passes = std::max(1, (size + pass_limit - 1) / pass_limit);
   return std::max(1, (size + passes - 1) / passes);
 }
 
-/// Partials per pass over the components of an X; `Chosen` by the caller, or 0.
+/// Partials per pass over the components of an X; `Chosen` by the caller, or 0 for the default.
 template <class X, int Chosen = 0>
 inline constexpr int
     partials_per_pass = Chosen > 0 ? Chosen
@@ -69,7 +71,8 @@ template <class D, class X>
 }
 
 /// x + ε v over D.
-/// \throws invalid_input where the sizes differ; it names the driver and v
+///
+/// \throws invalid_input if the sizes differ; the message names the driver and v
 template <class D, class X, class V>
 [[nodiscard]] auto moving(const char* driver, const X& x, const char* name, const V& v) {
   using T = typename D::value_type;
@@ -91,7 +94,7 @@ template <class Tag, int Chosen, class X>
 }
 
 /// Calls visit(f(x seeded from `first`), first, count) for every pass over the components of x.
-/// From one pass to the next only the partials change that are not zero.
+/// Between passes only the nonzero partials change.
 template <class Tag, int Chosen = 0, class F, class X, class Visit>
 void for_each_pass(F&& f, const X& x, Visit&& visit) {
   using argument = vector_argument<X>;

@@ -22,14 +22,14 @@
 #include <vector>
 
 /// \file
-/// Jacobians and Hessians of known structure, where few entries of many are not zero.
+/// Jacobians and Hessians with a known sparsity pattern.
 
 namespace duet {
 namespace detail {
 
-/// The columns of a matrix of known structure in groups, no two of a group with entries in the same
-/// row, so that the sum of a group shows each entry by itself (Curtis, Powell, Reid 1974). One more
-/// sum, of all columns by weights, shows entries that the structure does not have.
+/// Column groups of a sparsity pattern, no two columns of a group with entries in the same row, so
+/// that the sum of a group gives each entry separately (Curtis, Powell, Reid 1974). One more sum,
+/// of all columns with weights, detects entries that the pattern lacks.
 template <class S>
 class column_groups {
 public:
@@ -55,7 +55,7 @@ public:
     sums_.setZero(entries_.rows(), Eigen::Index(met_by.size()) + 1);
   }
 
-  /// How many sums of columns are asked for.
+  /// Number of sums of columns, one per group and the weighted one.
   [[nodiscard]] int count() const { return int(sums_.cols()); }
   /// The weight of column j in the sum k.
   [[nodiscard]] double weight(Eigen::Index j, int k) const {
@@ -68,7 +68,8 @@ public:
   [[nodiscard]] S& sum(Eigen::Index row, int k) { return sums_(row, k); }
 
   /// The matrix with these sums.
-  /// \throws invalid_input where the last sum shows that it has other entries too
+  ///
+  /// \throws invalid_input if the last sum shows entries outside the pattern
   [[nodiscard]] Eigen::SparseMatrix<S> matrix(const char* caller) {
     const int last = count() - 1;
     Eigen::Matrix<S, Eigen::Dynamic, 1> rest = sums_.col(last);
@@ -82,7 +83,7 @@ public:
     }
     const double largest = rest.size() > 0 ? scale.maxCoeff() : 0;
     for (Eigen::Index i = 0; i < rest.size(); ++i) {
-      // Sums are not exact: a millionth of the row or what cancels out of the largest one.
+      // Sums are not exact: a millionth of the row, or the cancellation of the largest one.
       require(!(std::abs(double(innermost(rest[i]))) > 1e-6 * scale[i] + 1e-12 * largest),
               "duet: ", caller, ": row ", i, " has entries that the structure has not");
     }
@@ -94,7 +95,7 @@ private:
   using row_entry = typename Eigen::SparseMatrix<S, Eigen::RowMajor>::InnerIterator;
 
   Eigen::SparseMatrix<S> entries_;
-  std::vector<int> group_; ///< of each column
+  std::vector<int> group_; ///< group of each column
   Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> sums_;
 };
 
@@ -102,13 +103,14 @@ private:
 
 /// f(x) and the sparse Jacobian ∂f_i/∂x_j, m × n. Arguments as `jacobian`.
 ///
-/// \param structure  m × n: its entries, whatever their values, are all that need not be zero
-///
 /// Columns without a common row share a partial: with at most k entries in a row, k to a few more
-/// partials do in place of n, and f is evaluated once for every sixteen.
+/// partials suffice instead of n, and f is evaluated once for every sixteen.
+///
+/// \param structure  sparsity pattern, m × n: its entries, whatever their values, are all that may
+///   be nonzero
 /// \return `value_and_jacobian`
-/// \throws invalid_input where the structure is of another size, and where an entry that it does
-/// not have is more than a millionth of its row
+/// \throws invalid_input if the pattern has another size, and if an entry outside it exceeds a
+///   millionth of its row
 template <class Tag = void, detail::FunctionOfAny F, Variables X, class P>
 [[nodiscard]] auto sparse_jacobian(F&& f, const X& x, const Eigen::SparseMatrixBase<P>& structure) {
   using argument = detail::vector_argument<X>;
@@ -149,10 +151,10 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X, class P>
 
 /// f(x), ∇f and the sparse symmetric Hessian. Arguments as `gradient`.
 ///
-/// \param structure  n × n: its entries, whatever their values and in either triangle or both, are
-///                   all that need not be zero
+/// With k groups of columns, as for `sparse_jacobian`, f is evaluated ⌈n/8⌉ ⌈(k + 1)/4⌉ times.
 ///
-/// With k groups of columns, as of `sparse_jacobian`, f is evaluated ⌈n/8⌉ ⌈(k + 1)/4⌉ times.
+/// \param structure  sparsity pattern, n × n: its entries, whatever their values and in either
+///   triangle or both, are all that may be nonzero
 /// \return `value_gradient_and_hessian`
 /// \throws invalid_input as `sparse_jacobian`
 template <class Tag = void, detail::FunctionOfAny F, Variables X, class P>

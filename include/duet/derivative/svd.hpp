@@ -54,7 +54,8 @@ struct real_svd {
   real_svd(const char* function, const A& a) {
     require(a.size() > 0, "duet: ", function, ": A is empty");
     require_finite(function, a);
-    // Zeros that make it square are turned with nothing. Thin matrices cost compilers 7 s in Eigen.
+    // Zeros that make it square are rotated with nothing. Thin matrices cost compilers 7 s in
+    // Eigen.
     constexpr int size = rank == Eigen::Dynamic ? Eigen::Dynamic : std::max(Rows, Columns);
     using matrix = Eigen::Matrix<R, size, size>;
     const Eigen::Index m = a.rows(), n = a.cols(), k = std::min(m, n);
@@ -78,7 +79,7 @@ struct real_svd {
   Eigen::Matrix<R, rank, 1> values;
   vectors<Columns> v;
 
-  /// The distance between two singular values that is nothing but round-off.
+  /// Distance between two singular values that is only round-off.
   [[nodiscard]] R rounding() const {
     return R(4 * std::max(u.rows(), v.rows())) * std::numeric_limits<R>::epsilon() * values[0];
   }
@@ -102,7 +103,7 @@ struct real_svd {
     Eigen::Matrix<R, size, 1> y(m + n + 1);
     y.template head<Rows>(m) = u.lazyProduct(a);
     y.template segment<Columns>(m, n) = v.lazyProduct(b);
-    if (m > n) { // what is left lies in the complement of the columns of U, V
+    if (m > n) { // the rest lies in the complement of the columns of U, V
       y.template head<Rows>(m) += (r - u.lazyProduct(rho)) / values[j];
     } else if (n > m) {
       y.template segment<Columns>(m, n) += (s - v.lazyProduct(varsigma)) / values[j];
@@ -163,7 +164,7 @@ template <class Svd>
          !(j + 1 < s.size() && s[j] - s[j + 1] <= rounding);
 }
 
-/// `value` with the derivative NaN with respect to all that any entry of A depends on.
+/// `value` with NaN for its derivative with respect to all that any entry of A depends on.
 template <class S, class A>
 [[nodiscard]] S without_derivatives(const real_type_t<S>& value, const A& a) {
   using R = real_type_t<S>;

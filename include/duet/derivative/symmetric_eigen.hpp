@@ -21,7 +21,7 @@ namespace duet {
 
 /// A = V diag(λ) Vᵀ: the eigenvalues ascend, and column i of `vectors` belongs to the i-th.
 template <class Values, class Vectors>
-struct eigenvalues_and_vectors {
+struct symmetric_eigen_result {
   Values values = detail::zero_initialized<Values>();    ///< λ, ascending, a column
   Vectors vectors = detail::zero_initialized<Vectors>(); ///< V, unit eigenvectors as columns
 
@@ -32,11 +32,11 @@ struct eigenvalues_and_vectors {
   }
 };
 template <class Values, class Vectors>
-eigenvalues_and_vectors(Values, Vectors) -> eigenvalues_and_vectors<Values, Vectors>;
+symmetric_eigen_result(Values, Vectors) -> symmetric_eigen_result<Values, Vectors>;
 
 namespace detail {
 
-/// \throws invalid_input where A is no square matrix.
+/// \throws invalid_input if A is not a square matrix.
 template <class A>
 void require_symmetric(const A& a) {
   static_assert(can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
@@ -46,7 +46,7 @@ void require_symmetric(const A& a) {
   require(a.rows() > 0, "duet: symmetric_eigen: A is empty");
 }
 
-/// \throws invalid_input where two of the ascending eigenvalues are one but for rounding.
+/// \throws invalid_input if two of the ascending eigenvalues are equal to round-off.
 template <class Values>
 void require_distinct(const Values& values) {
   using std::abs;
@@ -62,7 +62,7 @@ void require_distinct(const Values& values) {
   }
 }
 
-/// The bordered equations of one eigenpair y = (v, λ): what is left of
+/// Residual of the bordered equations of one eigenpair y = (v, λ):
 ///
 ///   A v − λ v = 0,  (1 − vᵀv)/2 = 0.
 ///
@@ -84,8 +84,8 @@ template <class A, class Y>
   return r;
 }
 
-/// The correction of eigenpair j for a real residual: in the basis of the eigenvectors the bordered
-/// matrix has no entries but λ_i − λ_j on its diagonal and the border.
+/// Correction of eigenpair j for a real residual: in the basis of the eigenvectors the only entries
+/// of the bordered matrix are λ_i − λ_j on its diagonal and the border.
 template <class Solver, class Y>
 [[nodiscard]] Y eigen_step(const Solver& solver, Eigen::Index j, const Y& residual) {
   using R = typename Y::Scalar;
@@ -118,14 +118,14 @@ template <class Solver, class Y>
 /// with the bordered matrix of the values, makes one more order exact. Their relative error is
 /// about ε max|λ|/gap for vectors, and grows with every order by another such factor.
 ///
-/// A repeated eigenvalue has neither vectors of its own nor derivatives: where it splits, its
-/// vectors jump. Where a gap is at most 4nε max|λ|, and so nothing but rounding, A must be a
-/// constant: all its infinitesimal parts zero.
+/// A repeated eigenvalue has neither unique vectors nor derivatives: where it splits, its vectors
+/// jump. If a gap is at most 4nε max|λ|, and so only round-off, A must be a constant: all its
+/// infinitesimal parts zero.
 ///
-/// \return `eigenvalues_and_vectors`
-/// \throws invalid_input where A is not square or has entries that are not finite, and at a
-/// repeated eigenvalue of a matrix that is not constant.
-/// \throws no_convergence where Eigen's solver does not converge.
+/// \return `symmetric_eigen_result`
+/// \throws invalid_input if A is not square or has entries that are not finite, and at a repeated
+///   eigenvalue of a matrix that is not constant.
+/// \throws no_convergence if Eigen's solver does not converge.
 template <class A>
 [[nodiscard]] auto symmetric_eigen(const Eigen::MatrixBase<A>& a) {
   using S = detail::common_scalar_t<A, A>;
@@ -139,8 +139,8 @@ template <class A>
   if (solver.info() != Eigen::Success) {
     detail::raise(no_convergence("duet: symmetric_eigen: Eigen's solver did not converge"));
   }
-  eigenvalues_and_vectors result{detail::converted<S>(solver.eigenvalues()),
-                                 detail::converted<S>(solver.eigenvectors())};
+  symmetric_eigen_result result{detail::converted<S>(solver.eigenvalues()),
+                                detail::converted<S>(solver.eigenvectors())};
   if constexpr (scalar_traits<S>::order > 0) {
     if (detail::is_constant(a.template triangularView<Eigen::Lower>().toDenseMatrix())) {
       return result;

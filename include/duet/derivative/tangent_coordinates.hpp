@@ -21,13 +21,13 @@
 #include <utility>
 
 /// \file
-/// Jacobians, gradients and Hessians of functions of and into rotations and poses, in tangent
+/// Jacobians, gradients and Hessians of functions of and into rotations and poses, in tangent-space
 /// coordinates.
 
 namespace duet {
 
-/// What the drivers with a frame differentiate by: scalars, vectors, arrays, rotations, poses, and
-/// tuples of them, in which vectors have a fixed size.
+/// Variables of the drivers with a frame: scalars, vectors, arrays, rotations, poses, and tuples of
+/// them, in which vectors have a fixed size.
 template <class X>
 concept ManifoldPoint = requires {
   manifold<X>::dimension;
@@ -50,11 +50,11 @@ tangent_seeds(int first) {
 template <class X>
 inline constexpr int tangents_per_pass = std::min(manifold<X>::dimension, single_pass_limit);
 
-/// A single vector whose number of coordinates is known at run time only.
+/// A single vector whose number of coordinates is known only at run time.
 template <class X>
 concept RunTimeVector = VectorLike<X> && vector_argument<X>::size_at_compile_time == Eigen::Dynamic;
 
-/// Whose number of coordinates is known where the passes need it.
+/// Argument whose number of coordinates is known where the passes need it.
 template <class X>
 concept OfKnownDimension = ManifoldPoint<X> &&
     (manifold<X>::dimension != Eigen::Dynamic || RunTimeVector<X>);
@@ -74,10 +74,10 @@ void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
 template <class Tag, class F, RunTimeVector X, class Frame, class Visit>
 void for_each_tangent_pass(F&& f, const X& x, Frame, Visit&& visit) {
   require(vector_argument<X>::size(x) > 0, "duet: jacobian of a function of no variables");
-  for_each_pass<Tag>(f, x, visit); // vectors do not care for the frame
+  for_each_pass<Tag>(f, x, visit); // vectors ignore the frame
 }
 
-/// Any of what the passes call f with: only its type is asked for.
+/// Argument of f in any of the passes: only its type is used.
 template <class Tag, class X, class Frame>
 [[nodiscard]] auto moved_in_pass(const X& x, Frame frame) {
   if constexpr (RunTimeVector<X>) {
@@ -95,18 +95,18 @@ concept NeedsFrame =
 
 } // namespace detail
 
-/// f(x) and the Jacobian ∂y/∂x in tangent coordinates: column j is the velocity of y = f(x) while x
-/// moves along its j-th tangent coordinate.
+/// f(x) and the Jacobian ∂y/∂x in tangent-space coordinates: column j is the velocity of y = f(x)
+/// while x moves along its j-th tangent coordinate.
+///
+/// f may return any of the types of x too. A vector alone, as x or as result, may have a size known
+/// at run time, such as the configuration of a chain read from a file. Vectors ignore the frame.
 ///
 /// \param x      a scalar, fixed-size vector, rotation (three coordinates), pose (six), array or
-///               `std::tuple` of them, which f takes as one argument or as several
+///   `std::tuple` of them, which f takes as one argument or as several
 /// \param frame  axes of the tangent coordinates of rotations and poses, on both sides:
-///               `frame::spatial`, where x moves as exp(δ/2) x, `frame::body`, where it moves as
-///               x exp(δ/2), or `frame::hybrid`, fixed axes too, but δ = [v; ω] moves a pose's
-///               origin by v and turns it by ω, neither by the other's
-///
-/// f may return any of these too. A vector alone, of x and of what f returns, may have a size known
-/// at run time, as the joints of a chain that was read. Vectors do not care for the frame.
+///   `frame::spatial`, left perturbations exp(δ/2) x, `frame::body`, right perturbations x
+///   exp(δ/2), or `frame::hybrid`, fixed axes too, but δ = [v; ω] translates a pose's origin by v
+///   and rotates it by ω, independently
 /// \return `value_and_jacobian`
 ///
 /// Example: `jacobian([](const auto& q) { return conj(q); }, q, frame::body)` is −R(q).
@@ -135,7 +135,8 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
           result.value = detail::parts<tag>(y, 0);
         }
         if constexpr (requires { target::takes_rates_of_any_scalar; }) {
-          // Velocities are linear in the rates: those of all columns at once, packed as they are.
+          // Velocities are linear in the rates: computes those of all columns at once, in packed
+          // form.
           const auto columns = target::velocity(result.value, y, frame);
           if (first == 0) {
             result.jacobian.resize(target::dimension, dimension);
@@ -159,8 +160,10 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
   return result;
 }
 
-/// f(x) and the gradient in the tangent coordinates of x: gᵀδ is the change of f while x moves by
-/// δ. Arguments as `jacobian`; f returns a scalar. \return `value_and_gradient`
+/// f(x) and the gradient in the tangent-space coordinates of x: gᵀδ is the change of f while x
+/// moves by δ. Arguments as `jacobian`; f returns a scalar.
+///
+/// \return `value_and_gradient`
 template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
           FrameConstant Frame>
 [[nodiscard]] auto gradient(F&& f, const X& x, Frame frame) {
@@ -171,13 +174,15 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
       value, row.transpose()};
 }
 
-/// f(x), the gradient and the symmetric Hessian in the tangent coordinates of x. f(x moved by δ) =
-/// f + gᵀδ + ½ δᵀHδ + O(δ³), where a rotation moves by exp(δ/2), along geodesics.
+/// f(x), the gradient and the symmetric Hessian in the tangent-space coordinates of x:
+/// f(x moved by δ) = f + gᵀδ + ½ δᵀHδ + O(δ³), where a rotation moves by exp(δ/2), along geodesics.
 ///
-/// Where f is not stationary, H depends on how rotations move. In both frames it is the same form
-/// in other axes: H of `frame::body` is Rᵀ H R of `frame::spatial`, of poses Adᵀ H Ad. Of poses
-/// that of `frame::hybrid` is another, as their origins move along straight lines, not along
-/// screws. \return `value_gradient_and_hessian`
+/// If f is not stationary, H depends on the perturbation. In `frame::spatial` and `frame::body` it
+/// is the same form in other axes: H of `frame::body` is Rᵀ H R of `frame::spatial`, for poses
+/// Adᵀ H Ad. For poses that of `frame::hybrid` differs, as their origins move along straight lines,
+/// not along screws.
+///
+/// \return `value_gradient_and_hessian`
 template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
           FrameConstant Frame>
 [[nodiscard]] auto hessian(F&& f, const X& x, Frame frame) {
@@ -185,7 +190,7 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
     return hessian<Tag>(std::forward<F>(f), x);
   } else {
     constexpr int n = manifold<X>::dimension;
-    // The tangent vector is a vector like any other, at which f is a function of it.
+    // The tangent vector is an ordinary vector, of which f is a function.
     const auto moved = [&](const auto& delta) {
       return detail::call(f, manifold<X>::plus(x, delta, frame));
     };
@@ -201,7 +206,7 @@ DUET_REFUSED("no tangent coordinates are known of this type; those of rotations 
              "<duet/quaternion/exponential.hpp>, of poses in <duet/dual_quaternion/twist.hpp>")
 value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd> jacobian(F&&, const X&, Frame);
 
-/// To be said where vectors of run-time size are not the only argument.
+/// Message for vectors of run-time size that are not the only argument.
 #define DUET_REFUSES_RUN_TIME_SIZE(driver, ...)                                                    \
   template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>                       \
     requires(!HasOwnJacobian<F> && !detail::OfKnownDimension<X>)                                   \
@@ -215,7 +220,7 @@ DUET_REFUSES_RUN_TIME_SIZE(gradient, value_and_gradient<double, Eigen::VectorXd>
 DUET_REFUSES_RUN_TIME_SIZE(hessian,
                            value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd>)
 
-/// To be said where a rotation, pose or tuple is given without a frame.
+/// Message for a rotation, pose or tuple without a frame.
 #define DUET_ASKS_FOR_FRAME(driver, ...)                                                           \
   template <class Tag = void, class F, detail::NeedsFrame X>                                       \
   DUET_REFUSED("to differentiate by rotations, poses or tuples say the frame: " #driver            \

@@ -10,14 +10,14 @@
 #include <type_traits>
 
 /// \file
-/// The operators of infinitesimal numbers, written once for `dual` and `taylor`.
+/// Operators of infinitesimal numbers, written once for `dual` and `taylor`.
 
 namespace duet::detail {
 
-/// What the kernels take a constant of type U as: a T. Arithmetic constants stay plain however deep
-/// T is nested, or its zero partials would meet infinite values; and where T is over another field
-/// than the reals, so that x · 2 is what that field makes of it: a complex 2 would cost digits and
-/// signs of zeros.
+/// Type of a constant operand of type U in the kernels, usually T. Arithmetic constants stay plain
+/// at any nesting depth of T, or their zero partials would meet infinite values; also if T is over
+/// another field than the reals, so that x · 2 is the product of that field: a complex 2 would cost
+/// digits and signs of zeros.
 template <class T, class U>
 using operand_t = std::conditional_t<Arithmetic<U>, constant_t<T>, T>;
 
@@ -49,7 +49,7 @@ struct infinitesimal_operators {
     return D::quotient(a, b);
   }
 
-  // A constant meets a number without being widened to one, which would multiply by zeros.
+  // A constant operand is not widened to a number, which would multiply by zeros.
   template <ConstantOf<D> U>
   [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a, const U& b) {
     return a.plus(static_cast<operand_t<T, U>>(b));
@@ -131,20 +131,20 @@ DUET_REFUSES_ASSIGNMENT(*=)
 DUET_REFUSES_ASSIGNMENT(/=)
 #undef DUET_REFUSES_ASSIGNMENT
 
-// Concepts of two types are those of the second beside the first, for `template <class A, …<A> B>`.
+// Concepts of two types list the second type first, for `template <class A, …<A> B>`.
 
 /// At least one of the two is infinitesimal, and they can meet.
 template <class B, class A>
 concept MixedScalars = (Infinitesimal<A> || Infinitesimal<B>)&&(Scalar<A> || Arithmetic<A>)&&(
     Scalar<B> || Arithmetic<B>)&&Promotable<B, A>;
 
-/// They meet in numbers that have an order, which complex numbers do not.
+/// Their common numbers are ordered, which complex numbers are not.
 template <class B, class A>
 concept OrderedScalars = MixedScalars<B, A> && requires(const real_type_t<promote_t<A, B>>& x) {
   x < x;
 };
 
-/// Functions of such a number follow from those of what it is made of: of the numbers below an
+/// Numbers whose functions follow from those of their components: of the numbers below an
 /// infinitesimal one, of the lanes of a batch.
 template <class T>
 concept Lifted = Infinitesimal<T> || lane_traits<T>::is_batch;
@@ -153,8 +153,8 @@ concept Lifted = Infinitesimal<T> || lane_traits<T>::is_batch;
 template <class T>
 concept LiftedReal = Lifted<T> && Real<real_type_t<T>>;
 
-/// Over the reals, or over complex numbers of built-in precision: of others `<complex>` knows no
-/// more than what is made of exponentials, logarithms and roots.
+/// Over the reals, or over complex numbers of built-in precision: for others `<complex>` provides
+/// only exponentials, logarithms, roots and functions made of these.
 template <class T>
 concept LiftedAnalytic = LiftedReal<T> ||(Lifted<T>&& std::floating_point<constant_t<T>>);
 
@@ -168,12 +168,12 @@ concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& 
                             !std::is_same_v<A, B> && Promotable<B, A> && !ConstantOf<A, B> &&
                             !ConstantOf<B, A>;
 
-/// Of one differentiation, but of different numbers of partials or different orders.
+/// Numbers of one differentiation, but with different numbers of partials or different orders.
 template <class B, class A>
 concept DifferentSizes = Infinitesimal<A> && Infinitesimal<B> && !Promotable<B, A> &&
                          Promotable<real_type_t<A>, real_type_t<B>>;
 
-/// Stands in the declaration of deleted operators, for compilers to quote.
+/// Appears in the declaration of deleted operators, for compilers to quote.
 struct different_numbers_of_partials_or_orders {};
 
 /// The value of x for a comparison of A and B. Fields other than the reals need not compare with
@@ -194,7 +194,7 @@ template <class A, class B, class X>
 } // namespace duet::detail
 
 namespace duet {
-// Comparisons look at values only, as an `if` in the differentiated function should.
+// Comparisons use values only, as an `if` in the differentiated function should.
 template <class A, detail::MixedScalars<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator==(const A& a, const B& b) {
   return detail::comparable<A, B>(a) == detail::comparable<A, B>(b);

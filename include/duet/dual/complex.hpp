@@ -23,8 +23,7 @@
 /// A dual or Taylor number over the complex numbers, `dual<std::complex<double>>`, carries f′(z) of
 /// an analytic function: algebra, ==, pow, streams and `exp`, `log`, `log10`, `sqrt`, `sin`, `cos`,
 /// `tan`, `asin`, `acos`, `atan` and the hyperbolic ones, on the branches of `<complex>`. There is
-/// no order, and there are no `abs`, `arg`, `conj`, `real`, `imag`, which have no complex
-/// derivative.
+/// no order, and no `abs`, `arg`, `conj`, `real`, `imag`, which have no complex derivative.
 ///
 /// The other nesting, `std::complex<dual<double>>`, is a complex number whose parts have
 /// derivatives. Analytic functions of it are those of the first nesting, a + εb of complex a and b:
@@ -36,8 +35,8 @@
 
 namespace duet::detail {
 
-/// The power of D over complex or real numbers, or of constants. An operand whose infinitesimal
-/// parts are all zero is one.
+/// Power of D over complex or real numbers, or of constants. An operand whose infinitesimal parts
+/// are all zero counts as a constant.
 template <class X, class P>
 [[nodiscard]] auto power_of_levels(const X& x, const P& p) {
   using std::pow;
@@ -53,7 +52,7 @@ template <class X, class P>
   return pow(x, p);
 }
 
-/// x as what a level over complex numbers meets.
+/// x as an operand of a level over complex numbers.
 template <class X>
 [[nodiscard]] auto operand_of_level(const X& x) {
   if constexpr (requires { x.real(); }) {
@@ -75,10 +74,10 @@ template <class X, class P>
 
 } // namespace duet::detail
 
-// The functions of <complex>. The standard keeps its namespace to itself, but std::sqrt(z) finds
-// nothing elsewhere. Each is declared as one of the standard library's is, and preferred to it as
-// the more constrained. (`norm`, `conj`, `real`, `imag` and `polar` of one type are right as the
-// standard library has them.)
+// The functions of <complex>. The standard reserves its namespace, but std::sqrt(z) finds nothing
+// elsewhere. Each is declared as one of the standard library's is, and preferred to it as the more
+// constrained. (`norm`, `conj`, `real`, `imag` and `polar` of one type are right as the standard
+// library has them.)
 
 #define DUET_ANALYTIC(function)                                                                    \
   template <duet::Infinitesimal D>                                                                 \
@@ -154,13 +153,13 @@ template <duet::Infinitesimal D>
   return hypot(z.real(), z.imag());
 }
 
-/// The angle of z, in (−π, π].
+/// Argument (angle) of z, in (−π, π] radians.
 template <duet::Infinitesimal D>
 [[nodiscard]] D arg(const complex<D>& z) {
   return atan2(z.imag(), z.real());
 }
 
-/// z, and +∞ for all that is infinite, with the sign of the imaginary part.
+/// z, or +∞ for every infinite z, with the sign of the imaginary part.
 template <duet::Infinitesimal D>
 [[nodiscard]] complex<D> proj(const complex<D>& z) {
   return duet::detail::by_lane(
@@ -174,7 +173,7 @@ template <duet::Infinitesimal D>
       z);
 }
 
-/// r e^{iφ}, of two types.
+/// r e^{iφ} for r and φ of two types.
 template <class A, duet::detail::OtherReal<A> B>
 [[nodiscard]] auto polar(const A& r, const B& angle) {
   using common = duet::promote_t<A, B>;

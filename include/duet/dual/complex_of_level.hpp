@@ -18,7 +18,7 @@
 
 namespace duet {
 
-/// Complex numbers of built-in precision, and those that `std::complex` makes of other reals.
+/// Complex numbers of built-in precision, and `std::complex` over other reals.
 template <Real T>
   requires(!lane_traits<T>::is_batch)
 struct field_traits<std::complex<T>> {
@@ -42,7 +42,7 @@ template <class T>
   return level_of_complex(z.real(), z.imag());
 }
 
-/// The real part of every part of x, or with 1 the imaginary one.
+/// The real part of every part of x, or the imaginary part if `Part` is 1.
 template <int Part, class X>
 [[nodiscard]] auto part_of_complex(const X& x) {
   if constexpr (Infinitesimal<X>) {
@@ -66,7 +66,7 @@ template <class F, class... D>
                  z...);
 }
 
-/// U is a real number that meets D, but is no D; or at least one of two is over numbers with
+/// U is a real number that meets D, but is not a D; or at least one of the two is over numbers with
 /// derivatives.
 template <class U, class D>
 concept OtherReal = !std::same_as<U, D> && MixedReals<U, D>;
@@ -86,7 +86,7 @@ public:
 
   constexpr complex(const D& real = D(), const D& imaginary = D())
       : real_(real), imaginary_(imaginary) {}
-  /// Conversion from other parts; implicit where no precision or level is lost.
+  /// Conversion from other parts; implicit if no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, D> && std::constructible_from<D, U>)
   constexpr explicit(!std::convertible_to<U, D>) complex(const complex<U>& other)
@@ -206,7 +206,7 @@ template <Infinitesimal D, detail::OtherReal<D> U>
   return !(z == x);
 }
 
-// Of two types, one of them perhaps without derivatives.
+// Operands of two types, one of them perhaps without derivatives.
 
 template <class A, detail::OtherReal<A> B>
 [[nodiscard]] auto operator+(const std::complex<A>& z, const std::complex<B>& w) {

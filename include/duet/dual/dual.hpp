@@ -21,13 +21,13 @@ DUET_ABI_BEGIN
 
 /// A number with N first-order infinitesimal parts.
 ///
+/// A plain value type: nothing is lazy, so `auto`, `?:` and lambdas behave as with double. The
+/// value part of every operation is the result of T alone. Arithmetic types and scalars below
+/// convert implicitly; so do duals that one nesting of levels can hold.
+///
 /// \tparam T    the scalar below: a number, or another dual or taylor number
 /// \tparam N    number of partial derivatives (negative: the capacity of a `dynamic_dual`)
-/// \tparam Tag  what the ε means: `derivative_tag<F>`, or `screw_tag` for rigid motion
-///
-/// A plain value type: nothing is lazy, so `auto`, `?:` and lambdas behave as with double. The
-/// value part of every operation is what T alone would give. Arithmetic types and scalars below
-/// convert implicitly; so do duals that one nesting of levels can hold.
+/// \tparam Tag  meaning of the ε: `derivative_tag<F>`, or `screw_tag` for rigid motion
 ///
 /// Example: `auto x = dual<double>::variable(3); (x * x).epsilon() == 6`.
 template <class T, int N = 1, class Tag = derivative_tag<>>
@@ -58,7 +58,7 @@ public:
   }
   DUET_ALWAYS_INLINE constexpr dual(const T& value, const partials_type& partials)
       : value_(value), partials_(partials) {}
-  /// This number with another scalar inside; implicit where no precision or level is lost.
+  /// Conversion from a dual over another scalar; implicit if no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
@@ -77,8 +77,9 @@ public:
     }
   }
 
-  /// The i-th variable of a function of n, where N is a capacity.
-  /// \throws invalid_input for n beyond it
+  /// The i-th variable of a function of n, if N is a capacity.
+  ///
+  /// \throws invalid_input if n exceeds the capacity
   [[nodiscard]] static dual variable(const T& value, int i, int n) requires(N < 0) {
     return dual(value, partials_type::unit(i, n));
   }
@@ -93,23 +94,23 @@ public:
   }
   /// The part without ε.
   [[nodiscard]] constexpr const T& value() const { return value_; }
-  /// What stands at εᵢ, i from 0: the i-th partial derivative.
+  /// Coefficient of εᵢ, i from 0: the i-th partial derivative.
   [[nodiscard]] constexpr T partial(int i) const { return partials_.get(i); }
-  /// What stands at the only ε: the derivative.
+  /// Coefficient of the only ε: the derivative.
   [[nodiscard]] constexpr T epsilon() const requires(N == 1) { return partials_.get(0); }
-  /// Sets what stands at εᵢ.
+  /// Sets the coefficient of εᵢ.
   constexpr void set_partial(int i, const T& x) { partials_.set(i, x); }
 
-  // For those who extend duet: what a `Level` says of itself.
+  // For those who extend duet: the members that `Level` requires.
 
   [[nodiscard]] constexpr const partials_type& partials() const { return partials_; }
 
   static constexpr int part_count = N > 0 ? N + 1 : N - 1;
   /// The value, then the partials.
   [[nodiscard]] constexpr T part(int k) const { return k == 0 ? value_ : partials_.get(k - 1); }
-  /// Another value with these partials.
+  /// Number with another value and the same partials.
   [[nodiscard]] constexpr dual with_value(const T& value) const { return {value, partials_}; }
-  /// f of the values, then of every partial: the same level over what f returns.
+  /// f of the values, then of every partial: the same level over the result type of f.
   template <class F, class... Duals>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto zip(F&& f, const Duals&... other) const {
     using U = std::remove_cvref_t<decltype(f(value_, other.value()...))>;
@@ -120,7 +121,7 @@ public:
     }
     return result;
   }
-  /// slope · x, where parts that are zero stay so beside slopes that are not finite.
+  /// slope · x, where zero parts stay zero even if slopes are not finite.
   [[nodiscard]] static constexpr dual surviving_product(const dual& slope, const dual& x) {
     return {detail::guarded_product(slope.value_, x.value_),
             partials_type::map_elements(
@@ -151,13 +152,13 @@ public:
     return {value, result};
   }
   /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1): each is
-  /// the slope of the other, but for the sign.
+  /// the slope of the other, up to the sign.
   template <int Sign>
   [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<dual>
   lift_pair(const detail::sine_cosine<T>& y, const dual& x) {
     const T minus = Sign < 0 ? T(-y.sine) : y.sine;
     if constexpr (std::floating_point<T>) {
-      // Both are finite or neither. Asked of their sum, clang computes them at once.
+      // Both are finite or neither; testing their sum lets clang compute both at once.
       const bool is_finite = detail::is_all_finite(T(y.sine + y.cosine));
       return {{y.sine, combined(detail::chain_of_one<T>{y.cosine}, is_finite, x.partials_)},
               {y.cosine, combined(detail::chain_of_one<T>{minus}, is_finite, x.partials_)}};
@@ -165,7 +166,7 @@ public:
       return {x.composed(y.sine, y.cosine), x.composed(y.cosine, minus)};
     }
   }
-  /// A function of this number, of value y and with that slope there. (Further derivatives are for
+  /// A function of this number, given its value y and its slope. (Further derivatives are for
   /// levels of higher order.)
   template <class... Further>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr dual composed(const T& y, const T& slope,
@@ -181,7 +182,7 @@ public:
     }
     out << "]";
   }
-  /// Does the predicate hold for the value and for every partial?
+  /// True if the predicate holds for the value and for every partial.
   template <class Predicate>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto all_of(Predicate&& predicate) const {
     auto result = predicate(value_);
@@ -191,8 +192,8 @@ public:
     return result;
   }
 
-  /// The ε of a rigid motion is not the ε of a derivative, whichever way: put one inside the other,
-  /// or take the part you mean.
+  /// Rejects mixing the ε of a rigid motion with the ε of a derivative, in either direction: nest
+  /// one in the other, or take the part you need.
   template <detail::OtherKindOfEpsilon<dual> U>
   dual(const U&, detail::epsilon_of_a_rigid_motion_is_not_that_of_a_derivative = {}) = delete;
 
@@ -254,7 +255,7 @@ public:
       DUET_CONTRACTED
       return T(a.value_ * b.value_);
     }();
-    // One expression, which is fused in any case: said as two, clang leaves loops rolled.
+    // One expression, which is fused in any case: split in two, clang leaves loops rolled.
     return {value,
             partials_type::map([&](const auto& p, const auto& q)
                                    DUET_INLINE_LAMBDA { return p * b.value_ + q * a.value_; },
@@ -262,7 +263,7 @@ public:
   }
   /// N11: (a₁ + εb₁)/(a₂ + εb₂) = a₁/a₂ + ε(b₁ − (a₁/a₂)b₂)/a₂
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual quotient(const dual& a, const dual& b) {
-    // The derivative goes through the inverse, so that it need not wait for the exact quotient.
+    // The derivative uses the inverse, so that it need not wait for the exact quotient.
     const T inverse = T(1) / b.value_;
     if constexpr (Infinitesimal<T>) { // zero partials of T survive in quotients only
       const T value = a.value_ / b.value_;

@@ -14,13 +14,13 @@
 #include <type_traits>
 
 /// \file
-/// Dual numbers whose number of partials is known at run time, without the heap.
+/// Dual numbers whose number of partials is known at run time, without heap allocation.
 
 namespace duet {
 namespace detail {
 
-/// At most `Capacity` partials in place. A constant has none at all, and rows of none and of n
-/// partials meet as if the first were n zeros; so do rows of any two sizes.
+/// At most `Capacity` partials, stored in the object. A constant has no partials, and rows of zero
+/// and of n partials combine as if the first were n zeros; so do rows of any two sizes.
 template <class T, int Capacity>
 class dynamic_partials {
   using row = packing<T, Capacity>;
@@ -38,7 +38,8 @@ public:
 
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] T get(int i) const { return i < size_ ? T(row::get(packets_, i)) : T(0); }
-  /// Makes the row longer where need be.
+  /// Sets the i-th partial, extending the row if necessary.
+  ///
   /// \throws invalid_input beyond the capacity
   void set(int i, const T& x) {
     grow(i + 1);
@@ -46,6 +47,7 @@ public:
   }
 
   /// Partials of the i-th of n variables.
+  ///
   /// \throws invalid_input beyond the capacity
   [[nodiscard]] static dynamic_partials unit(int i, int n) {
     dynamic_partials result;
@@ -69,8 +71,8 @@ public:
     return result;
   }
 
-  /// f of the rows for any f, one element at a time. (Inlined, g++ would warn of what no row
-  /// holds.)
+  /// f of the rows for any f, one element at a time. (Inlined, g++ would warn of elements that no
+  /// row holds.)
   template <class F, class... Rows>
   [[nodiscard]] DUET_OUT_OF_LINE DUET_COLD static dynamic_partials
   map_elements(F&& f, const Rows&... rows) {
@@ -90,7 +92,7 @@ private:
     return size_ > 0 ? packets_[p] : packet{};
   }
 
-  /// New partials are zero, and so is what pads the last packet.
+  /// New partials are zero, and so is the padding of the last packet.
   void grow(int size) {
     if (size > Capacity) {
       raise(invalid_input("duet: dynamic_dual: " + std::to_string(size) +
@@ -123,12 +125,12 @@ struct partials_of<T, N> {
 
 } // namespace detail
 
-/// A dual number with as many partials as turn out to be needed, at most `Capacity`, stored in
-/// place: for sparse or adaptive sets of variables, where N is not known at compile time.
+/// A dual number with as many partials as turn out to be needed, at most `Capacity`, stored in the
+/// object: for sparse or adaptive sets of variables, if N is not known at compile time.
 ///
 /// Everything that works with `dual<T, N>` works with it: it is the same class over another row of
-/// partials. Numbers with different counts meet as if the missing partials were zero, and a
-/// constant has none. `variable(value, i, n)` is the i-th of n variables; `size()` counts the
+/// partials. Numbers with different counts combine as if the missing partials were zero; a constant
+/// has no partials. `variable(value, i, n)` is the i-th of n variables; `size()` counts the
 /// partials.
 template <class T, int Capacity, class Tag = derivative_tag<>>
 using dynamic_dual = dual<T, -Capacity, Tag>;

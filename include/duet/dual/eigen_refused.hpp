@@ -8,7 +8,8 @@
 
 /// \file
 /// Functions of Eigen that lose derivatives over dual and Taylor numbers, because they branch on
-/// values or stop when values have converged. They do not compile; each says what to call instead.
+/// values or stop when values have converged. They are rejected at compile time with the function
+/// to call instead.
 ///
 /// Member functions of Eigen's quaternions and matrices cannot be replaced from outside: the page
 /// "With Eigen" lists those.
@@ -107,8 +108,8 @@ DUET_REFUSED("Eigen's umeyama loses derivatives over dual numbers: register_poin
 Matrix<typename internal::traits<P>::Scalar, Dynamic, Dynamic>
 umeyama(const MatrixBase<P>&, const MatrixBase<Q>&, bool = true);
 
-/// As Eigen's own, but the axis and angle of a quaternion or matrix, which have no derivatives at
-/// the identity and jump at a half turn, are refused.
+/// As Eigen's own, except that conversion from a quaternion or matrix is rejected: its axis and
+/// angle have no derivatives at the identity and jump at a half turn.
 template <class D>
   requires duet::Infinitesimal<D>
 class AngleAxis<D> : public RotationBase<AngleAxis<D>, 3> {

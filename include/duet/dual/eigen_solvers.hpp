@@ -11,25 +11,25 @@
 #include <cmath>
 
 /// \file
-/// Eigen's solvers over dual and Taylor numbers, where an entry is zero but its derivative is not.
+/// Eigen's solvers over dual and Taylor numbers with entries that are zero but have derivatives.
 ///
 /// Eigen skips work for entries that compare equal to zero, and duals compare by value, so the
-/// derivatives of such entries would be lost. Two places matter, and both are replaced here:
+/// derivatives of such entries would be lost. Two functions matter, and both are replaced here:
 /// - substitution in triangular systems skips a zero entry of the right-hand side;
-/// - a Householder reflector is left out where what it has to remove is zero already.
+/// - a Householder reflector is omitted if the entries to be removed are zero already.
 ///
-/// So LLT, LDLT, LU and every QR give the derivatives of what they solve, wherever the matrix is
+/// So LLT, LDLT, LU and every QR give the derivatives of their solutions, wherever the matrix is
 /// regular, with Eigen 3.4 as with later ones. Householder reflectors differ from those over
-/// `double` in one way: where a column is zero below the diagonal but its derivatives are not,
+/// `double` in one respect: if a column is zero below the diagonal but its derivatives are not,
 /// there is one, which flips the sign of that row of R and column of Q. At a column that vanishes
-/// altogether Q has no derivative, and what Eigen does is kept: no reflector.
+/// altogether Q has no derivative, and Eigen's choice is kept: no reflector.
 ///
-/// Not covered: reflectors of a vector that is no block of another, `v.makeHouseholder(…)`.
+/// Not covered: reflectors of a vector that is not a block of another, `v.makeHouseholder(…)`.
 /// Decompositions by Jacobi and Givens rotations are in dual/eigen_refused.hpp.
 ///
-/// Eigen documents no way to replace the two. What is specialised here, `BlockImpl` and
-/// `triangular_solve_vector`, is the same in 3.4, 5.0 and its main branch of August 2026; tests
-/// with DUET_TEST_EIGEN (CONTRIBUTING.md) tell of others.
+/// Eigen documents no means to replace the two. The specialised classes, `BlockImpl` and
+/// `triangular_solve_vector`, are the same in 3.4, 5.0 and its main branch of August 2026; tests
+/// with DUET_TEST_EIGEN (CONTRIBUTING.md) check others.
 
 namespace duet::detail {
 
@@ -67,12 +67,13 @@ template <class Expression>
 concept InfinitesimalExpression =
     Infinitesimal<typename Eigen::internal::traits<Expression>::Scalar>;
 
-/// H = 1 − τ v vᵀ with H x = (β, 0 … 0)ᵀ and v = (1, essential)ᵀ, as `makeHouseholder` of Eigen:
+/// Householder reflector H = 1 − τ v vᵀ with H x = (β, 0 … 0)ᵀ and v = (1, essential)ᵀ, as
+/// `makeHouseholder` of Eigen:
 ///
 ///   β = −sign(x₀) ‖x‖,  essential = tail / (x₀ − β),  τ = (β − x₀) / β
 ///
-/// H = 1 only where the tail of x is zero with all its derivatives, or where x vanishes. The
-/// essential part may be the tail of x itself.
+/// H = 1 only if the tail of x is zero with all its derivatives, or if x vanishes. The essential
+/// part may be the tail of x itself.
 template <class Vector, class Essential, class Scalar>
 void make_reflector(const Vector& x, Essential& essential, Scalar& tau, Scalar& beta) {
   using std::abs;
@@ -90,7 +91,7 @@ void make_reflector(const Vector& x, Essential& essential, Scalar& tau, Scalar& 
     essential.setZero();
     return;
   }
-  Scalar square(0); // of x / largest, which stays in the range
+  Scalar square(0); // of x / largest, which stays in range
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const Scalar part = x.coeff(i) / largest;
     square += part * part;
@@ -123,7 +124,7 @@ struct triangular_solve_vector<Lhs, Rhs, Index, OnTheLeft, Mode, Conjugate, RowM
 
 namespace Eigen {
 
-/// Blocks of vectors of dual numbers, of which Eigen's decompositions make their reflectors: as
+/// Blocks of vectors of dual numbers, from which Eigen's decompositions make their reflectors: as
 /// Eigen's own, but with reflectors that keep derivatives.
 template <class Expression, int Rows, int Columns, bool InnerPanel>
   requires duet::detail::InfinitesimalExpression<Expression>

@@ -21,7 +21,7 @@ struct NumTraits<duet::batch<T, W>> : NumTraits<T> {
   using NonInteger = number;
   using Nested = number;
   using Literal = T;
-  // Copied as what it is: g++ warns of Eigen's memcpy, as a batch assigns itself.
+  // Copied by type: g++ warns of Eigen's memcpy, as a batch assigns itself.
   static constexpr int RequireInitialization = 1;
 };
 
@@ -42,7 +42,7 @@ namespace detail {
 template <class Derived>
 void take_matrix(const Eigen::MatrixBase<Derived>&);
 
-/// A matrix or vector of Eigen, or an expression of them: parts of vectors among these, which are
+/// A matrix or vector of Eigen, or an expression of them, including blocks of vectors, which are
 /// not derived from the `MatrixBase` of their own type.
 template <class M>
 concept EigenMatrix = requires(const M& m) {
@@ -57,7 +57,7 @@ using matrix_over =
 
 } // namespace detail
 
-/// Column by column.
+/// Visits the scalars of a matrix column by column.
 template <class M>
   requires detail::EigenMatrix<M>
 struct structure<M> {

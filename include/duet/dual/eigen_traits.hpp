@@ -23,15 +23,15 @@ namespace duet::detail {
 template <class Lhs, class Rhs>
 concept MixedFactors = (Infinitesimal<Lhs> || Infinitesimal<Rhs>)&&!std::same_as<Lhs, Rhs>;
 
-/// An architecture no processor has, to reach Eigen's generic kernel from its specialisation.
+/// An architecture that no processor has, to reach Eigen's generic kernel from its specialisation.
 inline constexpr int no_architecture = -1;
 
 } // namespace duet::detail
 
 namespace Eigen::internal {
 
-/// Eigen's kernel puts each product a·b into a variable of b's type before it is added, which does
-/// not compile where b is the narrower of the two.
+/// Eigen's kernel stores each product a·b in a variable of b's type before it is added, which does
+/// not compile if b is the narrower of the two.
 template <class Lhs, class Rhs, bool ConjLhs, bool ConjRhs, int Arch, int PacketSize>
   requires(duet::detail::MixedFactors<Lhs, Rhs>&& Arch != duet::detail::no_architecture)
 class gebp_traits<Lhs, Rhs, ConjLhs, ConjRhs, Arch, PacketSize>
@@ -50,7 +50,7 @@ public:
   }
 };
 
-/// Eigen's roots of complex numbers branch on zeros, where they lose derivatives.
+/// Eigen's roots of complex numbers branch on zeros and lose derivatives there.
 template <duet::Infinitesimal D>
 struct sqrt_impl<std::complex<D>> {
   static std::complex<D> run(const std::complex<D>& z) { return sqrt(z); }
@@ -100,9 +100,9 @@ struct ScalarBinaryOpTraits<A, B, Operation> {
 
 namespace duet {
 
-/// A column of scalars, each brought to the common type: `column(x, 2, sin(x))`.
+/// Vector of scalars, each converted to the common type: `make_vector(x, 2, sin(x))`.
 template <class... S>
-[[nodiscard]] auto column(const S&... s) {
+[[nodiscard]] auto make_vector(const S&... s) {
   using common = std::common_type_t<S...>;
   return Eigen::Matrix<common, int(sizeof...(S)), 1>(
       std::array<common, sizeof...(S)>{static_cast<common>(s)...}.data());

@@ -7,15 +7,15 @@
 #include <concepts>
 
 /// \file
-/// What an infinitesimal number says of itself. `dual`, `taylor` and `second_dual` do, in one
-/// header each; functions, rotations, matrices, lanes and drivers ask for nothing else. Another one
+/// Interface of infinitesimal numbers. `dual`, `taylor` and `second_order_dual` implement it, in
+/// one header each; functions, rotations, matrices, lanes and drivers use nothing else. Another one
 /// is a class that fulfils `Level`, has the kernels that `detail::infinitesimal_operators` turns
 /// into operators, and specialises `scalar_traits`. For those who extend duet.
 
 namespace duet {
 namespace detail {
 
-/// What `scalar_traits` of a level over T have in common.
+/// Common part of `scalar_traits` of a level over T.
 template <class T, class Tag, int Order>
 struct level_traits {
   using value_type = T;
@@ -53,19 +53,19 @@ concept Level = Infinitesimal<D> &&
     requires(const D& x, const typename scalar_traits<D>::value_type& v,
              const detail::sine_cosine<typename scalar_traits<D>::value_type>& pair) {
   requires std::same_as<over<D, typename scalar_traits<D>::value_type>, D>;
-  /// how many; negative: at most so many
+  /// number of further parts; negative: its maximum
   { D::part_count } -> std::convertible_to<int>;
-  /// the part without ε, which branches look at
+  /// the part without ε, on whose value branches depend
   { x.value() } -> std::convertible_to<typename scalar_traits<D>::value_type>;
-  /// what a driver reads: 0 the value, then derivatives
+  /// parts as read by drivers: 0 the value, then derivatives
   { x.part(0) } -> std::same_as<typename scalar_traits<D>::value_type>;
   /// x with another value
   { x.with_value(v) } -> std::same_as<D>;
-  /// f(value…), then f of every other part of x and of numbers like it: D over what f returns
+  /// f(value…), then f of every other part of x and of numbers like it: D over the result type of f
   { x.zip(detail::some_function{}, x) } -> std::same_as<D>;
-  /// does it hold for the value and for all other parts?
+  /// true if the predicate holds for the value and for all other parts
   x.all_of(detail::some_predicate{});
-  /// slope · x, where parts that are zero stay so beside infinite slopes
+  /// slope · x, where zero parts stay zero even if slopes are infinite
   { D::surviving_product(x, x) } -> std::same_as<D>;
   /// the function of a rule, of one argument or more (with `slopes`)
   { D::lift(detail::some_rule{}, x) } -> std::same_as<D>;

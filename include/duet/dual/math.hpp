@@ -16,19 +16,19 @@
 #include <sstream>
 
 /// \file
-/// Dual and Taylor numbers with everything a `double` has: functions, limits, streams.
+/// Functions, limits and streams of `double` for dual and Taylor numbers.
 ///
-/// Limits are those of the innermost real, as constants. In streams a dual is
-/// `value[partial, …]`, a Taylor number its coefficients `(x0 + x1 e + x2 e^2)`; what is read is a
-/// constant's value. Digits, decimal point and width are the stream's own; the width counts for the
-/// whole number, as for `std::complex`.
+/// Limits are those of the innermost real, as constants. In streams a dual is `value[partial, …]`,
+/// a Taylor number its coefficients `(x0 + x1 e + x2 e^2)`; input gives a constant. Digits, decimal
+/// point and width are the stream's own; the width counts for the whole number, as for
+/// `std::complex`.
 ///
 /// With <math.h> the functions of `float` and `long double` are in the global namespace, too, not
 /// only C's of `double`: in a formula over any scalar `sqrt(x)` is then right for all of them.
 
 namespace duet {
 
-/// Through a buffer of the same format, so that padding surrounds the whole text.
+/// Writes through a buffer of the same format, so that padding surrounds the whole text.
 template <class Char, Infinitesimal D>
 std::basic_ostream<Char>& operator<<(std::basic_ostream<Char>& out, const D& x) {
   std::basic_ostringstream<Char> text;

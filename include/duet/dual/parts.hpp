@@ -9,8 +9,8 @@
 #include <type_traits>
 
 /// \file
-/// Parts of infinitesimal numbers: those of one level, wherever it stands in the nesting, and the
-/// real numbers at the bottom of all of them.
+/// Parts of infinitesimal numbers: those of one level, at any nesting depth, and the real numbers
+/// at the bottom of all of them.
 
 namespace duet::detail {
 
@@ -35,16 +35,16 @@ template <class T>
   }
 }
 
-/// Are all infinitesimal parts of x exactly zero?
+/// True if all infinitesimal parts of x are exactly zero.
 template <class T>
   requires(Scalar<T> || Arithmetic<T>)
 [[nodiscard]] auto is_constant(const T& x) {
   return is_structural_zero(with_innermost(x, real_type_t<T>(0)));
 }
 
-/// Part of a scalar with respect to the level tagged `Tag`, wherever it stands in the nesting: 0
-/// the value, k the k-th partial of a dual or the k-th derivative of a Taylor number; for second
-/// derivatives by N variables 1 … N the gradient, then the Hessian row by row. A scalar without
+/// Part of a scalar with respect to the level tagged `Tag`, at any nesting depth: 0 the value, k
+/// the k-th partial of a dual or the k-th derivative of a Taylor number; for second derivatives
+/// with respect to N variables 1 … N the gradient, then the Hessian row by row. A scalar without
 /// that level does not depend on it.
 template <class Tag, class T>
 [[nodiscard]] constexpr auto part(const T& x, int k) {
@@ -57,7 +57,7 @@ template <class Tag, class T>
   }
 }
 
-/// The k-th part, by Tag, of every scalar of a result.
+/// The k-th part, with respect to Tag, of every scalar of a result.
 template <class Tag, class X>
 [[nodiscard]] constexpr auto parts(const X& x, int k) {
   return map_scalars([k](const auto& s) { return part<Tag>(s, k); }, x);

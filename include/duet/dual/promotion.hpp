@@ -24,13 +24,13 @@ struct screw_tag {};
 
 namespace detail {
 
-/// True where the level of `A` nests outside that of `B`.
+/// True if the level of `A` nests outside that of `B`.
 ///
 /// The screw ε is outermost: a derivative dual is a scalar of the screw algebra. Among derivatives
 /// the longer name is outside: the type of a function that is defined inside a differentiated
 /// function, or holds one of its variables, contains the outer function's tag in its own name, and
 /// the inner differentiation must be the outer level. Unrelated tags are put in some fixed order;
-/// any will do, because drivers find their own tag at whatever depth it stands.
+/// any will do, because drivers find their tag at any nesting depth.
 template <class A, class B>
 [[nodiscard]] constexpr bool is_outside() {
   if constexpr (std::is_same_v<A, screw_tag> || std::is_same_v<B, screw_tag>) {
@@ -49,7 +49,7 @@ template <class A, class B>
 
 } // namespace detail
 
-/// What the outermost ε of T means.
+/// Tag of the outermost ε of T: its meaning.
 template <class T>
 using level_tag = typename scalar_traits<T>::tag;
 
@@ -59,7 +59,7 @@ using over = typename scalar_traits<T>::template over<U>;
 
 namespace detail {
 
-/// Does any level of T carry this tag?
+/// True if any level of T carries this tag.
 template <class T, class Tag>
 [[nodiscard]] constexpr bool contains_tag() {
   if constexpr (Infinitesimal<T>) {
@@ -72,8 +72,8 @@ template <class T, class Tag>
 
 struct no_promotion {};
 
-/// Are arithmetic constants of type U numbers at the bottom of T? 0.5 is none of a field over the
-/// integers.
+/// True if arithmetic constants of type U are numbers at the bottom of T: 0.5 is not, for a field
+/// over the integers.
 template <class U, class T>
 concept ArithmeticOf = Arithmetic<U> &&(std::integral<U> || !std::integral<constant_t<T>>);
 
@@ -83,7 +83,7 @@ template <class A, class B>
 template <class A, class B>
 using promotion_t = typename decltype(promotion<A, B>())::type;
 
-/// The level of A laid over the promotion of what is below it with B.
+/// The level of A over the promotion of the scalar below it with B.
 template <class A, class Below, class B>
 [[nodiscard]] constexpr auto promotion_below() {
   using below = promotion_t<Below, B>;
@@ -148,7 +148,7 @@ template <class A, class B>
                        (Arithmetic<A> && !Arithmetic<B>)) {
     return promotion<B, A>();
   } else if constexpr (Infinitesimal<A> && ArithmeticOf<B, A>) {
-    return std::type_identity<A>{}; // a literal takes the precision of what it meets
+    return std::type_identity<A>{}; // a literal takes the precision of the other operand
   } else if constexpr (Infinitesimal<A> && Infinitesimal<B>) {
     return promotion_of_levels<A, B>();
   } else if constexpr (Infinitesimal<A> && Field<B>) {
@@ -171,7 +171,8 @@ template <class A, class B>
 template <class A, class B>
 using promote_t = detail::promotion_t<A, B>;
 
-/// A and B can meet in one expression. (In this order for `template <class A, Promotable<A> B>`.)
+/// True if A and B can meet in one expression. (In this order for
+/// `template <class A, Promotable<A> B>`.)
 template <class B, class A>
 concept Promotable = !std::same_as<promote_t<A, B>, detail::no_promotion>;
 
@@ -180,13 +181,13 @@ namespace detail {
 /// Integers are computed with and differentiated as reals.
 template <class X>
 using differentiable_t = std::conditional_t<std::integral<X>, double, X>;
-/// Integers that meet a T are computed with as the reals of T.
+/// Integers that meet a T are converted to the reals of T.
 template <class X, class T>
 using as_real_of = std::conditional_t<std::integral<X>, real_type_t<T>, X>;
 
 } // namespace detail
 
-/// U is a constant for the level of D: an arithmetic type or a scalar of what is below.
+/// U is a constant for the level of D: an arithmetic type or a scalar of a level below.
 template <class U, class D>
 concept ConstantOf = Infinitesimal<D> &&
     (detail::ArithmeticOf<U, D> ||
@@ -196,10 +197,10 @@ concept ConstantOf = Infinitesimal<D> &&
 
 namespace detail {
 
-/// Stands in the declaration of a deleted conversion, for compilers to quote.
+/// Appears in the declaration of a deleted conversion, for compilers to quote.
 struct epsilon_of_a_rigid_motion_is_not_that_of_a_derivative {};
 
-/// U has a screw ε where D has a derivative's, or the other way round, and is no constant for D.
+/// U has a screw ε and D a derivative's, or conversely, and U is not a constant for D.
 template <class U, class D>
 concept OtherKindOfEpsilon = Infinitesimal<U> && Infinitesimal<D> && !ConstantOf<U, D> &&
                              contains_tag<U, screw_tag>() != contains_tag<D, screw_tag>();

@@ -23,22 +23,23 @@
 namespace duet {
 namespace detail {
 
-/// Marks the ε by which slopes are differentiated.
+/// Tag of the ε with respect to which slopes are differentiated.
 struct curvature_tag {};
 
 } // namespace detail
 
 DUET_ABI_BEGIN
 
-/// x₀ + gᵀε + ½ εᵀHε, where products of three ε vanish: a value, its gradient and its Hessian by N
-/// variables.
+/// x₀ + gᵀε + ½ εᵀHε, where products of three ε vanish: a value, its gradient and its Hessian with
+/// respect to N variables.
 ///
-/// It computes what a dual of N partials over a dual of N partials does, save that each second
-/// derivative is kept and computed once: `hessian` runs on it.
+/// Equivalent to a dual of N partials over a dual of N partials, except that each second derivative
+/// is stored and computed once: `hessian` uses it.
 template <class T, int N, class Tag = derivative_tag<>>
-class second_dual : public detail::infinitesimal_operators<second_dual<T, N, Tag>, T> {
-  static_assert(Scalar<T>, "duet: second_dual<T, N> needs a real number or a scalar of duet as T");
-  static_assert(N >= 1, "duet: second_dual<T, N> needs at least one variable");
+class second_order_dual : public detail::infinitesimal_operators<second_order_dual<T, N, Tag>, T> {
+  static_assert(Scalar<T>,
+                "duet: second_order_dual<T, N> needs a real number or a scalar of duet as T");
+  static_assert(N >= 1, "duet: second_order_dual<T, N> needs at least one variable");
   static_assert(
       !detail::contains_tag<T, Tag>(),
       "duet: this differentiation happens inside another one with the same tag, and their "
@@ -50,23 +51,23 @@ public:
   using hessian_type = detail::lower_triangle<T, N>;
 
   /// Zero.
-  second_dual() : value_(T(0)) {}
+  second_order_dual() : value_(T(0)) {}
   /// A constant.
-  template <ConstantOf<second_dual> U>
-  DUET_ALWAYS_INLINE second_dual(const U& constant) : value_(static_cast<T>(constant)) {}
-  DUET_ALWAYS_INLINE second_dual(const T& value, const gradient_type& gradient,
-                                 const hessian_type& hessian)
+  template <ConstantOf<second_order_dual> U>
+  DUET_ALWAYS_INLINE second_order_dual(const U& constant) : value_(static_cast<T>(constant)) {}
+  DUET_ALWAYS_INLINE second_order_dual(const T& value, const gradient_type& gradient,
+                                       const hessian_type& hessian)
       : value_(value), gradient_(gradient), hessian_(hessian) {}
-  /// This number with another scalar inside; implicit where no precision or level is lost.
+  /// Conversion from another scalar; implicit if no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
-      second_dual(const second_dual<U, N, Tag>& other)
-      : second_dual(other.zip([](const U& x) { return static_cast<T>(x); })) {}
+      second_order_dual(const second_order_dual<U, N, Tag>& other)
+      : second_order_dual(other.zip([](const U& x) { return static_cast<T>(x); })) {}
 
   /// The i-th variable of a function of N: value + εᵢ.
-  [[nodiscard]] static second_dual variable(const T& value, int i = 0) {
-    second_dual result(value);
+  [[nodiscard]] static second_order_dual variable(const T& value, int i = 0) {
+    second_order_dual result(value);
     result.gradient_.set(i, T(1));
     return result;
   }
@@ -75,20 +76,20 @@ public:
   [[nodiscard]] T partial(int i) const { return gradient_.get(i); } ///< ∂/∂xᵢ, i from 0
   [[nodiscard]] T second_partial(int i, int j) const { return hessian_.get(i, j); } ///< ∂²/∂xᵢ∂xⱼ
 
-  // For those who extend duet: what a `Level` says of itself.
+  // For those who extend duet: the members that `Level` requires.
 
   static constexpr int part_count = 1 + N + N * (N + 1) / 2;
-  /// The value, the gradient, then the Hessian row by row, symmetric as it is.
+  /// The value, the gradient, then the Hessian row by row, symmetric entries repeated.
   [[nodiscard]] T part(int k) const {
     return k == 0   ? value_
            : k <= N ? partial(k - 1)
                     : second_partial((k - N - 1) / N, (k - N - 1) % N);
   }
-  /// Another value with these derivatives.
-  [[nodiscard]] second_dual with_value(const T& value) const {
+  /// Number with another value and the same derivatives.
+  [[nodiscard]] second_order_dual with_value(const T& value) const {
     return {value, gradient_, hessian_};
   }
-  /// f of the value and of every derivative: the same level over what f returns.
+  /// f of the value and of every derivative: the same level over the result type of f.
   template <class F, class... Others>
   [[nodiscard]] DUET_ALWAYS_INLINE auto zip(F&& f, const Others&... other) const {
     const auto value = f(value_, other.value()...);
@@ -101,17 +102,18 @@ public:
         hessian.set(i, j, f(second_partial(i, j), other.second_partial(i, j)...));
       }
     }
-    return second_dual<U, N, Tag>(value, gradient, hessian);
+    return second_order_dual<U, N, Tag>(value, gradient, hessian);
   }
-  /// slope · x. (Slopes that are not finite do not get here: see `composed`.)
-  [[nodiscard]] static second_dual surviving_product(const second_dual& slope,
-                                                     const second_dual& x) {
+  /// slope · x. (Slopes that are not finite do not occur here: see `composed`.)
+  [[nodiscard]] static second_order_dual surviving_product(const second_order_dual& slope,
+                                                           const second_order_dual& x) {
     return product(slope, x);
   }
   /// The function of a rule, see rules/elementary.hpp. Its second derivatives are those of the
   /// rule's slopes, by dual numbers.
   template <class Rule>
-  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual lift(const Rule& rule, const second_dual& x) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_order_dual lift(const Rule& rule,
+                                                                 const second_order_dual& x) {
     using D = dual<T, 1, detail::curvature_tag>;
     const T y = rule.value(x.value_);
     const T slope = rule.slope(x.value_, y);
@@ -119,13 +121,13 @@ public:
     return x.composed(y, slope, moving_slope.epsilon());
   }
   template <class Rule, class... Rest>
-  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual lift(const Rule& rule, const second_dual& x,
-                                                           const Rest&... rest) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_order_dual
+  lift(const Rule& rule, const second_order_dual& x, const Rest&... rest) {
     constexpr std::size_t count = 1 + sizeof...(rest);
     using D = dual<T, int(count), detail::curvature_tag>;
     const T value = rule.value(x.value_, rest.value_...);
     const std::array<T, count> slopes = rule.slopes(value, x.value_, rest.value_...);
-    const std::array<const second_dual*, count> arguments = {&x, &rest...};
+    const std::array<const second_order_dual*, count> arguments = {&x, &rest...};
     D moving_value(value);
     std::array<D, count> moving;
     for (std::size_t a = 0; a < count; ++a) {
@@ -144,8 +146,8 @@ public:
   }
   /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1).
   template <int Sign>
-  [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<second_dual>
-  lift_pair(const detail::sine_cosine<T>& y, const second_dual& x) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<second_order_dual>
+  lift_pair(const detail::sine_cosine<T>& y, const second_order_dual& x) {
     const T minus = Sign < 0 ? T(-y.sine) : y.sine;
     const T bent = Sign < 0 ? T(-y.cosine) : y.cosine;
     return {x.composed(y.sine, y.cosine, minus), x.composed(y.cosine, minus, bent)};
@@ -164,7 +166,7 @@ public:
     }
     out << "]";
   }
-  /// Does the predicate hold for the value and for every derivative?
+  /// True if the predicate holds for the value and for every derivative.
   template <class Predicate>
   [[nodiscard]] auto all_of(Predicate&& predicate) const {
     auto result = predicate(value_);
@@ -179,34 +181,35 @@ public:
 
   // The kernels behind the operators of detail::infinitesimal_operators.
 
-  [[nodiscard]] DUET_ALWAYS_INLINE second_dual negated() const {
+  [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual negated() const {
     return each([](const auto& p) DUET_INLINE_LAMBDA { return -p; }, *this);
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE second_dual plus(const T& c) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual plus(const T& c) const {
     return {T(value_ + c), gradient_, hessian_};
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE second_dual times(const T& c) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual times(const T& c) const {
     return each([&](const auto& p) DUET_INLINE_LAMBDA { return p * c; }, *this);
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE second_dual divided_by(const T& c) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual divided_by(const T& c) const {
     return composed(T(value_ / c), T(T(1) / c), T(0));
   }
   /// c / *this
-  [[nodiscard]] DUET_ALWAYS_INLINE second_dual dividing(const T& c) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual dividing(const T& c) const {
     const T inverse = T(1) / value_;
     const T slope = -(c * inverse) * inverse;
     return composed(T(c / value_), slope, T(detail::integer<T>(-2) * slope * inverse));
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual sum(const second_dual& a,
-                                                          const second_dual& b) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_order_dual sum(const second_order_dual& a,
+                                                                const second_order_dual& b) {
     return each([](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p + q; }, a, b);
   }
-  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual difference(const second_dual& a,
-                                                                 const second_dual& b) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_order_dual difference(const second_order_dual& a,
+                                                                       const second_order_dual& b) {
     return each([](const auto& p, const auto& q) DUET_INLINE_LAMBDA { return p - q; }, a, b);
   }
   /// H = a H_b + b H_a + g_a g_bᵀ + g_b g_aᵀ
-  [[nodiscard]] static second_dual product(const second_dual& a, const second_dual& b) {
+  [[nodiscard]] static second_order_dual product(const second_order_dual& a,
+                                                 const second_order_dual& b) {
     const auto f = [&](const auto& p, const auto& q)
                        DUET_INLINE_LAMBDA { return p * b.value_ + q * a.value_; };
     return {T(a.value_ * b.value_), gradient_type::map(f, a.gradient_, b.gradient_),
@@ -216,8 +219,9 @@ public:
                 },
                 a.gradient_, b.gradient_, b.gradient_, a.gradient_)};
   }
-  /// a b⁻¹, of which the value is the exact quotient.
-  [[nodiscard]] static second_dual quotient(const second_dual& a, const second_dual& b) {
+  /// a b⁻¹, whose value is the exact quotient.
+  [[nodiscard]] static second_order_dual quotient(const second_order_dual& a,
+                                                  const second_order_dual& b) {
     const T inverse = T(1) / b.value_;
     const T slope = -inverse * inverse;
     const T curvature = detail::integer<T>(-2) * slope * inverse;
@@ -226,15 +230,15 @@ public:
       return composed<2>(value, {&a, &b}, {inverse, T(a.value_ * slope)},
                          {{{T(0), slope}, {slope, T(a.value_ * curvature)}}});
     }
-    second_dual result = product(a, b.composed(inverse, slope, curvature));
+    second_order_dual result = product(a, b.composed(inverse, slope, curvature));
     result.value_ = value;
     return result;
   }
 
-  /// A function of this number, of value y and with first and second derivative there:
+  /// A function of this number, given its value y and its first and second derivative:
   /// H = f′ H + f″ g gᵀ.
-  [[nodiscard]] DUET_ALWAYS_INLINE second_dual composed(const T& y, const T& slope,
-                                                        const T& curvature) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual composed(const T& y, const T& slope,
+                                                              const T& curvature) const {
     if (all(detail::is_all_finite(slope) && detail::is_all_finite(curvature))) [[likely]] {
       const auto scaled = [](const T& c) DUET_INLINE_LAMBDA {
         return [&c](const auto& p)
@@ -249,13 +253,13 @@ public:
     return composed<1>(y, {this}, {slope}, {{{curvature}}});
   }
 
-  /// A function of K numbers, of value y and with slopes s_a and second derivatives c_ab there,
-  /// where zeros survive: g = Σ s_a g_a, H = Σ s_a H_a + Σ c_ab g_a g_bᵀ.
+  /// A function of K numbers, given its value y, its slopes s_a and second derivatives c_ab, where
+  /// zeros survive: g = Σ s_a g_a, H = Σ s_a H_a + Σ c_ab g_a g_bᵀ.
   template <std::size_t K>
-  [[nodiscard]] DUET_OUT_OF_LINE static second_dual
-  composed(const T& y, const std::array<const second_dual*, K>& x, const std::array<T, K>& slopes,
-           const std::array<std::array<T, K>, K>& curvatures) {
-    second_dual result(y);
+  [[nodiscard]] DUET_OUT_OF_LINE static second_order_dual
+  composed(const T& y, const std::array<const second_order_dual*, K>& x,
+           const std::array<T, K>& slopes, const std::array<std::array<T, K>, K>& curvatures) {
+    second_order_dual result(y);
     for (int i = 0; i < N; ++i) {
       T first(0);
       for (std::size_t a = 0; a < K; ++a) {
@@ -279,7 +283,7 @@ public:
 
 private:
   template <class F, class... X>
-  [[nodiscard]] DUET_ALWAYS_INLINE static second_dual each(const F& f, const X&... x) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static second_order_dual each(const F& f, const X&... x) {
     return {T(f(x.value_...)), gradient_type::map(f, x.gradient_...),
             hessian_type::map(f, x.hessian_...)};
   }
@@ -292,9 +296,9 @@ private:
 DUET_ABI_END
 
 template <class T, int N, class Tag>
-struct scalar_traits<second_dual<T, N, Tag>> : detail::level_traits<T, Tag, 2> {
+struct scalar_traits<second_order_dual<T, N, Tag>> : detail::level_traits<T, Tag, 2> {
   template <class U>
-  using over = second_dual<U, N, Tag>;
+  using over = second_order_dual<U, N, Tag>;
 };
 
 } // namespace duet

@@ -11,9 +11,9 @@
 #include <utility>
 
 /// \file
-/// `std::sin(x)` of a dual or a formula x, and its like: qualified names find the standard
-/// library's functions alone, which know none. Compilers would list these; they say what to write
-/// instead.
+/// `std::sin(x)` of a dual or a formula x, and its like: qualified names find only the standard
+/// library's functions, which do not take duals. These overloads replace the compiler's list of
+/// candidates by a message that says what to write instead.
 ///
 /// `std::max`, `std::min` and `std::clamp` of a dual and a constant, which need one type in the
 /// standard library, work. (A program that would compile without these overloads calls none of
@@ -24,7 +24,7 @@ namespace duet::detail {
 template <class X>
 concept UnknownToStd = RealInfinitesimal<X> || is_symbolic<X>;
 
-/// Sums in the type A of their initial value would lose the derivatives of what they add up.
+/// Sums in the type A of their initial value would lose the derivatives of their terms.
 template <class A, class Iterator>
 concept LosesDerivatives = Arithmetic<A> && requires(const Iterator& i) {
   requires RealInfinitesimal<std::remove_cvref_t<decltype(*i)>>;
@@ -112,7 +112,7 @@ template <class Iterator, class Other, class A>
   requires duet::detail::LosesDerivatives<A, Iterator>
       DUET_REFUSED_SUM A inner_product(Iterator, Iterator, Other, A);
 
-/// The larger of a dual and a constant, or of duals of two nestings; of equal ones a.
+/// The larger of a dual and a constant, or of duals of two nestings; a if they are equal.
 template <class A, duet::detail::OrderedScalars<A> B>
   requires(!std::is_same_v<A, B>)
 [[nodiscard]] constexpr duet::promote_t<A, B> max(const A& a, const B& b) {
@@ -120,7 +120,7 @@ template <class A, duet::detail::OrderedScalars<A> B>
   return duet::select(
       a < b, [&] { return T(b); }, [&] { return T(a); });
 }
-/// The smaller of a dual and a constant, or of duals of two nestings; of equal ones a.
+/// The smaller of a dual and a constant, or of duals of two nestings; a if they are equal.
 template <class A, duet::detail::OrderedScalars<A> B>
   requires(!std::is_same_v<A, B>)
 [[nodiscard]] constexpr duet::promote_t<A, B> min(const A& a, const B& b) {
@@ -128,7 +128,7 @@ template <class A, duet::detail::OrderedScalars<A> B>
   return duet::select(
       b < a, [&] { return T(b); }, [&] { return T(a); });
 }
-/// x, but `low` where x < low, and `high` where high < x, of duals and constants.
+/// x clamped to `low` if x < low, and to `high` if high < x, of duals and constants.
 template <class X, class Low, class High>
   requires((duet::RealInfinitesimal<X> || duet::RealInfinitesimal<Low> ||
             duet::RealInfinitesimal<High>)&&!(std::is_same_v<X, Low> && std::is_same_v<X, High>))

@@ -14,13 +14,12 @@
 #include <limits>
 
 /// \file
-/// The functions that exp and log of quaternions are made of, over every scalar: regular where
-/// sine, cosine and arctangent forms are not, with exact derivatives of every order.
-/// For those who extend duet.
+/// Functions underlying exp and log of quaternions, over every scalar: regular where sine, cosine
+/// and arctangent forms are not, with exact derivatives of every order. For those who extend duet.
 ///
-/// Stumpff functions c_n(s) = Σ_k (−s)^k / (2k+n)! of s ≥ 0 are what is left of sine and cosine
-/// when the removable singularities of exp and log at the identity are taken out: c₀ = cos √s, c₁ =
-/// sin √s / √s, c₂ = (1 − c₀)/s, c₃ = (1 − c₁)/s, …
+/// Stumpff functions c_n(s) = Σ_k (−s)^k / (2k+n)! of s ≥ 0 are sine and cosine without the
+/// removable singularities of exp and log at the identity: c₀ = cos √s, c₁ = sin √s / √s,
+/// c₂ = (1 − c₀)/s, c₃ = (1 − c₁)/s, …
 
 namespace duet::detail {
 
@@ -50,8 +49,8 @@ template <int N, int Terms, int K, class T>
   }
 }
 
-/// The first terms of the series. Even and odd ones apart take half as long, as neither sum waits
-/// for the other.
+/// The first terms of the series. Separate sums of even and odd terms take half as long, as neither
+/// waits for the other.
 template <int N, int Terms, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE T stumpff_polynomial(const T& s) {
   const T square = s * s;
@@ -74,7 +73,7 @@ template <int N, class T>
   return sum;
 }
 
-/// 1/(n−2)!, the value that the recurrence c_n = (1/(n−2)! − c_{n−2})/s starts from.
+/// 1/(n−2)!, the initial value of the recurrence c_n = (1/(n−2)! − c_{n−2})/s.
 template <class T>
 [[nodiscard]] constexpr T inverse_factorial(int n) {
   T factorial(1);
@@ -84,18 +83,18 @@ template <class T>
   return T(1) / factorial;
 }
 
-/// Where the closed forms of c₂, c₃ … and of derivatives take over from the series: below, they
-/// cancel; above, the series does.
+/// True above the threshold at which the closed forms of c₂, c₃ … and of derivatives replace the
+/// series: below, the closed forms cancel; above, the series does.
 template <Real T>
 [[nodiscard]] constexpr auto is_beyond_series(const T& s) {
   return s > T(4);
 }
 
-/// c_n(s) of small s: up to 4, and up to 1 of c₀ and c₁ or where no more is asked for.
+/// c_n(s) of small s: up to 4, and up to 1 for c₀ and c₁ or if no more is needed.
 template <int N, int Limit = (N < 2 ? 1 : 4), Real T>
 [[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_small(const T& s) {
   if constexpr (std::floating_point<lane_type_t<T>>) {
-    // The first term left out is 4e-19 at s = 1 and 2e-22 at s = 4, with more digits 3e-27 and
+    // The first omitted term is 4e-19 at s = 1 and 2e-22 at s = 4, with more digits 3e-27 and
     // 4e-27.
     constexpr int terms = Limit > 1 ? 13 : N < 2 ? 10 : 9;
     constexpr int more_terms = Limit > 1 ? 15 : N < 2 ? 13 : 12;
@@ -169,7 +168,7 @@ struct stumpff {
       return -duet::stumpff<1>(s) / 2;
     } else {
       // The first form is regular at 0. The second keeps the smallness of high derivatives at large
-      // s, and asks for no functions but the pair that the closed forms start from.
+      // s, and needs only the pair of functions that the closed forms start from.
       return select(
           !detail::is_beyond_series(innermost(s)),
           [&] { return T((N * duet::stumpff<N + 2>(s) - duet::stumpff<N + 1>(s)) / 2); },
@@ -181,9 +180,9 @@ struct stumpff {
 /// L(s, w) = atan2(√s, w)/√s.
 ///
 /// With φ = atan2(√s, w): ∂L/∂w = −1/(s + w²) and ∂L/∂s = (w/(s + w²) − L)/(2s) = −2 L³ c₃(4φ²),
-/// where φ² = L² s. In the last form nothing cancels and nothing is divided by s, which further
-/// derivatives need where φ is small. The other costs less, and loses no more than a factor of 6
-/// above φ = ½.
+/// where φ² = L² s. The last form has neither cancellation nor a division by s, as further
+/// derivatives need for small φ. The other costs less, and loses no more than a factor of 6 above
+/// φ = ½.
 struct arc_ratio {
   template <class T>
   T value(const T& s, const T& w) const;
@@ -228,8 +227,8 @@ template <class T>
 
 } // namespace detail
 
-/// L(s, w) = atan2(√s, w)/√s, s ≥ 0: what turns the vector part v of a quaternion, s = v·v, into
-/// that of its logarithm. At s = 0 it is 1/w for w > 0; for w < 0 it is infinite there.
+/// L(s, w) = atan2(√s, w)/√s, s ≥ 0: the factor that takes the vector part v of a quaternion,
+/// s = v·v, to that of its logarithm. At s = 0 it is 1/w for w > 0 and infinite for w < 0.
 template <Scalar T>
 [[nodiscard]] inline T arc_ratio(const T& s, const T& w) {
   if constexpr (Infinitesimal<T>) {

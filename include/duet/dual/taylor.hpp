@@ -27,7 +27,7 @@ DUET_ABI_BEGIN
 ///
 /// \tparam T    the scalar below
 /// \tparam K    highest power of ε kept
-/// \tparam Tag  what the ε means
+/// \tparam Tag  meaning of the ε
 ///
 /// Coefficients are the Taylor coefficients x_k = x^(k)/k!; `derivative(k)` multiplies by k!.
 template <class T, int K, class Tag = derivative_tag<>>
@@ -54,7 +54,7 @@ public:
       : coefficients_{static_cast<T>(constant)} {}
   DUET_ALWAYS_INLINE constexpr explicit taylor(const coefficients_type& coefficients)
       : coefficients_(coefficients) {}
-  /// This number with another scalar inside; implicit where no precision or level is lost.
+  /// Conversion from another scalar; implicit if no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
@@ -85,18 +85,18 @@ public:
     return result;
   }
 
-  // For those who extend duet: what a `Level` says of itself.
+  // For those who extend duet: the members that `Level` requires.
 
   static constexpr int part_count = K + 1;
   /// The k-th derivative.
   [[nodiscard]] constexpr T part(int k) const { return derivative(k); }
-  /// Another value with these derivatives.
+  /// Number with another value and the same derivatives.
   [[nodiscard]] constexpr taylor with_value(const T& value) const {
     taylor result = *this;
     result.coefficients_[0] = value;
     return result;
   }
-  /// f of every coefficient: the same level over what f returns.
+  /// f of every coefficient: the same level over the result type of f.
   template <class F, class... Series>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto zip(F&& f, const Series&... other) const {
     using U = std::remove_cvref_t<decltype(f(value(), other.value()...))>;
@@ -106,7 +106,7 @@ public:
     }
     return result;
   }
-  /// slope · x, where parts that are zero stay so beside slopes that are not finite.
+  /// slope · x, where zero parts stay zero even if slopes are not finite.
   [[nodiscard]] static constexpr taylor surviving_product(const taylor& slope, const taylor& x) {
     taylor result;
     for (int k = 0; k <= K; ++k) {
@@ -129,7 +129,7 @@ public:
     }
   }
   /// Sine and cosine of x from those of its value, circular (Sign −1) or hyperbolic (1), by one
-  /// recurrence: applying their rules one by one would evaluate the pair at every order.
+  /// recurrence: applying their rules separately would evaluate the pair at every order.
   template <int Sign>
   [[nodiscard]] DUET_ALWAYS_INLINE static detail::sine_cosine<taylor>
   lift_pair(const detail::sine_cosine<T>& y, const taylor& x) {
@@ -149,7 +149,7 @@ public:
     }
     out << ")";
   }
-  /// Does the predicate hold for every coefficient?
+  /// True if the predicate holds for every coefficient.
   template <class Predicate>
   [[nodiscard]] constexpr auto all_of(Predicate&& predicate) const {
     auto result = predicate(value());
@@ -159,12 +159,12 @@ public:
     return result;
   }
 
-  /// The ε of a rigid motion is not the ε of a derivative.
+  /// Rejects mixing the ε of a rigid motion with the ε of a derivative.
   template <detail::OtherKindOfEpsilon<taylor> U>
   taylor(const U&, detail::epsilon_of_a_rigid_motion_is_not_that_of_a_derivative = {}) = delete;
 
   // The kernels behind the operators of detail::infinitesimal_operators. `each` calls them with
-  // indices that are constants after inlining, which is what keeps coefficients in registers.
+  // indices that are constants after inlining, which keeps coefficients in registers.
 
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr taylor negated() const {
     return each([&](int k) DUET_INLINE_LAMBDA { return T(-coefficient(k)); });

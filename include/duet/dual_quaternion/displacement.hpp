@@ -7,8 +7,8 @@
 #include <duet/quaternion/three_vector.hpp>
 
 /// \file
-/// Rigid displacements as rotation and origin, of numbers and known constants: what chains are
-/// followed with.
+/// Rigid displacements as rotation and origin, of numbers and known constants: the representation
+/// used by the forward kinematics of chains.
 
 namespace duet::detail {
 
@@ -33,7 +33,7 @@ struct partly_known_quaternion {
 template <class W, class X, class Y, class Z>
 partly_known_quaternion(W, X, Y, Z) -> partly_known_quaternion<W, X, Y, Z>;
 
-/// What a stateless callable returns, with types for 0 and ±1.
+/// Quaternion returned by a stateless callable, with types for 0 and ±1.
 template <class Get>
 [[nodiscard]] constexpr auto known_quaternion(Get) {
   return partly_known_quaternion{
@@ -68,7 +68,7 @@ operator*(const partly_known_quaternion<A, B, C, D>& p,
                                  p.w() * q.z() + p.x() * q.y() - p.y() * q.x() + p.z() * q.w()};
 }
 
-/// x ↦ R x + t. Where a frame stands in another: its axes and its origin.
+/// Displacement x ↦ R x + t: axes and origin of one frame in another.
 template <class Q, class V>
 struct displacement {
   Q rotation;

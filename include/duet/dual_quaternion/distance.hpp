@@ -13,17 +13,20 @@
 #include <limits>
 
 /// \file
-/// How far poses are from each other.
+/// Distances between poses.
 ///
-/// There is no distance of poses without a choice: turning must be weighed against moving. Here a
-/// turn by one radian is as far as a move by `length`, the size of the body, say.
+/// A distance between poses needs a weight of rotation against translation. Here a rotation by one
+/// radian counts as much as a translation by `length`, a characteristic length such as the size of
+/// the body.
 
 namespace duet {
 
-/// The squared distance of two poses, d² = |t_B − t_A|² + length² φ², φ ∈ [0, π] the angle between
-/// the rotations. Does not depend on the fixed frame, but does on the body's, whose origin is
-/// compared. Smooth where φ < π. \param length  of the same unit as the translations, at least 0
-/// \throws invalid_input where the length is negative or not finite
+/// Squared distance of two poses, d² = |t_B − t_A|² + length² φ², φ ∈ [0, π] the angle between the
+/// rotations. Independent of the fixed frame, but not of the body frame, whose origin is compared.
+/// Smooth if φ < π.
+///
+/// \param length  characteristic length, in the unit of the translations, at least 0
+/// \throws invalid_input if the length is negative or not finite
 template <class A, Promotable<A> B>
 [[nodiscard]] promote_t<A, B> squared_distance(const dual_quaternion<A>& a,
                                                const dual_quaternion<B>& b, double length) {
@@ -37,8 +40,8 @@ template <class A, Promotable<A> B>
 
 namespace detail {
 
-/// The distance of poses in units of length 2^e: squares of the largest and the smallest numbers
-/// are out of range.
+/// Distance of poses in units of length 2^e: squares of the largest and the smallest numbers are
+/// out of range.
 template <class T>
 [[nodiscard]] DUET_COLD T distance_of_extreme(const dual_quaternion<T>& a,
                                               const dual_quaternion<T>& b, double length) {
@@ -58,7 +61,7 @@ template <class T>
   if (!(largest > 0 && largest <= std::numeric_limits<R>::max())) {
     return sqrt(squared_distance(a, b, length)); // zero, infinite or not a number
   }
-  // 2^−e is a number too.
+  // 2^−e must be a number too.
   const int e = max(binary_exponent(largest), 4 - std::numeric_limits<R>::max_exponent);
   for (int i = 0; i < 3; ++i) {
     const T x = ldexp(move[i], -e);
@@ -70,8 +73,8 @@ template <class T>
 
 } // namespace detail
 
-/// The distance of two poses, in units of length: d, the root of `squared_distance`, a metric. Its
-/// derivative at d = 0 does not exist.
+/// Distance of two poses, in units of length: d, the root of `squared_distance`, a metric. Not
+/// differentiable at d = 0.
 template <class A, Promotable<A> B>
 [[nodiscard]] promote_t<A, B> distance(const dual_quaternion<A>& a, const dual_quaternion<B>& b,
                                        double length) {
@@ -87,7 +90,7 @@ template <class A, Promotable<A> B>
       });
 }
 
-/// Without a length it is not clear what a turn counts.
+/// Rejected: without a characteristic length a rotation has no weight.
 template <class A, class B>
 DUET_REFUSED("how far does a turn by one radian count? distance(a, b, length)")
 promote_t<A, B> distance(const dual_quaternion<A>&, const dual_quaternion<B>&);

@@ -14,7 +14,7 @@
 #include <string>
 
 /// \file
-/// Dual numbers, vectors and quaternions of rigid motion, and how they come apart (N10–N16).
+/// Dual numbers, vectors and quaternions of rigid motion, and their parts (N10–N16).
 ///
 /// A dual quaternion is a quaternion over dual numbers. Product, norm, exponential, logarithm and
 /// powers are those of quaternion/, of which there is no second version.
@@ -101,22 +101,22 @@ template <class T>
   return dual_conj(conj(a));
 }
 
-/// N16: is it a pose, A A* = 1, that is |p| = 1 and p·q = 0, each to within the tolerance?
-/// `normalized` restores both.
+/// N16: true if A is a pose (a unit dual quaternion): A A* = 1, that is |p| = 1 and p·q = 0, each
+/// to within the tolerance. `normalized` restores both.
 template <class T>
 [[nodiscard]] auto is_unit(const dual_quaternion<T>& a, double tolerance = 1e-12) {
   using std::abs;
-  const screw_dual<T> square = norm2(a);
+  const screw_dual<T> square = squared_norm(a);
   return abs(innermost(square.value()) - 1) <= tolerance &&
          abs(innermost(square.epsilon())) <= tolerance;
 }
 
 /// A pose as `(w, x, y, z) at (x, y, z)`, its rotation and its translation, numbers to six digits;
-/// what is no pose by its four dual numbers.
+/// anything that is not a pose as its four dual numbers.
 template <Real T>
 [[nodiscard]] std::string to_text(const dual_quaternion<T>& a) {
   using std::abs;
-  const screw_dual<T> square = norm2(a);
+  const screw_dual<T> square = squared_norm(a);
   const T length = norm(dual_part(a));
   if (!(abs(square.value() - 1) <= 1e-6 && abs(square.epsilon()) <= 1e-6 * (1 + length))) {
     return detail::message(a);

@@ -19,7 +19,7 @@
 #include <vector>
 
 /// \file
-/// The pose on a screw motion that is nearest to a given one.
+/// Nearest pose on a screw motion to a given pose.
 
 namespace duet {
 
@@ -34,7 +34,7 @@ template <class T, class S>
                                                 S(motion.angle * tau), S(motion.translation * tau));
 }
 
-/// A motion and a pose over the values alone, whose squared distance f(τ) has all its minima found.
+/// A screw motion and a pose, values only; finds all minima of their squared distance f(τ).
 template <class R>
 class distance_minima {
 public:
@@ -42,12 +42,12 @@ public:
                   const dual_quaternion<R>& p, double length)
       : start_(start), motion_(motion), p_(p), length_(length) {}
 
-  /// The τ in [0, 1] where f is least.
+  /// The τ in [0, 1] that minimises f.
   ///
   /// f is (τd − h)², h the height of P along the axis, and a function of period 2π of the angle τφ.
   /// A minimum that is farther than a full turn from the τ in [0, 1] nearest to h/d has another one
   /// nearer by, so two full turns are searched at most. In each, the angle between the rotations
-  /// has one kink, at its maximum π; elsewhere f is smooth, and between samples 1/32 of a turn
+  /// has one kink, at its maximum π; elsewhere f is smooth, and between samples 1/32 of a full turn
   /// apart f′ has at most one zero or one extremum.
   [[nodiscard]] R least() {
     using std::abs;
@@ -112,8 +112,8 @@ private:
 
   /// Keeps the minima between two points.
   void look_between(point left, point right) {
-    // Where f′ has one sign at both ends but turns back between them, two of its zeros may be
-    // there: to either side of its extremum, which halving finds.
+    // If f′ has one sign at both ends but an extremum between them, two of its zeros may lie there,
+    // on either side of the extremum, which bisection finds.
     while (left.f[1] * right.f[1] > 0 && left.f[1] * left.f[2] < 0 && right.f[1] * right.f[2] > 0) {
       const point middle = at(R(left.tau + (right.tau - left.tau) / 2));
       if (!(middle.tau > left.tau && middle.tau < right.tau)) {
@@ -129,8 +129,8 @@ private:
     refine(left, right);
   }
 
-  /// Keeps the minimum between a point where f falls and one where it rises: by Newton's method,
-  /// and by halving where that would leave the interval.
+  /// Keeps the minimum between a point where f decreases and one where it increases, by Newton's
+  /// method with bisection if a step would leave the interval.
   void refine(point low, point high) {
     if (!(low.f[1] < 0 && high.f[1] >= 0)) {
       return;
@@ -159,7 +159,7 @@ private:
   R best_ = 0, least_ = std::numeric_limits<R>::infinity();
 };
 
-/// e where the largest length is about 2^e and its square would overflow or vanish, otherwise 0.
+/// e if the largest length is about 2^e and its square would overflow or vanish, otherwise 0.
 template <class T>
 [[nodiscard]] int extreme_exponent_of_lengths(const dual_quaternion<T>& start,
                                               const screw_motion<T>& motion,
@@ -179,12 +179,12 @@ template <class T>
 
 } // namespace detail
 
-/// Where a screw motion comes nearest to a pose.
+/// Nearest pose on a screw motion.
 template <class T>
 struct nearest_result {
-  T tau = T(0);                 ///< the fraction of the motion, in [0, 1]
-  dual_quaternion<T> pose = {}; ///< there
-  T squared_distance = T(0);    ///< from there to the given pose, in squared units of length
+  T tau = T(0);                 ///< fraction of the motion, in [0, 1]
+  dual_quaternion<T> pose = {}; ///< pose at τ
+  T squared_distance = T(0);    ///< squared distance to the given pose, in squared units of length
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -227,10 +227,10 @@ template <class T>
   const screw_motion<R> values{motion.axis.unaryExpr(number), motion.moment.unaryExpr(number),
                                number(motion.angle), number(motion.translation), motion.kind};
   T tau(distance_minima<R>(numbers(start), values, numbers(p), length).least());
-  // The value has its digits. Each step of Newton's method adds an order of derivatives.
+  // The value is converged. Each step of Newton's method adds an order of derivatives.
   for (int step = 0; step < scalar_traits<T>::order; ++step) {
     const auto d = derivatives<2>(distance_at, tau);
-    if (!(innermost(d[2]) > 0)) { // at an end, or all along the motion it is as far
+    if (!(innermost(d[2]) > 0)) { // at an end, or at constant distance along the motion
       for (const int end : {0, 1}) {
         if (innermost(distance_at(T(R(end)))) <= innermost(d[0])) {
           tau = T(R(end));
@@ -251,15 +251,16 @@ template <class T>
 } // namespace detail
 
 /// The τ in [0, 1] at which the motion A exp(½τ(φ + εd)(n + εm)) is nearest to a pose P, by
-/// `squared_distance`. Where it is not an end, derivatives follow from the equation that it solves;
-/// where a whole part of the motion is equally near, they are zero.
+/// `squared_distance`. If τ is not an end, derivatives follow from the equation that it solves; if
+/// a whole part of the motion is equally near, they are zero.
 ///
 /// \param start   A
 /// \param motion  in body axes of A, as `screw_parameters(conj(A) * B)`; the angle, in radians, may
-///                be many turns
-/// \param length  how far a turn by one radian is
+///   exceed a full turn
+/// \param length  characteristic length: the translation that counts as much as a rotation by one
+///   radian
 /// \return `nearest_result<T>`
-/// \throws invalid_input where the length is negative or not finite
+/// \throws invalid_input if the length is negative or not finite
 template <class A, Promotable<A> M, Promotable<A> P>
 [[nodiscard]] auto nearest_on_screw(const dual_quaternion<A>& start, const screw_motion<M>& motion,
                                     const dual_quaternion<P>& p, double length) {

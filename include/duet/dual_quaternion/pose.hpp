@@ -8,7 +8,8 @@
 #include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/dual_quaternion/twist.hpp> // whoever has poses can differentiate by them
+// Included so that every user of poses can differentiate with respect to them.
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/rotation.hpp>
 
@@ -19,13 +20,13 @@
 
 /// \file
 /// Unit dual quaternions as rigid displacements x ↦ R x + t (N17): points, directions, lines,
-/// planes, matrices.
+/// planes, homogeneous transformation matrices.
 
 namespace duet {
 
 namespace detail {
 
-/// N17 for a rotation that is known to be a unit.
+/// N17 for a rotation known to be of unit norm.
 template <class A, class B>
 [[nodiscard]] dual_quaternion<promote_t<A, B>> pose_of_unit(const quaternion<A>& rotation,
                                                             const vector3<B>& translation) {
@@ -45,8 +46,10 @@ template <class Q>
 } // namespace detail
 
 /// N17: the pose α + εβ with β = ½ t α: first the rotation, a unit quaternion, then the
-/// translation. \throws invalid_input where |α|² is not 1 within 1e-6 (1e-3 in single precision):
-/// points would be scaled by it; NaN passes
+/// translation.
+///
+/// \throws invalid_input if |α|² is not 1 within 1e-6 (1e-3 in single precision): points would be
+///   scaled by it; NaN passes
 template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE dual_quaternion<promote_t<A, B>>
 pose(const quaternion<A>& rotation, const vector3<B>& translation) {
@@ -54,20 +57,22 @@ pose(const quaternion<A>& rotation, const vector3<B>& translation) {
   using real = lane_type_t<A>;
   constexpr double tolerance = std::numeric_limits<real>::digits > 24 ? 1e-6 : 1e-3;
   const auto alpha = detail::innermost_of(rotation);
-  if (any(abs(norm2(alpha) - 1) > tolerance)) [[unlikely]] {
+  if (any(abs(squared_norm(alpha) - 1) > tolerance)) [[unlikely]] {
     detail::refuse_rotation(alpha);
   }
   return detail::pose_of_unit(rotation, translation);
 }
 
-/// The pose [R t; 0 1]. \throws invalid_input as `from_rotation_matrix`
+/// The pose of the homogeneous transformation [R t; 0 1].
+///
+/// \throws invalid_input as `from_rotation_matrix`
 template <class A, Promotable<A> B>
 [[nodiscard]] dual_quaternion<promote_t<A, B>> pose(const matrix3<A>& rotation,
                                                     const vector3<B>& translation) {
   return detail::pose_of_unit(from_rotation_matrix(rotation), translation);
 }
 
-/// A point carried along by a pose: R x + t.
+/// Transforms a point by a pose: R x + t.
 template <class T, Promotable<T> U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_point(const dual_quaternion<T>& a,
                                                        const vector3<U>& x) {
@@ -75,26 +80,26 @@ template <class T, Promotable<T> U>
   const vector3<T> t = translation(a);
   return {turned[0] + t[0], turned[1] + t[1], turned[2] + t[2]}; // no packets to be put together
 }
-/// A direction carried along by a pose: R n of what has no place, as a normal.
+/// Transforms a direction (a vector without position, such as a normal) by a pose: R n.
 template <class T, Promotable<T> U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_direction(const dual_quaternion<T>& a,
                                                            const vector3<U>& n) {
   return rotate(rotation(a), n);
 }
 
-/// A line carried along by a pose: A (l + εm) A*, in Plücker coordinates, direction l and moment
-/// m = point × l. Also any screw and twist.
+/// Transforms a line by a pose: A (l + εm) A*, in Plücker coordinates, direction l and moment
+/// m = point × l. Also transforms screws and twists.
 template <class T, Promotable<T> U>
 [[nodiscard]] dual_vector<promote_t<T, U>> transform_line(const dual_quaternion<T>& a,
                                                           const dual_vector<U>& line) {
   return rotate(a, line);
 }
 
-/// The plane n·x = offset. The default is z = 0.
+/// Plane n·x = offset. The default is z = 0.
 template <class T>
 struct plane {
   vector3<T> normal = vector3<T>::UnitZ(); ///< n, a unit vector
-  T offset = T(0); ///< of the plane along n from the origin, in units of length
+  T offset = T(0); ///< offset of the plane along n from the origin, in units of length
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -103,7 +108,7 @@ struct plane {
   }
 };
 
-/// A plane carried along by a pose: n ↦ R n, offset ↦ offset + R n·t.
+/// Transforms a plane by a pose: n ↦ R n, offset ↦ offset + R n·t.
 template <class T, Promotable<T> U>
 [[nodiscard]] plane<promote_t<T, U>> transform_plane(const dual_quaternion<T>& a,
                                                      const plane<U>& p) {
@@ -112,7 +117,7 @@ template <class T, Promotable<T> U>
   return {normal, R(p.offset) + normal.dot(translation(a).template cast<R>())};
 }
 
-/// The 4 × 4 matrix [R t; 0 1] of a pose.
+/// The 4 × 4 homogeneous transformation matrix [R t; 0 1] of a pose.
 template <class T>
 [[nodiscard]] Eigen::Matrix<T, 4, 4> transform_matrix(const dual_quaternion<T>& a) {
   Eigen::Matrix<T, 4, 4> m = Eigen::Matrix<T, 4, 4>::Identity();
@@ -121,8 +126,9 @@ template <class T>
   return m;
 }
 
-/// The pose of a 4 × 4 matrix [R t; 0 1].
-/// \throws invalid_input where the last row is another, and as `from_rotation_matrix`
+/// The pose of a 4 × 4 homogeneous transformation matrix [R t; 0 1].
+///
+/// \throws invalid_input if the last row is another, and as `from_rotation_matrix`
 template <class T>
 [[nodiscard]] dual_quaternion<T> from_transform_matrix(const Eigen::Matrix<T, 4, 4>& m) {
   detail::require(all(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 &&

@@ -13,7 +13,8 @@
 
 namespace duet {
 
-/// Seven coordinates of a pose, [t; α]: a place, then a quaternion, scalar first.
+/// Seven coordinates of a pose, [t; α]: the position of its origin, then a quaternion, scalar
+/// first.
 template <class T>
 using vector7 = Eigen::Matrix<T, 7, 1>;
 
@@ -36,7 +37,7 @@ template <class T>
 template <class T>
 [[nodiscard]] Eigen::Matrix<T, 6, 7> pose_rate_matrix(const dual_quaternion<T>& a) {
   const vector3<T> t = translation(a);
-  const Eigen::Matrix<T, 3, 4> e = rate_matrix(rotation(a), frame::spatial);
+  const Eigen::Matrix<T, 3, 4> e = quaternion_rate_matrix(rotation(a), frame::spatial);
   Eigen::Matrix<T, 6, 7> m = Eigen::Matrix<T, 6, 7>::Zero();
   m.template topLeftCorner<3, 3>().setIdentity();
   for (int j = 0; j < 4; ++j) {
@@ -47,8 +48,8 @@ template <class T>
   return m;
 }
 
-/// The rate γ̇ = [ṫ; α̇] of a pose that moves with the spatial twist [v; ω]: ṫ = v − t × ω, α̇ = ½ ω
-/// α. The inverse of J2 among the γ̇ that keep α a unit.
+/// Rate γ̇ = [ṫ; α̇] of a pose that moves with the spatial twist [v; ω]: ṫ = v − t × ω, α̇ = ½ ω α.
+/// The inverse of J2 among the γ̇ that preserve |α| = 1.
 template <class A, Promotable<A> B>
 [[nodiscard]] vector7<promote_t<A, B>> pose_coordinates_rate(const dual_quaternion<A>& a,
                                                              const vector6<B>& spatial_twist) {

@@ -86,7 +86,7 @@ struct registration {
       const vector3<T> x = p(i) - from_centre, y = q(i) - to_centre;
       covariance += weight(i) * y * x.transpose();
       variance += weight(i) * x.squaredNorm();
-      // Coordinates are rounded, so that points on a line are not quite on one.
+      // Coordinates are rounded, so that collinear points are not exactly collinear.
       rounding +=
           weight(i) * R(largest_of(p(i)) * largest_of(y) + largest_of(x) * largest_of(q(i)));
     }
@@ -108,20 +108,20 @@ private:
 
 } // namespace detail
 
-/// The pose that takes points pᵢ to points qᵢ with the smallest Σ wᵢ |R pᵢ + t − qᵢ|².
+/// Pose that takes points pᵢ to points qᵢ with the smallest Σ wᵢ |R pᵢ + t − qᵢ|².
 ///
 /// \param from     pᵢ, the columns of a matrix with three rows
 /// \param to       qᵢ, as many
-/// \param weights  wᵢ ≥ 0 in proportion, or none for equal ones
+/// \param weights  wᵢ ≥ 0, up to a common factor; empty (the default) for equal weights
 ///
 /// With the weighted centres p̄, q̄, R = `nearest_rotation(Σ wᵢ (qᵢ − q̄)(pᵢ − p̄)ᵀ)` and
 /// t = q̄ − R p̄ (W. Kabsch, Acta Cryst. A32 (1976) 922–923; S. Umeyama, IEEE Trans. PAMI 13 (1991)
 /// 376–380). Derivatives of every order with respect to both sets follow from the equation of R:
 /// they exist wherever R is unique, also for planar and symmetric sets and for exact data.
 ///
-/// \throws invalid_input if the sets differ in size or are not finite, if weights are not as
-/// `average` wants them, and if R is not unique: if the points of a set are collinear, or one set
-/// is the mirror image of the other with too much symmetry
+/// \throws invalid_input if the sets differ in size or are not finite, if weights are not valid for
+///   `average`, and if R is not unique: if the points of a set are collinear, or one set is the
+///   mirror image of the other with too much symmetry
 template <class P, class Q>
 [[nodiscard]] auto register_points(const Eigen::MatrixBase<P>& from, const Eigen::MatrixBase<Q>& to,
                                    const std::vector<double>& weights = {}) {
@@ -131,12 +131,12 @@ template <class P, class Q>
               vector3<T>(r.to_centre - r.rotation * r.from_centre));
 }
 
-/// The similarity with the smallest Σ wᵢ |s R pᵢ + t − qᵢ|².
+/// Similarity with the smallest Σ wᵢ |s R pᵢ + t − qᵢ|².
 ///
 /// R is that of `register_points`, s = tr(RᵀC)/Σ wᵢ |pᵢ − p̄|² with C = Σ wᵢ (qᵢ − q̄)(pᵢ − p̄)ᵀ,
 /// and t = q̄ − s R p̄. Parameters, domain and errors are those of `register_points`.
 ///
-/// \return `scaled_pose`: `transform_point(pose, scale * p)` is where p goes
+/// \return `scaled_pose`: `transform_point(pose, scale * p)` is the image of p
 template <class P, class Q>
 [[nodiscard]] auto register_points_with_scale(const Eigen::MatrixBase<P>& from,
                                               const Eigen::MatrixBase<Q>& to,

@@ -12,25 +12,26 @@
 #include <cstddef>
 
 /// \file
-/// Screw motion: interpolation along it (N19), its axis, angle and pitch.
+/// Screw motions: interpolation along them (N19), axis, angle and pitch.
 
 namespace duet {
 
-/// N19: ScLERP, the screw motion C(τ) = A (A* B)^τ from A to B along the shorter rotation unless
-/// another way is asked for: SLERP over dual numbers. Both are unit.
+/// N19: ScLERP (screw linear interpolation), the screw motion C(τ) = A (A* B)^τ from A to B, both
+/// of unit norm, by default along the shorter arc of rotation: SLERP over dual numbers.
+///
 /// \return `dual_quaternion<T>`
 template <class A, Promotable<A> B, class S>
 [[nodiscard]] auto sclerp(const dual_quaternion<A>& a, const dual_quaternion<B>& b, const S& tau,
-                          way round = way::shortest) {
-  return slerp(a, b, tau, round);
+                          slerp_arc arc = slerp_arc::shortest) {
+  return slerp(a, b, tau, arc);
 }
 
-/// What a rigid displacement consists of.
+/// Kind of a rigid displacement.
 enum class screw_kind {
   none,        ///< no motion
-  translation, ///< along the axis, which stands nowhere in particular
+  translation, ///< along the axis, whose position is arbitrary
   rotation,    ///< about the axis
-  screw        ///< both
+  screw        ///< rotation and translation
 };
 
 /// The name of a `screw_kind`.
@@ -39,14 +40,14 @@ enum class screw_kind {
   return names[std::size_t(kind)];
 }
 
-/// A rigid displacement as one motion along and about one line.
+/// Rigid displacement as a screw motion: rotation about and translation along one line.
 template <class T>
 struct screw_motion {
   vector3<T> axis = detail::zero_initialized<vector3<T>>();   ///< unit direction n of the line
   vector3<T> moment = detail::zero_initialized<vector3<T>>(); ///< point × n
   T angle = T(0);                                             ///< φ ∈ [0, π], radians
   T translation = T(0);               ///< d along the axis, in units of length
-  screw_kind kind = screw_kind::none; ///< which of the two there are
+  screw_kind kind = screw_kind::none; ///< components present: rotation, translation or both
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -58,12 +59,11 @@ struct screw_motion {
   }
 };
 
-/// The screw of a pose, the same for A and −A: log A = ½ (φ + εd)(n + εm).
+/// Screw parameters of a pose, the same for A and −A: log A = ½ (φ + εd)(n + εm).
 ///
-/// \param tolerance  an angle up to this is none (radians), and a translation up to this none
-/// (units of length): a pure translation has angle 0, its direction as axis, moment 0 and d ≥ 0; no
-/// motion has zeros. Below about 1e-8 the place of the axis would be rounding noise, which is why
-/// that is the default.
+/// \param tolerance  angles (radians) and translations (units of length) up to this count as zero:
+///   a pure translation has angle 0, its direction as axis, moment 0 and d ≥ 0; the identity has
+///   zeros. Below about 1e-8, the default, the position of the axis would be round-off.
 template <class T>
 [[nodiscard]] screw_motion<T> screw_parameters(const dual_quaternion<T>& a,
                                                double tolerance = 1e-8) {
@@ -84,7 +84,7 @@ template <class T>
     }
     return {vector3<T>(shift / d), none, T(0), d, screw_kind::translation};
   }
-  // The polar form over dual numbers: A = cos ½Φ + (n + εm) sin ½Φ, Φ = φ + εd.
+  // Polar form over dual numbers: A = cos ½Φ + (n + εm) sin ½Φ, Φ = φ + εd.
   const D sine = norm(v);
   const D angle = 2 * atan2(sine, short_way.w());
   const dual_vector<T> line = (v / sine).vec();
@@ -92,7 +92,9 @@ template <class T>
           abs(innermost(angle.epsilon())) > tolerance ? screw_kind::screw : screw_kind::rotation};
 }
 
-/// The pose exp(½ (φ + εd)(n + εm)) of a screw motion: unit axis n, moment m perpendicular to it.
+/// The pose exp(½ (φ + εd)(n + εm)) of a screw motion: unit axis n, moment m perpendicular to it,
+/// angle φ in radians, translation d.
+///
 /// \return `dual_quaternion<T>`
 template <class N, class M, class A, class D>
   requires Promotable<promote_t<N, M>, promote_t<A, D>>
@@ -102,7 +104,7 @@ template <class N, class M, class A, class D>
   return exp(dual_vector<T>(make_dual_vector(axis, moment) *
                             screw_dual<T>(T(T(angle) / 2), T(T(translation) / 2))));
 }
-/// The displacement that `screw_parameters` was of, up to sign.
+/// Pose of a screw motion: the inverse of `screw_parameters`, up to sign.
 template <class T>
 [[nodiscard]] dual_quaternion<T> from_screw(const screw_motion<T>& s) {
   return from_screw(s.axis, s.moment, s.angle, s.translation);

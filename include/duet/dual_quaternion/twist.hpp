@@ -17,15 +17,16 @@
 #include <type_traits>
 
 /// \file
-/// Velocities of rigid motion (N18), as columns [v; ω] and as dual vectors ω + εv; and what is dual
-/// to them, forces and moments [f; m] with the power f·v + m·ω, which no choice of frame changes.
+/// Twists, the velocities of rigid motion (N18), as columns [v; ω] and as dual vectors ω + εv; and
+/// wrenches, dual to them, forces and moments [f; m] with the power f·v + m·ω, which is independent
+/// of the frame.
 
 namespace duet {
 
 /// [v; ω]: linear, then angular.
 template <class T>
 using vector6 = Eigen::Matrix<T, 6, 1>;
-/// What twists [v; ω] are multiplied by.
+/// 6 × 6 matrix, a linear map of twists [v; ω].
 template <class T>
 using matrix6 = Eigen::Matrix<T, 6, 6>;
 
@@ -55,7 +56,7 @@ template <class A, class T>
   spatial.template head<3>() += cross(omega, components(translation(a))).eigen();
   return spatial;
 }
-/// And back: v + t × ω.
+/// The inverse of `hybrid_twist`: v + t × ω.
 template <class A, class T>
 [[nodiscard]] vector6<promote_t<A, T>> spatial_twist(const dual_quaternion<A>& a,
                                                      const vector6<T>& hybrid) {
@@ -82,7 +83,7 @@ template <class A, Promotable<A> B, FrameConstant Frame>
   }
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected: without a frame the axes are ambiguous.
 template <class A, class B>
 DUET_REFUSED("in which axes? twist(a, a_dot, frame::hybrid), frame::spatial or frame::body")
 vector6<promote_t<A, B>> twist(const dual_quaternion<A>&, const dual_quaternion<B>&);
@@ -100,12 +101,12 @@ template <class A, Promotable<A> B, FrameConstant Frame>
   }
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected: without a frame the axes are ambiguous.
 template <class A, class B>
 DUET_REFUSED("in which axes? pose_rate(a, twist, frame::hybrid), frame::spatial or frame::body")
 dual_quaternion<promote_t<A, B>> pose_rate(const dual_quaternion<A>&, const vector6<B>&);
 
-/// The adjoint [R t̂R; 0 R]: V^s = Ad(A) V^b for twists [v; ω], and twists in a moved frame.
+/// Adjoint matrix [R t̂R; 0 R]: V^s = Ad(A) V^b for twists [v; ω]; changes the frame of a twist.
 template <class T>
 [[nodiscard]] matrix6<T> Ad(const dual_quaternion<T>& a) {
   const matrix3<T> r = rotation_matrix(rotation(a));
@@ -134,9 +135,10 @@ template <class T>
   return m;
 }
 
-/// A pose is moved by a small twist δ = [v; ω]: exp(δ/2) A in `frame::spatial`, A exp(δ/2) in
-/// `frame::body`; in `frame::hybrid` its origin moves by v and its rotation by exp(ω/2) from the
-/// left, neither by the other's. Its rate is told as a twist.
+/// Tangent space of poses: a small twist δ = [v; ω] is a left perturbation exp(δ/2) A in
+/// `frame::spatial`, a right perturbation A exp(δ/2) in `frame::body`; in `frame::hybrid` the
+/// origin is translated by v and the rotation multiplied by exp(ω/2) from the left, independently.
+/// Rates are twists.
 template <class T>
 struct manifold<quaternion<dual<T, 1, screw_tag>>> {
   static constexpr int dimension = 6;
@@ -168,8 +170,8 @@ struct manifold<quaternion<dual<T, 1, screw_tag>>> {
   }
 };
 
-/// The coadjoint [R 0; t̂R R] = Ad(A)⁻ᵀ: carries wrenches [f; m], m about the origin, as Ad(A)
-/// carries twists: F^s = coAd(A) F^b, and (coAd(A) F)·(Ad(A) V) = F·V.
+/// Coadjoint matrix [R 0; t̂R R] = Ad(A)⁻ᵀ: transforms wrenches [f; m], m about the origin, as
+/// Ad(A) transforms twists: F^s = coAd(A) F^b, and (coAd(A) F)·(Ad(A) V) = F·V.
 template <class T>
 [[nodiscard]] matrix6<T> coAd(const dual_quaternion<T>& a) {
   const matrix6<T> m = Ad(a);

@@ -127,7 +127,7 @@ struct atan : detail::function<atan, duet::rule::atan> {
 /// f with the sines and cosines of the C library, bit for bit. Otherwise those of several doubles
 /// are taken at once, four times as fast and within one unit of the last place too.
 template <Formula F>
-[[nodiscard]] constexpr auto with_library_sines(const F& f) {
+[[nodiscard]] constexpr auto with_std_sincos(const F& f) {
   return make_formula(typename F::node_type{}, merged(f.held(), held<detail::library_sines>{}));
 }
 

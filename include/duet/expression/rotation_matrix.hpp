@@ -18,8 +18,8 @@ namespace duet::expression {
 namespace op {
 
 /// [v]×, of which [v]× w = v × w.
-struct cross_matrix : linear_operation {
-  static constexpr detail::function_name name = {"cross_matrix", "\\left[#\\right]_{\\times}"};
+struct skew : linear_operation {
+  static constexpr detail::function_name name = {"skew", "\\left[#\\right]_{\\times}"};
   static constexpr kind kind_of(kind) { return matrix_kind(3, 3); }
   template <class V>
   static auto value(const V& v) {
@@ -45,7 +45,7 @@ namespace detail {
 template <class Q, class Motion>
 struct rate<applied_node<op::rotation_matrix, Q>, Motion> {
   static constexpr auto make() {
-    return apply<op::cross_matrix>(velocity_of<spatial_frame, Q, Motion>()) *
+    return apply<op::skew>(velocity_of<spatial_frame, Q, Motion>()) *
            applied_node<op::rotation_matrix, Q>{};
   }
   using type = decltype(make());
@@ -54,9 +54,7 @@ struct rate<applied_node<op::rotation_matrix, Q>, Motion> {
 } // namespace detail
 
 /// [v]×, the matrix of the cross product: [v]× w = v × w.
-[[nodiscard]] constexpr auto cross_matrix(const VectorTerm auto& v) {
-  return apply<op::cross_matrix>(v);
-}
+[[nodiscard]] constexpr auto skew(const VectorTerm auto& v) { return apply<op::skew>(v); }
 /// The 3 x 3 matrix R of a rotation, R v = q v q*, with the derivative [ω]× R (N7). q is taken as
 /// unit.
 [[nodiscard]] constexpr auto rotation_matrix(const QuaternionTerm auto& q) {

@@ -183,20 +183,21 @@ namespace detail {
 template <class L, Operands<L> Angle, class Tag = decltype([](op::turn*) {})>
 [[nodiscard]] constexpr auto screw(const L& line, const Angle& angle) {
   static_assert(detail::kind_of_operand<L>() == kind::dual_vector,
-                "duet: screw(line, angle) takes a dual vector n + εm, made by axis_through or "
+                "duet: screw(line, angle) takes a dual vector n + εm, made by line_through or "
                 "make_dual_vector");
   return detail::turn_about(detail::term<Tag>(line), detail::term<Tag>(angle));
 }
 /// The rotation by θ about a unit vector n; other lengths give garbage.
 template <class N, Operands<N> Angle, class Tag = decltype([](op::turn*) {})>
-[[nodiscard]] constexpr auto turn(const N& n, const Angle& angle) {
-  static_assert(detail::kind_of_operand<N>() == kind::vector,
-                "duet: turn(n, angle) takes a unit vector; for lines there is screw(line, angle)");
+[[nodiscard]] constexpr auto rotation_about(const N& n, const Angle& angle) {
+  static_assert(
+      detail::kind_of_operand<N>() == kind::vector,
+      "duet: rotation_about(n, angle) takes a unit vector; for lines there is screw(line, angle)");
   return detail::turn_about(detail::term<Tag>(n), detail::term<Tag>(angle));
 }
 /// The translation by d along a unit vector or line, a prismatic joint.
 template <class N, Operands<N> D, class Tag = decltype([](op::turn*) {})>
-[[nodiscard]] constexpr auto slide(const N& n, const D& d) {
+[[nodiscard]] constexpr auto translation_along(const N& n, const D& d) {
   const auto direction = apply<op::part_of_dual<false>>(detail::term<Tag>(n));
   return apply<op::slide>(direction, detail::term<Tag>(d));
 }
@@ -207,7 +208,7 @@ template <int I>
 using coordinate = formula<unit_vector_node<kind::dual_vector, I>, held<>>;
 
 /// The coordinate axes, lines through the origin, known to the compiler: `screw(axis::z, theta)`,
-/// `slide(axis::x, 0.3)`.
+/// `translation_along(axis::x, 0.3)`.
 inline constexpr coordinate<0> x{};
 inline constexpr coordinate<1> y{};
 inline constexpr coordinate<2> z{};
@@ -215,7 +216,7 @@ inline constexpr coordinate<2> z{};
 } // namespace axis
 
 /// The line along n through a point, n + ε point × n, for `screw`.
-[[nodiscard]] inline dual_vector<double> axis_through(const vector3<double>& point,
+[[nodiscard]] inline dual_vector<double> line_through(const vector3<double>& point,
                                                       const vector3<double>& n) {
   const vector3<double> moment = point.cross(n);
   return make_dual_vector(n, moment);

@@ -209,7 +209,7 @@ template <int I, VectorTerm V>
 }
 /// The vector of three scalars.
 template <class X, class Y, Operands<X, Y> Z, class Tag = decltype([](op::cross*) {})>
-[[nodiscard]] constexpr auto column(const X& x, const Y& y, const Z& z) {
+[[nodiscard]] constexpr auto make_vector(const X& x, const Y& y, const Z& z) {
   return detail::apply_to<op::column, Tag>(std::index_sequence_for<X, Y, Z>{}, x, y, z);
 }
 

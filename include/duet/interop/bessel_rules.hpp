@@ -11,7 +11,7 @@
 #include <limits>
 
 /// \file
-/// The derivatives of the Bessel functions of special_functions.hpp; see dual/rules/elementary.hpp.
+/// Derivatives of the Bessel functions of special_functions.hpp; see dual/rules/elementary.hpp.
 
 namespace duet::detail {
 
@@ -39,8 +39,8 @@ enum class bessel { j, y, i, k };
 
 /// 2 C_ν′ = ±C_{ν−1} ± C_{ν+1}, without a division by x.
 ///
-/// If x² vanishes beside 1, one of the two is all of it: what is left of the other, and of its
-/// derivatives, would be ∞ − ∞.
+/// If x² is negligible beside 1, one of the two terms is the whole sum: the rest of the other, and
+/// of its derivatives, would be ∞ − ∞.
 template <bessel Kind>
 struct cylinder : rule_by_boost<cylinder<Kind>> {
   static constexpr bool is_second = Kind == bessel::y || Kind == bessel::k;
@@ -93,9 +93,9 @@ private:
     return !is_second ||
            (Kind == bessel::y && order < 0 && !is_whole() && cylinder(order + 0.5).is_whole());
   }
-  /// Is it no power series at 0?
+  /// True if it is not a power series at 0.
   [[nodiscard]] bool has_branch_point() const { return is_second || !is_whole(); }
-  /// Which of the two in the slope is the larger one near 0?
+  /// True if `above` is the larger of the two terms of the slope near 0.
   [[nodiscard]] bool is_larger_above() const {
     return is_second && (order > 0 || is_of_first_kind());
   }

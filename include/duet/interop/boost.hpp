@@ -6,7 +6,7 @@
 #include <boost/math/quaternion.hpp>
 
 /// \file
-/// To and from `boost::math::quaternion`: the same algebra, scalar part first.
+/// Conversion to and from `boost::math::quaternion`: the same algebra, scalar part first.
 
 namespace duet {
 

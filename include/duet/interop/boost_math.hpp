@@ -18,10 +18,10 @@
 /// \file
 /// Functions of Boost.Math that duet has too, with duet's derivatives.
 ///
-/// Boost answers some arguments from tables or special cases, as Γ(3) = 2 and erf(0) = 0, where the
-/// derivative would be lost: the result is a constant. Series and Newton's method (sinc_pi,
-/// lambert_w0) stop where the value is right and higher derivatives are not. Most of Boost.Math
-/// takes dual numbers without any header of duet's; docs/boost.md says what to look out for.
+/// Boost returns table values or special cases for some arguments, as Γ(3) = 2 and erf(0) = 0,
+/// which lose the derivative: the result is a constant. Series and Newton's method (sinc_pi,
+/// lambert_w0) stop when the value is right and higher derivatives are not. Most of Boost.Math
+/// takes dual numbers without any header of duet's; docs/boost.md lists the exceptions.
 
 namespace duet::rule {
 
@@ -49,7 +49,7 @@ namespace duet::detail {
 template <class D>
 [[nodiscard]] D sinc(const D& x) {
   const auto value = innermost(x);
-  return select( // of large numbers the square leaves the range, or its powers do
+  return select( // for large numbers the square leaves the range, or its powers do
       value * value > 64, [&] { return D(sin(x) / x); }, [&] { return D(stumpff<1>(D(x * x))); });
 }
 
@@ -69,8 +69,8 @@ template <duet::RealInfinitesimal D>
 [[nodiscard]] inline D sinc_pi(D x) {
   return duet::detail::sinc(x);
 }
-/// Boost has one of its own for every type with one parameter, as `dual<double>` is to compilers
-/// that look at the parameters without default alone.
+/// Boost has a separate overload for every type with one parameter, as `dual<double>` is to
+/// compilers that consider only parameters without default.
 template <class T, template <class> class U>
   requires duet::RealInfinitesimal<U<T>>
 [[nodiscard]] inline U<T> sinc_pi(const U<T> x) { return duet::detail::sinc(x); }

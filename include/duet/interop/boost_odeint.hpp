@@ -16,10 +16,10 @@
 
 /// \file
 /// Boost.Odeint with step size control over states of dual numbers: `std::vector` and Eigen
-/// matrices. (`std::array`, and steppers of fixed step, do without this header.)
+/// matrices. (`std::array`, and steppers of fixed step, do not need this header.)
 ///
-/// The norm of an error is that of its values, so that the steps are those of the plain numbers
-/// and sensitivities are the derivatives of just that integration.
+/// The norm of an error is that of its values, so that the steps are those of the plain numbers and
+/// sensitivities are the derivatives of exactly that integration.
 
 namespace duet {
 namespace detail {
@@ -43,7 +43,7 @@ template <class Range>
 
 /// `boost::numeric::odeint::range_algebra` with the norm of the values.
 struct odeint_algebra : boost::numeric::odeint::range_algebra {
-  /// The largest size of a component's value.
+  /// Largest absolute value of a component's value.
   template <class State>
   [[nodiscard]] static auto norm_inf(const State& error) {
     return detail::largest_value(error);

@@ -6,10 +6,10 @@
 #include <boost/rational.hpp>
 
 /// \file
-/// Dual and Taylor numbers over the rational numbers: derivatives of algebra without rounding.
+/// Dual and Taylor numbers over the rational numbers: derivatives of algebra without round-off.
 ///
 /// Constants are integers and rationals, not fractions like 0.5. Division by zero throws
-/// `boost::bad_rational`, also where the divisor has infinitesimal parts.
+/// `boost::bad_rational`, also if the divisor has infinitesimal parts.
 
 namespace duet {
 

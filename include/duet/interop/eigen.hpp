@@ -8,24 +8,25 @@
 #include <Eigen/Geometry>
 
 /// \file
-/// To and from the rotations of Eigen, which share duet's conventions: Hamilton product, active.
+/// Conversion to and from the rotations of Eigen, which share duet's conventions: Hamilton product,
+/// active.
 
 namespace duet {
 
-/// Careful where components are listed: Eigen's constructor takes w first but stores x, y, z, w.
+/// q as Eigen's quaternion. Note that Eigen's constructor takes w first but stores x, y, z, w.
 template <class T>
 [[nodiscard]] Eigen::Quaternion<T> to_eigen(const quaternion<T>& q) {
   return Eigen::Quaternion<T>(q.w(), q.x(), q.y(), q.z());
 }
 
-/// From a quaternion of Eigen, or one mapped to memory in the order x, y, z, w.
+/// Quaternion of Eigen, or one mapped to memory in the order x, y, z, w, as duet's.
 template <class Derived>
 [[nodiscard]] quaternion<typename Derived::Scalar>
 from_eigen(const Eigen::QuaternionBase<Derived>& q) {
   return {q.w(), q.x(), q.y(), q.z()};
 }
 
-/// The rotation of an axis of unit length and an angle in radians.
+/// The rotation given by an axis of unit length and an angle in radians.
 template <class T>
 [[nodiscard]] quaternion<T> from_eigen(const Eigen::AngleAxis<T>& rotation) {
   return from_eigen(Eigen::Quaternion<T>(rotation));
@@ -39,7 +40,9 @@ template <class T>
   return result;
 }
 
-/// The pose of an isometry x ↦ R x + t. \throws invalid_input where the linear part is no rotation
+/// The pose of an isometry x ↦ R x + t.
+///
+/// \throws invalid_input if the linear part is not a rotation
 template <class T>
 [[nodiscard]] dual_quaternion<T>
 from_eigen(const Eigen::Transform<T, 3, Eigen::Isometry>& isometry) {

@@ -6,7 +6,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 /// \file
-/// Numbers of many digits, to tell a slip from a rounding error.
+/// Numbers of many digits, to distinguish a slip in a formula from round-off.
 
 namespace duet {
 

@@ -20,8 +20,7 @@
 #include <limits>
 
 /// \file
-/// The derivatives of the special functions of special_functions.hpp; see
-/// dual/rules/elementary.hpp.
+/// Derivatives of the special functions of special_functions.hpp; see dual/rules/elementary.hpp.
 
 namespace duet {
 namespace detail {
@@ -102,8 +101,9 @@ struct beta_rule {
   }
 };
 
-/// K(k) = π/2 / agm(1, √(1 − k²)), and E(k) by the same means: E/K = 1 − Σ 2^{n−1} c_n². Both by
-/// means of dual numbers, whose derivatives converge one step after another.
+/// K(k) = π/2 / agm(1, √(1 − k²)) by the arithmetic–geometric mean, and E(k) by the same iteration:
+/// E/K = 1 − Σ 2^{n−1} c_n². Both over dual numbers, whose derivatives converge one step after
+/// another.
 template <class D>
 [[nodiscard]] std::array<D, 2> complete_elliptic_by_mean(const D& k) {
   using std::sqrt;
@@ -123,8 +123,8 @@ template <class D>
   return {first, first * (1 - sum)};
 }
 
-/// K(k) and E(k) where k is ±1: K′ = (E/(1 − k²) − K)/k and E′ = (E − K)/k, of which what is
-/// largest there decides about all derivatives.
+/// K(k) and E(k) at k = ±1: K′ = (E/(1 − k²) − K)/k and E′ = (E − K)/k, whose largest term there
+/// determines all derivatives.
 template <bool IsFirst>
 struct complete_at_one : rule_by_boost<complete_at_one<IsFirst>> {
   template <class T>
@@ -146,13 +146,13 @@ template <class D>
   return complete_elliptic_by_mean(k);
 }
 
-/// ζ(s) by Euler's and Maclaurin's formula, for s clearly below 0 by that of 1 − s.
+/// ζ(s) by the Euler–Maclaurin formula, for s clearly below 0 by the reflection to 1 − s.
 template <class D>
 [[nodiscard]] D zeta_of(const D& s) {
   using real = real_type_t<D>;
   if (innermost(s) < real(-0.25)) {
-    // 2 (2π)^(s−1) sin(πs/2) Γ(1 − s) ζ(1 − s); whole periods go first, and Γ, which would
-    // overflow, is taken in halves: Γ(x) = 2^(x−1)/√π Γ(x/2) Γ((x + 1)/2).
+    // 2 (2π)^(s−1) sin(πs/2) Γ(1 − s) ζ(1 − s); whole periods are removed first, and Γ, which would
+    // overflow, is computed in halves: Γ(x) = 2^(x−1)/√π Γ(x/2) Γ((x + 1)/2).
     const real whole = 4 * std::floor(innermost(s) / 4);
     const D other = 1 - s;
     const real pi = constant::pi<real>();
@@ -211,7 +211,7 @@ template <class D>
 }
 
 /// √((2l + 1)/4π (l − m)!/(l + m)!) P_l^m, upwards from that of l = m, x = cos θ and s = −sin θ.
-/// Factors near 1 in place of factorials, which leave the range.
+/// Factors near 1 instead of factorials, which leave the range.
 template <class D>
 [[nodiscard]] D normalized_legendre(unsigned l, unsigned m, const D& x, const D& s) {
   using std::sqrt;

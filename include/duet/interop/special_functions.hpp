@@ -15,17 +15,17 @@
 #include <type_traits>
 
 /// \file
-/// The special functions that `<cmath>` has since C++17, over dual and Taylor numbers: values by
-/// Boost.Math, but of Legendre's, Hermite's and Laguerre's by recurrences; derivatives of every
+/// The special functions of `<cmath>` since C++17, over dual and Taylor numbers: values by
+/// Boost.Math, except Legendre's, Hermite's and Laguerre's, by recurrences; derivatives of every
 /// order by recurrences, infinite ones at the ends of domains included. Names, arguments and signs
 /// are those of `<cmath>`. Orders, degrees, moduli and characteristics are plain numbers, see
 /// docs/boost.md.
 ///
-/// A header of its own, for Boost's take a compiler seconds.
+/// An opt-in header, as Boost's take seconds to compile.
 
 namespace duet {
 
-/// A dual or Taylor number over one real number, no batch.
+/// A dual or Taylor number over one real number, not a batch.
 template <class D>
 concept SpecialArgument = RealInfinitesimal<D> && !Batched<D>;
 
@@ -54,25 +54,25 @@ concept SpecialArgument = RealInfinitesimal<D> && !Batched<D>;
   return detail::spherical_bessel_rule<true>(n).value(x);
 }
 
-/// Elliptic integral of the first kind F(φ, k), by φ.
+/// Elliptic integral of the first kind F(φ, k), differentiable with respect to φ (radians).
 [[nodiscard]] auto ellint_1(Arithmetic auto k, const SpecialArgument auto& phi) {
   return detail::elliptic<1>(double(k)).value(phi);
 }
-/// Elliptic integral of the second kind E(φ, k), by φ.
+/// Elliptic integral of the second kind E(φ, k), differentiable with respect to φ (radians).
 [[nodiscard]] auto ellint_2(Arithmetic auto k, const SpecialArgument auto& phi) {
   return detail::elliptic<2>(double(k)).value(phi);
 }
-/// Elliptic integral of the third kind Π(ν, φ, k), by φ.
+/// Elliptic integral of the third kind Π(ν, φ, k), differentiable with respect to φ (radians).
 template <Arithmetic K, Arithmetic N, SpecialArgument D>
 [[nodiscard]] D ellint_3(K k, N nu, const D& phi) {
   return detail::elliptic<3>(double(k), double(nu)).value(phi);
 }
-/// Complete elliptic integral of the first kind K(k), by the modulus.
+/// Complete elliptic integral of the first kind K(k), differentiable with respect to the modulus.
 [[nodiscard]] auto comp_ellint_1(const SpecialArgument auto& k) {
   const auto value = boost::math::ellint_1(innermost(k), detail::quiet_policy());
   return detail::with_innermost(detail::complete_elliptic(k)[0], value);
 }
-/// Complete elliptic integral of the second kind E(k), by the modulus.
+/// Complete elliptic integral of the second kind E(k), differentiable with respect to the modulus.
 [[nodiscard]] auto comp_ellint_2(const SpecialArgument auto& k) {
   const auto value = boost::math::ellint_2(innermost(k), detail::quiet_policy());
   return detail::with_innermost(detail::complete_elliptic(k)[1], value);
@@ -89,7 +89,7 @@ template <Arithmetic K, Arithmetic N, SpecialArgument D>
                                        : boost::math::zeta(innermost(s), detail::quiet_policy());
   return detail::with_innermost(detail::zeta_of(s), value);
 }
-/// Beta function B(x, y), by both.
+/// Beta function B(x, y), differentiable with respect to both.
 template <class A, class B>
   requires detail::MixedReals<A, B> && SpecialArgument<promote_t<A, B>>
 [[nodiscard]] auto beta(const A& x, const B& y) {
@@ -108,7 +108,7 @@ template <SpecialArgument D>
   const D power = pow(detail::one_minus_square(x), real_type_t<D>(m) / 2);
   const D polynomial = detail::legendre_by_recurrence(l, m, x);
   if (m % 2 == 1 && innermost(power) == 0) {
-    // Derivatives of the root are 0 or infinite; what those of the polynomial add is smaller.
+    // Derivatives of the root are 0 or infinite; those of the polynomial are smaller.
     return power * innermost(polynomial);
   }
   return power * polynomial;
@@ -120,7 +120,7 @@ template <SpecialArgument D>
   using std::sin;
   return detail::normalized_legendre(l, m, D(cos(theta)), D(-sin(theta)));
 }
-/// Hermite polynomial H_n(x), of physicists: H_1 = 2x.
+/// Hermite polynomial H_n(x), physicists' convention: H_1 = 2x.
 template <SpecialArgument D>
 [[nodiscard]] D hermite(unsigned n, const D& x) {
   using real = real_type_t<D>;
@@ -149,7 +149,7 @@ template <SpecialArgument D>
   return assoc_laguerre(n, 0, x);
 }
 
-// What has no derivative here says so.
+// Functions without derivatives here are rejected with a message.
 
 #define DUET_REFUSE_FIRST_ARGUMENT(function, what)                                                 \
   template <Infinitesimal D, class... Rest>                                                        \

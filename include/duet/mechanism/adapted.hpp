@@ -14,13 +14,15 @@
 #include <cstddef>
 
 /// \file
-/// Chains made of another: with a tool, on a base, with a joint that is locked.
+/// Modified serial chains: with a tool, on a base, with a locked joint.
 
 namespace duet {
 
 namespace detail {
 
-/// \throws invalid_input where the translation is not finite
+/// Checks the translation of a placement.
+///
+/// \throws invalid_input if the translation is not finite
 template <class T>
 constexpr void require_finite(const placement<T>& given, const char* function) {
   const auto& t = given.translation;
@@ -32,11 +34,12 @@ constexpr void require_finite(const placement<T>& given, const char* function) {
 
 } // namespace detail
 
-/// The chain with a tool at its tip: the new tip stands at `tool` in the frame of the former, A(θ)
-/// T.
+/// The chain with a tool at its tip: the new tip (end-effector) frame has the pose `tool` relative
+/// to the previous one, A(θ) T.
 ///
 /// Example: `const auto arm = with_tool(robots::panda(), {quaternion<double>(1), {0, 0, .1}});`
-/// \return a chain of the same type, with the same names; of a `compiled_chain` a `serial_chain`
+///
+/// \return a chain of the same type, with the same names; for a `static_chain` a `serial_chain`
 /// \throws invalid_input for a translation that is not finite
 template <SerialChain C>
 [[nodiscard]] constexpr auto with_tool(const C& chain,
@@ -47,8 +50,9 @@ template <SerialChain C>
   return result;
 }
 
-/// The chain on a base: what was its base stands at `base` in the frame that poses are now in,
-/// B A(θ). That frame is link 0.
+/// The chain on a base: the previous base has the pose `base` in the new reference frame, which is
+/// link 0; the pose of the tip is B A(θ).
+///
 /// \return as `with_tool`
 /// \throws invalid_input for a translation that is not finite
 template <SerialChain C>
@@ -60,26 +64,27 @@ template <SerialChain C>
   return result;
 }
 
-/// The chain with a joint, given by its number or its name, that stays at a coordinate, radians or
-/// units of length. It has a joint less, and those behind it have numbers one lower; of several
-/// lock the last one first.
+/// The chain with one joint, given by its number or its name, locked at a coordinate in radians or
+/// units of length. The chain has one joint less, and the numbers of the joints behind it decrease
+/// by one; to lock several, begin with the last.
 ///
-/// Example: `const serial_chain<6> arm = with_locked(robots::panda(), 2, 0);`
-/// \return of a chain whose number of joints is in its type one with a joint less, otherwise one of
-/// the same type, with the names that are left
-/// \throws invalid_input for a joint that there is none of, and a coordinate beyond its limits
+/// Example: `const serial_chain<6> arm = with_locked_joint(robots::panda(), 2, 0);`
+///
+/// \return a chain with one joint less if the number of joints is in the type, otherwise a chain of
+/// the same type, with the remaining names
+/// \throws invalid_input for a joint that does not exist, and for a coordinate outside its limits
 template <SerialChain C, detail::JointOf<C> Which>
-[[nodiscard]] constexpr auto with_locked(const C& chain, const Which& which,
-                                         const typename C::scalar_type& theta) {
-  static_assert(C::joints != 1, "duet: with_locked: no joint would be left to move");
+[[nodiscard]] constexpr auto with_locked_joint(const C& chain, const Which& which,
+                                               const typename C::scalar_type& theta) {
+  static_assert(C::joints != 1, "duet: with_locked_joint: no joint would be left to move");
   using T = typename C::scalar_type;
-  const int i = detail::joint_number(chain, which, "with_locked");
+  const int i = detail::joint_number(chain, which, "with_locked_joint");
   const auto& limits = chain.limits(i);
   if (!(limits.lower <= theta && theta <= limits.upper && theta - theta == 0)) {
     detail::bad_joint(
         std::size_t(i),
         detail::message(theta, " is not within its limits, ", limits.lower, " to ", limits.upper),
-        "with_locked", detail::joint_name(chain, i));
+        "with_locked_joint", detail::joint_name(chain, i));
   }
   const auto held = detail::placement_at(chain.steps()[std::size_t(i)], theta);
   if constexpr (C::joints > 1) {
@@ -90,7 +95,7 @@ template <SerialChain C, detail::JointOf<C> Which>
 }
 
 template <SerialChain C, detail::NameInVain<C> Which>
-DUET_REFUSED("only chains of read_urdf have names: with_locked(chain, number, coordinate)")
-C with_locked(const C&, const Which&, const typename C::scalar_type&);
+DUET_REFUSED("only chains of read_urdf have names: with_locked_joint(chain, number, coordinate)")
+C with_locked_joint(const C&, const Which&, const typename C::scalar_type&);
 
 } // namespace duet

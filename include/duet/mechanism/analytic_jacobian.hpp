@@ -8,15 +8,17 @@
 #include <Eigen/Core>
 
 /// \file
-/// Jacobians of a chain by coordinates of the pose: translation and quaternion, translation and
-/// Euler angles.
+/// Analytical Jacobians of a chain with respect to pose coordinates: translation and quaternion,
+/// translation and Euler angles.
 
 namespace duet {
 
-/// ∂γ/∂θ, 7 rows, of γ = [t; α] (N20, N21): J2 times it is the spatial Jacobian. α is the
-/// quaternion of `chain.pose(theta)`, which has its own sign. Arguments as `jacobian`.
+/// Analytical Jacobian ∂γ/∂θ, 7 rows, of γ = [t; α] (N20, N21): J2 times it is the spatial
+/// Jacobian. α is the quaternion of `chain.pose(theta)`, with the sign that it has there. Arguments
+/// as `jacobian`.
+///
 /// \return a matrix of 7 rows and a column for each joint
-template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+template <SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto pose_coordinates_jacobian(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
   const auto [a, m] = pose_and_jacobian(chain, theta, frame::spatial, at);
@@ -27,11 +29,12 @@ template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
   return result;
 }
 
-/// ∂[t; a, b, c]/∂θ, 6 rows, for the Euler angles of a sequence: `euler_jacobian<zyx>(chain, θ)`.
-/// Without bounds towards gimbal lock, where the angles' rates do not exist. Arguments as
-/// `jacobian`.
+/// Analytical Jacobian ∂[t; a, b, c]/∂θ, 6 rows, for the intrinsic Euler angles of a sequence:
+/// `euler_jacobian<zyx>(chain, θ)`. Unbounded near gimbal lock, where the rates of the angles do
+/// not exist. Arguments as `jacobian`.
+///
 /// \return a matrix of 6 rows and a column for each joint
-template <euler_sequence Sequence, SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+template <euler_sequence Sequence, SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto euler_jacobian(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
   auto [a, m] = pose_and_jacobian(chain, theta, frame::hybrid, at);

@@ -8,17 +8,17 @@
 #include <vector>
 
 /// \file
-/// The error of mechanisms with loops.
+/// The error of closed-chain mechanisms.
 
 namespace duet {
 
-/// A closed loop that has no position where one was asked for.
-class cannot_close : public no_convergence {
+/// Loop-closure failure: a closed chain has no configuration at the requested parameters.
+class loop_closure_failure : public no_convergence {
 public:
-  cannot_close(const std::string& message, std::vector<double> parameter)
+  loop_closure_failure(const std::string& message, std::vector<double> parameter)
       : no_convergence(message), parameter_(std::move(parameter)) {}
 
-  /// The driving parameters at which it closed last, or was to close first.
+  /// The driving parameters at which the loops closed last, or were to close first.
   [[nodiscard]] const std::vector<double>& parameter() const { return parameter_; }
 
 private:

@@ -19,24 +19,25 @@
 #include <vector>
 
 /// \file
-/// The centre of mass of a tree, its Jacobian, rate and Hessian in closed form, in time
-/// proportional to the number of links.
+/// Centre of mass of a kinematic tree, its Jacobian, time derivative of the Jacobian and Hessian in
+/// closed form, in time proportional to the number of links.
 
 namespace duet {
 
 namespace detail {
 
-/// Mass and Σ mass × centre of all that a node carries, in the frame of the root.
+/// Mass and first moment, Σ mass × centre, of all that a node carries, in the frame of the root.
 template <class S>
 struct carried_mass {
   double mass = 0;
   three_vector<S> moment{S(0), S(0), S(0)};
-  three_vector<S> rate{S(0), S(0), S(0)}; ///< of the moment
+  three_vector<S> rate{S(0), S(0), S(0)}; ///< time derivative of the moment
 };
 
-/// Of the root, then of each node.
-/// \param rates  of the nodes; of none the rates are zero
-/// \throws invalid_input where all is without mass
+/// Carried masses of the root, then of each node.
+///
+/// \param rates  velocities of the nodes; if empty all are zero
+/// \throws invalid_input if the total mass is zero
 template <class S>
 [[nodiscard]] std::vector<carried_mass<S>> carried_masses(const tree_table& table,
                                                           const tree_motion<S>& motion,
@@ -72,8 +73,8 @@ void add_to_column(J& m, const coordinate_source& source, double factor, const t
   m(2, source.own) += v.z * (factor * source.multiplier);
 }
 
-/// A coordinate moves the centre c of all masses by (m v + ω × h)/M per unit: m and h of what it
-/// carries, [v; ω] its screw.
+/// A coordinate moves the centre of mass c by (m v + ω × h)/M per unit: m and h are the mass and
+/// moment that it carries, [v; ω] is its screw.
 template <class S>
 [[nodiscard]] tree_columns<S, 3> centre_of_mass_jacobian_of(const tree_table& table,
                                                             const tree_motion<S>& motion) {
@@ -88,7 +89,7 @@ template <class S>
   return result;
 }
 
-/// (m v̇ + ω̇ × h + ω × ḣ)/M
+/// Time derivative (m v̇ + ω̇ × h + ω × ḣ)/M.
 template <class S, class X, class V>
 [[nodiscard]] tree_columns<S, 3> centre_of_mass_jacobian_rate_of(const tree_table& table,
                                                                  const tree_motion<S>& motion,
@@ -110,9 +111,10 @@ template <class S, class X, class V>
 
 } // namespace detail
 
-/// The centre of all masses of a tree at coordinates q, in the frame of the root.
-/// \throws invalid_input for another number of coordinates than `size()`, and for a tree without
-/// mass
+/// The centre of mass of a tree at the configuration q, in the frame of the root.
+///
+/// \throws invalid_input if the number of coordinates differs from `size()`, and for a
+/// tree without mass
 template <VectorLike X>
 [[nodiscard]] auto centre_of_mass(const kinematic_tree& tree, const X& q) {
   using S = detail::tree_scalar<X>;
@@ -121,7 +123,8 @@ template <VectorLike X>
   return (S(1 / all[0].mass) * all[0].moment).eigen();
 }
 
-/// ∂c/∂q of the centre of mass c of a tree. Arguments as `centre_of_mass`.
+/// Jacobian ∂c/∂q of the centre of mass c of a tree. Arguments as `centre_of_mass`.
+///
 /// \return a matrix of 3 rows and a column for each coordinate
 template <VectorLike X>
 [[nodiscard]] auto centre_of_mass_jacobian(const kinematic_tree& tree, const X& q) {
@@ -131,7 +134,8 @@ template <VectorLike X>
                                             detail::motion_of_all<S>(tree.table(), x));
 }
 
-/// J̇ along q̇ of J = `centre_of_mass_jacobian`, so that c̈ = J q̈ + J̇ q̇.
+/// Time derivative J̇ along q̇ of J = `centre_of_mass_jacobian`, so that c̈ = J q̈ + J̇ q̇.
+///
 /// \return a matrix of 3 rows and a column for each coordinate
 template <VectorLike X, VectorLike V>
 [[nodiscard]] auto centre_of_mass_jacobian_rate(const kinematic_tree& tree, const X& q,
@@ -143,8 +147,9 @@ template <VectorLike X, VectorLike V>
       tree.table(), detail::motion_of_all<S>(tree.table(), x), x, x_dot);
 }
 
-/// ∂²c/∂q_j∂q_k of the centre of mass c of a tree: for each j a matrix of 3 rows and a column for
-/// each k. Arguments as `centre_of_mass`.
+/// Hessian ∂²c/∂q_j∂q_k of the centre of mass c of a tree: for each j a matrix of 3 rows and a
+/// column for each k. Arguments as `centre_of_mass`.
+///
 /// \return a `std::vector` of matrices
 template <VectorLike X>
 [[nodiscard]] auto centre_of_mass_hessian(const kinematic_tree& tree, const X& q) {

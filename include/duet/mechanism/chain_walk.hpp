@@ -26,12 +26,12 @@
 #include <utility>
 
 /// \file
-/// Along a chain from its base to one of its links, in a loop over a table in memory or unrolled
-/// over one that the compiler knows. For those who extend duet.
+/// Traversal of a chain from its base to one of its links, as a loop over a table in memory or
+/// unrolled over a table known to the compiler. For those who extend duet.
 
 namespace duet {
 
-/// A chain: what it is made of is in `steps()`.
+/// A serial chain, whose evaluation steps are in `steps()`.
 template <class C>
 concept SerialChain = requires(const C& chain) {
   typename C::scalar_type;
@@ -42,7 +42,7 @@ concept SerialChain = requires(const C& chain) {
 
 namespace detail {
 
-/// The scalar of a chain's results at coordinates X.
+/// The scalar of a chain's results at a configuration of type X.
 template <class C, class X>
 using chain_scalar = promote_t<typename C::scalar_type, typename vector_argument<X>::scalar>;
 
@@ -59,25 +59,25 @@ void require_size(const C& chain, const X& theta) {
   }
 }
 
-/// sin(θ/2) and cos(θ/2) of the joints of a chain: those of doubles, and of the values of duals
-/// over doubles, in vectors, a quarter of the time that the C library takes for one after the
-/// other.
+/// sin(θ/2) and cos(θ/2) of the joints of a chain. For doubles, and values of duals over doubles,
+/// they are computed in SIMD vectors, in a quarter of the time of one call of the C library after
+/// the other.
 ///
 /// \tparam S  scalar of the results
 /// \tparam N  number of joints; negative: up to −N
-/// \tparam X  of the coordinates θ
+/// \tparam X  type of the configuration θ
 template <class S, int N, class X>
 class half_turns {
   static constexpr int most = N > 0 ? N : -N;
   static constexpr bool at_once = most > 1 && std::same_as<real_type_t<S>, double>;
-  // Eight lanes would not make it faster.
+  // Eight lanes are not faster.
   static constexpr int lanes = DUET_VECTOR_BYTES < 32 ? 2 : 4;
   static constexpr int vectors = at_once ? (most + lanes - 1) / lanes : 0;
   using packet = vector_of<double, lanes>;
 
 public:
-  /// \param size   how many joints there are
-  /// \param count  of how many of the first the sines are wanted
+  /// \param size   number of joints
+  /// \param count  number of joints from the base on whose sines are required
   DUET_ALWAYS_INLINE half_turns(const X& theta, int size, int count) : theta_(theta) {
     if constexpr (at_once) {
       const auto take = [&](int v) DUET_INLINE_LAMBDA {
@@ -93,7 +93,7 @@ public:
           }
         }
       };
-      if constexpr (N > 0) { // indices that the compiler knows leave coordinates in registers
+      if constexpr (N > 0) { // constant indices keep coordinates in registers
         unrolled<vectors>(take);
       } else {
         for (int v = 0; v * lanes < count; ++v) {
@@ -121,11 +121,11 @@ private:
   std::array<sine_cosine<packet>, std::size_t(vectors)> values_;
 };
 
-/// Where a link stands in the base.
+/// Pose of a link relative to the base.
 template <class S>
 using link_displacement = displacement<quaternion<S>, three_vector<S>>;
 
-/// From the I-th joint on, the table being known.
+/// Traversal from the I-th joint on of a table known to the compiler.
 template <bool WithRotation, class C, int I, class S, class Link, class X, class Turns, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
 walk_known(const Link& link, const X& theta, const Turns& turns_of, int links, const Visit& visit) {
@@ -147,8 +147,8 @@ walk_known(const Link& link, const X& theta, const Turns& turns_of, int links, c
   }
 }
 
-/// Calls visit(i, step, axis, point on it) for the first `links` joints; returns where the frame of
-/// the last of them stands, its rotation only if asked for.
+/// Calls visit(i, step, axis, point on it) for the first `links` joints and returns the frame of
+/// the last of them, with its rotation only if required.
 template <bool WithRotation, class S, class C, class X, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> walk(const C& chain, const X& theta,
                                                            int links, const Visit& visit) {
@@ -175,7 +175,7 @@ template <bool WithRotation, class S, class C, class X, class Visit>
   }
 }
 
-/// Where a frame attached to a link stands.
+/// Pose of a frame attached to a link.
 template <class S, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> attached(const link_displacement<S>& link,
                                                                const placement<T>& offset) {
@@ -188,17 +188,17 @@ inline constexpr auto visit_nothing = [](const auto&...) {};
 
 } // namespace detail
 
-/// What functions of a chain are about unless told otherwise.
+/// Default frame of the functions of a chain: its tip.
 struct tip_of_chain {};
 
-/// What a function of a chain may be about: its tip, the link of a number, a frame on a link.
+/// A frame argument of a function of a chain: the tip, a link number, or a frame on a link.
 template <class At, class C>
-concept PlaceOnChain = std::same_as<At, tip_of_chain> || std::integral<At> ||
+concept FrameOnChain = std::same_as<At, tip_of_chain> || std::integral<At> ||
     std::same_as<At, attached_frame<typename C::scalar_type>>;
 
 namespace detail {
 
-template <class C, PlaceOnChain<C> At>
+template <class C, FrameOnChain<C> At>
 [[nodiscard]] constexpr decltype(auto) frame_on(const C& chain, const At& at) {
   if constexpr (std::same_as<At, tip_of_chain>) {
     return chain.tip();

@@ -24,75 +24,80 @@
 #include <vector>
 
 /// \file
-/// Mechanisms whose links form loops: positions x(u) by the constraints F(x, u) = 0.
+/// Mechanisms given by constraint equations: positions x(u) with the loop-closure constraints F(x,
+/// u) = 0.
 
 namespace duet {
 
-/// How a loop is followed.
-struct closed_loop_options {
-  double largest_step = .5; ///< of u. Large ones cannot tell whole turns of driving angles
+/// Options of the continuation of a `constrained_mechanism`.
+struct constrained_mechanism_options {
+  double largest_step = .5; ///< maximum step of u; large steps miss full turns of driving angles
 };
 
-/// The positions x(u) of a mechanism that is given by its constraints F(x, u) = 0.
+/// The positions x(u) of a mechanism given by its constraints F(x, u) = 0, followed by
+/// predictor–corrector continuation.
 ///
-/// \tparam F  callable, templated over the scalars of both arguments: as many residuals as x has
-///            coordinates, of which a rotation has three; see `implicit_function`
-/// \tparam X  positions, in double: a scalar, a fixed-size vector, a unit quaternion, or a tuple
-/// \tparam P  the driving parameter u, double, or a fixed-size vector of them
-///
-/// A loop usually closes in several ways. Which of them is meant is said by the position at one u;
-/// from there x is followed along the straight line to any other u by steps small enough
-/// for the rates at both ends to agree with the way, and for det ∂F/∂x, whose sign differs on the
-/// two branches that meet in a dead point, to change little. As a function of u it is
-/// differentiated by all drivers, by the implicit function theorem: `derivatives<2>(loop, u)` are
-/// position, velocity and acceleration per unit of u. Evaluation is `const` and uses no heap.
+/// Loops usually close in several assembly configurations. The position at one u selects the
+/// assembly; from there x is followed along the straight line to any other u, by a tangent step and
+/// Newton's method. Steps are small enough for the rates at both ends to agree with the
+/// displacement, and for det ∂F/∂x, whose sign differs on the two branches that meet at a dead
+/// point, to change little. As a function of u it is differentiated by all drivers, by the implicit
+/// function theorem: `derivatives<2>(loop, u)` are position, velocity and acceleration per unit of
+/// u. Evaluation is `const` and uses no heap memory.
 ///
 /// Source: P. Deuflhard, Newton Methods for Nonlinear Problems, chapter 5.
+///
+/// \tparam F  callable, templated over the scalars of both arguments: returns as many residuals as
+///            x has coordinates, of which a rotation has three; see `implicit_function`
+/// \tparam X  positions, in double: a scalar, a fixed-size vector, a unit quaternion, or a tuple
+/// \tparam P  the driving parameter u, double, or a fixed-size vector of them
 template <class F, class X, class P = double>
-class closed_loop {
+class constrained_mechanism {
   static constexpr int size = manifold<P>::dimension;
   using coordinates = Eigen::Matrix<double, size, 1>;
   using solution = detail::newton<F, X, P>;
   using tangent = typename solution::vector;
-  using tag = derivative_tag<closed_loop>;
+  using tag = derivative_tag<constrained_mechanism>;
 
 public:
   /// \param constraints  F
-  /// \param position     near the position at u0
-  /// \param u0           where the motion starts
-  /// \throws cannot_close where there is no position near the given one, or ∂F/∂x is singular
-  closed_loop(F constraints, const X& position, const P& u0,
-              const closed_loop_options& options = {}) requires(manifold<X>::dimension !=
-                                                                    Eigen::Dynamic &&
-                                                                manifold<P>::dimension !=
-                                                                    Eigen::Dynamic)
+  /// \param position     initial guess near the position at u0
+  /// \param u0           parameter at which the motion starts
+  /// \throws loop_closure_failure if no position is near the given one, or ∂F/∂x is singular
+  constrained_mechanism(F constraints, const X& position, const P& u0,
+                        const constrained_mechanism_options& options =
+                            {}) requires(manifold<X>::dimension != Eigen::Dynamic &&
+                                         manifold<P>::dimension != Eigen::Dynamic)
       : constraints_(std::move(constraints)), u_(u0), options_(options),
         start_(assembled(position)) {}
 
-  DUET_REFUSED("closed_loop: positions and parameters need a size known at compile time, as "
-               "Eigen::Vector2d has")
-  closed_loop(F, const X&, const P&,
-              const closed_loop_options& = {}) requires(manifold<X>::dimension == Eigen::Dynamic ||
-                                                        manifold<P>::dimension == Eigen::Dynamic);
+  DUET_REFUSED(
+      "constrained_mechanism: positions and parameters need a size known at compile time, as "
+      "Eigen::Vector2d has")
+  constrained_mechanism(F, const X&, const P&, const constrained_mechanism_options& = {}) requires(
+      manifold<X>::dimension == Eigen::Dynamic || manifold<P>::dimension == Eigen::Dynamic);
 
-  /// The u that all others are reached from.
+  /// The parameter u at which all evaluations start.
   [[nodiscard]] const P& parameter() const { return u_; }
   /// The position at `parameter()`.
   [[nodiscard]] const X& position() const { return start_.x; }
 
-  /// x(u), over any scalar of duet; real values are in double precision.
-  /// \throws cannot_close where the loop does not close on the straight way to u: there is a dead
-  /// point; invalid_input for a u that is not finite
+  /// The position x(u), over any scalar of duet; real values are in double precision.
+  ///
+  /// \throws loop_closure_failure if the loops do not close on the straight line to u, because of a
+  /// dead point; invalid_input for a u that is not finite
   template <class U>
   [[nodiscard]] auto operator()(const U& u) const {
     const P target = map_scalars([](const auto& s) { return double(innermost(s)); }, u);
     return detail::with_infinitesimals(constraints_, followed(target), u);
   }
 
-  /// This loop, started from u: other positions are found faster the nearer it starts.
+  /// This mechanism with its start moved to u (warm start): positions near the start are
+  /// found faster.
+  ///
   /// \throws as evaluation
-  [[nodiscard]] closed_loop moved_to(const P& u) const {
-    closed_loop result = *this;
+  [[nodiscard]] constrained_mechanism warm_started_at(const P& u) const {
+    constrained_mechanism result = *this;
     result.start_ = followed(u);
     result.u_ = u;
     return result;
@@ -116,7 +121,8 @@ private:
 
   [[noreturn]] static void fail(const std::string& what, const P& u) {
     const coordinates x = numbers(u);
-    detail::raise(cannot_close("duet: closed_loop: " + what, {x.begin(), x.end()}));
+    detail::raise(
+        loop_closure_failure("duet: constrained_mechanism: " + what, {x.begin(), x.end()}));
   }
 
   [[nodiscard]] solution assembled(const X& position) const {
@@ -127,7 +133,7 @@ private:
     return result;
   }
 
-  /// dx of a du, by the implicit function theorem.
+  /// Rate dx for a change du, by the implicit function theorem.
   [[nodiscard]] tangent rate(const solution& at, const P& u, const coordinates& du) const {
     using D = dual<double, 1, tag>;
     Eigen::Matrix<D, size, 1> delta;
@@ -147,7 +153,7 @@ private:
     return result;
   }
 
-  /// The position at `next`, on the way from `u`; nothing where it may have left the way.
+  /// The position at `next` after one step from `u`; empty if the step may have left the branch.
   [[nodiscard]] std::optional<solution> step(const solution& from, const P& u,
                                              const P& next) const {
     const coordinates du = numbers(next) - numbers(u);
@@ -157,8 +163,8 @@ private:
     if (!to.has_converged() || !(change > .25 && change < 4)) {
       return std::nullopt;
     }
-    // Do the rates at both ends explain how far it went, and did it not turn back, as it would
-    // beyond a gap?
+    // The rates at both ends must explain the displacement, and x must not turn back, as it would
+    // beyond a gap.
     const tangent after = rate(to, next, du);
     const double fastest = std::max(before.norm(), after.norm());
     const X explained = manifold<X>::plus(from.x, tangent((before + after) / 2));
@@ -171,11 +177,12 @@ private:
     return std::nullopt;
   }
 
-  /// The position at `target`, reached from where the motion starts.
+  /// The position at `target`, reached from the start of the motion.
   [[nodiscard]] solution followed(const P& target) const {
     const coordinates way = numbers(target) - numbers(u_);
     if (!way.allFinite()) {
-      detail::raise(invalid_input("duet: closed_loop: u = " + text(target) + " is not finite"));
+      detail::raise(
+          invalid_input("duet: constrained_mechanism: u = " + text(target) + " is not finite"));
     }
     solution here = start_;
     P u = u_;
@@ -204,12 +211,12 @@ private:
 
   F constraints_;
   P u_;
-  closed_loop_options options_;
+  constrained_mechanism_options options_;
   solution start_;
 };
 
 template <class F, class X, class P>
-closed_loop(F, X, P, closed_loop_options = {})
-    -> closed_loop<F, detail::own_t<X>, detail::differentiable_t<detail::own_t<P>>>;
+constrained_mechanism(F, X, P, constrained_mechanism_options = {})
+    -> constrained_mechanism<F, detail::own_t<X>, detail::differentiable_t<detail::own_t<P>>>;
 
 } // namespace duet

@@ -16,78 +16,87 @@
 #include <vector>
 
 /// \file
-/// Mechanisms with loops: a tree, and frames on its links that coincide.
+/// Closed-chain mechanisms: a kinematic tree and loop-closure constraints between frames
+/// on its links.
 
 namespace duet {
 
-/// A mechanism with loops: those of its joints that close them are cut, which leaves a tree, and
-/// stand here as pairs of frames that coincide, wholly or partly.
+/// A closed-chain mechanism. The joints that close its loops are cut, which leaves a tree; they are
+/// given as loop-closure constraints, pairs of frames that coincide, wholly or partly.
 ///
-/// Its positions are the coordinates q of the tree with F(q) = 0, where F has the equations of all
-/// loops, one loop after the other. Equations may depend on each other, as those of all planar
-/// mechanisms do. Lengths in F are in parts of `length()`, so that no result depends on their unit.
+/// Its configurations are the coordinates q of the tree with F(q) = 0, where F has the
+/// equations of all loops, one loop after the other. Equations may be redundant, as those of
+/// all planar mechanisms are. Lengths in F are relative to `length()`, so that no result
+/// depends on their unit.
 ///
-/// Example: `const closed_tree four_bar(tree, {{{loop_kind::hinge, {"coupler", along_axis({.5, 0,
-/// 0}, {0, 0, 1})}, {"rocker", along_axis({.4, 0, 0}, {0, 0, 1})}}}});`
-class closed_tree {
+/// Example: `const closed_chain_mechanism four_bar(tree, {{{constraint_kind::revolute, {"coupler",
+/// frame_with_z_axis({.5, 0, 0}, {0, 0, 1})}, {"rocker", frame_with_z_axis({.4, 0, 0}, {0, 0,
+/// 1})}}}});`
+class closed_chain_mechanism {
 public:
   using own_jacobian = void;
 
-  /// \throws invalid_input (`file_error` with the line if it is from a file) for frames on links
-  /// that are not there or on one link, numbers that are not finite, rods without length
-  closed_tree(kinematic_tree tree, loop_description given);
+  /// \throws invalid_input (`file_error` with the line if the constraints are from a file) for
+  /// frames on links that do not exist or on the same link, numbers that are not finite, rods
+  /// without length
+  closed_chain_mechanism(kinematic_tree tree, loop_constraints given);
 
-  /// The tree that is left where joints are cut.
+  /// The tree that is left after joints are cut.
   [[nodiscard]] const kinematic_tree& tree() const { return tree_; }
-  /// What closes the loops.
-  [[nodiscard]] const std::vector<tree_loop>& loops() const { return given_.loops; }
-  /// Number of coordinates, those of the tree.
+  /// The loop-closure constraints.
+  [[nodiscard]] const std::vector<loop_constraint>& loops() const { return given_.loops; }
+  /// Number of coordinates, which are those of the tree.
   [[nodiscard]] int size() const { return tree_.size(); }
   /// Number of equations of all loops.
   [[nodiscard]] int equations() const { return int(rows_); }
-  /// The longest offset of a joint or a loop, or rod: what lengths are measured by; 1 where all are
-  /// zero.
+  /// Characteristic length: the longest offset of a joint or constraint, or rod; 1 if all are zero.
   [[nodiscard]] double length() const { return length_; }
 
-  /// F(q), over any scalar.
+  /// Residuals F(q) of the loop-closure constraints, over any scalar.
+  ///
   /// \return an Eigen vector of `equations()` numbers
-  /// \throws invalid_input for another number of coordinates than `size()`
+  /// \throws invalid_input if the number of coordinates differs from `size()`
   template <VectorLike X>
   [[nodiscard]] auto residuals(const X& q) const {
     return residuals_at(q);
   }
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& q) const;
 
-  /// ∂F/∂q in closed form, over any scalar. Arguments and errors as `residuals`.
-  /// \return a matrix of a row for each equation and a column for each coordinate
+  /// Constraint Jacobian ∂F/∂q in closed form, over any scalar. Arguments and errors
+  /// as `residuals`.
+  ///
+  /// \return a matrix with a row for each equation and a column for each coordinate
   template <VectorLike X>
   [[nodiscard]] auto constraint_jacobian(const X& q) const {
     return jacobian_at(q);
   }
   [[nodiscard]] Eigen::MatrixXd constraint_jacobian(const Eigen::VectorXd& q) const;
 
-  /// The position near a guess, by Levenberg and Marquardt's method, whose steps are the shortest.
-  /// Some coordinates may be held where the guess has them.
+  /// The configuration near an initial guess, by damped least squares (Levenberg–Marquardt) with
+  /// minimum-norm steps. Some coordinates may be held at their values in the guess.
   ///
   /// Source: J. Fan and Y. Yuan, On the quadratic convergence of the Levenberg–Marquardt method
-  /// without nonsingularity assumption, 2005: the damping goes with ‖F‖, and equations that depend
-  /// on each other do no harm.
-  /// \param held  numbers of coordinates
-  /// \throws cannot_close where no position is near; invalid_input for another number of
-  /// coordinates than `size()`, and for numbers that are not finite
+  /// without nonsingularity assumption, 2005: the damping is proportional to ‖F‖, and redundant
+  /// equations do no harm.
+  ///
+  /// \param guess  initial guess of all coordinates
+  /// \param held  numbers of the held coordinates
+  /// \throws loop_closure_failure if no configuration is near; invalid_input if the number of
+  /// coordinates differs from `size()`, and for numbers that are not finite
   [[nodiscard]] Eigen::VectorXd closed(const Eigen::VectorXd& guess,
                                        const std::vector<int>& held = {}) const;
 
-  /// Coordinates that all others follow from, to first order, chosen so that these move as little
-  /// as possible per unit of the former: by pivots of a QR factorisation of the rates that the
-  /// loops allow. Lengths count in parts of `length()`.
-  /// \param q  a position
+  /// Independent coordinates, which to first order determine all others, chosen so that the
+  /// dependent ones move as little as possible per unit of the independent ones: pivots of a QR
+  /// factorisation of the null space of ∂F/∂q. Lengths count relative to `length()`.
+  ///
+  /// \param q  a configuration with closed loops
   /// \return their numbers in ascending order, as many as there are independent rates
   [[nodiscard]] std::vector<int> independent_coordinates(const Eigen::VectorXd& q) const;
 
   // For those who extend duet.
 
-  /// Of each coordinate the unit that is as much as a radian: `length()` where it is a length.
+  /// Unit of each coordinate that counts as much as a radian: `length()` for lengths, otherwise 1.
   [[nodiscard]] const Eigen::VectorXd& units() const { return units_; }
 
 private:
@@ -114,11 +123,11 @@ private:
     }
     return result;
   }
-  [[nodiscard]] attached_frame<double> frame(std::size_t i, const loop_frame& at) const;
+  [[nodiscard]] attached_frame<double> frame(std::size_t i, const constraint_frame& at) const;
   void measure();
 
   kinematic_tree tree_;
-  loop_description given_;
+  loop_constraints given_;
   std::vector<detail::loop_equations> equations_;
   Eigen::Index rows_ = 0;
   double length_ = 0;

@@ -11,45 +11,45 @@
 #include <vector>
 
 /// \file
-/// The shapes that links have for collisions, as robot descriptions say them.
+/// Collision shapes of links, as in robot descriptions.
 
 namespace duet {
 
-/// A box about the origin, its edges along the axes.
+/// A box centred at the origin, with edges along the axes.
 struct collision_box {
-  std::array<double, 3> size = {}; ///< the lengths of its edges
+  std::array<double, 3> size = {}; ///< lengths of the edges, in units of length
 };
 
-/// A cylinder about the origin, along z.
+/// A cylinder centred at the origin, along z.
 struct collision_cylinder {
-  double radius = 0; ///< in units of length
-  double length = 0; ///< from end to end
+  double radius = 0; ///< radius, in units of length
+  double length = 0; ///< total length, in units of length
 };
 
-/// A cylinder about the origin, along z, with half a ball on each end.
+/// A capsule centred at the origin, along z: a cylinder with a hemisphere on each end.
 struct collision_capsule {
-  double radius = 0; ///< of cylinder and balls
-  double length = 0; ///< of the cylinder
+  double radius = 0; ///< radius of cylinder and hemispheres, in units of length
+  double length = 0; ///< length of the cylinder alone, in units of length
 };
 
-/// A ball about the origin.
+/// A sphere centred at the origin.
 struct collision_sphere {
-  double radius = 0; ///< in units of length
+  double radius = 0; ///< radius, in units of length
 };
 
-/// The surface in a file.
+/// A triangle mesh in a file.
 struct collision_mesh {
-  std::string file;                        ///< as it is written, `package://…` included
-  std::array<double, 3> scale = {1, 1, 1}; ///< of its coordinates
+  std::string file;                        ///< name as written, including `package://…`
+  std::array<double, 3> scale = {1, 1, 1}; ///< scale factors of its coordinates; default: 1
 };
 
-/// One of the shapes that a link consists of for collisions.
+/// One of the collision shapes of a link.
 struct collision_shape {
-  placement<double> frame = {}; ///< of the shape, in the frame of the link
+  placement<double> frame = {}; ///< pose of the shape in the frame of the link
   std::variant<collision_box, collision_cylinder, collision_capsule, collision_sphere,
                collision_mesh>
-      geometry;         ///< about the frame's origin, along its axes
-  std::size_t line = 0; ///< of the file that it is from; 0: of none
+      geometry;         ///< shape at the origin of the frame, along its axes
+  std::size_t line = 0; ///< line in its file; 0: not from a file
 };
 
 } // namespace duet

@@ -11,15 +11,16 @@
 #include <vector>
 
 /// \file
-/// Which coordinates may be changed by whole turns. For those who extend duet.
+/// Coordinates that are periodic with a full turn. For those who extend duet.
 
 namespace duet::detail {
 
 struct coordinate_turns {
-  std::vector<bool> angles; ///< of each coordinate: does a whole turn of it change nothing?
-  std::vector<int> vectors; ///< first coordinates of rotation vectors
+  std::vector<bool> angles; ///< for each coordinate, true if a full turn of it changes no pose
+  std::vector<int> vectors; ///< numbers of the first coordinates of rotation vectors
 
-  explicit coordinate_turns(const closed_tree& of) : angles(std::size_t(of.size()), false) {
+  explicit coordinate_turns(const closed_chain_mechanism& of)
+      : angles(std::size_t(of.size()), false) {
     int i = 0;
     for (const tree_joint& each : of.tree().joints()) {
       if (each.mimic) {
@@ -39,7 +40,7 @@ struct coordinate_turns {
       const coordinate_source& source = of.tree().table().sources[std::size_t(node.coordinate)];
       if (!node.is_ball &&
           (node.step.slides || source.multiplier != std::round(source.multiplier))) {
-        angles[std::size_t(source.own)] = false; // what follows it would move
+        angles[std::size_t(source.own)] = false; // what follows the coordinate would move
       }
     }
   }

@@ -18,19 +18,19 @@
 #include <vector>
 
 /// \file
-/// Trees whose coordinates are functions of others.
+/// Kinematic trees whose coordinates are functions of other variables.
 
 namespace duet {
 
-/// A tree whose coordinates are functions of others, usually fewer: q = c(y). All that a tree has
-/// is differentiated through c, by dual numbers. (Joints that mimic others need no more than the
-/// tree itself.)
-///
-/// \tparam F  callable, templated over the scalar: takes y, an Eigen vector, `std::array` or
-///            `std::vector`, and returns as many coordinates as the tree has, as one of these
+/// A tree whose coordinates are functions of other variables, usually fewer: q = c(y). All
+/// functions of a tree are differentiated through c by dual numbers. (Joints that mimic others only
+/// need `kinematic_tree`.)
 ///
 /// Example: `const coupled_tree finger(tree, [](const auto& y) { return std::array{y[0], 2 / 3. *
 /// y[0] * y[0]}; });`
+///
+/// \tparam F  callable, templated over the scalar: takes y, an Eigen vector, `std::array` or
+///            `std::vector`, and returns as many coordinates as the tree has, as one of these types
 template <class F>
 class coupled_tree {
 public:
@@ -41,17 +41,19 @@ public:
 
   /// The tree of the coordinates q.
   [[nodiscard]] const kinematic_tree& tree() const { return tree_; }
-  /// c
+  /// The coupling c.
   [[nodiscard]] const F& coupling() const { return coupling_; }
 
-  /// The pose at y of what `kinematic_tree::pose` takes.
-  /// \throws invalid_input where c(y) has another number of coordinates than the tree
-  template <VectorLike X, PlaceOnTree At>
+  /// Forward kinematics: the pose at y of a frame as for `kinematic_tree::pose`.
+  ///
+  /// \throws invalid_input if the number of coordinates of c(y) differs from that of the tree
+  template <VectorLike X, FrameOnTree At>
   [[nodiscard]] auto pose(const X& y, const At& at) const {
     return tree_.pose(coupling_(y), at);
   }
-  /// The poses of all links at y, in the order of `tree().links()`.
-  /// \throws invalid_input where c(y) has another number of coordinates than the tree
+  /// Forward kinematics of all links at y, in the order of `tree().links()`.
+  ///
+  /// \throws invalid_input if the number of coordinates of c(y) differs from that of the tree
   template <VectorLike X>
   [[nodiscard]] auto poses(const X& y) const {
     return tree_.poses(coupling_(y));
@@ -64,7 +66,7 @@ private:
 
 namespace detail {
 
-/// ∂c/∂y and its rate along ẏ.
+/// ∂c/∂y and its time derivative along ẏ.
 template <class F, class X, class V>
 [[nodiscard]] auto coupling_with_rate(const coupled_tree<F>& tree, const X& y, const V& y_dot) {
   const auto both = directional_derivative(
@@ -72,7 +74,7 @@ template <class F, class X, class V>
   return jacobian_and_rate<std::decay_t<decltype(both.value)>>{both.value, both.derivative};
 }
 
-/// ∂c/∂y ẏ
+/// The coordinate velocities ∂c/∂y ẏ.
 template <class J, class V>
 [[nodiscard]] auto rates_of_coordinates(const J& m, const V& y_dot) {
   using argument = vector_argument<V>;
@@ -87,7 +89,7 @@ template <class J, class V>
   return result;
 }
 
-/// The product of two matrices, of any scalars.
+/// The product of two matrices over any scalars.
 template <class A, class B>
 [[nodiscard]] auto product_of(const A& a, const B& b) {
   using S = promote_t<typename A::Scalar, typename B::Scalar>;
@@ -103,18 +105,20 @@ template <class X>
 
 } // namespace detail
 
-/// J ∂c/∂y, the Jacobian of a frame by y: the twist is this × ẏ. Arguments and errors otherwise as
-/// `jacobian` of a `kinematic_tree`.
-template <class F, VectorLike X, FrameConstant Frame, PlaceOnTree At>
+/// J ∂c/∂y, the geometric Jacobian of a frame with respect to y: the twist is this matrix times ẏ.
+/// Other arguments and errors as `jacobian` of a `kinematic_tree`.
+template <class F, VectorLike X, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto jacobian(const coupled_tree<F>& tree, const X& y, Frame frame_of_result,
                             const At& at) {
   const auto c = jacobian(tree.coupling(), y);
   return detail::product_of(jacobian(tree.tree(), c.value, frame_of_result, at), c.jacobian);
 }
 
-/// The pose of a frame at y, and its Jacobian by y. Arguments as `jacobian`.
+/// Forward kinematics and geometric Jacobian: the pose of a frame at y, and its Jacobian with
+/// respect to y. Arguments as `jacobian`.
+///
 /// \return `value_and_jacobian`
-template <class F, VectorLike X, FrameConstant Frame, PlaceOnTree At>
+template <class F, VectorLike X, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto pose_and_jacobian(const coupled_tree<F>& tree, const X& y, Frame frame_of_result,
                                      const At& at) {
   const auto c = jacobian(tree.coupling(), y);
@@ -124,10 +128,11 @@ template <class F, VectorLike X, FrameConstant Frame, PlaceOnTree At>
       both.value, m};
 }
 
-/// The Jacobian of a frame by y and its rate along ẏ, J̇ ∂c/∂y + J d/dt ∂c/∂y. Arguments as
-/// `jacobian`.
+/// The Jacobian of a frame with respect to y and its time derivative along ẏ, J̇ ∂c/∂y + J d/dt
+/// ∂c/∂y. Arguments as `jacobian`.
+///
 /// \return `jacobian_and_rate`
-template <class F, VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree At>
+template <class F, VectorLike X, VectorLike V, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto jacobian_with_rate(const coupled_tree<F>& tree, const X& y, const V& y_dot,
                                       Frame frame_of_result, const At& at) {
   const auto c = detail::coupling_with_rate(tree, y, y_dot);
@@ -140,18 +145,20 @@ template <class F, VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree 
                                    rate + detail::product_of(m.jacobian, c.rate)};
 }
 
-/// J̇ of `jacobian_with_rate` of a frame by y.
+/// J̇ of `jacobian_with_rate`, the time derivative of the Jacobian of a frame with respect to y.
+///
 /// \return a matrix of 6 rows and a column for each component of y
-template <class F, VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree At>
+template <class F, VectorLike X, VectorLike V, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto jacobian_rate(const coupled_tree<F>& tree, const X& y, const V& y_dot,
                                  Frame frame_of_result, const At& at) {
   return jacobian_with_rate(tree, y, y_dot, frame_of_result, at).rate;
 }
 
-/// The derivatives of the Jacobian of a frame by y, for each component of y a matrix. Arguments as
-/// `jacobian`.
+/// Kinematic Hessian with respect to y: the derivatives of the Jacobian of a frame, a matrix for
+/// each component of y. Arguments as `jacobian`.
+///
 /// \return a `std::vector` of matrices
-template <class F, VectorLike X, FrameConstant Frame, PlaceOnTree At>
+template <class F, VectorLike X, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto kinematic_hessian(const coupled_tree<F>& tree, const X& y, Frame frame_of_result,
                                      const At& at) {
   const Eigen::Index n = detail::vector_argument<X>::size(y);
@@ -163,14 +170,16 @@ template <class F, VectorLike X, FrameConstant Frame, PlaceOnTree At>
   return result;
 }
 
-/// The centre of all masses at y, in the frame of the root.
+/// The centre of mass at y, in the frame of the root.
+///
 /// \throws invalid_input for a tree without mass
 template <class F, VectorLike X>
 [[nodiscard]] auto centre_of_mass(const coupled_tree<F>& tree, const X& y) {
   return centre_of_mass(tree.tree(), tree.coupling()(y));
 }
 
-/// The Jacobian by y of the centre of mass. Arguments as `centre_of_mass`.
+/// The Jacobian of the centre of mass with respect to y. Arguments as `centre_of_mass`.
+///
 /// \return a matrix of 3 rows and a column for each component of y
 template <class F, VectorLike X>
 [[nodiscard]] auto centre_of_mass_jacobian(const coupled_tree<F>& tree, const X& y) {
@@ -178,7 +187,8 @@ template <class F, VectorLike X>
   return detail::product_of(centre_of_mass_jacobian(tree.tree(), c.value), c.jacobian);
 }
 
-/// The rate along ẏ of `centre_of_mass_jacobian` by y.
+/// The time derivative along ẏ of `centre_of_mass_jacobian` with respect to y.
+///
 /// \return a matrix of 3 rows and a column for each component of y
 template <class F, VectorLike X, VectorLike V>
 [[nodiscard]] auto centre_of_mass_jacobian_rate(const coupled_tree<F>& tree, const X& y,
@@ -192,7 +202,9 @@ template <class F, VectorLike X, VectorLike V>
   return matrix(rate + detail::product_of(centre_of_mass_jacobian(tree.tree(), q), c.rate));
 }
 
-/// The second derivatives by y of the centre of mass, for each component of y a matrix.
+/// The second derivatives of the centre of mass with respect to y, a matrix for each
+/// component of y.
+///
 /// \return a `std::vector` of matrices
 template <class F, VectorLike X>
 [[nodiscard]] auto centre_of_mass_hessian(const coupled_tree<F>& tree, const X& y) {

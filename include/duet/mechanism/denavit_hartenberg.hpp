@@ -13,13 +13,13 @@
 #include <string>
 
 /// \file
-/// Chains from the parameters of Denavit and Hartenberg, in both conventions.
+/// Chains from Denavit–Hartenberg parameters, in the standard and the modified convention.
 
 namespace duet {
 
 namespace detail {
 
-/// As the first member of an aggregate: a list of values without names is refused.
+/// First member of an aggregate, which rejects a list of values without names.
 struct fields_by_name {
   constexpr fields_by_name() = default;
   template <class X>
@@ -32,18 +32,18 @@ struct fields_by_name {
 
 } // namespace detail
 
-/// One row, its parameters by name: `{.d = .333, .alpha = pi / 2}`; what is not named is zero.
-/// Lengths in units of length, angles in radians. The coordinate is added to θ, or to d where the
-/// joint is prismatic.
+/// One row of Denavit–Hartenberg parameters by name: `{.d = .333, .alpha = pi / 2}`; unnamed
+/// parameters are zero. Lengths in units of length, angles in radians. The coordinate is added to
+/// θ, or to d for a prismatic joint.
 template <class T = double>
 struct dh_row {
-  detail::fields_by_name by_name = {};    ///< refuses values without names
+  detail::fields_by_name by_name = {};    ///< rejects values without names
   T a = T(0);                             ///< length of the link, in units of length
   T d = T(0);                             ///< offset along the joint's axis, in units of length
-  T alpha = T(0);                         ///< twist of the link, radians
+  T alpha = T(0);                         ///< twist angle of the link, radians
   T theta = T(0);                         ///< angle at which the coordinate is zero, radians
-  joint_limits<T> limits = {};            ///< of the coordinate
-  joint_kind kind = joint_kind::revolute; ///< how the joint moves
+  joint_limits<T> limits = {};            ///< limits of the coordinate
+  joint_kind kind = joint_kind::revolute; ///< type of joint
 };
 
 namespace detail {
@@ -54,7 +54,7 @@ template <class T>
   return {turn_about(0, row.alpha), {row.a, T(0), T(0)}};
 }
 
-/// T_x(a) R_x(α) T_z(d) R_z(θ), with the products of a right angle's sine and cosine exact.
+/// T_x(a) R_x(α) T_z(d) R_z(θ), with exact products of the sine and cosine of a right angle.
 template <class T>
 [[nodiscard]] constexpr placement<T> between_axes(const dh_row<T>& link, const dh_row<T>& joint) {
   const auto [sine, cosine] = sine_and_cosine_of_constant(link.alpha);
@@ -80,8 +80,10 @@ constexpr void require_row(const dh_row<T>& row, std::size_t i) {
 
 } // namespace detail
 
-/// The chain of A_i = R_z(θ_i) T_z(d_i) T_x(a_i) R_x(α_i), the standard convention: joint i turns
-/// about the z axis of the frame before, and link i ends with frame i.
+/// The chain of Denavit–Hartenberg transformations A_i = R_z(θ_i) T_z(d_i) T_x(a_i) R_x(α_i), the
+/// standard convention: the axis of joint i is the z axis of the previous frame, and link i ends
+/// with frame i.
+///
 /// \throws invalid_input as `serial_chain`
 template <class T, std::size_t N>
 [[nodiscard]] constexpr serial_chain<int(N), T> from_dh(const std::array<dh_row<T>, N>& rows,
@@ -100,8 +102,10 @@ template <class T, std::size_t N>
   return serial_chain<int(N), T>(joints, link_frames[N - 1] * tool, link_frames);
 }
 
-/// The chain of R_x(α_i) T_x(a_i) R_z(θ_i) T_z(d_i), the modified convention (Craig): frame i
-/// stands on the axis of joint i, and a and α of a row are those of the link before the joint.
+/// The chain of Denavit–Hartenberg transformations R_x(α_i) T_x(a_i) R_z(θ_i) T_z(d_i), the
+/// modified convention (Craig): frame i lies on the axis of joint i, and a and α of a row are those
+/// of the link before the joint.
+///
 /// \throws invalid_input as `serial_chain`
 template <class T, std::size_t N>
 [[nodiscard]] constexpr serial_chain<int(N), T>

@@ -17,13 +17,13 @@
 #include <type_traits>
 
 /// \file
-/// The geometric Jacobians of a chain, in closed form.
+/// Geometric Jacobians of a chain (spatial, body and hybrid), in closed form.
 
 namespace duet {
 
 namespace detail {
 
-/// A matrix of one column per joint of a chain.
+/// A matrix with one column for each joint of a chain.
 template <class S, int Rows, int N>
 using joint_columns =
     Eigen::Matrix<S, Rows, (N > 0 ? N : Eigen::Dynamic), Eigen::ColMajor, Rows, (N > 0 ? N : -N)>;
@@ -59,8 +59,8 @@ DUET_ALWAYS_INLINE void set_column(J& m, const twist_column<S>& twist, At... at)
   m(5, at...) = twist.omega.z;
 }
 
-/// Makes m the Jacobian of a frame on a chain; returns where that stands, its rotation only if m
-/// needs it or it is asked for.
+/// Sets m to the Jacobian of a frame on a chain and returns the pose of that frame, with its
+/// rotation only if m needs it or `WithRotation` is true.
 template <class Frame, bool WithRotation, class S, class C, class X, class At, class J>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> fill_jacobian(J& m, const C& chain,
                                                                     const X& theta, const At& at) {
@@ -70,16 +70,16 @@ template <class Frame, bool WithRotation, class S, class C, class X, class At, c
   const auto put_screw = [&](Eigen::Index i, const auto& step, const auto& axis, const auto& point)
                              DUET_INLINE_LAMBDA {
                                auto screw = no_twist<S>(); // in space, v at the fixed origin
-                               if (step.turns()) {
+                               if (step.is_rotational()) {
                                  screw = {cross(point, axis), axis};
                                }
-                               if (step.slides()) {
+                               if (step.is_translational()) {
                                  screw.v = screw.v + step.pitch() * axis;
                                }
                                set_column(m, screw, i);
                              };
   const auto link = walk < WithRotation || !is_spatial, S > (chain, theta, on.link, put_screw);
-  for (Eigen::Index i = on.link; i < chain.size(); ++i) { // these joints move other links only
+  for (Eigen::Index i = on.link; i < chain.size(); ++i) { // these joints only move other links
     set_column(m, no_twist<S>(), i);
   }
   const auto at_frame = attached(link, on.offset);
@@ -102,12 +102,13 @@ template <class Frame, bool WithRotation, class S, class C, class X, class At, c
 
 } // namespace detail
 
-/// The pose A of a frame on a chain, and its Jacobian there.
+/// Forward kinematics and geometric Jacobian: the pose A of a frame on a chain, and its
+/// Jacobian there.
 ///
 /// \tparam Frame           see `jacobian`
-/// \param at               the number of a link, or an `attached_frame`; nothing for the tip
+/// \param at               a link number, or an `attached_frame`; default: the tip
 /// \return `value_and_jacobian`
-template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At = tip_of_chain>
+template <SerialChain C, VectorLike X, FrameConstant Frame, FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] DUET_ALWAYS_INLINE auto pose_and_jacobian(const C& chain, const X& theta,
                                                         Frame /*frame*/, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
@@ -117,18 +118,20 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At =
   return result;
 }
 
-/// The matrix J of 6 rows with the twist [v; ω] = J θ̇ of a frame on a chain (N18, N20).
+/// The geometric Jacobian J of 6 rows: the twist [v; ω] = J θ̇ of a frame on a chain, by default
+/// the end-effector frame (N18, N20). Columns of joints beyond the link are zero. Units: those of θ
+/// in the denominator.
 ///
 /// \tparam Frame           `frame::spatial`: fixed axes, v of the body point at the fixed origin,
-///                         columns are the joints' screws; `frame::body`: axes and origin of the
+///                         columns are the joint screws; `frame::body`: axes and origin of the
 ///                         moving frame; `frame::hybrid`: fixed axes, v of the frame's origin
-/// \param at               the number of a link, or an `attached_frame`, as
-///                         `chain.tip().at_point({x, y, z})`; nothing for the tip
-/// Columns of joints beyond the link are zero. Units: those of θ in the denominator.
-/// \throws invalid_input for another number of coordinates than `size()`, and for a link that there
-/// is none of
+/// \param at               a link number, or an `attached_frame`, as `chain.tip().at_point({x, y,
+///                         z})`; default: the tip
+/// \return a matrix of 6 rows and a column for each joint
+/// \throws invalid_input if the number of coordinates differs from `size()`, or the link
+/// does not exist
 template <class C, VectorLike X, FrameConstant Frame,
-          PlaceOnChain<std::remove_cvref_t<C>> At = tip_of_chain>
+          FrameOnChain<std::remove_cvref_t<C>> At = tip_of_chain>
   requires SerialChain<std::remove_cvref_t<C>>
 [[nodiscard]] DUET_ALWAYS_INLINE auto jacobian(C&& chain, const X& theta, Frame,
                                                const At& at = {}) {

@@ -11,7 +11,8 @@
 #include <type_traits>
 
 /// \file
-/// How the Jacobians of a chain change: along a motion, and with each coordinate.
+/// Derivatives of the Jacobian of a chain: its time derivative along a motion, and its derivatives
+/// with respect to each coordinate (the kinematic Hessian).
 
 namespace duet {
 
@@ -23,12 +24,12 @@ template <class S>
   return {cross(a.omega, b.v) + cross(a.v, b.omega), cross(a.omega, b.omega)};
 }
 
-/// ∂J_k/∂θ_j by the columns of J itself.
+/// ∂J_k/∂θ_j in terms of the columns of J.
 ///
 /// Spatial: the screw of joint k is carried by the joints before it, ad(J_j) J_k, j < k. Body: it
-/// is carried the other way by those after it, ad(J_k) J_j, j > k. Hybrid: axes turn with the
-/// joints before, ω_j × ω_k, and the tip moves with all, u the velocity of its origin: ω_j × u_k
-/// for j ≤ k, ω_k × u_j for j > k.
+/// is carried in the opposite sense by those after it, ad(J_k) J_j, j > k. Hybrid: axes rotate with
+/// the joints before, ω_j × ω_k, and the tip moves with all, u the velocity of its origin: ω_j ×
+/// u_k for j ≤ k, ω_k × u_j for j > k.
 template <class Frame, class S>
 [[nodiscard]] twist_column<S> column_by_joint(const twist_column<S>& k, const twist_column<S>& j,
                                               bool j_is_before_k) {
@@ -45,8 +46,8 @@ template <class Frame, class S>
 
 } // namespace detail
 
-/// The second derivatives of the pose of a frame on a chain: n matrices ∂J/∂θ_j of 6 rows, side by
-/// side in one matrix.
+/// Kinematic Hessian of a frame on a chain, the second derivatives of its pose: n matrices ∂J/∂θ_j
+/// of 6 rows, side by side in one matrix.
 template <class S, int N>
 class chain_hessian {
   static constexpr int columns = N > 0 ? N* N : Eigen::Dynamic;
@@ -54,13 +55,13 @@ class chain_hessian {
 public:
   explicit chain_hessian(Eigen::Index n) : size_(n), values_(6, n * n) {}
 
-  /// n
+  /// n, the number of joints.
   [[nodiscard]] Eigen::Index size() const { return size_; }
-  /// ∂J/∂θ_j
+  /// ∂J/∂θ_j.
   [[nodiscard]] detail::joint_columns<S, 6, N> operator[](Eigen::Index j) const {
     return values_.template middleCols<(N > 0 ? N : Eigen::Dynamic)>(j * size_, size_);
   }
-  /// ∂J_ik/∂θ_j
+  /// ∂J_ik/∂θ_j.
   [[nodiscard]] const S& operator()(Eigen::Index i, Eigen::Index k, Eigen::Index j) const {
     return values_(i, j * size_ + k);
   }
@@ -73,13 +74,14 @@ private:
   Eigen::Matrix<S, 6, columns, Eigen::ColMajor, 6, N * N> values_;
 };
 
-/// ∂J/∂θ_j for all j: `h[j]` has 6 rows and one column per joint, and the column k of it is
+/// Kinematic Hessian ∂J/∂θ_j for all j: `h[j]` has 6 rows and one column per joint; its column k is
 /// ∂²/∂θ_j∂θ_k as a twist.
 ///
-/// Only in `frame::hybrid` is its linear part ∂²p/∂θ_j∂θ_k of the frame's origin p, symmetric in j
+/// Only in `frame::hybrid` the linear part is ∂²p/∂θ_j∂θ_k of the frame's origin p, symmetric in j
 /// and k. Arguments as `jacobian`.
+///
 /// \return `chain_hessian<S, N>`
-template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At = tip_of_chain>
+template <SerialChain C, VectorLike X, FrameConstant Frame, FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto kinematic_hessian(const C& chain, const X& theta, Frame frame_of_result,
                                      const At& at = {}) {
   const auto m = jacobian(chain, theta, frame_of_result, at);
@@ -96,7 +98,7 @@ template <SerialChain C, VectorLike X, FrameConstant Frame, PlaceOnChain<C> At =
   return h;
 }
 
-/// J and its rate J̇ = Σ_j ∂J/∂θ_j θ̇_j.
+/// J and its time derivative J̇ = Σ_j ∂J/∂θ_j θ̇_j.
 template <class J>
 struct jacobian_and_rate {
   J jacobian = detail::zero_initialized<J>(); ///< J, 6 rows and a column for each joint
@@ -109,12 +111,13 @@ struct jacobian_and_rate {
   }
 };
 
-/// J and J̇ along θ̇, so that J θ̈ + J̇ θ̇ is the derivative of the twist J θ̇. In `frame::hybrid` its
-/// linear part is the classical acceleration of the frame's origin, p̈; in the others it is not (see
-/// docs/mechanisms.md). Arguments as `jacobian`.
+/// J and J̇ along the joint velocities θ̇, so that J θ̈ + J̇ θ̇ is the derivative of the twist J
+/// θ̇. In `frame::hybrid` its linear part is the classical acceleration of the frame's origin, p̈;
+/// in the other frames it is not (see docs/mechanisms.md). Arguments as `jacobian`.
+///
 /// \return `jacobian_and_rate`
 template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
-          PlaceOnChain<C> At = tip_of_chain>
+          FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto jacobian_with_rate(const C& chain, const X& theta, const V& theta_dot,
                                       Frame frame_of_result, const At& at = {}) {
   detail::require_size(chain, theta_dot);
@@ -126,7 +129,7 @@ template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
   const matrix& m = result.jacobian;
   const Eigen::Index n = chain.size();
   result.rate.resize(6, n);
-  // Twists of the joints on the side that counts, summed up on the way.
+  // Sums of the twists of those joints that contribute.
   const detail::three_vector<S> zero{S(0), S(0), S(0)};
   const auto add = [&](detail::twist_column<S>& sum, Eigen::Index i) {
     const auto column = detail::column_of(m, i);
@@ -167,10 +170,11 @@ template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
   return result;
 }
 
-/// J̇ of `jacobian_with_rate`.
+/// J̇ of `jacobian_with_rate`, the time derivative of the Jacobian.
+///
 /// \return a matrix of 6 rows and a column for each joint
 template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
-          PlaceOnChain<C> At = tip_of_chain>
+          FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto jacobian_rate(const C& chain, const X& theta, const V& theta_dot,
                                  Frame frame_of_result, const At& at = {}) {
   return jacobian_with_rate(chain, theta, theta_dot, frame_of_result, at).rate;

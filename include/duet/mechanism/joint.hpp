@@ -15,18 +15,18 @@
 #include <numbers>
 
 /// \file
-/// What a mechanism is built from: constant displacements and joints, as tables that the compiler
-/// can compute.
+/// Constant displacements, joints and their limits, and frames on links, as tables that the
+/// compiler can evaluate.
 
 namespace duet {
 
 namespace detail {
 
-// Arithmetic of the constants in a table, which the compiler can do: the functions of the standard
-// library are not `constexpr`.
+// Arithmetic of the constants in a table. The functions of the standard library are not
+// `constexpr`, so the compiler could not evaluate them.
 
-/// How far from 1 the squared norm of an axis or of a constant rotation may be, as they are written
-/// with few digits.
+/// True if the squared norm of an axis or of a constant rotation, which is written with few digits,
+/// differs from 1 by at most 2·10⁻³.
 template <class T>
 [[nodiscard]] constexpr bool is_nearly_one(const T& square) {
   return square - 1 <= 2e-3 && 1 - square <= 2e-3;
@@ -42,8 +42,8 @@ template <class T>
   return x;
 }
 
-/// A unit vector of which what is 0 or ±1 but for rounding is so: the products of its components
-/// are then left out where the table is known to the compiler.
+/// A unit vector whose components within round-off of 0 or ±1 are replaced by those numbers.
+/// Products with zero components are then omitted if the table is known to the compiler.
 template <class T>
 [[nodiscard]] constexpr three_vector<T> cleaned_direction(three_vector<T> n) {
   const T tolerance = 8 * std::numeric_limits<T>::epsilon();
@@ -62,8 +62,8 @@ struct table_angle {
   T sine, cosine;
 };
 
-/// sin and cos of a constant angle. Multiples of a quarter turn are exact, although π/2 of the
-/// table is a rounded number: it means a right angle.
+/// Sine and cosine of a constant angle. Multiples of a right angle are exact, although π/2 in the
+/// table is a rounded number: it stands for a right angle.
 template <class T>
 [[nodiscard]] constexpr table_angle<T> sine_and_cosine_of_constant(const T& angle) {
   T quarter{};
@@ -107,31 +107,33 @@ template <class T>
           axis == 2 ? half.sine : zero};
 }
 
-/// The unit quaternion that one of few digits stands for.
-/// \throws invalid_input for what is none
+/// The unit quaternion that a quaternion of few digits stands for.
+///
+/// \throws invalid_input if the quaternion is not nearly a unit quaternion
 template <class T>
 [[nodiscard]] constexpr quaternion<T> unit_rotation(const quaternion<T>& q) {
-  const T square = norm2(q);
+  const T square = squared_norm(q);
   if (!is_nearly_one(square)) {
     raise(invalid_input(
         message("duet: placement: its rotation ", q, " is no unit quaternion: normalized(q)")));
   }
-  // A rotation that is a unit but for rounding stays what it is to the last bit.
+  // A rotation whose norm is 1 to within round-off is kept to the last bit.
   const T rounding = 8 * std::numeric_limits<T>::epsilon();
   return square - 1 <= rounding && 1 - square <= rounding ? q : q * inverse_root_near_one(square);
 }
 
 } // namespace detail
 
-/// A constant displacement x ↦ R x + t in a table. To compute with it, make it a pose.
+/// A constant displacement x ↦ R x + t in a table. For computations convert it to a pose
+/// with `pose()`.
 template <class T = double>
 struct placement {
-  quaternion<T> rotation{T(1)};   ///< R, by a unit quaternion
-  std::array<T, 3> translation{}; ///< t, in units of length
+  quaternion<T> rotation{T(1)};   ///< R as a unit quaternion; default: identity
+  std::array<T, 3> translation{}; ///< t in units of length; default: zero
 
   constexpr placement() = default;
   /// \param r  a unit quaternion, or one written with three digits or more, which is normalised
-  /// \throws invalid_input for any other
+  /// \throws invalid_input for any other quaternion
   constexpr placement(const quaternion<T>& r, const std::array<T, 3>& t)
       : rotation(detail::unit_rotation(r)), translation(t) {}
   placement(const dual_quaternion<T>& a) : rotation(detail::unit_rotation(duet::rotation(a))) {
@@ -139,11 +141,11 @@ struct placement {
     translation = {t[0], t[1], t[2]};
   }
 
-  /// The displacement as a pose.
+  /// The displacement as a pose (unit dual quaternion).
   [[nodiscard]] dual_quaternion<T> pose() const {
     return detail::pose_of_unit(rotation, detail::components(translation).eigen());
   }
-  /// First b, then a, in fixed axes.
+  /// The product: first b, then a, relative to fixed axes.
   [[nodiscard]] friend constexpr placement operator*(const placement& a, const placement& b) {
     using detail::components, detail::displacement;
     const auto both = displacement{a.rotation, components(a.translation)} *
@@ -152,37 +154,39 @@ struct placement {
   }
 };
 
-/// How a joint moves.
+/// Types of joint, as in URDF, and helical ones.
 enum class joint_kind {
-  revolute,   ///< turns about its axis, between limits
-  continuous, ///< turns about its axis, as often as it likes
-  prismatic,  ///< slides along its axis
-  helical,    ///< turns about its axis and slides along it by `pitch` per radian
-  fixed,      ///< does not move
-  planar,     ///< slides across its axis and turns about it: x, y, angle. In trees only
-  spherical,  ///< turns about its origin: a rotation vector. In trees only
-  floating    ///< moves as it likes: x, y, z, then a rotation vector. In trees only
+  revolute,   ///< rotation about its axis, between limits
+  continuous, ///< rotation about its axis, without limits
+  prismatic,  ///< translation along its axis
+  helical, ///< screw motion: rotation about its axis and translation along it by `pitch` per radian
+  fixed,   ///< no motion, no coordinate
+  planar,  ///< translation perpendicular to its axis and rotation about it: x, y, angle. Trees only
+  spherical, ///< rotation about its origin, a rotation vector. Trees only
+  floating   ///< six degrees of freedom: x, y, z, then a rotation vector. Trees only
 };
 
-/// Limits of the coordinate θ of a joint: radians, or units of length for a prismatic one.
+/// Limits of the coordinate θ of a joint: radians, or units of length for a prismatic joint. By
+/// default infinite.
 template <class T = double>
 struct joint_limits {
-  T lower = -std::numeric_limits<T>::infinity();   ///< the least θ
-  T upper = std::numeric_limits<T>::infinity();    ///< the largest θ
-  T velocity = std::numeric_limits<T>::infinity(); ///< the largest |θ̇|, per unit of time
+  T lower = -std::numeric_limits<T>::infinity();   ///< lower bound of θ
+  T upper = std::numeric_limits<T>::infinity();    ///< upper bound of θ
+  T velocity = std::numeric_limits<T>::infinity(); ///< upper bound of |θ̇|, per unit of time
 };
 
-/// One joint of a chain. Its own frame stands, at θ = 0, at `origin` in the frame of the joint
-/// before; its axis goes through the frame's origin along the unit vector `axis` in that frame.
+/// One joint of a chain. At θ = 0 its frame is at `origin` relative to the frame of the
+/// previous joint. Its axis passes through the origin of its frame along the unit vector `axis`
+/// in that frame.
 template <class T = double>
 struct joint {
-  joint_kind kind = joint_kind::revolute;     ///< how it moves
-  placement<T> origin = {};                   ///< of its frame in that of the joint before
-  std::array<T, 3> axis = {T(0), T(0), T(1)}; ///< a unit vector
-  joint_limits<T> limits = {};                ///< of its coordinate
-  T pitch = T(0);                             ///< of a helical joint, in units of length per radian
+  joint_kind kind = joint_kind::revolute; ///< type of joint
+  placement<T> origin = {}; ///< pose of its frame at θ = 0 in the frame of the previous joint
+  std::array<T, 3> axis = {T(0), T(0), T(1)}; ///< unit vector along the axis in that frame
+  joint_limits<T> limits = {};                ///< limits of its coordinate
+  T pitch = T(0); ///< travel of a helical joint, in units of length per radian
 
-  /// How many coordinates it has.
+  /// Number of coordinates of the joint: 0, 1, 3 or 6.
   [[nodiscard]] constexpr int coordinates() const {
     switch (kind) {
     case joint_kind::fixed:
@@ -196,33 +200,34 @@ struct joint {
       return 1;
     }
   }
-  /// Does it turn about its axis?
-  [[nodiscard]] constexpr bool turns() const {
+  /// True if the joint rotates about its axis: revolute, continuous or helical.
+  [[nodiscard]] constexpr bool is_rotational() const {
     return kind == joint_kind::revolute || kind == joint_kind::continuous ||
            kind == joint_kind::helical;
   }
-  /// Does it slide along its axis?
-  [[nodiscard]] constexpr bool slides() const {
+  /// True if the joint translates along its axis: prismatic or helical.
+  [[nodiscard]] constexpr bool is_translational() const {
     return kind == joint_kind::prismatic || kind == joint_kind::helical;
   }
-  /// How far it slides along its axis per unit of its coordinate.
-  [[nodiscard]] constexpr T travel() const {
-    return kind == joint_kind::helical ? pitch : T(slides() ? 1 : 0);
+  /// Translation along the axis per unit of the coordinate: `pitch` of a helical joint, 1 of a
+  /// prismatic one, otherwise 0.
+  [[nodiscard]] constexpr T translation_per_unit() const {
+    return kind == joint_kind::helical ? pitch : T(is_translational() ? 1 : 0);
   }
-  /// The limits that hold: of a continuous joint that of its velocity alone.
-  [[nodiscard]] constexpr joint_limits<T> range() const {
+  /// Effective limits: for a continuous joint only the velocity limit, otherwise `limits`.
+  [[nodiscard]] constexpr joint_limits<T> effective_limits() const {
     return kind == joint_kind::continuous ? joint_limits<T>{.velocity = limits.velocity} : limits;
   }
 };
 
-/// A frame fixed to a link of a chain. Link 0 is the base, link i what the i-th joint moves; the
-/// offset is from the frame of that joint.
+/// A frame fixed to a link of a chain. Link 0 is the base; link i is moved by the i-th joint. The
+/// offset is relative to the frame of that joint.
 template <class T = double>
 struct attached_frame {
-  int link = 0;             ///< number of the link
-  placement<T> offset = {}; ///< from the frame of the joint that moves the link
+  int link = 0;             ///< number of the link, 0 for the base
+  placement<T> offset = {}; ///< pose of the frame in that of the joint that moves the link
 
-  /// The frame at the point x of this one, of the same axes.
+  /// The frame at the point x (in units of length) of this frame, with the same axes.
   [[nodiscard]] constexpr attached_frame at_point(const std::array<T, 3>& x) const {
     return {link, offset * placement<T>{quaternion<T>(T(1)), x}};
   }

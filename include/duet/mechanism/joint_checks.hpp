@@ -15,11 +15,14 @@
 #include <string_view>
 
 /// \file
-/// What may be wrong with a joint of a table, and a joint that stands elsewhere.
+/// Validation of the joints of a table, and their conversion to evaluation steps.
 
 namespace duet::detail {
 
-/// \param name  of the joint, if it has one
+/// Throws the error message for joint i.
+///
+/// \param name  name of the joint, if it has one
+/// \throws invalid_input always
 [[noreturn]] inline void bad_joint(std::size_t i, const std::string& reason,
                                    const char* function = "serial_chain",
                                    std::string_view name = {}) {
@@ -27,7 +30,10 @@ namespace duet::detail {
   raise(invalid_input(message("duet: ", function, ": joint ", i, named, ": ", reason)));
 }
 
-/// Can a joint be somewhere within its limits? NaN and infinite ends on the wrong side leave none.
+/// Checks that a joint has a coordinate within its limits and a velocity limit of at least 0.
+///
+/// \throws invalid_input for a lower limit above the upper one, NaN, and infinite bounds of the
+/// wrong sign
 template <class T>
 constexpr void require_limits(const joint_limits<T>& given, std::size_t i,
                               const char* function = "serial_chain", std::string_view name = {}) {
@@ -48,7 +54,7 @@ constexpr void require_joint(const joint<T>& given, std::size_t i,
   if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
     bad_joint(i, "its origin is not finite", function, name);
   }
-  if (!is_nearly_one(norm2(given.origin.rotation))) {
+  if (!is_nearly_one(squared_norm(given.origin.rotation))) {
     bad_joint(i,
               message("the rotation ", given.origin.rotation,
                       " of its origin is no unit quaternion: normalized(q)"),
@@ -65,7 +71,7 @@ constexpr void require_joint(const joint<T>& given, std::size_t i,
   require_limits(given.limits, i, function, name);
 }
 
-/// The kind of a joint within limits: with one that is no more `continuous`.
+/// The type of a joint with limits: a `continuous` joint that gets a bound becomes `revolute`.
 template <class T>
 [[nodiscard]] constexpr joint_kind kind_within(joint_kind kind, const joint_limits<T>& limits) {
   const T infinity = std::numeric_limits<T>::infinity();
@@ -73,10 +79,10 @@ template <class T>
   return kind == joint_kind::continuous && is_limited ? joint_kind::revolute : kind;
 }
 
-/// A joint that stands at an origin, made ready.
+/// The evaluation step of a joint whose frame is at an origin.
 template <class T>
 [[nodiscard]] constexpr joint_step<T> step_of(const joint<T>& given, const placement<T>& origin) {
-  const quaternion<T> a = origin.rotation * inverse_root_near_one(norm2(origin.rotation));
+  const quaternion<T> a = origin.rotation * inverse_root_near_one(squared_norm(origin.rotation));
   const auto axis = components(given.axis);
   const auto n = inverse_root_near_one(dot(axis, axis)) * axis;
   joint_step<T> result;
@@ -84,13 +90,13 @@ template <class T>
   result.an = a * quaternion<T>(T(0), n.x, n.y, n.z);
   result.offset = components(origin.translation);
   result.axis = cleaned_direction(rotated(a, n));
-  result.turns = given.turns();
-  result.slides = given.slides();
-  result.pitch = given.travel();
+  result.turns = given.is_rotational();
+  result.slides = given.is_translational();
+  result.pitch = given.translation_per_unit();
   return result;
 }
 
-/// A joint whose frame before is displaced.
+/// The step of a joint after the previous frame has been displaced.
 template <class T>
 [[nodiscard]] constexpr joint_step<T> displaced(const placement<T>& by, joint_step<T> step) {
   const displacement stands{by.rotation, components(by.translation)};
@@ -101,7 +107,7 @@ template <class T>
   return step;
 }
 
-/// Where a joint at the coordinate θ puts its frame, in the frame before.
+/// Pose of a joint's frame at the coordinate θ relative to the previous frame.
 template <class T>
 [[nodiscard]] constexpr placement<T> placement_at(const joint_step<T>& step, const T& theta) {
   const auto half = sine_and_cosine_of_constant(T(theta / 2));

@@ -5,19 +5,19 @@
 #include <duet/mechanism/jacobian.hpp>
 
 /// \file
-/// What a wrench on a link asks of the joints.
+/// Joint torques and forces that correspond to a wrench on a link.
 
 namespace duet {
 
-/// τ = Jᵀ F: the torques, or forces where joints slide, of a wrench F = [f; m] that the chain
-/// exerts at a frame, with the same power: τ·θ̇ = F·V.
+/// τ = Jᵀ F: the joint torques (forces for prismatic joints) of a wrench F = [f; m] that the chain
+/// exerts at a frame, with the same power: τ·θ̇ = F·V. Other arguments as `jacobian`.
 ///
 /// \param frame_of_wrench  `frame::spatial`: fixed axes, m about the fixed origin; `frame::body`:
-/// axes
-///                         and origin of the frame; `frame::hybrid`: fixed axes, m about its origin
-/// Other arguments as `jacobian`.
+///                         axes and origin of the frame; `frame::hybrid`: fixed axes, m about the
+///                         frame's origin
+/// \return a column of one effort for each joint
 template <SerialChain C, VectorLike X, class W, FrameConstant Frame,
-          PlaceOnChain<C> At = tip_of_chain>
+          FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto joint_efforts(const C& chain, const X& theta, const vector6<W>& wrench,
                                  Frame frame_of_wrench, const At& at = {}) {
   using S = promote_t<detail::chain_scalar<C, X>, W>;

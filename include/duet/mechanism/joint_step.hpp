@@ -12,31 +12,31 @@
 #include <cstddef>
 
 /// \file
-/// One joint after the other along a chain: what every function of a chain is made of.
+/// One joint of a chain as an evaluation step; forward kinematics and Jacobians are made of these.
 
 namespace duet::detail {
 
-/// A joint made ready for evaluation. With the joint's frame displaced by (a, l) from the one
-/// before, and n its axis, the next rotation is q (cos(θ/2) a + sin(θ/2) a n).
+/// A joint prepared for evaluation. With the joint's frame displaced by (a, l) from the previous
+/// one and n its axis, the rotation q of the previous link becomes q (cos(θ/2) a + sin(θ/2) a n).
 template <class T>
 struct joint_step {
   quaternion<T> a{T(1)};
   quaternion<T> an{};
   three_vector<T> offset{}; ///< l
-  three_vector<T> axis{};   ///< a n a*, the axis in the frame of the joint before
-  T pitch{};                ///< travel along the axis per unit of θ: 1 where it only slides
+  three_vector<T> axis{};   ///< a n a*, the axis in the frame of the previous joint
+  T pitch{};                ///< translation along the axis per unit of θ; 1 if purely prismatic
   bool turns = true;
   bool slides = false;
 };
 
-/// A step of a table in memory. (Where functions of chains read `joint_step` itself, clang takes 8
-/// % more instructions for a Jacobian.)
+/// A step of a table in memory. (If functions of chains read `joint_step` directly, clang takes 8 %
+/// more instructions for a Jacobian.)
 template <class T>
 struct step_in_memory {
   const joint_step<T>& s;
 
-  [[nodiscard]] bool turns() const { return s.turns; }
-  [[nodiscard]] bool slides() const { return s.slides; }
+  [[nodiscard]] bool is_rotational() const { return s.turns; }
+  [[nodiscard]] bool is_translational() const { return s.slides; }
   template <class S, class Turns>
   [[nodiscard]] DUET_ALWAYS_INLINE quaternion<S> rotation(const Turns& turns_of,
                                                           Eigen::Index i) const {
@@ -44,7 +44,7 @@ struct step_in_memory {
       return quaternion<S>(s.a);
     }
     const sine_cosine<S> half = turns_of[int(i)];
-    const S &c = half.cosine, &sine = half.sine; // no quaternions of duals on the way
+    const S &c = half.cosine, &sine = half.sine; // no intermediate quaternions of duals
     return {c * s.a.w() + sine * s.an.w(), c * s.a.x() + sine * s.an.x(),
             c * s.a.y() + sine * s.an.y(), c * s.a.z() + sine * s.an.z()};
   }
@@ -53,17 +53,17 @@ struct step_in_memory {
   [[nodiscard]] T pitch() const { return s.pitch; }
 };
 
-/// The I-th step of a table that the compiler knows.
+/// The I-th step of a table known to the compiler.
 template <class Arm, std::size_t I>
 struct known_step {
   static constexpr const auto& s() { return Arm::chain.steps()[I]; }
 
-  [[nodiscard]] static constexpr bool turns() { return s().turns; }
-  [[nodiscard]] static constexpr bool slides() { return s().slides; }
+  [[nodiscard]] static constexpr bool is_rotational() { return s().turns; }
+  [[nodiscard]] static constexpr bool is_translational() { return s().slides; }
   template <class S, class Turns>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const Turns& turns_of, Eigen::Index i) {
     constexpr auto a = known_quaternion([] { return s().a; });
-    if constexpr (!turns()) {
+    if constexpr (!is_rotational()) {
       return a;
     } else {
       const sine_cosine<S> half = turns_of[int(i)];
@@ -79,15 +79,17 @@ struct known_step {
   [[nodiscard]] static constexpr auto pitch() { return s().pitch; }
 };
 
-/// The link after the joint i. `visit(i, step, axis, position)` is called with the joint's axis in
-/// space and a point on it. `WithRotation`: is the rotation after the joint asked for?
+/// Pose of the link after joint i. Calls `visit(i, step, axis, position)` with the joint's axis in
+/// space and a point on it.
+///
+/// \tparam WithRotation  true if the rotation after the joint is required
 template <bool WithRotation, class Link, class Step, class S, class Turns, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE auto after_joint(const Link& link, const Step& step,
                                                   Eigen::Index i, const S& theta,
                                                   const Turns& turns_of, const Visit& visit) {
   three_vector<S> p = link.point(step.offset());
   const three_vector<S> axis = rotated(link.rotation, step.axis());
-  if (step.slides()) {
+  if (step.is_translational()) {
     p = p + theta * step.pitch() * axis;
   }
   visit(i, step, axis, p);

@@ -29,69 +29,72 @@
 #include <vector>
 
 /// \file
-/// Trees of links and joints, and where their links stand.
+/// Kinematic trees of links and joints, and their forward kinematics.
 
 namespace duet {
 
-/// A frame on a link of a tree, as it is seen from another one: what `pose`, `jacobian` and the
-/// like take in place of a frame.
+/// A frame on a link of a tree relative to an observer frame on another link. `pose`, `jacobian`
+/// and the other functions of trees take it instead of a frame.
 ///
 /// Example: `tree.pose(q, relative_frame{tree.link("hand"), tree.link("head")})`
 struct relative_frame {
-  attached_frame<double> frame;    ///< the one that is looked at
-  attached_frame<double> observer; ///< the one that it is seen from, which takes the root's place
+  attached_frame<double> frame;    ///< the observed frame
+  attached_frame<double> observer; ///< the frame of the observer, which replaces the root
 };
 
-/// What a function of a tree may be about: the link of a number, a frame on a link, one that is
-/// seen from another.
+/// A frame argument of a function of a tree: a link number, a frame on a link, or a frame relative
+/// to another one.
 template <class At>
-concept PlaceOnTree = std::integral<At> || std::same_as<At, attached_frame<double>> ||
+concept FrameOnTree = std::integral<At> || std::same_as<At, attached_frame<double>> ||
     std::same_as<At, relative_frame>;
 
 namespace detail {
 
-/// Of what a function of a tree is asked, and the node above both, −1 the root.
+/// Frames of interest of a function of a tree, and the node above both; −1 is the root.
 struct tree_view {
   place_on_node frame;
   place_on_node observer;
   int top = -1;
-  bool is_from_above = true; ///< seen from the very frame of the node above
+  bool is_from_above = true; ///< true if the observer is the frame of the node above
 };
 
 } // namespace detail
 
-/// Links and joints that hang on a root link, each but that on one other.
+/// A kinematic tree: a root link, and links of which each is connected to one parent link by
+/// one joint.
 ///
-/// Joints have 0 to 6 coordinates: none if fixed; x, y and the angle of a planar one, which slides
-/// across its axis n along e_x and e_y, carried by the shortest turn of e_z to n (by a half turn
-/// about x to −e_z), then turns about n; the rotation vector of a spherical one; x, y, z and the
-/// rotation vector of a floating one, which slides first, then turns. Those of a joint that mimics
-/// another are no coordinates of the tree, but multiples of one. All others are, in the order of
-/// the description: radians and units of length.
+/// Joints have 0 to 6 coordinates: none if fixed; x, y and the angle of a planar joint, which
+/// translates perpendicular to its axis n along e_x and e_y, carried by the shortest rotation from
+/// e_z to n (a half turn about x to −e_z), then rotates about n; the rotation vector of a spherical
+/// joint; x, y, z and the rotation vector of a floating joint, which translates first, then
+/// rotates. Coordinates of a joint that mimics another are multiples of a coordinate of that joint
+/// and no coordinates of the tree. All others are, in the order of the description, in radians and
+/// units of length.
 ///
-/// Links are numbered from 0, as in `links()`. Coordinates q are Eigen vectors, `std::array`s or
-/// `std::vector`s over any scalar. Limits are kept as given, narrowed by those of joints that
-/// mimic; they are not enforced. Work on one frame takes time proportional to the joints between it
-/// and the root (or what it is seen from); no depth is too much.
+/// Links are numbered from 0, as in `links()`. A configuration q is an Eigen vector, `std::array`
+/// or `std::vector` over any scalar. Limits are stored, narrowed by those of joints that mimic;
+/// they are not enforced. Work on one frame takes time proportional to the number of joints between
+/// it and the root (or the observer); the depth of the tree is not limited.
 class kinematic_tree {
 public:
   using scalar_type = double;
   using own_jacobian = void;
 
-  /// \throws invalid_input (`file_error` with the line if it is from a file) where links or joints
-  /// have one name, links are not there, have two joints above them, or none and are not the only
-  /// such; where joints close a cycle, numbers are bad, joints follow what there is not, themselves
-  /// or others of several coordinates, or limits leave no motion
+  /// \throws invalid_input (`file_error` with the line if the description is from a file) if two
+  /// links or two joints have the same name; a link does not exist, has two parent joints, or is a
+  /// second root; joints close a cycle; a number is invalid; a joint mimics a joint that does not
+  /// exist, itself, or one with several coordinates; or limits leave no motion
   explicit kinematic_tree(robot_description given)
       : description_(std::move(given)), table_(detail::table_of<double>(description_)) {}
 
   /// Number of coordinates.
   [[nodiscard]] int size() const { return int(table_.names.size()); }
-  /// Names of the coordinates: those of their joints; `name.x`, `name.angle`, `name.rx` … of joints
-  /// that have several.
+  /// Names of the coordinates: those of their joints; `name.x`, `name.angle`, `name.rx` … for
+  /// joints with several coordinates.
   [[nodiscard]] const std::vector<std::string>& coordinate_names() const { return table_.names; }
-  /// The number of a coordinate by its name.
-  /// \throws invalid_input where there is none of that name
+  /// The number of a coordinate, by its name.
+  ///
+  /// \throws invalid_input if no coordinate has that name
   [[nodiscard]] int coordinate(std::string_view name) const {
     const auto found = std::find(table_.names.begin(), table_.names.end(), name);
     if (found == table_.names.end()) {
@@ -99,7 +102,7 @@ public:
     }
     return int(found - table_.names.begin());
   }
-  /// The limits of coordinate i, within which those of joints that mimic it hold, too.
+  /// Limits of coordinate i; within them joints that mimic it are within their limits, too.
   [[nodiscard]] const joint_limits<double>& limits(int i) const {
     return table_.limits[std::size_t(i)];
   }
@@ -107,17 +110,19 @@ public:
   [[nodiscard]] const std::vector<tree_link>& links() const { return description_.links; }
   /// All joints, fixed ones included.
   [[nodiscard]] const std::vector<tree_joint>& joints() const { return description_.joints; }
-  /// What the tree was made of.
+  /// The description from which the tree was made.
   [[nodiscard]] const robot_description& description() const { return description_; }
   /// The frame of link i.
+  ///
   /// \throws invalid_input for i outside `links()`
   [[nodiscard]] attached_frame<double> link(int i) const {
     detail::require(0 <= i && i < int(links().size()), "duet: kinematic_tree: no link ", i, " of ",
                     links().size());
     return {i, {}};
   }
-  /// The frame of a link by its name.
-  /// \throws invalid_input where there is none of that name
+  /// The frame of a link, by its name.
+  ///
+  /// \throws invalid_input if no link has that name
   [[nodiscard]] attached_frame<double> link(std::string_view name) const {
     const auto found = table_.link_numbers.find(std::string(name));
     if (found == table_.link_numbers.end()) {
@@ -130,11 +135,12 @@ public:
     return {found->second, {}};
   }
 
-  /// The pose at coordinates q of a link by its number, of an `attached_frame`, or of a
-  /// `relative_frame`, in the frame of the root or of what that is seen from.
-  /// \throws invalid_input for another number of coordinates than `size()`, and for a link that
-  /// there is none of
-  template <VectorLike X, PlaceOnTree At>
+  /// Forward kinematics: the pose at the configuration q of a link number, an `attached_frame` such
+  /// as an end-effector frame, or a `relative_frame`, in the frame of the root or of the observer.
+  ///
+  /// \throws invalid_input if the number of coordinates differs from `size()`, or the link
+  /// does not exist
+  template <VectorLike X, FrameOnTree At>
   [[nodiscard]] auto pose(const X& q, const At& at) const {
     using S = detail::tree_scalar<X>;
     const detail::tree_view view = this->view(at);
@@ -154,9 +160,11 @@ public:
     return detail::pose_of_unit(stands.rotation, stands.translation.eigen());
   }
 
-  /// The poses of all links at coordinates q, in the order of `links()`, in one pass.
+  /// Forward kinematics of all links at the configuration q, in the order of
+  /// `links()`, in one pass.
+  ///
   /// \return a `std::vector` of poses
-  /// \throws invalid_input for another number of coordinates than `size()`
+  /// \throws invalid_input if the number of coordinates differs from `size()`
   template <VectorLike X>
   [[nodiscard]] auto poses(const X& q) const {
     using S = detail::tree_scalar<X>;
@@ -177,13 +185,13 @@ public:
   DUET_REFUSED("pose takes the coordinates of one configuration: tree.pose(qs.col(i), link)")
   dual_quaternion<double> pose(const X&...) const;
 
-  /// The serial chain from one link to another, both by their names, with the limits of its joints
-  /// as the description has them. Joints that lead up, from the base to where both ways meet, turn
-  /// and slide about the opposite of their axes, so that coordinates mean the same.
+  /// The serial chain from one link to another, both by their names, with the joint limits of the
+  /// description. Joints that lead up, from the base to the lowest common ancestor, rotate about or
+  /// translate along the opposite of their axes, so that coordinates keep their meaning.
   ///
-  /// \tparam Capacity  how many moving joints there may be
-  /// \throws invalid_input for links that are not there, too many joints, and joints of several
-  /// coordinates or that mimic others between the two
+  /// \tparam Capacity  maximum number of moving joints
+  /// \throws invalid_input for links that do not exist, too many joints, and joints between the two
+  /// links that have several coordinates or mimic others
   template <int Capacity = 16>
   [[nodiscard]] urdf_chain<Capacity> chain(const std::string& base, const std::string& tip) const {
     (void)link(base);
@@ -194,10 +202,10 @@ public:
 
   // For those who extend duet.
 
-  /// The table that evaluation reads.
+  /// The table used for evaluation.
   [[nodiscard]] const detail::tree_table& table() const { return table_; }
-  /// Puts other limits in place of those of coordinate i, which must be good. With one a joint is
-  /// no more `continuous`.
+  /// Replaces the limits of coordinate i, without checks. A `continuous` joint that gets a bound
+  /// becomes `revolute`.
   void set_limits(int i, const joint_limits<double>& limits) {
     table_.limits[std::size_t(i)] = limits;
     for (tree_joint& joint : description_.joints) {
@@ -209,7 +217,7 @@ public:
       i -= count;
     }
   }
-  /// Where a place is.
+  /// The node and offset of a frame.
   [[nodiscard]] detail::place_on_node place(const attached_frame<double>& at) const {
     detail::place_on_node result = table_.links[std::size_t(link(at.link).link)];
     if (!detail::is_identity(at.offset)) {
@@ -217,8 +225,8 @@ public:
     }
     return result;
   }
-  /// What is between a frame and what it is seen from.
-  template <PlaceOnTree At>
+  /// The link path between a frame and its observer.
+  template <FrameOnTree At>
   [[nodiscard]] detail::tree_view view(const At& at) const {
     if constexpr (std::integral<At>) {
       return {table_.links[std::size_t(link(int(at)).link)], {}};
@@ -248,7 +256,7 @@ private:
   detail::tree_table table_;
 };
 
-/// The lower limits of all coordinates of a tree.
+/// Lower limits of all coordinates of a tree.
 [[nodiscard]] inline Eigen::VectorXd lower_limits(const kinematic_tree& tree) {
   Eigen::VectorXd result(tree.size());
   for (int i = 0; i < tree.size(); ++i) {
@@ -256,7 +264,7 @@ private:
   }
   return result;
 }
-/// The upper limits of all coordinates of a tree.
+/// Upper limits of all coordinates of a tree.
 [[nodiscard]] inline Eigen::VectorXd upper_limits(const kinematic_tree& tree) {
   Eigen::VectorXd result(tree.size());
   for (int i = 0; i < tree.size(); ++i) {

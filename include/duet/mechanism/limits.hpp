@@ -19,13 +19,13 @@
 #include <string_view>
 
 /// \file
-/// Chains whose joints have other limits.
+/// Serial chains with changed joint limits.
 
 namespace duet {
 namespace detail {
 
-/// A copy of a chain in memory: as it is, with its names where it has some; the table of one that
-/// the compiler knows.
+/// A copy of a chain in memory, with its names if it has some; for a chain known to the compiler
+/// its table.
 template <SerialChain C>
 [[nodiscard]] constexpr auto copy_of_chain(const C& chain) {
   if constexpr (requires { chain.table(); }) {
@@ -35,18 +35,18 @@ template <SerialChain C>
   }
 }
 
-/// What says which joint of a chain is meant: its number or, where it has one, its name.
+/// A joint argument: the number of a joint or, if the chain has names, its name.
 template <class Which, class C>
 concept JointOf = std::integral<Which> ||
     (std::convertible_to<const Which&, std::string_view>&& requires(const C& chain) {
       chain.joint_names();
     });
 
-/// A name for a joint of a chain that has none.
+/// A joint name given for a chain without names.
 template <class Which, class C>
 concept NameInVain = std::convertible_to<const Which&, std::string_view> && !JointOf<Which, C>;
 
-/// The name of a joint, empty where it has none.
+/// The name of a joint, empty if it has none.
 template <class C>
 [[nodiscard]] constexpr std::string_view joint_name([[maybe_unused]] const C& chain,
                                                     [[maybe_unused]] int i) {
@@ -58,7 +58,8 @@ template <class C>
 }
 
 /// The number of a joint.
-/// \throws invalid_input for one that there is none of
+///
+/// \throws invalid_input for a joint that does not exist
 template <class C, JointOf<C> Which>
 [[nodiscard]] constexpr int joint_number(const C& chain, const Which& which, const char* function) {
   if constexpr (std::integral<Which>) {
@@ -81,14 +82,15 @@ template <class C, JointOf<C> Which>
 
 } // namespace detail
 
-/// The chain with other limits of a joint, given by its number, or by its name where the chain is
-/// from a file: all three of them, so velocities are not limited where
-/// none is given. A `continuous` joint that gets a lower or an upper limit becomes `revolute`.
+/// The chain with other limits of a joint, given by its number or, if the chain is from a file, by
+/// its name. All three limits are replaced, so the velocity is not limited if `limits.velocity` is
+/// the default. A `continuous` joint that gets a lower or an upper limit becomes `revolute`.
 ///
 /// Example: `auto limits = arm.limits(3); limits.upper = -0.5; arm = with_limits(arm, 3, limits);`
-/// \return a chain of the same type, with the same names; of a `compiled_chain` a `serial_chain`
-/// \throws invalid_input for a joint that there is none of, and limits that hold no motion: a lower
-/// one above the upper one, NaN, a velocity below zero
+///
+/// \return a chain of the same type, with the same names; for a `static_chain` a `serial_chain`
+/// \throws invalid_input for a joint that does not exist, and for limits that allow no motion: a
+/// lower limit above the upper one, NaN, a negative velocity
 template <SerialChain C, detail::JointOf<C> Which>
 [[nodiscard]] constexpr auto with_limits(const C& chain, const Which& which,
                                          const joint_limits<typename C::scalar_type>& limits) {
@@ -99,12 +101,13 @@ template <SerialChain C, detail::JointOf<C> Which>
   return result;
 }
 
-/// The chain with other lower and upper limits of all joints that move, radians or units of length;
-/// those of velocity stay. (Any kind of vectors: Eigen's, `std::array`, `std::vector`.)
+/// The chain with other lower and upper limits of all moving joints, in radians or units of length;
+/// velocity limits are kept. Limits are any vectors: Eigen's, `std::array`, `std::vector`.
 ///
 /// Example: `with_limits(arm, (0.9 * lower_limits(arm)).eval(), (0.9 * upper_limits(arm)).eval())`
-/// \return as with the limits of one joint
-/// \throws invalid_input for another number of limits than joints, and as with one joint
+///
+/// \return as for one joint
+/// \throws invalid_input if the number of limits differs from that of joints, and as for one joint
 template <SerialChain C, VectorLike Lower, VectorLike Upper>
 [[nodiscard]] auto with_limits(const C& chain, const Lower& lower, const Upper& upper) {
   using T = typename C::scalar_type;
@@ -123,13 +126,14 @@ template <SerialChain C, VectorLike Lower, VectorLike Upper>
   return result;
 }
 
-/// The chain with its limits narrowed to joint coordinates that differ from θ by no more than
-/// `most`, one number for each joint: solutions and plans within them stay that near to θ.
+/// The chain with its limits narrowed to configurations that differ from θ by at most `most`, one
+/// number for each joint: inverse kinematics and plans within these limits stay near θ.
 ///
 /// Example: `inverse_kinematics(with_limits_about(arm, start, most), goal, start)`
-/// \return as with the limits of one joint
-/// \throws invalid_input for another number of coordinates than joints, and where no coordinate
-/// within the limits is that near
+///
+/// \return as for one joint
+/// \throws invalid_input if the number of coordinates differs from that of joints, and if no
+/// coordinate within the limits is that near
 template <SerialChain C, VectorLike X, VectorLike Most>
 [[nodiscard]] auto with_limits_about(const C& chain, const X& theta, const Most& most) {
   using T = typename C::scalar_type;

@@ -16,13 +16,14 @@
 #include <vector>
 
 /// \file
-/// Loops out of files: what a robot description, which is a tree, cannot say.
+/// Loop-closure constraints from files, as a robot description, which is a tree, cannot
+/// contain them.
 
 namespace duet {
 
 namespace detail {
 
-/// One line of a file of loops.
+/// One line of a file of loop-closure constraints.
 class loop_line {
 public:
   loop_line(const std::string& path, std::size_t line, std::string_view text)
@@ -30,13 +31,13 @@ public:
     for_each_word(text, [&](std::string_view word) { words_.push_back(word); });
   }
 
-  [[nodiscard]] tree_loop read() {
-    tree_loop result;
+  [[nodiscard]] loop_constraint read() {
+    loop_constraint result;
     result.line = line_;
     result.kind = kind(word("a kind of loop"));
     result.first = frame();
     result.second = frame();
-    if (result.kind == loop_kind::rod) {
+    if (result.kind == constraint_kind::distance) {
       if (word("\"length\" of the rod") != "length") {
         fail("\"length\" of the rod expected, not \"" + std::string(words_[next_ - 1]) + "\"");
       }
@@ -83,30 +84,36 @@ private:
     return result;
   }
 
-  [[nodiscard]] loop_kind kind(std::string_view name) const {
+  [[nodiscard]] constraint_kind kind(std::string_view name) const {
+    // The words of models of mechanisms, which files may use as well.
+    constexpr std::array<std::string_view, 8> others{"weld",      "hinge", "slider", "cylindrical",
+                                                     "universal", "ball",  "planar", "rod"};
     std::vector<std::string> names;
-    for (int i = 0; i <= int(loop_kind::rod); ++i) {
-      names.emplace_back(to_text(loop_kind(i)));
-      if (names.back() == name) {
-        return loop_kind(i);
+    for (int i = 0; i <= int(constraint_kind::distance); ++i) {
+      names.emplace_back(to_text(constraint_kind(i)));
+      if (names.back() == name || others[std::size_t(i)] == name) {
+        return constraint_kind(i);
+      }
+      if (names.back() != others[std::size_t(i)]) {
+        names.emplace_back(others[std::size_t(i)]);
       }
     }
     fail("no kind of loop is \"" + std::string(name) + "\": " + nearest_names(name, names));
   }
 
-  [[nodiscard]] loop_frame frame() {
-    loop_frame result{std::string(word("a link")), {}};
+  [[nodiscard]] constraint_frame frame() {
+    constraint_frame result{std::string(word("a link")), {}};
     const auto at = numbers("", result.link, {"x", "y", "z"});
     if (has("axis")) {
       const auto n = numbers("axis ", result.link, {"x", "y", "z"});
       if (!(std::hypot(n[0], n[1], n[2]) > 0)) {
         fail("axis on \"" + result.link + "\" has no direction");
       }
-      result.offset = along_axis(at, n);
+      result.offset = frame_with_z_axis(at, n);
     } else if (has("rpy")) {
       const auto rpy = numbers("", result.link, {"roll", "pitch", "yaw"});
       for (const double angle : rpy) {
-        if (std::abs(angle) > 1e6) { // its digits are needed for whole turns
+        if (std::abs(angle) > 1e6) { // larger angles lose digits
           fail("the angle " + to_text(angle) + " on \"" + result.link + "\" is beyond 1e6 radians");
         }
       }
@@ -125,17 +132,17 @@ private:
 
 } // namespace detail
 
-/// The loops in a text file, which stands beside a robot description: one a line, as
-/// `hinge coupler 0.5 0 0 rocker 0.4 0 0` or `rod base 1 0 0 plate 0.1 0 0 length 0.8`: a kind of
-/// `loop_kind`, two frames, and of a rod its length. A frame is a link, a point x y z in its frame,
-/// and, if its axes are not the link's, `axis x y z`, along which its z points as by `along_axis`,
-/// or `rpy roll pitch yaw` as in URDF. Metres and radians; names without blanks; what follows a
-/// number sign on a line is a comment.
+/// The loop-closure constraints in a text file, which accompanies a robot description, one a line,
+/// as `hinge coupler 0.5 0 0 rocker 0.4 0 0` or `rod base 1 0 0 plate 0.1 0 0 length 0.8`: a type
+/// of `constraint_kind`, two frames, and for a rod its length. A frame is a link, a point x y z in
+/// its frame, and, if its axes are not those of the link, `axis x y z`, the direction of its z axis
+/// as in `frame_with_z_axis`, or `rpy roll pitch yaw` as in URDF. Metres and radians; names without
+/// blanks; the rest of a line after a number sign is a comment.
 ///
-/// \throws file_error with line and value for what cannot be read, unknown kinds, missing and
-/// superfluous words, what is no finite number, axes and rods without length
-[[nodiscard]] inline loop_description read_loops(const std::string& path) {
-  loop_description result;
+/// \throws file_error with line and value for files that cannot be read, unknown types, missing and
+/// superfluous words, numbers that are not finite, axes and rods without length
+[[nodiscard]] inline loop_constraints read_loops(const std::string& path) {
+  loop_constraints result;
   result.file = path;
   detail::for_each_line(path, [&](std::size_t line, std::string_view text) {
     const std::string_view content = detail::split_line(text).text;

@@ -17,48 +17,52 @@
 #include <vector>
 
 /// \file
-/// Mechanisms with loops as functions of their drives.
+/// Motion of closed-chain mechanisms as a function of their driven coordinates.
 
 namespace duet {
 
-/// How a motion is followed.
+/// Options of the continuation of a `driven_motion`.
 struct loop_motion_options {
-  double largest_step = .2; ///< of all coordinates together: radians, or parts of `length()`
+  double largest_step = .2; ///< maximum norm of a step: radians, or relative to `length()`
 };
 
-/// The coordinates q(u) of a mechanism with loops by some of them, its drives u.
+/// The coordinates q(u) of a closed-chain mechanism as a function of its driven (input)
+/// coordinates u.
 ///
-/// As a function it is differentiated by all drivers, by the implicit function theorem, and a
-/// coupling of a `coupled_tree`: that has poses, Jacobians and Hessians of all links by u.
-/// Which of several positions is meant is said by the one at the start; from there the curve of
-/// positions along the straight line to any u is followed by tangents and Newton's method, straight
-/// on where branches cross.
+/// As a function it is differentiated by all drivers, by the implicit function theorem. It can be
+/// the coupling of a `coupled_tree`, which has poses, Jacobians and Hessians of all links with
+/// respect to u. The configuration at the start selects the assembly; from there the curve of
+/// configurations along the straight line to any u is followed by predictor–corrector continuation
+/// (tangent steps and Newton's method), straight on where branches cross.
 ///
-/// Example: `const loop_motion by_crank(four_bar, q0, {four_bar.tree().coordinate("crank")});`
+/// Example: `const driven_motion by_crank(four_bar, q0, {four_bar.tree().coordinate("crank")});`
 /// `const coupled_tree driven(four_bar.tree(), by_crank);`
-class loop_motion {
+class driven_motion {
 public:
-  /// \param q0      near the position to begin with; drives are taken as they are
-  /// \param drives  numbers of coordinates, as many as the mechanism moves in ways
-  /// \throws cannot_close where no position is near q0; invalid_input where the drives do not
-  /// determine the rates of all other coordinates, as in dead points, or are not independent, and
-  /// for mechanisms that have such rates and yet do not move
-  loop_motion(closed_tree mechanism, const Eigen::VectorXd& q0, std::vector<int> drives,
-              const loop_motion_options& options = {});
+  /// \param q0      initial guess near the start configuration; driven coordinates are taken as
+  ///                given
+  /// \param drives  numbers of the driven coordinates, as many as the mechanism has degrees of
+  ///                freedom
+  /// \throws loop_closure_failure if no configuration is near q0; invalid_input if the driven
+  /// coordinates do not determine the rates of all others, as at dead points, or are not
+  /// independent, and for mechanisms that are only first-order flexible: they have such rates and
+  /// do not move
+  driven_motion(closed_chain_mechanism mechanism, const Eigen::VectorXd& q0,
+                std::vector<int> drives, const loop_motion_options& options = {});
 
   /// The mechanism.
-  [[nodiscard]] const closed_tree& mechanism() const { return mechanism_; }
-  /// The numbers of the coordinates u.
+  [[nodiscard]] const closed_chain_mechanism& mechanism() const { return mechanism_; }
+  /// The numbers of the driven coordinates u.
   [[nodiscard]] const std::vector<int>& drives() const { return drives_; }
-  /// All coordinates where the motion starts.
+  /// All coordinates at the start of the motion.
   [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
 
-  /// q(u), all coordinates of the tree, over any scalar of duet; real values are in double
-  /// precision.
-  /// \param u  a number for one drive, or as many as there are
-  /// \throws cannot_close where the loops do not close on the straight way to u, with what happens
-  /// there: a dead point of the drives, or no step that leads on, as where branches touch;
-  /// invalid_input for another number of drives, and for what is not finite
+  /// Coordinates q(u) of the tree, over any scalar of duet; real values are in double precision.
+  ///
+  /// \param u  a number for one driven coordinate, or as many as there are
+  /// \throws loop_closure_failure if the loops do not close on the straight line to u, with the
+  /// reason: a dead point of the drives, or no step that leads on, as where branches touch;
+  /// invalid_input for another number of driven coordinates, and for numbers that are not finite
   template <class U>
   [[nodiscard]] auto operator()(const U& u) const {
     if constexpr (Scalar<U> || Arithmetic<U>) {
@@ -67,7 +71,7 @@ public:
       using argument = detail::vector_argument<U>;
       using S = promote_t<double, typename argument::scalar>;
       const auto count = Eigen::Index(drives_.size());
-      detail::require(argument::size(u) == count, "duet: loop_motion: ", count, " drives, but ",
+      detail::require(argument::size(u) == count, "duet: driven_motion: ", count, " drives, but ",
                       argument::size(u), " numbers are given");
       Eigen::VectorXd target(count);
       for (Eigen::Index i = 0; i < count; ++i) {
@@ -85,16 +89,19 @@ public:
     }
   }
 
-  /// This motion, started from u: other positions are found faster the nearer it starts.
+  /// This motion with its start moved to u (warm start): configurations near the start are
+  /// found faster.
+  ///
   /// \throws as evaluation
-  [[nodiscard]] loop_motion moved_to(const Eigen::VectorXd& u) const;
+  [[nodiscard]] driven_motion warm_started_at(const Eigen::VectorXd& u) const;
 
 private:
-  /// What takes residuals to the changes of dependent coordinates that make up for them.
+  /// The matrix that maps residuals to the changes of the dependent coordinates that
+  /// compensate for them.
   [[nodiscard]] Eigen::MatrixXd solver(const Eigen::VectorXd& q) const;
 
-  /// Each step makes one more order exact, as in `implicit_function`. Equations that depend on
-  /// others agree with them.
+  /// Each step makes one more order exact, as in `implicit_function`. Redundant equations are
+  /// consistent with the others.
   template <class S>
   void add_infinitesimals(Eigen::Matrix<S, Eigen::Dynamic, 1>& q,
                           const Eigen::MatrixXd& solve) const {
@@ -109,20 +116,21 @@ private:
     }
   }
 
-  /// A shaky mechanism has rates, but equations that agree with each other no further.
+  /// Rejects a first-order flexible (shaky) mechanism: it has rates, but its equations are
+  /// inconsistent at second order.
   void require_accelerations() const;
   [[nodiscard]] std::string driven() const;
   [[nodiscard]] std::string text(const Eigen::VectorXd& q) const;
   [[noreturn]] void fail(const std::string& what, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& target) const;
-  /// All coordinates at `target`, reached from where the motion starts.
+  /// All coordinates at `target`, reached from the start of the motion.
   [[nodiscard]] Eigen::VectorXd followed(const Eigen::VectorXd& target) const;
 
-  closed_tree mechanism_;
+  closed_chain_mechanism mechanism_;
   std::vector<int> drives_, dependent_;
   loop_motion_options options_;
   Eigen::VectorXd start_;
-  Eigen::MatrixXd solve_; ///< at the start
+  Eigen::MatrixXd solve_; ///< `solver` at the start
 };
 
 } // namespace duet

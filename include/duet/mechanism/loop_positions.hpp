@@ -11,56 +11,61 @@
 #include <vector>
 
 /// \file
-/// All ways in which the loops of a mechanism close.
+/// Assembly configurations of a closed-chain mechanism.
 
 namespace duet {
 
-/// One of the ways in which loops close.
-struct loop_position {
-  Eigen::VectorXd coordinates; ///< of the tree: of what turns within (−π, π]
-  /// Of ∂F/∂q by the coordinates that are not held: 0 where ways meet.
+/// One of the configurations in which the loops close (an assembly mode if the drives are held).
+struct assembly_configuration {
+  Eigen::VectorXd coordinates; ///< coordinates of the tree, angles within (−π, π]
+  /// Smallest singular value of ∂F/∂q with respect to the free coordinates; 0 at a branch point.
   double smallest_singular_value = 0;
-  int found = 0;             ///< how many of the starts led to it
-  bool within_limits = true; ///< are all coordinates within the limits of their joints?
+  int found = 0;             ///< number of random starts that led to it
+  bool within_limits = true; ///< true if all coordinates are within the limits of their joints
 };
 
-/// The ways in which loops close that were found.
-struct loop_positions {
-  std::vector<loop_position> positions; ///< in the order of their first coordinates that differ
-  int starts = 0;                       ///< from how many guesses loops were to be closed
-  int closed = 0;                       ///< from how many they were
+/// Result of a search for assembly configurations.
+struct assembly_search_result {
+  std::vector<assembly_configuration>
+      positions;  ///< assembly configurations, ordered by their first coordinates that differ
+  int starts = 0; ///< number of initial guesses
+  int closed = 0; ///< number of guesses from which the loops closed
 
-  /// The part of the closed starts whose position no other start found: about how probable it is,
-  /// by Good and Turing, that one more start finds a new position. No proof that there is none.
-  [[nodiscard]] double chance_of_more() const {
-    const auto once = std::count_if(positions.begin(), positions.end(),
-                                    [](const loop_position& each) { return each.found == 1; });
+  /// Good–Turing estimate of the probability that one more closed start finds a new
+  /// configuration: the fraction of closed starts whose configuration no other start found. No
+  /// proof that none is missing.
+  [[nodiscard]] double missing_probability() const {
+    const auto once =
+        std::count_if(positions.begin(), positions.end(),
+                      [](const assembly_configuration& each) { return each.found == 1; });
     return closed > 0 ? double(once) / closed : 1;
   }
 };
 
-/// From where positions are looked for.
-struct loop_search_options {
-  int starts = 200;       ///< how many random guesses
-  std::uint64_t seed = 1; ///< of the random numbers
-  /// Go on after these until `loop_positions::chance_of_more()` is below this, and would be if one
-  /// more position had been found once, as fewer guesses than 1 / chance cannot tell.
-  double chance_of_more = 2;
-  int most_starts = 20000; ///< but not after so many
+/// Options of the search for assembly configurations.
+struct assembly_search_options {
+  int random_starts = 200; ///< minimum number of random initial guesses
+  std::uint64_t seed = 1;  ///< seed of the random numbers
+  /// Upper bound on the Good–Turing estimate `assembly_search_result::missing_probability()`, also
+  /// if one more configuration had been found once, as fewer guesses than 1 / bound cannot show it.
+  /// The search continues beyond `starts` until the bound is met; the default is always met.
+  double missing_probability = 2;
+  int max_starts = 20000; ///< maximum number of guesses
 };
 
-/// The ways in which loops close while some coordinates are held: from random guesses, within the
-/// limits of joints that have some, else of angles within (−π, π), of lengths within
-/// ±π `length()`. Each is known to rounding; whether all were found is not known, but
-/// how probable it is that one more guess finds another: `loop_search_options::chance_of_more`.
+/// Assembly configurations of a closed-chain mechanism with some coordinates held, from random
+/// initial guesses: within the limits of joints whose limits are finite, otherwise angles within
+/// (−π, π) and lengths within ±π `length()`. Each is accurate to round-off. The search cannot prove
+/// that it is complete, but estimates the probability that one more guess finds another
+/// configuration: `assembly_search_options::missing_probability`.
 ///
-/// \param held  numbers of coordinates, as many as the mechanism moves in ways, so that positions
-///              are single
-/// \param at    where these are held, one after the other
-/// \throws invalid_input for coordinates that there are none of, and where both are not as many
-[[nodiscard]] DUET_COMPILED_FUNCTION loop_positions
-all_positions(const closed_tree& mechanism, const std::vector<int>& held, const Eigen::VectorXd& at,
-              const loop_search_options& options = {});
+/// \param held  numbers of coordinates, as many as the mechanism has degrees of freedom, so that
+///              configurations are isolated
+/// \param at    values of the held coordinates, in the order of `held`
+/// \throws invalid_input for coordinates that do not exist, and if `held` and `at` differ in size
+[[nodiscard]] DUET_COMPILED_FUNCTION assembly_search_result find_assembly_configurations(
+    const closed_chain_mechanism& mechanism, const std::vector<int>& held,
+    const Eigen::VectorXd& at, const assembly_search_options& options = {});
 
 } // namespace duet
 

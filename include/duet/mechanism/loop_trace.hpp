@@ -11,59 +11,62 @@
 #include <vector>
 
 /// \file
-/// The whole motion of a mechanism with loops, through its dead points.
+/// The whole motion of a closed-chain mechanism, through its dead points.
 
 namespace duet {
 
-/// A position beyond which a coordinate does not go: as a drive it is dead there.
+/// A dead point: a configuration beyond which a coordinate does not go. As a drive it is
+/// singular there.
 struct dead_point {
-  int coordinate = 0;          ///< its number
-  Eigen::VectorXd coordinates; ///< of the tree
-  Eigen::VectorXd rates;       ///< of all coordinates while that one rests
-  std::string moving;          ///< the names of those that move
+  int coordinate = 0;          ///< number of the coordinate
+  Eigen::VectorXd coordinates; ///< coordinates of the tree
+  Eigen::VectorXd rates;       ///< rates of all coordinates while that one is at rest
+  std::string moving;          ///< names of the moving coordinates
 };
 
-/// A position in which branches of a motion meet.
+/// A branch point: a configuration in which branches of a motion meet.
 struct branch_point {
-  Eigen::VectorXd coordinates; ///< of the tree
-  /// Rates of all coordinates along the branches, per unit of their length: first straight on, last
-  /// back to where it came from; between them those of other branches in pairs of opposites, on the
-  /// first of which the first coordinate that moves increases. Two alone: no branch is met, but
-  /// there are rates that do not move it.
+  Eigen::VectorXd coordinates; ///< coordinates of the tree
+  /// Tangents of the branches: rates of all coordinates per unit of their length. The first is
+  /// straight on, the last back along the motion; between them are those of other branches in pairs
+  /// of opposites, of which the first increases the first moving coordinate. If there are only two,
+  /// no other branch meets the motion, but there are rates that do not move the mechanism.
   std::vector<Eigen::VectorXd> ways;
-  std::size_t taken = 0; ///< by which of them it goes on
+  std::size_t taken = 0; ///< index of the tangent along which the motion continues
 };
 
-/// The whole motion of a mechanism by one drive.
-struct loop_trace_result {
-  std::vector<Eigen::VectorXd> positions;  ///< one after the other, from where the motion starts
-  std::vector<dead_point> dead_points;     ///< of all coordinates, in the order they are met
-  std::vector<branch_point> branch_points; ///< in the order they are met
-  bool is_closed = false; ///< does it come back to where it starts, or turned off last?
+/// The whole motion of a mechanism by one driven coordinate.
+struct motion_trace {
+  std::vector<Eigen::VectorXd> positions;  ///< configurations in order along the motion
+  std::vector<dead_point> dead_points;     ///< dead points of all coordinates, as met
+  std::vector<branch_point> branch_points; ///< branch points, in the order they are met
+  bool is_closed = false; ///< true if it returns to its start, or to the branch it turned off to
   bool meets_branches =
-      false; ///< does it end where branches touch, or where it cannot be followed?
+      false; ///< true if it ends where branches touch, or where it cannot be followed
 };
 
-/// How a motion is traced.
-struct loop_trace_options {
-  double largest_step = .1; ///< of all coordinates together: radians, or parts of `length()`
-  double longest = 200;     ///< the whole way in these, after which to stop
-  /// By which of `branch_point::ways` to go on from the first one that is met, the second …;
-  /// straight on from all others.
+/// Options of `trace`.
+struct trace_options {
+  double largest_step = .1; ///< maximum norm of a step: radians, or relative to `length()`
+  double longest = 200;     ///< maximum length of the motion in these units, then the trace stops
+  /// Indices of the tangents `branch_point::ways` to continue along from the first branch point,
+  /// the second …; straight on from all others.
   std::vector<std::size_t> ways = {};
 };
 
-/// The positions of a motion along one of its drives, the others held: from its start on, through
-/// dead points, until it comes back; where it cannot be followed further, also the other way, that
-/// first. Limits of joints are not heeded.
+/// Traces the motion along one driven coordinate, the others held, by predictor–corrector
+/// continuation: from its start through dead points until it returns. If it cannot be followed
+/// further, it is also traced from the start in the opposite direction, whose configurations come
+/// first. Joint limits are ignored.
 ///
-/// Dead points of a coordinate are where its rate changes its sign, found to rounding. Where
-/// branches cross the trace goes straight on, or by `loop_trace_options::ways`; it ends where they
-/// touch.
-/// \param drive  which of the motion's drives, from 0
-/// \throws invalid_input for a drive that there is none of
-[[nodiscard]] DUET_COMPILED_FUNCTION loop_trace_result
-trace(const loop_motion& motion, int drive = 0, const loop_trace_options& options = {});
+/// Dead points of a coordinate, where its rate changes sign, are found to round-off. At branch
+/// points the trace continues straight on, or along `trace_options::ways`; it ends where
+/// branches touch.
+///
+/// \param drive  index of the driven coordinate among those of the motion, from 0
+/// \throws invalid_input for a driven coordinate that does not exist
+[[nodiscard]] DUET_COMPILED_FUNCTION motion_trace trace(const driven_motion& motion, int drive = 0,
+                                                        const trace_options& options = {});
 
 } // namespace duet
 

@@ -17,20 +17,20 @@
 #include <cmath>
 
 /// \file
-/// How far a chain is from a singularity, after Yoshikawa.
+/// Yoshikawa's manipulability, a measure of the distance of a chain from a singularity.
 
 namespace duet {
 
 namespace detail {
 
-/// One type for chains of up to 16 joints, as each that Eigen factorises costs its compiler a
-/// second.
+/// One type for chains of up to 16 joints, as compilers take a second for each type that
+/// Eigen factorises.
 template <class S, int Joints>
 using tall_matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
                                   std::max({Joints, -Joints, 16}), 6>;
 
-/// Jᵀ of a chain with at least six joints, or J of one with fewer: never wider than it is high.
-template <class C, class X, PlaceOnChain<C> At = tip_of_chain>
+/// Jᵀ of a chain with at least six joints, J of one with fewer: never wider than high.
+template <class C, class X, FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto tall_jacobian(const C& chain, const X& theta, const At& at = {}) {
   using matrix = tall_matrix<chain_scalar<C, X>, C::joints>;
   const auto m = jacobian(chain, theta, frame::hybrid, at);
@@ -40,12 +40,13 @@ template <class C, class X, PlaceOnChain<C> At = tip_of_chain>
 template <class M>
 struct volume_and_slope {
   typename M::Scalar
-      volume; ///< w = |det R| of M = QR, without the squares of what is small in det(MᵀM)
-  M slope;    ///< w (M⁺)ᵀ = ∂w/∂M, where it was asked for
+      volume; ///< w = |det R| of M = QR, without squares of small numbers as in det(MᵀM)
+  M slope;    ///< w (M⁺)ᵀ = ∂w/∂M, if `WithSlope`
 };
 
-/// By QR with pivoting, which lanes of batches take one by one. The last pivot is the smallest, and
-/// however small it is, the slope is not: w (M⁺)ᵀ = Q |r₀ r₁ …| (|r_last| R⁻ᵀ).
+/// w and its derivative by QR with column pivoting, one lane of a batch after the other. The last
+/// pivot is the smallest. However small it is, the derivative is not: w (M⁺)ᵀ = Q |r₀ r₁ …|
+/// (|r_last| R⁻ᵀ).
 template <bool WithSlope, class M>
 [[nodiscard]] volume_and_slope<M> volume_of(const M& m) {
   using std::abs;
@@ -66,7 +67,7 @@ template <bool WithSlope, class M>
     }
     const S smallest = abs(r(n - 1, n - 1));
     result.volume = others * smallest;
-    if constexpr (WithSlope) { // by qr.solve it would lack what is divided by a small pivot
+    if constexpr (WithSlope) { // qr.solve would omit what is divided by a small pivot
       result.slope = M::Zero(m.rows(), n);
       for (Eigen::Index j = 0; j < n; ++j) { // column j of |r_last| R⁻ᵀ, then Q times it
         auto column = result.slope.col(qr.colsPermutation().indices()[j]);
@@ -97,24 +98,25 @@ template <bool WithSlope, class M>
 
 } // namespace detail
 
-/// w = √det(J Jᵀ), the product of the singular values of the Jacobian of a frame on a chain; for
-/// fewer than six joints √det(JᵀJ) of the hybrid one. Zero where J loses rank.
+/// Yoshikawa's manipulability w = √det(J Jᵀ), the product of the singular values of the Jacobian of
+/// a frame on a chain; for fewer than six joints √det(JᵀJ) of the hybrid Jacobian. Zero at a
+/// singularity, where J loses rank.
 ///
 /// With six joints or more it does not depend on the frame of J, but on the unit of length.
 /// Arguments as `jacobian`.
-template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+template <SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto manipulability(const C& chain, const X& theta, const At& at = {}) {
   return detail::volume_of<false>(detail::tall_jacobian(chain, theta, at)).volume;
 }
 
-/// w and ∇w, ∂w/∂θ_j = w tr(J⁺ ∂J/∂θ_j). Arguments as `jacobian`.
+/// Manipulability w and its gradient ∇w, ∂w/∂θ_j = w tr(J⁺ ∂J/∂θ_j). Arguments as `jacobian`.
 ///
-/// Within rounding of a singularity they are those of J as it is rounded, which may be on the other
-/// side.
+/// Within round-off of a singularity they are those of the rounded J, which may be on the other
+/// side of it.
 ///
 /// \return `value_and_gradient`
-/// \throws invalid_input where J loses rank: w has a kink there
-template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+/// \throws invalid_input if J loses rank: w has a kink there
+template <SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto manipulability_gradient(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
   using vector = detail::joint_vector<S, C::joints>;
@@ -136,19 +138,20 @@ template <SerialChain C, VectorLike X, PlaceOnChain<C> At = tip_of_chain>
   return result;
 }
 
-/// −w log √det(J Jᵀ), which planners lower: away from singularities, with weight w.
+/// Singularity-avoidance objective −w log √det(J Jᵀ), which planners minimise with weight w to keep
+/// away from singularities.
 template <class C>
-struct high_manipulability {
+struct manipulability_objective {
   C chain;           ///< the arm
-  double weight = 1; ///< w
+  double weight = 1; ///< weight w, default 1
 
-  /// Its value at joint coordinates θ.
+  /// Value of the objective at the configuration θ.
   template <class X>
   [[nodiscard]] auto operator()(const X& theta) const {
     using std::log;
     return -weight * log(manipulability(chain, theta));
   }
-  /// Its gradient at joint coordinates θ.
+  /// Gradient of the objective at the configuration θ.
   template <class X>
   [[nodiscard]] auto gradient(const X& theta) const {
     auto [w, slope] = manipulability_gradient(chain, theta);
@@ -157,7 +160,7 @@ struct high_manipulability {
   }
 };
 template <class C, class... W>
-high_manipulability(C, W...) -> high_manipulability<C>;
+manipulability_objective(C, W...) -> manipulability_objective<C>;
 
 DUET_ASKS_FOR_ONE_CONFIGURATION(manipulability, double)
 DUET_ASKS_FOR_ONE_CONFIGURATION(manipulability_gradient,

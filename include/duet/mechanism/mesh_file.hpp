@@ -9,32 +9,33 @@
 #include <vector>
 
 /// \file
-/// Surfaces out of files: STL, OBJ and COLLADA.
+/// Triangle meshes from STL, OBJ and COLLADA files.
 
 namespace duet {
 
-/// A surface of triangles.
-struct mesh_surface {
-  /// Corners of the triangles, three of each.
+/// A triangle mesh, a surface of separate triangles.
+struct triangle_mesh {
+  /// Vertices of the triangles, three for each.
   std::vector<std::array<double, 3>> corners = {};
 };
 
-/// The surface in a file of triangles: STL, binary or text, OBJ, or COLLADA (.dae), whose faces may
-/// have more corners, too; lengths as they stand there, of COLLADA in metres.
+/// The triangle mesh in a file: STL, binary or text, OBJ, or COLLADA (.dae), whose faces may also
+/// have more vertices. Lengths are as in the file, for COLLADA in metres.
 ///
-/// Every word of STL as text and of OBJ's vertices and faces is checked, but which textures and
-/// normals faces name. Normals may be nan, as of triangles without area, and are not used. XML is
+/// Every word of STL text and of OBJ's vertices and faces is checked, except for the textures and
+/// normals of faces. Normals may be nan, as for triangles without area, and are not used. XML is
 /// read by expat: programs link it, or duet::compiled.
 ///
-/// Of COLLADA it is all faces of the scene that `<scene>` names, each where nodes place it, times
-/// `<unit meter>`; lines and what is not shown are left out. `<up_axis>` turns nothing, as in the
-/// viewers of the robot operating system, for which these files are made: they take z as it stands.
+/// For COLLADA the mesh has all faces of the scene that `<scene>` names, each at the pose of its
+/// nodes, times `<unit meter>`; lines and invisible parts are omitted. `<up_axis>` rotates nothing,
+/// as in the viewers of the robot operating system, for which these files are made: they use z as
+/// it is.
 ///
-/// \throws file_error with the line, or the triangle, and what stands there, for what is not of
-/// these formats, numbers that are not finite, more than 256 MB and no triangles at all; of COLLADA
-/// with line and element also for skins, `<lookat>`, `<skew>`, polygons with holes, units of parts,
-/// what is in other files, and more than 5 million triangles
-[[nodiscard]] DUET_COMPILED_FUNCTION mesh_surface read_mesh(const std::string& path);
+/// \throws file_error with the line, or the triangle, and the text there, for files that are not of
+/// these formats, numbers that are not finite, more than 256 MB and files without triangles; for
+/// COLLADA with line and element also for skins, `<lookat>`, `<skew>`, polygons with holes, units
+/// of parts, references to other files, and more than 5 million triangles
+[[nodiscard]] DUET_COMPILED_FUNCTION triangle_mesh read_mesh(const std::string& path);
 
 } // namespace duet
 

@@ -9,29 +9,30 @@
 #include <string>
 
 /// \file
-/// In how many ways a mechanism with loops moves.
+/// Mobility (degrees of freedom) of a closed-chain mechanism.
 
 namespace duet {
 
-/// What a mobility is known by.
+/// Evidence for a mobility.
 enum class mobility_evidence {
-  full_rank,       ///< the equations do not depend on each other here: certain
+  full_rank,       ///< the equations are independent here: certain
   no_rates,        ///< no rates fulfil the equations: rigid, certain
-  no_acceleration, ///< of the rates that fulfil them none has an acceleration: rigid, certain
-  nearby_positions ///< positions were looked for around this one
+  no_acceleration, ///< no rates that fulfil the equations have an acceleration: rigid, certain
+  nearby_positions ///< configurations nearby were searched for
 };
 
-/// In how many ways a mechanism moves, and what simpler counts would say.
+/// Mobility of a mechanism, and the results of simpler counts.
 struct mobility_result {
-  int mobility = 0;    ///< how many coordinates the positions around this one have
-  int counted = 0;     ///< coordinates − equations, as Grübler and Kutzbach count
-  int first_order = 0; ///< coordinates − rank of ∂F/∂q here: independent rates
-  int nearby = 0;      ///< the same at positions nearby
-  mobility_evidence evidence = mobility_evidence::full_rank; ///< what it is known by
+  int mobility = 0;    ///< degrees of freedom: local dimension of the configuration space
+  int counted = 0;     ///< coordinates − equations, the Grübler–Kutzbach count
+  int first_order = 0; ///< coordinates − rank of ∂F/∂q here: number of independent rates
+  int nearby = 0;      ///< coordinates − rank of ∂F/∂q at configurations nearby
+  mobility_evidence evidence = mobility_evidence::full_rank; ///< evidence for `mobility`
 
-  /// Does counting coordinates and equations say something else?
+  /// True if the count of coordinates and equations differs from the mobility.
   [[nodiscard]] bool is_miscounted() const { return counted != mobility; }
-  /// Are there rates with which it does not move: is it shaky, or do several motions meet here?
+  /// True if some rates do not move the mechanism: it is first-order flexible ("shaky"), or several
+  /// motions meet here.
   [[nodiscard]] bool is_singular() const { return first_order != mobility; }
 };
 
@@ -42,19 +43,20 @@ struct mobility_result {
          " nearby";
 }
 
-/// In how many ways a mechanism moves from a position.
+/// Mobility of a mechanism at a configuration, its number of degrees of freedom.
 ///
-/// Where equations depend on each other neither their number nor the rank of ∂F/∂q says so: planar
-/// mechanisms and those of Bennett and Goldberg have more equations than they need, a shaky frame
-/// has rates and does not move, and where motions meet there are more rates than ways to go on.
-/// Then second derivatives are asked whether any of the rates has an acceleration, and if so,
-/// positions are looked for 0.05 radians (or parts of `length()`) away along random rates, and
-/// around those that are found; the largest dimension of what they span is the mobility.
+/// If equations are redundant, neither their number nor the rank of ∂F/∂q determines the mobility:
+/// planar mechanisms and those of Bennett and Goldberg have more equations than they need, a
+/// first-order flexible ("shaky") frame has rates and does not move, and at a branch point there
+/// are more rates than branches. Second derivatives then decide whether any of the rates has an
+/// acceleration. If so, configurations are searched for 0.05 radians (or lengths relative to
+/// `length()`) away along random rates, and around those that are found; the largest dimension that
+/// they span is the mobility.
 ///
-/// \param q  a position
-/// \throws invalid_input for a q at which the loops are not closed
-[[nodiscard]] DUET_COMPILED_FUNCTION mobility_result mobility(const closed_tree& mechanism,
-                                                              const Eigen::VectorXd& q);
+/// \param q  a configuration
+/// \throws invalid_input if the loops are not closed at q
+[[nodiscard]] DUET_COMPILED_FUNCTION mobility_result
+mobility(const closed_chain_mechanism& mechanism, const Eigen::VectorXd& q);
 
 } // namespace duet
 

@@ -15,40 +15,41 @@
 #include <vector>
 
 /// \file
-/// A robot as data: its links and the joints between them, from a file or written down in code.
+/// A robot as data: its links and the joints between them, from a file or written in code.
 
 namespace duet {
 
-/// What a link weighs.
+/// Inertia of a link.
 struct link_inertia {
-  double mass = 0;                 ///< in units of mass
-  placement<double> frame = {};    ///< its origin is the centre of mass, in the frame of the link
-  std::array<double, 6> moments{}; ///< I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about it, in its axes
+  double mass = 0;                 ///< mass, in units of mass
+  placement<double> frame = {};    ///< frame at the centre of mass, in the frame of the link
+  std::array<double, 6> moments{}; ///< I_xx, I_xy, I_xz, I_yy, I_yz, I_zz in that frame
 };
 
 /// A link of a robot.
 struct tree_link {
-  std::string name;                            ///< no other link's
-  std::optional<link_inertia> inertia = {};    ///< nothing: it weighs nothing
-  std::size_t line = 0;                        ///< of the file that it is from; 0: of none
-  std::vector<collision_shape> collision = {}; ///< of what it consists for collisions
+  std::string name;                            ///< unique name
+  std::optional<link_inertia> inertia = {};    ///< mass and moments of inertia; empty: massless
+  std::size_t line = 0;                        ///< line in its file; 0: not from a file
+  std::vector<collision_shape> collision = {}; ///< collision shapes
 };
 
-/// A coordinate that is a multiple of another joint's: multiplier × its coordinate + offset.
+/// Coupling of a joint to another joint (mimic): multiplier × the coordinate of that
+/// joint + offset.
 struct joint_mimic {
-  std::string joint;     ///< the name of that joint
-  double multiplier = 1; ///< without dimension, or units of length per radian and the reverse
-  double offset = 0;     ///< radians or units of length
+  std::string joint;     ///< name of the other joint
+  double multiplier = 1; ///< dimensionless, or units of length per radian and the reverse
+  double offset = 0;     ///< in radians or units of length
 };
 
 /// A joint of a robot, between two links.
 struct tree_joint {
-  std::string name;          ///< no other joint's
-  std::string parent;        ///< the link that it hangs on
-  std::string child;         ///< the link that it moves, whose frame is the joint's
-  joint<double> motion = {}; ///< its origin in the frame of the parent, and how it moves
-  std::optional<joint_mimic> mimic = {}; ///< nothing: its coordinates are its own
-  std::size_t line = 0;                  ///< of the file that it is from; 0: of none
+  std::string name;          ///< unique name
+  std::string parent;        ///< name of the parent link
+  std::string child;         ///< name of the link that it moves, whose frame is that of the joint
+  joint<double> motion = {}; ///< origin in the frame of the parent, type, axis and limits
+  std::optional<joint_mimic> mimic = {}; ///< joint that it mimics; empty: independent
+  std::size_t line = 0;                  ///< line in its file; 0: not from a file
 };
 
 /// Links and the joints between them.
@@ -56,10 +57,10 @@ struct tree_joint {
 /// Example: `kinematic_tree tree({.links = {{"base"}, {"arm"}}, .joints = {{"shoulder", "base",
 /// "arm", {joint_kind::revolute}}}});`
 struct robot_description {
-  std::vector<tree_link> links = {};              ///< in any order
-  std::vector<tree_joint> joints = {};            ///< in the order of their coordinates
-  std::vector<urdf_unknown_element> unknown = {}; ///< of its file, as `urdf_names` has them
-  std::string file = {};                          ///< that it is from; empty: none
+  std::vector<tree_link> links = {};              ///< links in any order
+  std::vector<tree_joint> joints = {};            ///< joints in the order of their coordinates
+  std::vector<urdf_unknown_element> unknown = {}; ///< unknown elements, as in `urdf_summary`
+  std::string file = {};                          ///< name of its file; empty: not from a file
 };
 
 } // namespace duet
@@ -67,11 +68,12 @@ struct robot_description {
 namespace duet::detail {
 
 /// The description in a file.
-/// \throws file_error as `read_urdf_tree`, of links and joints by themselves
+///
+/// \throws file_error as `read_urdf_tree`, for errors of single links and joints
 template <class Xml>
 [[nodiscard]] robot_description read_urdf_description(const std::string& path);
 
-/// Says what is wrong with a link or a joint, and where in the file it is.
+/// Throws the error of a link or a joint, with its line if it is from a file.
 template <class Part>
 [[noreturn]] void bad_part(const robot_description& robot, const char* tag, const Part& part,
                            const std::string& what) {

@@ -8,7 +8,8 @@
 #include <numbers>
 
 /// \file
-/// Four arms known to the compiler, in metres and radians, from their makers' parameters.
+/// Four arms known to the compiler, in metres and radians, from the parameters of their
+/// manufacturers.
 
 namespace duet::robots {
 
@@ -21,7 +22,8 @@ inline constexpr double quarter = std::numbers::pi / 2;
 
 } // namespace detail
 
-/// The table of Franka Emika's Panda, in the modified convention; the tip is the flange.
+/// The table of Franka Emika's Panda, in the modified Denavit–Hartenberg convention; the tip
+/// is the flange.
 struct panda_arm {
   static constexpr auto chain = [] {
     using detail::quarter;
@@ -38,7 +40,7 @@ struct panda_arm {
   }();
 };
 
-/// The table of KUKA's LBR iiwa 14, in the standard convention.
+/// The table of KUKA's LBR iiwa 14, in the standard Denavit–Hartenberg convention.
 struct iiwa14_arm {
   static constexpr auto chain = [] {
     using detail::quarter;
@@ -54,7 +56,7 @@ struct iiwa14_arm {
   }();
 };
 
-/// The table of Universal Robots' UR5e, in the standard convention.
+/// The table of Universal Robots' UR5e, in the standard Denavit–Hartenberg convention.
 struct ur5e_arm {
   static constexpr auto chain = [] {
     using detail::quarter;
@@ -70,8 +72,8 @@ struct ur5e_arm {
   }();
 };
 
-/// The table of the left arm of Rethink's Baxter, in the standard convention, from the origin of
-/// the joint left_s0 to left_hand.
+/// The table of the left arm of Rethink's Baxter, in the standard Denavit–Hartenberg convention,
+/// from the origin of the joint left_s0 to left_hand.
 struct baxter_left_arm {
   static constexpr auto chain = [] {
     using detail::quarter;
@@ -88,12 +90,12 @@ struct baxter_left_arm {
 };
 
 /// Franka Emika's Panda, seven joints, metres; the tip is the flange.
-[[nodiscard]] constexpr compiled_chain<panda_arm> panda() { return {}; }
+[[nodiscard]] constexpr static_chain<panda_arm> panda() { return {}; }
 /// KUKA's LBR iiwa 14, seven joints, metres.
-[[nodiscard]] constexpr compiled_chain<iiwa14_arm> iiwa14() { return {}; }
+[[nodiscard]] constexpr static_chain<iiwa14_arm> iiwa14() { return {}; }
 /// Universal Robots' UR5e, six joints, metres.
-[[nodiscard]] constexpr compiled_chain<ur5e_arm> ur5e() { return {}; }
+[[nodiscard]] constexpr static_chain<ur5e_arm> ur5e() { return {}; }
 /// The left arm of Rethink's Baxter, seven joints, metres.
-[[nodiscard]] constexpr compiled_chain<baxter_left_arm> baxter_left() { return {}; }
+[[nodiscard]] constexpr static_chain<baxter_left_arm> baxter_left() { return {}; }
 
 } // namespace duet::robots

@@ -11,17 +11,17 @@
 #include <limits>
 
 /// \file
-/// Chains as products of exponentials: from the screws of their joints.
+/// Chains as products of exponentials of joint screws.
 
 namespace duet {
 
-/// The axis of a joint as a screw l + ε(m + pitch l) in the base's frame, at θ = 0: unit direction
-/// l, moment m = point × l. A joint that slides along n has l = 0 and n in place of m.
+/// The axis of a joint as a screw l + ε(m + pitch l) in the base frame at θ = 0: unit direction l,
+/// moment m = point × l. A prismatic joint along n has l = 0 and n instead of m.
 template <class T = double>
 struct joint_screw {
-  std::array<T, 3> direction;  ///< l, a unit vector or zero
+  std::array<T, 3> direction;  ///< l, a unit vector, or zero for a prismatic joint
   std::array<T, 3> moment;     ///< m + pitch l, in units of length
-  joint_limits<T> limits = {}; ///< of the coordinate
+  joint_limits<T> limits = {}; ///< limits of the coordinate
 
   constexpr joint_screw(const std::array<T, 3>& l, const std::array<T, 3>& m,
                         const joint_limits<T>& given_limits = {})
@@ -32,8 +32,10 @@ struct joint_screw {
         limits(given_limits) {}
 };
 
-/// The chain with the pose exp(½θ_1 S_1) … exp(½θ_n S_n) M, S_i the joints' screws and M the tip at
-/// θ = 0. Link frames are those that coincide with the base's at θ = 0.
+/// The chain with forward kinematics by the product of exponentials, exp(½θ_1 S_1) … exp(½θ_n S_n)
+/// M, with the joint screws S_i and the pose M of the tip at θ = 0. Link frames coincide with the
+/// base frame at θ = 0.
+///
 /// \throws invalid_input as `serial_chain`
 template <class T, std::size_t N>
 [[nodiscard]] constexpr serial_chain<int(N), T>
@@ -44,8 +46,8 @@ from_screws(const std::array<joint_screw<T>, N>& screws, const placement<T>& tip
   for (std::size_t i = 0; i < N; ++i) {
     const auto l = detail::components(screws[i].direction);
     const auto m = detail::components(screws[i].moment);
-    // The joint's frame: the base's axes, at the point l × m of the axis that is nearest to the
-    // base's origin.
+    // The joint's frame: axes of the base at the point l × m, the point of the axis nearest to the
+    // origin of the base.
     detail::three_vector<T> here{};
     if (dot(l, l) == 0) {
       joints[i].kind = joint_kind::prismatic;
@@ -54,7 +56,7 @@ from_screws(const std::array<joint_screw<T>, N>& screws, const placement<T>& tip
       joints[i].axis = l;
       here = cross(l, m);
       joints[i].pitch = dot(l, m);
-      // Rounding of a moment is no pitch.
+      // Round-off of a moment is not a pitch.
       const T noise = 64 * std::numeric_limits<T>::epsilon();
       if (joints[i].pitch * joints[i].pitch > noise * noise * (1 + dot(m, m))) {
         joints[i].kind = joint_kind::helical;

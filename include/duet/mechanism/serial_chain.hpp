@@ -20,25 +20,27 @@
 #include <type_traits>
 
 /// \file
-/// Serial chains of joints, and where their links stand.
+/// Serial chains of joints, and their forward kinematics.
 
 namespace duet {
 
 namespace detail {
 
-/// How many coordinates results have: N, or up to −N.
+/// Column of joint coordinates, of fixed size N or of up to −N.
 template <class S, int N>
 using joint_vector =
     Eigen::Matrix<S, (N > 0 ? N : Eigen::Dynamic), 1, Eigen::ColMajor, (N > 0 ? N : -N), 1>;
 
-/// Poses of the links of a chain.
+/// Forward kinematics of a chain.
 template <class C>
 struct poses_of {
-  /// The pose of the tip at coordinates θ, or of what a second argument says: the number of a link,
-  /// or an `attached_frame`.
-  /// \throws invalid_input for another number of coordinates than `size()`, and for a link that
-  /// there is none of
-  template <VectorLike X, PlaceOnChain<C> At = tip_of_chain>
+  /// Forward kinematics: the pose of the tip frame (end-effector frame) at the configuration θ,
+  /// relative to the base, or of the frame given by a second argument, a link number or an
+  /// `attached_frame`.
+  ///
+  /// \throws invalid_input if the number of coordinates differs from `size()`, or the link
+  /// does not exist
+  template <VectorLike X, FrameOnChain<C> At = tip_of_chain>
   [[nodiscard]] DUET_ALWAYS_INLINE auto pose(const X& theta, const At& at = {}) const {
     using S = chain_scalar<C, X>;
     const C& chain = static_cast<const C&>(*this);
@@ -55,14 +57,15 @@ struct poses_of {
 
 } // namespace detail
 
-/// Links joined one after the other, each turning about or sliding along the axis of a joint.
+/// A serial chain of links connected by revolute, continuous, prismatic, helical or fixed joints,
+/// for example a robot arm.
 ///
-/// \tparam N  number of joints that move; negative: up to −N, their number known at run time
+/// Joints are numbered from 0, links from 0, the base: joint i moves link i + 1. A configuration θ
+/// is an Eigen vector, `std::array` or `std::vector` over any scalar, in radians, or units of
+/// length for prismatic joints. Limits are stored and not enforced. No heap memory is used.
+///
+/// \tparam N  number of moving joints; negative: up to −N, with their number given at run time
 /// \tparam T  scalar of the table, a real number
-///
-/// Joints are numbered from 0, links from 0, the base: joint i moves link i + 1. Coordinates θ are
-/// Eigen vectors, `std::array`s or `std::vector`s over any scalar, radians, or units of length
-/// where joints slide. Limits are kept as given and not enforced. No heap is used.
 template <int N, class T = double>
 class serial_chain : public detail::poses_of<serial_chain<N, T>> {
   static_assert(N != 0, "duet: serial_chain<N> needs its number of joints, or -capacity");
@@ -75,12 +78,13 @@ public:
   static constexpr int joints = N;
   static constexpr std::size_t capacity = std::size_t(N > 0 ? N : -N);
 
-  /// \param given        the joints from the base on; fixed ones are merged with what they carry
-  /// \param tool         the tip in the frame of the last joint
-  /// \param link_frames  for each given joint, the frame of the link that it moves, in that of the
-  ///                     joint; nothing: they are the same
-  /// \throws invalid_input for another number of moving joints than N (more than −N), an axis or a
-  /// rotation that is no unit, numbers that are not finite, a lower limit above the upper one
+  /// \param given        the joints from the base on; fixed joints are merged with the joint or tip
+  ///                     that they carry
+  /// \param tool         pose of the tip in the frame of the last joint
+  /// \param link_frames  for each given joint, the pose of the frame of the link that it moves, in
+  ///                     the frame of the joint; empty: they coincide
+  /// \throws invalid_input if the number of moving joints is not N (exceeds −N), an axis or a
+  /// rotation is not of unit norm, a number is not finite, or a lower limit exceeds the upper one
   constexpr explicit serial_chain(std::span<const joint<T>> given, const placement<T>& tool = {},
                                   std::span<const placement<T>> link_frames = {}) {
     placement<T> carried{};
@@ -110,8 +114,8 @@ public:
                                   const placement<T>& tool = {})
       : serial_chain(std::span<const joint<T>>(given), tool) {}
 
-  /// A chain of any type with its number of joints no more in the type, so that code for it is
-  /// compiled once for all of up to −N.
+  /// A chain of any other type without its number of joints in the type, so that code is compiled
+  /// once for all chains of up to −N joints.
   template <SerialChain C>
     requires(C::joints != N && N < 0 && (C::joints > 0 ? C::joints : -C::joints) <= -N &&
              std::same_as<typename C::scalar_type, T>)
@@ -121,11 +125,12 @@ public:
     }
   }
 
-  /// Number of joints that move.
+  /// Number of moving joints.
   [[nodiscard]] constexpr int size() const { return size_; }
-  /// The frame of the tip.
+  /// The tip frame (end-effector frame).
   [[nodiscard]] constexpr const attached_frame<T>& tip() const { return tip_; }
   /// The frame of link i.
+  ///
   /// \throws invalid_input for i outside 0 … size()
   [[nodiscard]] constexpr attached_frame<T> link(int i) const {
     if (i < 0 || i > size_) {
@@ -134,18 +139,19 @@ public:
     }
     return {i, i == 0 ? placement<T>{} : frames_[std::size_t(i - 1)]};
   }
-  /// How joint i moves.
+  /// Type of joint i.
   [[nodiscard]] constexpr joint_kind kind(int i) const { return kinds_[std::size_t(i)]; }
   /// The limits of joint i.
   [[nodiscard]] constexpr const joint_limits<T>& limits(int i) const {
     return limits_[std::size_t(i)];
   }
 
-  // For those who extend duet: what a `SerialChain` is made of.
+  // For those who extend duet: the members of a `SerialChain`.
 
-  /// The table that evaluation reads.
+  /// The table of evaluation steps.
   [[nodiscard]] constexpr const auto& steps() const { return steps_; }
-  /// Another chain without joint i, at which what follows stands at `held`.
+  /// Another chain without joint i, whose successor frames are displaced by the
+  /// constant pose `held`.
   template <int M>
   constexpr serial_chain(const serial_chain<M, T>& other, int i, const placement<T>& held)
       : tip_{other.size() - 1, other.tip().offset}, size_(other.size() - 1) {
@@ -154,7 +160,7 @@ public:
     }
     displace(i, held);
   }
-  /// Displaces all that follows link i, in the frame of that.
+  /// Displaces all that follows link i, relative to the frame of link i.
   constexpr void displace(int i, const placement<T>& by) {
     if (i == size_) {
       tip_.offset = by * tip_.offset;
@@ -162,10 +168,10 @@ public:
       steps_[std::size_t(i)] = detail::displaced(by, steps_[std::size_t(i)]);
     }
   }
-  /// Puts another tip in place of that.
+  /// Replaces the offset of the tip.
   constexpr void set_tip_offset(const placement<T>& offset) { tip_.offset = offset; }
-  /// Puts other limits in place of those of joint i, which must be good. With one a joint is no
-  /// more `continuous`.
+  /// Replaces the limits of joint i, without checks. A `continuous` joint that gets a bound
+  /// becomes `revolute`.
   constexpr void set_limits(int i, const joint_limits<T>& limits) {
     joint_kind& kind = kinds_[std::size_t(i)];
     kind = detail::kind_within(kind, limits);
@@ -184,7 +190,7 @@ private:
     const auto i = std::size_t(size_);
     steps_[i] = detail::step_of(given, origin);
     kinds_[i] = given.kind;
-    limits_[i] = given.range();
+    limits_[i] = given.effective_limits();
     ++size_;
   }
 
@@ -196,21 +202,25 @@ private:
   int size_ = 0;
 };
 
+/// A chain whose number of joints, at most `Capacity`, is known at run time. No heap is used.
+template <int Capacity, class T = double>
+using bounded_chain = serial_chain<-Capacity, T>;
+
 template <class T, std::size_t M, class... Tool>
 serial_chain(const std::array<joint<T>, M>&, Tool...) -> serial_chain<int(M), T>;
 
-/// A chain that the compiler knows, and of which it leaves out all products with the table's zeros:
-/// as fast as code written for this arm. An empty object.
+/// A chain known to the compiler, which omits all products with zeros of the table: as fast as code
+/// written for this arm. An empty object.
+///
+/// Example: `struct planar { static constexpr auto chain = from_dh(rows); }; constexpr
+/// static_chain<planar> arm;`
 ///
 /// \tparam Arm  a type with a `static constexpr` `serial_chain` named `chain`
-///
-/// Example: `struct planar { static constexpr auto chain = from_dh(rows); };
-/// constexpr compiled_chain<planar> arm;`
 template <class Arm>
-class compiled_chain : public detail::poses_of<compiled_chain<Arm>> {
+class static_chain : public detail::poses_of<static_chain<Arm>> {
   using chain_type = std::remove_cvref_t<decltype(Arm::chain)>;
   static_assert(chain_type::joints > 0,
-                "duet: compiled_chain needs a chain whose number of joints is in its type");
+                "duet: static_chain needs a chain whose number of joints is in its type");
 
 public:
   using arm = Arm;
@@ -218,9 +228,9 @@ public:
   using own_jacobian = void;
   static constexpr int joints = chain_type::joints;
 
-  /// Number of joints that move.
+  /// Number of moving joints.
   [[nodiscard]] static constexpr int size() { return joints; }
-  /// The frame of the tip.
+  /// The tip frame (end-effector frame).
   [[nodiscard]] static constexpr const attached_frame<scalar_type>& tip() {
     return Arm::chain.tip();
   }
@@ -228,22 +238,23 @@ public:
   [[nodiscard]] static constexpr attached_frame<scalar_type> link(int i) {
     return Arm::chain.link(i);
   }
-  /// How joint i moves.
+  /// Type of joint i.
   [[nodiscard]] static constexpr joint_kind kind(int i) { return Arm::chain.kind(i); }
   /// The limits of joint i.
   [[nodiscard]] static constexpr const joint_limits<scalar_type>& limits(int i) {
     return Arm::chain.limits(i);
   }
-  /// This chain as a table in memory, whose type does not tell the arm.
+  /// This chain as a table in memory, whose type does not identify the arm.
   [[nodiscard]] static constexpr const chain_type& table() { return Arm::chain; }
 
-  // For those who extend duet: what a `SerialChain` is made of.
+  // For those who extend duet: the members of a `SerialChain`.
 
   [[nodiscard]] static constexpr const auto& steps() { return Arm::chain.steps(); }
 };
 
-/// The lower and upper limits of all coordinates.
-/// \return a column of as many coordinates as joints
+/// Lower and upper limits of all joint coordinates.
+///
+/// \return a column with one number for each joint
 template <SerialChain C>
 [[nodiscard]] auto lower_limits(const C& chain) {
   detail::joint_vector<typename C::scalar_type, C::joints> result(chain.size());
@@ -261,8 +272,8 @@ template <SerialChain C>
   return result;
 }
 
-/// Said where `function` of a chain is given a matrix of configurations; then the type of its
-/// result.
+/// Compile-time message for a matrix of configurations as the argument of `function` of a chain,
+/// followed by the type of its result.
 #define DUET_ASKS_FOR_ONE_CONFIGURATION(function, ...)                                             \
   template <SerialChain C, class... X>                                                             \
     requires(detail::is_matrix_argument<X> || ...)                                                 \

@@ -12,16 +12,16 @@
 #endif
 
 /// \file
-/// Pairs of links that need not be kept apart, out of SRDF, which stands beside URDF.
+/// Pairs of links without self-collision checks, from SRDF files, which accompany URDF files.
 
 namespace duet {
 
-/// The pairs of links of all `<disable_collisions link1="…" link2="…"/>` of a file: what
-/// `pairs_apart` leaves out. All else in the file is passed over.
+/// Disabled collision pairs: the links of all `<disable_collisions link1="…" link2="…"/>` of a
+/// file, which `self_collision_pairs` leaves out. All other elements are skipped.
 ///
 /// \throws file_error with the line for XML that is not well formed, another root than `<robot>`,
-/// names that are missing or empty, a link paired with itself, attributes but these and `reason`,
-/// and for `<enable_collisions>` and `<disable_default_collisions>`, which turn the meaning round
+/// missing or empty names, a link paired with itself, attributes other than these and `reason`, and
+/// for `<enable_collisions>` and `<disable_default_collisions>`, which reverse the meaning
 [[nodiscard]] inline std::vector<link_pair> read_disabled_collisions(const std::string& path) {
   return detail::read_disabled_collisions_in_srdf<detail::xml_library>(path);
 }

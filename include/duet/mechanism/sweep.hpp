@@ -21,14 +21,15 @@
 #include <utility>
 
 /// \file
-/// A chain in many configurations: several at once in the lanes of batches, on one core or more.
+/// Forward kinematics and Jacobians of a chain in many configurations, with SIMD batches and
+/// multithreading.
 
 namespace duet {
 
 namespace detail {
 
-/// One lane of a result over batches: of a pose, a matrix, or both. (Called instead of inlined, it
-/// would cost a sweep 5 %, as vectors of lanes go through memory.)
+/// Copies one lane of a result over batches: of a pose, a matrix, or both. (Without inlining a
+/// sweep takes 5 % more time, as vectors of lanes go through memory.)
 template <class B, class To>
 DUET_ALWAYS_INLINE void write_lane(const dual_quaternion<B>& a, int k, To& to) {
   to = lane(a, k);
@@ -47,7 +48,7 @@ DUET_ALWAYS_INLINE void write_lane(const value_and_jacobian<V, J>& both, int k, 
   write_lane(both.jacobian, k, to.jacobian);
 }
 
-/// May a matrix of this type be given this size?
+/// True if a matrix of type M can have this size.
 template <class M>
 [[nodiscard]] constexpr bool can_become(Eigen::Index rows, Eigen::Index columns) {
   constexpr auto fits = [](int fixed, int most, Eigen::Index n) {
@@ -58,7 +59,7 @@ template <class M>
          fits(M::ColsAtCompileTime, M::MaxColsAtCompileTime, columns);
 }
 
-/// Gives the matrices of all results 6 rows and n columns.
+/// Resizes the matrices of all results to 6 rows and n columns.
 template <class Out, class Matrix>
 void fit_matrices(const char* function, Out& out, Eigen::Index n, const Matrix& matrix_of) {
   for (std::size_t i = 0; i < std::size(out); ++i) {
@@ -77,8 +78,8 @@ void fit_matrices(const char* function, Out& out, Eigen::Index n, const Matrix& 
   }
 }
 
-/// out[i] = f(configurations[i]), with several in the lanes of f's argument; those beyond the last
-/// are the last.
+/// out[i] = f(configurations[i]), with several configurations in the lanes of f's argument; the
+/// last configuration fills the remaining lanes.
 template <class C, class X, class Out, class F>
 void sweep(const char* function, const C& chain, std::span<const X> configurations, Out& out,
            execution how, const F& f) {
@@ -125,33 +126,37 @@ template <class Range>
 
 } // namespace detail
 
-/// Coordinates of a chain in many configurations, one after the other in memory: a span or a vector
-/// of what `chain.pose` takes, of numbers.
+/// Configurations of a chain, contiguous in memory: a span or a vector of what `chain.pose` takes,
+/// over numbers.
 template <class R>
 concept Configurations = std::ranges::contiguous_range<R> && VectorLike<detail::range_element<R>>;
 
-/// out[i] = chain.pose(configurations[i], at), several at a time in the lanes of batches; `out` is
-/// a span or a vector.
+/// Forward kinematics of many configurations: out[i] = chain.pose(configurations[i], at), several
+/// at once in the lanes of SIMD batches; `out` is a span or a vector.
 ///
-/// Sines are within 1 ulp, and a result depends neither on the others nor on the number of cores.
-/// No heap is used on one core.
-/// \throws invalid_input where the sizes differ, and for another number of coordinates than the
-/// chain has
-/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
+/// Sines are within 1 ulp. A result depends neither on the other configurations nor on the number
+/// of threads. With one thread no heap memory is used.
+///
+/// \throws invalid_input if the sizes differ, and if the number of coordinates differs from that of
+/// the chain
+/// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
 template <SerialChain C, Configurations X, std::ranges::contiguous_range Out,
-          PlaceOnChain<C> At = tip_of_chain>
+          FrameOnChain<C> At = tip_of_chain>
 void poses(const C& chain, const X& configurations, Out&& out, execution how = one_core,
            const At& at = {}) {
   detail::sweep("poses", chain, detail::read_only(configurations), out, how,
                 [&](const auto& theta) { return chain.pose(theta, at); });
 }
 
-/// out[i] = jacobian(chain, configurations[i], frame, at), as `poses`.
+/// Jacobians of many configurations: out[i] = jacobian(chain, configurations[i], frame,
+/// at), as `poses`.
 ///
-/// Elements of `out` are 6 × n matrices; those of a size known at run time are given it.
-/// \throws invalid_input as `poses`, and for a matrix of another fixed size, or whose bound is less
+/// Elements of `out` are 6 × n matrices; matrices of dynamic size are resized.
+///
+/// \throws invalid_input as `poses`, and for a matrix of another fixed size or with too small a
+/// maximum size
 template <SerialChain C, Configurations X, FrameConstant Frame, std::ranges::contiguous_range Out,
-          PlaceOnChain<C> At = tip_of_chain>
+          FrameOnChain<C> At = tip_of_chain>
 void jacobians(const C& chain, const X& configurations, Frame frame_of_result, Out&& out,
                execution how = one_core, const At& at = {}) {
   detail::fit_matrices(
@@ -160,9 +165,10 @@ void jacobians(const C& chain, const X& configurations, Frame frame_of_result, O
                 [&](const auto& theta) { return jacobian(chain, theta, frame_of_result, at); });
 }
 
-/// out[i] = pose_and_jacobian(chain, configurations[i], frame, at), as `jacobians`.
+/// Poses and Jacobians of many configurations: out[i] = pose_and_jacobian(chain, configurations[i],
+/// frame, at), as `jacobians`.
 template <SerialChain C, Configurations X, FrameConstant Frame, std::ranges::contiguous_range Out,
-          PlaceOnChain<C> At = tip_of_chain>
+          FrameOnChain<C> At = tip_of_chain>
 void poses_and_jacobians(const C& chain, const X& configurations, Frame frame_of_result, Out&& out,
                          execution how = one_core, const At& at = {}) {
   detail::fit_matrices(

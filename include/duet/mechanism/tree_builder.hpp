@@ -22,15 +22,15 @@
 #include <vector>
 
 /// \file
-/// The table of a tree, made of a description. For those who extend duet.
+/// Construction of the table of a kinematic tree from a description. For those who extend duet.
 
 namespace duet::detail {
 
-/// Makes a table, in time proportional to the number of links.
+/// Builds a table, in time proportional to the number of links.
 class tree_builder {
 public:
-  /// \throws file_error, or invalid_input for what is from no file, where the description is none
-  /// of a tree
+  /// \throws file_error, or invalid_input if the description is not from a file, if it does not
+  /// describe a tree
   explicit tree_builder(const robot_description& robot) : robot_(robot) {
     find_links();
     find_joints();
@@ -89,9 +89,9 @@ private:
     }
   }
 
-  /// From the root on, parents first.
+  /// Order of the joints from the root on, parents first.
   void find_order() {
-    std::vector<std::size_t> links; // those that are reached
+    std::vector<std::size_t> links; // links reached so far
     for (std::size_t i = 0; i < above_.size(); ++i) {
       if (above_[i] < 0 && !links.empty()) {
         bad_part(robot_, robot_.links[i],
@@ -114,7 +114,7 @@ private:
         is_reached[i] = 1;
       }
       auto i = std::size_t(std::find(is_reached.begin(), is_reached.end(), 0) - is_reached.begin());
-      while (is_reached[i] == 0) { // up, until it comes round
+      while (is_reached[i] == 0) { // up until the cycle is closed
         is_reached[i] = 1;
         i = std::size_t(table_.link_numbers.at(joint_at(above_[i]).parent));
       }
@@ -123,7 +123,7 @@ private:
     }
   }
 
-  /// Numbers for the coordinates of joints, and those of the tree for those that follow none.
+  /// Numbers of the joint coordinates, and those of the tree for joints that mimic none.
   void add_coordinates() {
     constexpr std::array<const char*, 6> free = {".x", ".y", ".z", ".rx", ".ry", ".rz"};
     constexpr std::array<const char*, 3> in_plane = {".x", ".y", ".angle"};
@@ -141,12 +141,14 @@ private:
                                              : joint.motion.kind == joint_kind::planar
                                                  ? in_plane[at]
                                                  : free[count == 3 ? at + 3 : at]));
-        table_.limits.push_back(count == 1 ? joint.motion.range() : joint_limits<double>{});
+        table_.limits.push_back(count == 1 ? joint.motion.effective_limits()
+                                           : joint_limits<double>{});
       }
     }
   }
 
-  /// What follows, perhaps what follows others, becomes a multiple of a coordinate of the tree.
+  /// Expresses each joint that mimics another, possibly one that mimics a third, by a coordinate of
+  /// the tree.
   void follow_leaders() {
     std::vector<char> is_open(robot_.joints.size(), 0);
     std::vector<int> open;
@@ -200,7 +202,7 @@ private:
     const coordinate_source source{leader.own, by.multiplier * leader.multiplier,
                                    by.multiplier * leader.offset + by.offset};
     source_of(j) = source;
-    const joint_limits<double> range = joint.motion.range();
+    const joint_limits<double> range = joint.motion.effective_limits();
     joint_limits<double>& limits = table_.limits[std::size_t(source.own)];
     bool is_possible = range.lower <= source.offset && source.offset <= range.upper;
     if (source.multiplier != 0) {
@@ -255,13 +257,13 @@ private:
   std::unordered_map<std::string_view, int> joint_numbers_;
   std::vector<int> above_;              ///< the joint above each link; −1: none
   std::vector<std::vector<int>> below_; ///< the joints below each link
-  std::vector<int> order_;              ///< of the joints, parents first
-  std::vector<int> first_;              ///< coordinate of each joint
+  std::vector<int> order_;              ///< joint numbers, parents first
+  std::vector<int> first_;              ///< number of the first coordinate of each joint
 };
 
 /// The table of a description.
 ///
-/// \tparam T  of its numbers
+/// \tparam T  scalar of the table
 /// \throws as `tree_builder`
 template <class T>
 [[nodiscard]] tree_table table_of(const robot_description& robot) {

@@ -20,22 +20,22 @@
 #include <vector>
 
 /// \file
-/// The way from one link to another, and the serial chain along it. For those who extend duet.
+/// The link path from one link to another, and the serial chain along it. For those
+/// who extend duet.
 
 namespace duet::detail {
 
-/// Joints by their numbers, in the order in which the way passes them.
+/// Link path: joint numbers in the order in which the path passes them.
 struct way_between_links {
-  std::vector<std::size_t> up;   ///< from the base to the link above both
-  std::vector<std::size_t> down; ///< from there to the tip
+  std::vector<std::size_t> up;   ///< from the base up to the lowest common ancestor
+  std::vector<std::size_t> down; ///< from there down to the tip
 };
 
-/// Which joints lead from one link to another.
+/// The joints that lead from one link to another.
 ///
-/// \param joints  what has `parent` and `child`, names of links
-/// \param pass    called with the number of each joint that is passed, before its parent is used
-/// \param fail    called with the number of a joint and what is wrong with it, or with what is
-/// wrong
+/// \param joints  list of joints with `parent` and `child`, names of links
+/// \param pass    called with the number of each joint of the path before its parent is used
+/// \param fail    called with the number of a joint and its error, or with the error alone
 template <class Joints, class Pass, class Fail>
 [[nodiscard]] way_between_links way_between(const Joints& joints, const std::string& base,
                                             const std::string& tip, const Pass& pass,
@@ -44,7 +44,7 @@ template <class Joints, class Pass, class Fail>
   for (std::size_t j = 0; j < joints.size(); ++j) {
     above.emplace(joints[j].child, j);
   }
-  // Up from a link, to one that `ends` or to a root.
+  // Goes up from a link to one for which `ends` is true, or to a root.
   const auto climb = [&](std::string_view link, std::vector<std::size_t>& way, const auto& ends) {
     std::unordered_set<std::string_view> seen{link};
     while (!ends(link)) {
@@ -88,16 +88,16 @@ template <class Joints, class Pass, class Fail>
   return {back, {-t.x, -t.y, -t.z}};
 }
 
-/// The chain along a way.
+/// The chain along a link path.
 ///
-/// \param joint_at  the joint of a number, as it must be in a chain: with one coordinate of its
-///                  own, or fixed
+/// \param joint_at  returns the joint of a number, which must be valid in a chain: it has one
+///                  coordinate of the tree, or is fixed
 template <class JointAt>
 [[nodiscard]] urdf_contents contents_of_way(const way_between_links& way, const std::string& base,
                                             const JointAt& joint_at) {
   urdf_contents result;
   result.links.push_back({base, {}});
-  placement<double> since_joint; // fixed joints since the last one that moves
+  placement<double> since_joint; // fixed joints since the last moving one
   const auto move = [&](const tree_joint& given, const joint<double>& motion) {
     if (motion.kind != joint_kind::fixed) {
       since_joint = {};
@@ -129,7 +129,7 @@ template <class JointAt>
   return result;
 }
 
-/// What keeps a joint from being one of a chain; empty where nothing does.
+/// Reason why a joint cannot be one of a chain; empty if it can.
 [[nodiscard]] inline std::string not_in_a_chain(const tree_joint& joint) {
   if (joint.motion.coordinates() > 1) {
     return "has " + std::to_string(joint.motion.coordinates()) +
@@ -141,6 +141,7 @@ template <class JointAt>
 }
 
 /// The chain between two links of a tree.
+///
 /// \throws invalid_input as `kinematic_tree::chain`
 [[nodiscard]] inline urdf_contents chain_contents(const robot_description& robot,
                                                   const std::string& base, const std::string& tip,
@@ -148,7 +149,7 @@ template <class JointAt>
   struct {
     void operator()(std::size_t, const std::string& what) const { raise(invalid_input(what)); }
     void operator()(const std::string& what) const { raise(invalid_input(what)); }
-  } const fail; // of a tree neither is called
+  } const fail; // not called for a valid tree
   const auto way = way_between(
       robot.joints, base, tip, [](std::size_t) {}, fail);
   urdf_contents result = contents_of_way(way, base, [&](std::size_t i) -> const tree_joint& {

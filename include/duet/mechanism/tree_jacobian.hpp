@@ -25,40 +25,41 @@
 #include <vector>
 
 /// \file
-/// The geometric Jacobians of frames on a tree in closed form, their rates and Hessians.
+/// Geometric Jacobians of frames on a kinematic tree, their time derivatives and Hessians, in
+/// closed form.
 
 namespace duet {
 
 namespace detail {
 
-/// A matrix of one column per coordinate of a tree.
+/// A matrix with one column for each coordinate of a tree.
 template <class S, int Rows>
 using tree_columns = Eigen::Matrix<S, Rows, Eigen::Dynamic>;
 
-/// A frame of a tree and what it is seen from, in the frame of what is above both.
+/// A frame of a tree and its observer, relative to the node above both.
 template <class S>
 struct viewed_frames {
   link_displacement<S> frame, observer;
 
-  /// The frame as the observer sees it.
+  /// Pose of the frame relative to the observer.
   [[nodiscard]] dual_quaternion<S> pose() const {
     const quaternion<S> back = conj(observer.rotation);
     return pose_of_unit(back * frame.rotation,
                         rotated(back, frame.translation - observer.translation).eigen());
   }
-  /// Its axes are those that columns for `Frame` are in.
+  /// The frame whose axes the columns for `Frame` use.
   template <class Frame>
   [[nodiscard]] const link_displacement<S>& axes() const {
     return std::same_as<Frame, body_frame> ? frame : observer;
   }
-  /// Its origin is where columns for `Frame` have their v.
+  /// The origin at which the columns for `Frame` have their v.
   template <class Frame>
   [[nodiscard]] const link_displacement<S>& origin() const {
     return std::same_as<Frame, spatial_frame> ? observer : frame;
   }
 };
 
-/// And all that moves between them.
+/// The two frames, and all nodes that move between them.
 template <class S>
 struct viewed_motion : viewed_frames<S> {
   tree_motion<S> to_frame, to_observer;
@@ -90,8 +91,8 @@ DUET_ALWAYS_INLINE void add_to_column(J& m, const coordinate_source& source, dou
   m(5, source.own) += a.omega.z * factor;
 }
 
-/// Adds the screws of all that is on a path, times a sign, to the columns of their coordinates;
-/// returns where the last node stands.
+/// Adds the screws of all nodes of a path, times a sign, to the columns of their coordinates;
+/// returns the frame of the last node.
 template <class S, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
 add_screws(tree_columns<S, 6>& m, const tree_table& table, const X& x, const node_path& path,
@@ -102,7 +103,7 @@ add_screws(tree_columns<S, 6>& m, const tree_table& table, const X& x, const nod
                       });
 }
 
-/// Makes m the Jacobian of a frame of a tree; returns where that stands.
+/// Sets m to the Jacobian of a frame of a tree; returns the pose of that frame.
 template <class Frame, class S, class X>
 [[nodiscard]] viewed_frames<S> fill_jacobian(tree_columns<S, 6>& m, const tree_table& table,
                                              const X& x, const tree_view& view) {
@@ -114,7 +115,7 @@ template <class Frame, class S, class X>
     const node_path to_observer(table, view.observer.node, view.top);
     result.observer = attached(add_screws<S>(m, table, x, to_observer, -1), view.observer.offset);
   }
-  // All columns, as what is zero stays so: to find those that are not takes longer.
+  // All columns, as zero columns stay zero: finding the others takes longer.
   if (!std::same_as<Frame, spatial_frame> || !view.is_from_above) {
     const three_vector<S>& p = result.template origin<Frame>().translation;
     for (Eigen::Index i = 0; i < m.cols(); ++i) {
@@ -132,7 +133,7 @@ template <class Frame, class S, class X>
   return result;
 }
 
-/// The rate of Rᵀ(v + ω × p), Rᵀω, where p moves by ṗ and R turns by Ω:
+/// Time derivative of Rᵀ(v + ω × p), Rᵀω, where p has the velocity ṗ and R the angular velocity Ω:
 /// Rᵀ(v̇ + ω̇ × p + ω × ṗ − Ω × (v + ω × p)), Rᵀ(ω̇ − Ω × ω).
 template <class Frame, class S, class X, class V>
 [[nodiscard]] tree_columns<S, 6> jacobian_rate_of(const tree_table& table,
@@ -172,17 +173,18 @@ template <class Frame, class S, class X, class V>
 
 } // namespace detail
 
-/// The matrix J of 6 rows with the twist [v; ω] = J q̇ of a frame on a tree (N18, N20).
+/// The geometric Jacobian J of 6 rows: the twist [v; ω] = J q̇ of a frame on a tree (N18, N20), for
+/// example an end-effector frame. Columns of coordinates that do not move the frame are zero.
+/// Units: those of q in the denominator.
 ///
-/// \tparam Frame  `frame::spatial`, `frame::body` or `frame::hybrid`, as of a chain; of a
-///                `relative_frame` the observer is what stands still
-/// \param at      the number of a link, an `attached_frame`, as `tree.link("hand").at_point({x, y,
-///                z})`, or a `relative_frame`
-/// Columns of coordinates that do not move the frame are zero. Units: those of q in the
-/// denominator.
-/// \throws invalid_input for another number of coordinates than `size()`, and for a link that there
-/// is none of
-template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
+/// \tparam Frame  `frame::spatial`, `frame::body` or `frame::hybrid`, as for a chain; for a
+///                `relative_frame` the observer is the fixed frame
+/// \param at      a link number, an `attached_frame`, as `tree.link("hand").at_point({x, y, z})`,
+///                or a `relative_frame`
+/// \return a matrix of 6 rows and a column for each coordinate
+/// \throws invalid_input if the number of coordinates differs from `size()`, or the link
+/// does not exist
+template <VectorLike X, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto jacobian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
   using S = detail::tree_scalar<X>;
   const detail::joint_coordinates<S, X> x(tree.table(), q);
@@ -191,9 +193,11 @@ template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
   return result;
 }
 
-/// The pose A of a frame on a tree, and its Jacobian there. Arguments as `jacobian`.
+/// Forward kinematics and geometric Jacobian: the pose A of a frame on a tree, and its Jacobian
+/// there. Arguments as `jacobian`.
+///
 /// \return `value_and_jacobian`
-template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
+template <VectorLike X, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto pose_and_jacobian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
   using S = detail::tree_scalar<X>;
   const detail::joint_coordinates<S, X> x(tree.table(), q);
@@ -203,10 +207,12 @@ template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
   return result;
 }
 
-/// J and J̇ along q̇ of a frame on a tree, so that J q̈ + J̇ q̇ is the derivative of the twist J q̇. In
-/// `frame::hybrid` its linear part is p̈ of the frame's origin. Arguments as `jacobian`.
+/// J and J̇ of a frame on a tree along the joint velocities q̇, so that J q̈ + J̇ q̇ is the
+/// derivative of the twist J q̇. In `frame::hybrid` its linear part is p̈ of the frame's origin.
+/// Arguments as `jacobian`.
+///
 /// \return `jacobian_and_rate`
-template <VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree At>
+template <VectorLike X, VectorLike V, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto jacobian_with_rate(const kinematic_tree& tree, const X& q, const V& q_dot, Frame,
                                       const At& at) {
   using S = promote_t<detail::tree_scalar<X>, typename detail::vector_argument<V>::scalar>;
@@ -220,19 +226,21 @@ template <VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree At>
   return result;
 }
 
-/// J̇ of `jacobian_with_rate`.
+/// J̇ of `jacobian_with_rate`, the time derivative of the Jacobian.
+///
 /// \return a matrix of 6 rows and a column for each coordinate
-template <VectorLike X, VectorLike V, FrameConstant Frame, PlaceOnTree At>
+template <VectorLike X, VectorLike V, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto jacobian_rate(const kinematic_tree& tree, const X& q, const V& q_dot,
                                  Frame frame_of_result, const At& at) {
   return jacobian_with_rate(tree, q, q_dot, frame_of_result, at).rate;
 }
 
-/// ∂J/∂q_j of a frame on a tree for all j, each a matrix of 6 rows and a column for each
-/// coordinate. Only in `frame::hybrid` is the linear part of column k ∂²p/∂q_j∂q_k of the frame's
-/// origin p. Arguments as `jacobian`.
+/// Kinematic Hessian ∂J/∂q_j of a frame on a tree for all j, each a matrix of 6 rows and a column
+/// for each coordinate. Only in `frame::hybrid` the linear part of column k is ∂²p/∂q_j∂q_k of the
+/// frame's origin p. Arguments as `jacobian`.
+///
 /// \return a `std::vector` of matrices
-template <VectorLike X, FrameConstant Frame, PlaceOnTree At>
+template <VectorLike X, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto kinematic_hessian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
   using S = detail::tree_scalar<X>;
   const detail::joint_coordinates<S, X> x(tree.table(), q);

@@ -12,17 +12,18 @@
 #include <string_view>
 
 /// \file
-/// Trees whose coordinates have other limits.
+/// Kinematic trees with changed limits.
 
 namespace duet {
 
-/// The tree with other limits of a coordinate, given by its number or its name: all three of them,
-/// as they are given, so velocities are not limited where none is, and joints that mimic it narrow
-/// them no more. Chains of the tree have them, too.
+/// The tree with other limits of a coordinate, given by its number or its name. All three limits
+/// are replaced, so the velocity is not limited if `limits.velocity` is the default, and joints
+/// that mimic the coordinate no longer narrow them. Chains of the tree have the new limits, too.
 ///
 /// Example: `tree = with_limits(tree, "elbow", {.lower = 0, .upper = 2});`
-/// \throws invalid_input for a coordinate that there is none of, and limits that hold no motion: a
-/// lower one above the upper one, NaN, a velocity below zero
+///
+/// \throws invalid_input for a coordinate that does not exist, and for limits that allow no motion:
+/// a lower limit above the upper one, NaN, a negative velocity
 template <class Which>
   requires(std::integral<Which> || std::convertible_to<const Which&, std::string_view>)
 [[nodiscard]] kinematic_tree with_limits(const kinematic_tree& tree, const Which& which,
@@ -42,9 +43,11 @@ template <class Which>
   return result;
 }
 
-/// The tree with other lower and upper limits of all coordinates, radians or units of length; those
-/// of velocity stay. (Any kind of vectors: Eigen's, `std::array`, `std::vector`.)
-/// \throws invalid_input for another number of limits than coordinates, and as with one coordinate
+/// The tree with other lower and upper limits of all coordinates, in radians or units of length;
+/// velocity limits are kept. Limits are any vectors: Eigen's, `std::array`, `std::vector`.
+///
+/// \throws invalid_input if the number of limits differs from that of coordinates, and as for
+/// one coordinate
 template <VectorLike Lower, VectorLike Upper>
 [[nodiscard]] kinematic_tree with_limits(const kinematic_tree& tree, const Lower& lower,
                                          const Upper& upper) {

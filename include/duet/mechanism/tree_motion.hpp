@@ -10,29 +10,30 @@
 #include <vector>
 
 /// \file
-/// Nodes of a tree with their screws, where what they are for needs all at once. For those who
+/// Nodes of a tree with their screws, for functions that need all of them at once. For those who
 /// extend duet.
 
 namespace duet::detail {
 
-/// The screw of a coordinate of a joint: twists of all that the joint carries, per unit of it.
+/// The screw of a joint coordinate: the twist of all that the joint carries, per unit of
+/// the coordinate.
 template <class S>
 struct tree_screw {
-  int at;         ///< of which of the nodes walked over
-  int coordinate; ///< of the joints
+  int at;         ///< index of its node in the list of nodes
+  int coordinate; ///< number of the joint coordinate
   twist_column<S> twist;
 };
 
-/// Some nodes of a tree, parents first, where they stand in the frame of what is above the first of
-/// them, and the screws of their coordinates: with v at the origin of that frame.
+/// Nodes of a tree, parents first, with their frames relative to the frame above the first node,
+/// and the screws of their coordinates, with v at the origin of that frame.
 template <class S>
 struct tree_motion {
   std::vector<int> nodes;
-  std::vector<int> before; ///< what each hangs on, by its place here; −1: on what is above
-  std::vector<link_displacement<S>> frames; ///< after the motion of each node
+  std::vector<int> before; ///< index of each node's parent in `nodes`; −1: the frame above
+  std::vector<link_displacement<S>> frames; ///< frame of each node after its motion
   std::vector<tree_screw<S>> screws;
 
-  /// Where the frame of a node stands; of −1: of what is above.
+  /// Frame of the node at an index; for −1 the frame above.
   [[nodiscard]] link_displacement<S> frame(int i) const {
     return i < 0 ? standing_still<S>() : frames[std::size_t(i)];
   }
@@ -52,7 +53,7 @@ struct tree_motion {
   }
 };
 
-/// From a node `top` down to a node below it.
+/// Motion of the nodes below a node `top` down to one node.
 template <class S, class X>
 [[nodiscard]] tree_motion<S> motion_to(const tree_table& table, const X& x, int node, int top) {
   const node_path path(table, node, top);
@@ -65,7 +66,7 @@ template <class S, class X>
   return result;
 }
 
-/// Of the whole tree.
+/// Motion of all nodes of the tree.
 template <class S, class X>
 [[nodiscard]] tree_motion<S> motion_of_all(const tree_table& table, const X& x) {
   tree_motion<S> result;

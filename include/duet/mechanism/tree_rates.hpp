@@ -14,11 +14,11 @@
 #include <vector>
 
 /// \file
-/// How the screws of a tree change as it moves. For those who extend duet.
+/// Time derivatives of the screws of a kinematic tree. For those who extend duet.
 
 namespace duet::detail {
 
-/// The rate of `left_jacobian(r)` along ṙ: with cₙ the Stumpff functions of s = r·r, whose
+/// Time derivative of `left_jacobian(r)` along ṙ: with cₙ the Stumpff functions of s = r·r, whose
 /// derivatives are cₙ′ = (n cₙ₊₂ − cₙ₊₁)/2,
 /// r·ṙ ((c₃ − c₂) I + (2 c₄ − c₃) r̂ + (3 c₅ − c₄) r rᵀ) + c₂ ṙ̂ + c₃ (ṙ rᵀ + r ṙᵀ).
 template <class S>
@@ -45,20 +45,20 @@ template <class S, class F>
   return {factor * a.v, factor * a.omega};
 }
 
-/// Rates of the screws of a motion, and the twists of its nodes.
+/// Time derivatives of the screws of a motion, and the twists of its nodes.
 template <class S>
 struct tree_rates {
   std::vector<twist_column<S>> screws; ///< ṡ of each screw s
   std::vector<twist_column<S>> nodes;  ///< twist of each node
 
-  /// The twist of a node; of what is above the first: none.
+  /// Twist of the node at an index; zero for −1, the frame above the first node.
   [[nodiscard]] twist_column<S> node(int i) const {
     return i < 0 ? no_twist<S>() : nodes[std::size_t(i)];
   }
 };
 
-/// A screw is carried by what its joint hangs on, ad(V) s; those of a ball change with its own
-/// coordinates, too.
+/// A screw is carried by the parent node of its joint, ad(V) s; the screws of a ball also change
+/// with its own coordinates.
 template <class S, class X, class V>
 [[nodiscard]] tree_rates<S> rates_of(const tree_table& table, const tree_motion<S>& motion,
                                      const X& x, const V& x_dot) {

@@ -14,23 +14,23 @@
 #include <vector>
 
 /// \file
-/// The table that a tree is evaluated by. For those who extend duet.
+/// The table for the evaluation of a kinematic tree. For those who extend duet.
 
 namespace duet::detail {
 
-/// A part of a joint: what turns about an axis, slides along it or both, by one coordinate; or a
-/// ball, by a rotation vector. A planar joint is two that slide and one that turns, a floating one
-/// three that slide and a ball.
+/// An elementary joint: one that rotates about an axis, translates along it or both, with one
+/// coordinate; or a ball, with a rotation vector. A planar joint is two prismatic nodes and a
+/// revolute one, a floating joint three prismatic nodes and a ball.
 struct tree_node {
-  int parent = -1;    ///< the node that it hangs on; −1: the root of the tree
+  int parent = -1;    ///< number of the parent node; −1: the root of the tree
   int coordinate = 0; ///< number of its first coordinate among those of all joints
   bool is_ball = false;
-  joint_step<double> step{}; ///< of a ball only where it stands
+  joint_step<double> step{}; ///< for a ball only its pose before the motion
 
   [[nodiscard]] int coordinates() const { return is_ball ? 3 : 1; }
 };
 
-/// Is it no displacement?
+/// True if the displacement is the identity.
 [[nodiscard]] inline bool is_identity(const placement<double>& a) {
   const auto& [x, y, z] = a.translation;
   return a.rotation == quaternion<double>(1) && x == 0 && y == 0 && z == 0;
@@ -38,35 +38,35 @@ struct tree_node {
 
 /// A frame fixed to a node.
 struct place_on_node {
-  int node = -1; ///< −1: the root of the tree
+  int node = -1; ///< number of the node; −1: the root of the tree
   placement<double> offset{};
 };
 
-/// A coordinate of a joint is multiplier × a coordinate of the tree + offset.
+/// A joint coordinate as multiplier × a coordinate of the tree + offset.
 struct coordinate_source {
   int own = -1;
   double multiplier = 1;
   double offset = 0;
 };
 
-/// Of all that is fixed to a node, in its frame.
+/// Mass and first moment of all that is fixed to a node, in its frame.
 struct mass_on_node {
   double mass = 0;
   three_vector<double> moment{}; ///< Σ mass × centre
 };
 
 struct tree_table {
-  std::vector<tree_node> nodes;             ///< parents first
-  std::vector<mass_on_node> masses;         ///< of the root, then of each node
-  std::vector<place_on_node> links;         ///< where each link is
-  std::vector<coordinate_source> sources;   ///< of the coordinates of all joints
-  std::vector<std::string> names;           ///< of the coordinates of the tree
-  std::vector<joint_limits<double>> limits; ///< of the coordinates of the tree
+  std::vector<tree_node> nodes;             ///< nodes, parents first
+  std::vector<mass_on_node> masses;         ///< masses of the root, then of each node
+  std::vector<place_on_node> links;         ///< node and offset of each link
+  std::vector<coordinate_source> sources;   ///< sources of the coordinates of all joints
+  std::vector<std::string> names;           ///< names of the coordinates of the tree
+  std::vector<joint_limits<double>> limits; ///< limits of the coordinates of the tree
   std::unordered_map<std::string, int> link_numbers;
 };
 
-/// The shortest turn that takes z to the unit vector n: (1 + n·z, z × n), normalised; to −z the
-/// half turn about x.
+/// The shortest rotation that takes z to the unit vector n: (1 + n·z, z × n), normalised; for −z
+/// the half turn about x.
 [[nodiscard]] inline quaternion<double> turn_to(const three_vector<double>& n) {
   const double w = n.z > 0 ? 1 + n.z : (n.x * n.x + n.y * n.y) / (1 - n.z); // both are 1 + n·z
   const double length = std::sqrt(2 * w);
@@ -74,13 +74,13 @@ struct tree_table {
                : quaternion<double>(0, 1, 0, 0);
 }
 
-/// Carries e by the shortest turn that takes z to n.
+/// Image of e under the shortest rotation that takes z to n.
 [[nodiscard]] inline three_vector<double> in_plane(const three_vector<double>& n,
                                                    const three_vector<double>& e) {
   return cleaned_direction(rotated(turn_to(n), e));
 }
 
-/// The nodes of a joint that stands at a place.
+/// Appends the nodes of a joint whose frame is at an offset of a node.
 inline void add_nodes_of_joint(std::vector<tree_node>& nodes, const joint<double>& motion,
                                int coordinate, const place_on_node& place) {
   tree_node node{place.node, coordinate};

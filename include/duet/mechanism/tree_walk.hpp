@@ -24,11 +24,12 @@
 #include <vector>
 
 /// \file
-/// Along a tree, from what stands still to what is asked for. For those who extend duet.
+/// Traversal of a kinematic tree from the reference frame to the frame of interest. For those who
+/// extend duet.
 
 namespace duet::detail {
 
-/// The scalar of a tree's results at coordinates X.
+/// The scalar of a tree's results at a configuration of type X.
 template <class X>
 using tree_scalar = promote_t<double, typename vector_argument<X>::scalar>;
 
@@ -39,7 +40,7 @@ void require_size(const tree_table& table, const X& q) {
           vector_argument<X>::size(q), " are given");
 }
 
-/// Coordinates of the joints, by those of the tree.
+/// Joint coordinates as functions of those of the tree.
 template <class S, class X>
 class joint_coordinates {
 public:
@@ -56,7 +57,7 @@ private:
   const X& q_;
 };
 
-/// Rates of the coordinates of the joints.
+/// Velocities of the joint coordinates.
 template <class S, class V>
 class joint_velocities {
 public:
@@ -72,7 +73,8 @@ private:
   const tree_table& table_;
   const V& v_;
 };
-/// The rate of one coordinate of the tree is 1, those of the others are 0.
+/// Velocities of the joint coordinates if one coordinate of the tree has velocity 1 and the others
+/// are at rest.
 class unit_velocities {
 public:
   unit_velocities(const tree_table& table, Eigen::Index own) : table_(table), own_(own) {}
@@ -97,14 +99,16 @@ template <class S>
   return {quaternion<S>(S(1)), {S(0), S(0), S(0)}};
 }
 
-/// Where the frame of a ball stands before its motion.
+/// Frame of a ball before its motion.
 template <class S>
 [[nodiscard]] link_displacement<S> origin_of_ball(const link_displacement<S>& parent,
                                                   const tree_node& node) {
   return {parent.rotation * node.step.a, parent.point(node.step.offset)};
 }
 
-/// Where the frame of a ball stands after its motion. \param visit  as of `for_each_node`
+/// Frame of a ball after its motion.
+///
+/// \param visit  as for `for_each_node`
 template <class S, class X, class Visit>
 [[nodiscard]] link_displacement<S> after_ball(const link_displacement<S>& parent,
                                               const tree_node& node, const X& x,
@@ -122,12 +126,13 @@ template <class S, class X, class Visit>
   return result;
 }
 
-/// Calls `after(node, move)` for nodes by their places in a list, where `move(A)` is where the
-/// frame of the node stands if that of its parent is at A. Sines are taken some at a time.
+/// Calls `after(node, move)` for the nodes of a list, where `move(A)` returns the frame of the node
+/// for the frame A of its parent. Sines are evaluated several at once.
 ///
-/// \param node_at  the number of the node at a place
-/// \param visit    called with the number of each coordinate and its screw: twists of all that the
-///                 node carries, per unit of it, with v at the origin; or `visit_nothing`
+/// \param node_at  returns the number of the node at an index of the list
+/// \param visit    called with the number of each coordinate and its screw, the twist of all that
+///                 the node carries per unit of the coordinate, with v at the origin; or
+///                 `visit_nothing`
 template <class S, class X, class NodeAt, class Visit, class After>
 DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int count,
                                       const NodeAt& node_at, const Visit& visit,
@@ -137,7 +142,8 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
   };
   constexpr int most = 16;
   for (int i = 0; i < count;) {
-    // As many as there are up to a ball: where that was a branch within, one in five took longer.
+    // All nodes up to the next ball: with a branch for balls inside the loop, one in
+    // five took longer.
     std::array<S, most> theta;
     int some = 0;
     for (; some < most && i + some < count && !node(i + some).is_ball; ++some) {
@@ -150,10 +156,10 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
                                  const auto& point) DUET_INLINE_LAMBDA {
         if constexpr (!std::same_as<Visit, decltype(visit_nothing)>) {
           twist_column<S> screw = no_twist<S>();
-          if (step.turns()) {
+          if (step.is_rotational()) {
             screw = {cross(point, axis), axis};
           }
-          if (step.slides()) {
+          if (step.is_translational()) {
             screw.v = screw.v + step.pitch() * axis;
           }
           visit(coordinate, screw);
@@ -173,7 +179,7 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
   }
 }
 
-/// The numbers of the nodes from one `top` down to one below it; a few without heap.
+/// Numbers of the nodes from one below `top` down to a node; short paths use no heap memory.
 class node_path {
 public:
   node_path(const tree_table& table, int node, int top) {
@@ -204,12 +210,13 @@ public:
 private:
   int size_;
   const int* begin_;
-  std::array<int, 32> few_; // the last of them are set
+  std::array<int, 32> few_; // its last elements are set
   std::vector<int> many_;
 };
 
-/// Where the last node of a path stands in the frame of what is above it. \param visit  as of
-/// `for_each_node`
+/// Frame of the last node of a path relative to the frame above it.
+///
+/// \param visit  as for `for_each_node`
 template <class S, class X, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
 walk_down(const tree_table& table, const X& x, const node_path& path, const Visit& visit) {
@@ -221,7 +228,7 @@ walk_down(const tree_table& table, const X& x, const node_path& path, const Visi
   return result;
 }
 
-/// Where all nodes stand.
+/// Frames of all nodes.
 template <class S, class X>
 [[nodiscard]] std::vector<link_displacement<S>> frames_of_all(const tree_table& table, const X& x) {
   const link_displacement<S> root = standing_still<S>();

@@ -16,13 +16,13 @@
 #include <vector>
 
 /// \file
-/// Chains whose joints and links have names.
+/// Serial chains with names of joints and links.
 
 namespace duet {
 
-/// A chain that was read, with the names of its joints and links.
+/// A chain from a robot description, with the names of its joints and links.
 ///
-/// \tparam Capacity  how many moving joints there may be
+/// \tparam Capacity  maximum number of moving joints
 template <int Capacity>
 class urdf_chain : public serial_chain<-Capacity> {
 public:
@@ -31,7 +31,7 @@ public:
       : serial_chain<-Capacity>(chain), joint_names_(std::move(joint_names)),
         links_(std::move(links)), unknown_(std::move(unknown)) {}
 
-  /// For those who extend duet: made of what was read.
+  /// For those who extend duet: the chain of the contents of a file.
   explicit urdf_chain(detail::urdf_contents read)
       : urdf_chain(serial_chain<-Capacity>(std::span<const joint<double>>(read.joints)),
                    std::move(read.joint_names), std::move(read.links), std::move(read.unknown)) {}
@@ -49,8 +49,9 @@ public:
   }
 
   using serial_chain<-Capacity>::link;
-  /// The frame of a link by its name, those that are fixed to another one included.
-  /// \throws invalid_input where the chain has none of that name
+  /// The frame of a link by its name, including links that are fixed to another one.
+  ///
+  /// \throws invalid_input if the chain has no link of that name
   [[nodiscard]] attached_frame<double> link(std::string_view name) const {
     const auto found = std::find_if(links_.begin(), links_.end(),
                                     [&](const urdf_link& each) { return each.name == name; });
@@ -65,11 +66,11 @@ public:
     }
     return found->frame;
   }
-  /// Names of the joints that move, in order.
+  /// Names of the moving joints, in order.
   [[nodiscard]] const std::vector<std::string>& joint_names() const { return joint_names_; }
   /// All links from the base to the tip, each with its name and frame.
   [[nodiscard]] const std::vector<urdf_link>& links() const { return links_; }
-  /// Elements of the whole file that were not read, as URDF has them not.
+  /// Unknown elements of the whole file, which are not part of URDF and were not read.
   [[nodiscard]] const std::vector<urdf_unknown_element>& unknown() const { return unknown_; }
 
   // For those who extend duet.

@@ -18,22 +18,22 @@
 #include <vector>
 
 /// \file
-/// Elements and attributes of URDF as such, and what may be wrong with them.
+/// Elements and attributes of a URDF document, and their validation.
 
 namespace duet::detail {
 
-/// An element of a description, and the joint or link that it is in, for messages.
+/// An element of a description and the joint or link that contains it, for messages.
 struct urdf_place {
   const xml_element& element;
   const xml_element* owner = nullptr;
 };
 
-/// An element that is read: its attributes, others being mistakes, and what may be in it.
+/// A known element: its attributes, others being errors, and the elements that it may contain.
 struct urdf_element_kind {
   std::string_view name;
   std::array<std::string_view, 7> attributes;
   std::array<std::string_view, 9> children = {};
-  /// Attributes that files of known robots have for other programs.
+  /// Attributes that files of known robots have for other programs; they are ignored.
   std::array<std::string_view, 3> foreign = {};
 };
 inline constexpr std::array<urdf_element_kind, 20> urdf_element_kinds{
@@ -67,10 +67,10 @@ inline constexpr std::array<urdf_element_kind, 20> urdf_element_kinds{
      {"mimic", {"joint", "multiplier", "offset"}},
      {"safety_controller", {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}}}};
 
-/// A description whose elements and attributes are those of the format.
+/// A description whose elements and attributes have been checked against the format.
 class urdf_document {
 public:
-  /// \throws file_error for another root than `<robot>`, and for attributes that the format has not
+  /// \throws file_error for another root than `<robot>`, and for unknown attributes
   urdf_document(std::string path, xml_element robot)
       : path_(std::move(path)), robot_(std::move(robot)) {
     if (robot_.name != "robot") {
@@ -99,7 +99,7 @@ public:
     fail(place, std::string(key) + "=\"" + attribute(place, key) + "\" is negative");
   }
 
-  /// A limit, infinite beyond 1e6 on the side of `sign`: as a number that stands for none.
+  /// A limit, infinite if it exceeds 1e6 in the direction of `sign`: such a number means unlimited.
   [[nodiscard]] double limit(const urdf_place& place, std::string_view key, double otherwise,
                              int sign) const {
     const std::string* const text = place.element.attribute(key);
@@ -135,7 +135,7 @@ public:
     return result;
   }
 
-  /// A number, which must be there.
+  /// A required number.
   [[nodiscard]] double number(const urdf_place& place, std::string_view key) const {
     return number(attribute(place, key), place, key);
   }
@@ -145,13 +145,13 @@ public:
     return text == nullptr ? otherwise : number(*text, place, key);
   }
 
-  /// A mass or moment of inertia, which must be there and may be of any size.
+  /// A required mass or moment of inertia, of any size.
   [[nodiscard]] double measure(const urdf_place& place, std::string_view key) const {
     return number(attribute(place, key), place, key, std::numeric_limits<double>::max());
   }
 
 private:
-  static constexpr double most = 1e6; ///< of lengths (m) and angles (rad), which lose digits
+  static constexpr double most = 1e6; ///< maximum length (m) and angle (rad); larger: digits lost
 
   [[nodiscard]] static std::string name_of(const urdf_place& place) {
     const std::string* const name = place.element.attribute("name");
@@ -172,8 +172,8 @@ private:
     return *value;
   }
 
-  /// An element, and those in it that are read. What has a prefix, and attributes that declare one,
-  /// are other programs'.
+  /// Checks an element and those in it that are read. Elements with a prefix, and attributes that
+  /// declare one, belong to other programs.
   void check(const xml_element& element, const xml_element* owner = nullptr) {
     const auto kind =
         std::find_if(urdf_element_kinds.begin(), urdf_element_kinds.end(),

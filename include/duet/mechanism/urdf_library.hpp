@@ -14,7 +14,7 @@
 #include <vector>
 
 /// \file
-/// Robot descriptions read by expat.
+/// Robot descriptions read with expat.
 
 namespace duet::detail {
 
@@ -34,7 +34,7 @@ robot_description read_urdf_description(const std::string& path) {
 }
 
 template <class Xml>
-urdf_names read_names_in_urdf(const std::string& path) {
+urdf_summary read_names_in_urdf(const std::string& path) {
   return urdf_reader(path, Xml::read(path)).names();
 }
 

@@ -28,7 +28,7 @@ namespace duet::detail {
 
 class urdf_reader {
 public:
-  /// \throws file_error for what is wrong anywhere in the description, numbers aside
+  /// \throws file_error for errors anywhere in the description, except for numbers
   urdf_reader(const std::string& path, xml_element robot)
       : path_(path), document_(path, std::move(robot)) {
     names_.unknown = document_.unknown();
@@ -43,7 +43,7 @@ public:
   urdf_reader(const urdf_reader&) = delete;
   urdf_reader& operator=(const urdf_reader&) = delete;
 
-  [[nodiscard]] const urdf_names& names() const { return names_; }
+  [[nodiscard]] const urdf_summary& names() const { return names_; }
 
   /// The chain from the link `base` to the link `tip`.
   [[nodiscard]] urdf_contents chain(const std::string& base, const std::string& tip,
@@ -122,7 +122,7 @@ private:
     return result;
   }
 
-  /// The upper half of a matrix, whose lower half may be there too.
+  /// Upper half of a symmetric matrix, whose lower half may also be given.
   [[nodiscard]] std::array<double, 6> read_moments(const urdf_place& place) const {
     constexpr std::array<const char*, 6> keys = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
     constexpr std::array<const char*, 6> below = {"", "iyx", "izx", "", "izy", ""};
@@ -164,7 +164,7 @@ private:
     result.kind = kind(element);
     result.origin = read_origin(document_, element, element);
     if (result.kind != joint_kind::fixed) {
-      result.axis = {1, 0, 0}; // where nothing is said
+      result.axis = {1, 0, 0}; // default
       if (const xml_element* axis = element.child("axis")) {
         result.axis = document_.numbers({*axis, &element}, "xyz", result.axis);
         const double length = std::hypot(result.axis[0], result.axis[1], result.axis[2]);
@@ -172,7 +172,7 @@ private:
           document_.fail({*axis, &element}, "length " + to_text(length) + ", not 1");
         }
       }
-      if (result.coordinates() == 1) { // the format says nothing of limits for several
+      if (result.coordinates() == 1) { // the format defines no limits for several coordinates
         result.limits = limits(element, result.kind);
       }
     }
@@ -240,7 +240,7 @@ private:
                                   "fixed, planar and floating");
   }
 
-  /// Those of `<limit>`, narrowed by the soft ones of `<safety_controller>`.
+  /// Limits of `<limit>`, narrowed by the soft limits of `<safety_controller>`.
   [[nodiscard]] joint_limits<double> limits(const xml_element& element, joint_kind kind) const {
     joint_limits<double> result;
     const bool is_bounded = kind != joint_kind::continuous;
@@ -260,7 +260,7 @@ private:
     if (!is_bounded) {
       return result;
     }
-    result.lower = document_.limit(place, "lower", 0, -1); // 0 as the format says
+    result.lower = document_.limit(place, "lower", 0, -1); // 0 is the default of the format
     result.upper = document_.limit(place, "upper", 0, 1);
     if (result.lower > result.upper) {
       document_.fail(place,
@@ -281,10 +281,10 @@ private:
 
   std::string path_;
   urdf_document document_;
-  urdf_names names_;
-  std::vector<const xml_element*> elements_; ///< of the joints, as in `names_`
-  elements links_, joints_;                  ///< by name
-  elements joint_above_;                     ///< by the link that it moves
+  urdf_summary names_;
+  std::vector<const xml_element*> elements_; ///< elements of the joints, as in `names_`
+  elements links_, joints_;                  ///< elements by name
+  elements joint_above_;                     ///< joint by the name of the link that it moves
 };
 
 } // namespace duet::detail

@@ -13,11 +13,11 @@
 #include <vector>
 
 /// \file
-/// Where parts of links stand, and the shapes that they have for collisions.
+/// Origins and collision shapes of links in URDF.
 
 namespace duet::detail {
 
-/// `<origin>` in an element of a link or a joint.
+/// The pose in `<origin>` of an element of a link or a joint.
 [[nodiscard]] inline placement<double>
 read_origin(const urdf_document& document, const xml_element& in, const xml_element& owner) {
   const xml_element* const origin = in.child("origin");
@@ -39,7 +39,7 @@ read_origin(const urdf_document& document, const xml_element& in, const xml_elem
   return result;
 }
 
-/// One shape, of the names that URDF has.
+/// One collision shape, of a type known to URDF.
 [[nodiscard]] inline collision_shape
 read_shape(const urdf_document& document, const xml_element& collision, const xml_element& link) {
   const xml_element* const geometry = collision.child("geometry");
@@ -79,7 +79,7 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
   return result;
 }
 
-/// All that a link consists of for collisions.
+/// All collision shapes of a link.
 [[nodiscard]] inline std::vector<collision_shape> read_shapes(const urdf_document& document,
                                                               const xml_element& link) {
   std::vector<collision_shape> result;

@@ -10,18 +10,18 @@
 #include <vector>
 
 /// \file
-/// XML that was read, whatever read it.
+/// XML elements, independent of the parser.
 
 namespace duet::detail {
 
 struct xml_element {
   std::string name;
-  std::size_t line = 0; ///< where it begins
+  std::size_t line = 0; ///< line where it begins
   std::vector<std::pair<std::string, std::string>> attributes;
-  std::string text; ///< that is directly in it, where it is kept
+  std::string text; ///< text directly in the element, if kept
   std::vector<xml_element> children;
 
-  /// The value of an attribute, or nothing.
+  /// The value of an attribute, or `nullptr`.
   [[nodiscard]] const std::string* attribute(std::string_view key) const {
     for (const auto& [name_of_it, value] : attributes) {
       if (name_of_it == key) {
@@ -30,7 +30,7 @@ struct xml_element {
     }
     return nullptr;
   }
-  /// The first child of a name, or nothing.
+  /// The first child with a tag, or `nullptr`.
   [[nodiscard]] const xml_element* child(std::string_view tag) const {
     for (const xml_element& each : children) {
       if (each.name == tag) {

@@ -7,7 +7,7 @@
 #include <duet/mechanism/xml_element.hpp>
 
 #if !__has_include(<expat.h>)
-// After an #error compilers would go on, with what is not declared.
+// Compilers would continue after an #error, with undeclared names.
 #include "duet: read_urdf and read_mesh need expat (libexpat1-dev or expat-devel or expat): compile with its headers, link with -lexpat"
 #endif
 #include <expat.h>
@@ -19,14 +19,14 @@
 #include <vector>
 
 /// \file
-/// XML, by the parser expat: all that the standard calls an error is one.
+/// XML parser based on expat: everything that the standard calls an error is one.
 
 namespace duet::detail {
 
-/// What becomes of text between elements.
+/// Treatment of text between elements.
 enum class xml_text { skipped, kept };
 
-/// Reads one file.
+/// Parser of one file.
 class xml_parser {
 public:
   static constexpr std::size_t most_depth = 100;
@@ -34,7 +34,7 @@ public:
   explicit xml_parser(const std::string& path, std::size_t most_megabytes = 16,
                       xml_text text = xml_text::skipped)
       : path_(path), most_megabytes_(most_megabytes),
-        parser_(XML_ParserCreate(nullptr)) { // the encoding is the file's to say
+        parser_(XML_ParserCreate(nullptr)) { // the file defines its encoding
     if (parser_ == nullptr) {
       raise(std::bad_alloc());
     }
@@ -49,9 +49,10 @@ public:
   xml_parser& operator=(const xml_parser&) = delete;
   ~xml_parser() { XML_ParserFree(parser_); }
 
-  /// The root with all that is in it.
-  /// \throws file_error for what is not well formed, has a document type (and with it entities), is
-  /// nested too deep or too large
+  /// The root element with all its contents.
+  ///
+  /// \throws file_error for XML that is not well formed, has a document type (and with it
+  /// entities), is nested too deep or too large
   [[nodiscard]] xml_element root() {
     const std::string text = whole_content(path_, most_megabytes_);
     const bool is_good =
@@ -70,14 +71,14 @@ public:
 private:
   [[nodiscard]] std::size_t line() const { return XML_GetCurrentLineNumber(parser_); }
 
-  /// In which element the parser is.
+  /// The element that the parser is in, for messages.
   [[nodiscard]] std::string place() const {
     return open_.size() < 2
                ? ""
                : ", in <" + open_.back()->name + "> of line " + std::to_string(open_.back()->line);
   }
 
-  /// Calls what may not throw, as it is called from C.
+  /// Calls a function from C and stops the parser if it throws.
   template <class Body>
   void guarded(const Body& body) {
     catching<void>(body, [&] {
@@ -96,7 +97,7 @@ private:
       if (self.open_.size() > most_depth) {
         return self.stop("elements are nested more than 100 deep");
       }
-      // The parent is open, so what is before it in its own parent stays where it is.
+      // The parent is open, so the elements before it in its own parent keep their addresses.
       xml_element& element = self.open_.back()->children.emplace_back();
       self.open_.push_back(&element);
       element.name = name;
@@ -122,7 +123,7 @@ private:
   std::string path_;
   std::size_t most_megabytes_;
   XML_Parser parser_;
-  xml_element document_; ///< what the root is in
+  xml_element document_; ///< document that contains the root
   std::vector<xml_element*> open_{&document_};
   std::string reason_;
   bool is_out_of_memory_ = false;

@@ -31,27 +31,28 @@
 #include <vector>
 
 /// \file
-/// All joint coordinates of arms of six joints for a pose of the tip.
+/// All solutions of inverse kinematics of six-joint arms for a pose of the tip.
 
 namespace duet {
 
-/// One of the ways in which an arm reaches a pose.
+/// One solution (branch) of inverse kinematics: a configuration in which an arm reaches a pose.
 ///
-/// \tparam N  as of `serial_chain`
+/// \tparam N  as in `serial_chain`
 template <int N>
-struct inverse_kinematics_branch {
-  /// Coordinates: of turning joints within (−π, π], or a turn from there where that is within the
-  /// limits.
+struct inverse_kinematics_solution {
+  /// Coordinates: of revolute joints within (−π, π], or a full turn from there if that is within
+  /// the limits.
   detail::joint_vector<double, N> joints =
       detail::zero_initialized<detail::joint_vector<double, N>>();
-  /// How far the tip is from the goal: radians, or lengths in parts of the arm's size or of the
-  /// longest way along a slide, if that is more; whichever is larger.
+  /// Error of the tip relative to the goal: radians, or lengths relative to the arm's size or the
+  /// largest displacement of a prismatic joint, if that is more; whichever is larger.
   double residual = 0;
-  /// Of the Jacobian in `frame::hybrid`: 0 where branches meet.
+  /// Smallest singular value of the Jacobian in `frame::hybrid`; 0 where branches meet.
   double smallest_singular_value = 0;
-  /// 2 where branches meet: between it and another solution the tip stays within 3e-13 of the goal.
+  /// Multiplicity; 2 where branches meet: between it and another solution the tip stays within
+  /// 3e-13 of the goal.
   int multiplicity = 1;
-  bool within_limits = true; ///< are all joints within their limits?
+  bool within_limits = true; ///< true if all joints are within their limits
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -63,19 +64,19 @@ struct inverse_kinematics_branch {
   }
 };
 
-/// All ways in which an arm reaches a pose.
+/// All solutions of inverse kinematics of an arm for a pose.
 ///
-/// \tparam N  as of `serial_chain`
+/// \tparam N  as in `serial_chain`
 template <int N>
 struct all_inverse_kinematics_result {
-  /// In the order of their first coordinates, those that agree there of the second …
-  std::vector<inverse_kinematics_branch<N>> solutions;
-  /// The number of complex solutions: 16 at most in all. (For arms of special
-  /// geometry, but not in closed form, from above.)
+  /// Solutions in lexicographic order of their coordinates.
+  std::vector<inverse_kinematics_solution<N>> solutions;
+  /// Number of complex solutions: 16 at most in all. (An upper bound for arms of special geometry
+  /// that are not solved in closed form.)
   int complex_solutions = 0;
-  branch_method method = branch_method::elimination; ///< how they were found
-  /// Is it certain, to round-off, that there are no others that are regular? Where joints can
-  /// move with the tip in place it is not, nor where such a curve might pass and nothing was found.
+  solution_method method = solution_method::elimination; ///< method by which they were found
+  /// True if it is certain, to round-off, that there are no other regular solutions. False if the
+  /// joints have a self-motion, and if such a curve might pass and nothing was found.
   bool is_complete = false;
 
   /// For those who extend duet: for `to_text`.
@@ -89,7 +90,7 @@ struct all_inverse_kinematics_result {
 
 namespace detail {
 
-/// \throws invalid_input for a chain that has not six joints, each of which turns or slides
+/// \throws invalid_input for a chain that does not have six joints, each revolute or prismatic
 template <class C>
 void require_six_joints(const C& chain) {
   require(chain.size() == 6, "duet: all_inverse_kinematics: the chain has ", chain.size(),
@@ -104,7 +105,7 @@ void require_six_joints(const C& chain) {
           " sliding joints, of which 3 are the most");
 }
 
-/// θ turned by whole turns into the limits, if that is possible.
+/// θ moved by a full turn into the limits, if that is possible.
 [[nodiscard]] inline double turned_within(double theta, const joint_limits<double>& limits) {
   constexpr double turn = 2 * std::numbers::pi;
   for (const double x : {theta, theta + turn, theta - turn}) {
@@ -118,7 +119,7 @@ void require_six_joints(const C& chain) {
 template <class C>
 class branches_of_chain {
 public:
-  using branch = inverse_kinematics_branch<C::joints>;
+  using branch = inverse_kinematics_solution<C::joints>;
 
   branches_of_chain(const C& chain, const dual_quaternion<double>& goal)
       : chain_(chain), goal_(place_of(normalized(goal))),
@@ -127,7 +128,7 @@ public:
 
   [[nodiscard]] const joint_loop& loop() const { return loop_; }
 
-  /// But for its singular value.
+  /// Solution in the chain's coordinates, without its singular value.
   [[nodiscard]] branch operator()(const loop_solution& x,
                                   const std::optional<slides_in_place>& in_place = {}) const {
     constexpr double rounding = 2e-13; // closed forms have more near singularities
@@ -141,7 +142,7 @@ public:
     return result;
   }
 
-  /// Is it a solution, and none of these?
+  /// True if it is a solution and none of `others`.
   [[nodiscard]] bool is_new(const branch& found, const std::vector<branch>& others) const {
     return found.residual < as_good_as_none &&
            std::none_of(others.begin(), others.end(),
@@ -151,7 +152,7 @@ public:
 private:
   static constexpr double as_good_as_none = 1e-8;
 
-  /// Of slides, in parts of the arm's size; at least 1.
+  /// Largest prismatic displacement relative to the arm's size; at least 1.
   [[nodiscard]] double longest_way(const joint_vector<double, C::joints>& theta) const {
     double result = 1;
     for (int i = 0; i < 6; ++i) {
@@ -162,13 +163,14 @@ private:
     return result;
   }
 
-  /// To the middle of what the limits of both allow, or as little as they need, if they can.
+  /// Moves two joints to the middle of what the limits of both allow, or as little as they need, if
+  /// they can.
   void slide_within_limits(joint_vector<double, C::joints>& theta,
                            const slides_in_place& slides) const {
     double &first = theta[slides.first], &second = theta[slides.second];
     const auto &one = chain_.limits(slides.first), &other = chain_.limits(slides.second);
     const double way = slides.second_way;
-    // How far the first may go by its own limits, and by those of the second.
+    // Range of the first by its own limits, and by those of the second.
     const auto [least, most] =
         std::minmax({way * (other.lower - second), way * (other.upper - second)});
     const double lower = std::max(one.lower - first, least),
@@ -181,7 +183,7 @@ private:
     }
   }
 
-  /// But for whole turns.
+  /// True if equal except for full turns.
   [[nodiscard]] bool is_same(const branch& a, const branch& b) const {
     bool result = true;
     for (int i = 0; i < 6 && result; ++i) {
@@ -212,8 +214,9 @@ private:
     }
     const tip_place tip =
         attached(walk<true, double>(chain_, result.joints, 6, visit_nothing), chain_.tip().offset);
-    const pose_deviation left = deviation_of(error_twist(tip, goal_));
-    result.residual = std::max(left.length / (axes_.size * longest_way(result.joints)), left.angle);
+    const pose_error left = deviation_of(error_twist(tip, goal_));
+    result.residual =
+        std::max(left.translation / (axes_.size * longest_way(result.joints)), left.rotation);
     return result;
   }
 
@@ -223,12 +226,13 @@ private:
   joint_loop loop_;
 };
 
-/// Fills in the singular values, eight at a time: that takes little more than one.
+/// Computes the singular values in SIMD batches of eight: a batch takes little more than one.
 template <class C>
-void fill_singular_values(const C& chain, std::vector<inverse_kinematics_branch<C::joints>>& all) {
+void fill_singular_values(const C& chain,
+                          std::vector<inverse_kinematics_solution<C::joints>>& all) {
   using eight = batch<double, 8>;
   for (std::size_t first = 0; first < all.size(); first += 8) {
-    Eigen::Matrix<eight, 6, 1> theta; // of the last one again where there are less
+    Eigen::Matrix<eight, 6, 1> theta; // the last one again if there are fewer
     for (int k = 0; k < 6; ++k) {
       theta[k] = eight::from_lanes(
           [&](int i) { return all[std::min(first + std::size_t(i), all.size() - 1)].joints[k]; });
@@ -242,20 +246,20 @@ void fill_singular_values(const C& chain, std::vector<inverse_kinematics_branch<
 
 } // namespace detail
 
-/// All joint coordinates that take the tip of an arm of six joints to the pose `goal`, within
-/// limits or not.
+/// All solutions of the inverse kinematics of a six-joint arm: the joint coordinates at which its
+/// tip frame has the pose `goal`, within limits or not.
 ///
-/// Spherical wrists, three parallel axes one after the other and three sliding joints are
-/// recognised, by 1e-9 of the arm's size, and solved in closed form. Two sliding joints: zeros of a
-/// polynomial of degree 8. Any other arm: elimination after Raghavan and Roth for two loops whose
-/// axes are displaced from the given ones by 1e-4 and less of the arm's size, so that no solutions
-/// coincide, and Newton's method from there (docs/all_inverse_kinematics.md). Joints beyond their
-/// limits are told by `within_limits`. Where joints can move with the tip in place, some of these
-/// configurations are returned: of two that slide along each other wherever the others are, one for
-/// each way in which these make it, in the middle of what the limits of both allow.
+/// Spherical wrists, three consecutive parallel axes and three prismatic joints are recognised, to
+/// 1e-9 of the arm's size, and solved in closed form. Two prismatic joints: zeros of a polynomial
+/// of degree 8. Any other arm: elimination after Raghavan and Roth for two loops whose axes are
+/// displaced from the given ones by 1e-4 and less of the arm's size, so that no solutions coincide,
+/// and Newton's method from there (docs/all_inverse_kinematics.md). Joints beyond their limits are
+/// reported by `within_limits`. If the joints have a self-motion, some of its configurations are
+/// returned: for two prismatic joints that slide along each other wherever the others are, one for
+/// each solution of these, in the middle of what the limits of both allow.
 ///
-/// \param chain  six joints that turn or slide, at most three of them sliding
-/// \throws invalid_input for other chains, and for a goal that is no pose
+/// \param chain  six joints, revolute or prismatic, at most three of them prismatic
+/// \throws invalid_input for other chains, and for a goal that is not a pose
 template <SerialChain C>
 [[nodiscard]] all_inverse_kinematics_result<C::joints>
 all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {

@@ -9,22 +9,22 @@
 #include <cstddef>
 
 /// \file
-/// The least step of the joints for a small twist of the tip that keeps the joints within limits.
+/// Least-norm joint step for a small twist of the tip within joint limits (damped least squares).
 
 namespace duet::detail {
 
-/// Below this singular value steps are damped.
+/// Singular value below which steps are damped.
 inline constexpr double damping_threshold = 1e-3;
-/// Below this one they are in vain, but for those of joints that swing.
+/// Singular value below which they are in vain, except those of joints that swing at a singularity.
 inline constexpr double undamped_threshold = 1e-6;
-/// Below this one rounding of J Jᵀ would make them.
+/// Singular value below which round-off of J Jᵀ would determine them.
 inline constexpr double swing_threshold = 1e-7;
 
-/// A twist [v; ω].
+/// Twist [v; ω].
 using small_twist = small_vector<6>;
 using gram_matrix = small_matrix<6, 6>;
 
-/// The lower half of m + x xᵀ for the column j of a matrix of 6 rows.
+/// Adds x xᵀ to the lower half of m for the column x of a matrix of 6 rows.
 template <class J>
 void add_square(gram_matrix& m, const J& jacobian, std::ptrdiff_t column) {
   for (std::ptrdiff_t j = 0; j < 6; ++j) {
@@ -34,7 +34,7 @@ void add_square(gram_matrix& m, const J& jacobian, std::ptrdiff_t column) {
   }
 }
 
-/// The lower half of J Jᵀ.
+/// Lower half of J Jᵀ.
 template <class J>
 [[nodiscard]] gram_matrix gram_of(const J& jacobian) {
   gram_matrix result;
@@ -44,7 +44,7 @@ template <class J>
   return result;
 }
 
-/// The product of a column of J with a force.
+/// Product of a column of J with a force.
 template <class J, class V>
 [[nodiscard]] double column_dot(const J& jacobian, std::ptrdiff_t column, const V& force) {
   double sum = 0;
@@ -54,7 +54,7 @@ template <class J, class V>
   return sum;
 }
 
-/// e − Σ x_i column_i, over all columns of J.
+/// Residual e − Σ x_i column_i after a step x, over all columns of J.
 template <class J, class V>
 [[nodiscard]] small_twist what_is_left(small_twist e, const J& jacobian, const V& x) {
   for (std::ptrdiff_t j = 0; j < jacobian.cols(); ++j) {
@@ -65,14 +65,14 @@ template <class J, class V>
   return e;
 }
 
-/// How J Jᵀ is damped: by λ, and where the smallest singular value σ is below a threshold by
-/// (threshold − σ)².
+/// Damping of J Jᵀ: by λ, and if the smallest singular value σ is below a threshold by (threshold −
+/// σ)².
 struct damping {
   double threshold = damping_threshold;
   double lambda = 0;
 };
 
-/// J Jᵀ with as much damping as a small singular value of J asks for.
+/// J Jᵀ with the damping that a small singular value of J requires (damped least squares).
 class damped_gram {
 public:
   explicit damped_gram(const gram_matrix& gram, const damping& how = {})
@@ -80,7 +80,7 @@ public:
     if (how.threshold == 0) {
       return;
     }
-    // The smallest eigenvalue from above: Rayleigh's quotient after two inverse iterations.
+    // Smallest eigenvalue, from above: Rayleigh quotient after two inverse iterations.
     if (factors_.is_positive()) {
       const auto once = factors_.solve(small_twist{{1, 1, 1, 1, 1, 1}});
       const auto twice = factors_.solve(once);
@@ -96,7 +96,7 @@ public:
   [[nodiscard]] V solve(const V& e) const {
     return factors_.solve(e);
   }
-  /// The smallest singular value of J, from above; 0 where it was not asked for.
+  /// Smallest singular value of J, from above; 0 if it was not computed.
   [[nodiscard]] double smallest() const { return smallest_; }
 
 private:
@@ -114,13 +114,13 @@ private:
 template <class V>
 struct bounded_step_result {
   V step;
-  double smallest_singular_value; ///< of all joints, 0 where there is no threshold
-  bool is_bounded;                ///< did a limit hold a joint back?
+  double smallest_singular_value; ///< that of the Jacobian of all joints, 0 without a threshold
+  bool is_bounded;                ///< true if a limit held a joint back
 };
 
-/// The least Δ with J Δ = e and lower ≤ Δ ≤ upper, damped Jᵀ(J Jᵀ + λ)⁻¹ e. Joints that would go
-/// beyond a bound are put onto it, the worst one first, and the others make up for them as far as
-/// they can.
+/// Least-norm Δ with J Δ = e and lower ≤ Δ ≤ upper, by damped least squares Jᵀ(J Jᵀ + λ)⁻¹ e.
+/// Joints that would go beyond a bound are fixed at it, the worst one first, and the others
+/// compensate for them as far as they can.
 template <int N>
 [[nodiscard]] bounded_step_result<small_vector<N>>
 bounded_step(const small_matrix<6, N>& jacobian, const small_twist& e, const small_vector<N>& lower,

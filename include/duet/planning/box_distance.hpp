@@ -15,7 +15,7 @@
 #include <cstddef>
 
 /// \file
-/// Where a segment is nearest to a box. For those who extend duet.
+/// Nearest points of a segment and a box. For those who extend duet.
 
 namespace duet::detail {
 
@@ -23,13 +23,13 @@ template <class T>
 [[nodiscard]] point_distance<T> signed_distance(const box<T>& b, const vector3<T>& x,
                                                 const vector3<T>&) {
   using std::sqrt;
-  const vector3<T> local = transform_point(conj(b.placed), x);
+  const vector3<T> local = transform_point(conj(b.pose), x);
   vector3<T> excess, outside;
   vector3<T> normal = vector3<T>::Zero();
   Eigen::Index face = 0;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const T sign(innermost(local[i]) < 0 ? -1 : 1);
-    excess[i] = sign * local[i] - b.half_sizes[i];
+    excess[i] = sign * local[i] - b.half_extents[i];
     outside[i] = innermost(excess[i]) > 0 ? T(sign * excess[i]) : T(0);
     if (innermost(excess[i]) > innermost(excess[face])) {
       face = i;
@@ -38,26 +38,26 @@ template <class T>
   const T square = outside.squaredNorm();
   if (innermost(square) > 0) {
     const T length = sqrt(square);
-    return {length, transform_direction(b.placed, vector3<T>(outside / length))};
+    return {length, transform_direction(b.pose, vector3<T>(outside / length))};
   }
   normal[face] = T(innermost(local[face]) < 0 ? -1 : 1);
-  return {excess[face], transform_direction(b.placed, normal)};
+  return {excess[face], transform_direction(b.pose, normal)};
 }
 
-/// A segment in the frame of a box, which is |x_i| ≤ half_i, in real numbers.
+/// Segment in the frame of a box, which is |x_i| ≤ half_i, in real numbers.
 template <class R>
 struct segment_and_box {
   std::array<R, 3> from, along, half;
 
   [[nodiscard]] R at(std::size_t i, const R& t) const { return from[i] + t * along[i]; }
-  /// On which side x_i exceeds the box, 0: on none.
+  /// Side on which x_i exceeds the box; 0: none.
   [[nodiscard]] int side(std::size_t i, const R& t) const {
     return at(i, t) > half[i] ? 1 : at(i, t) < -half[i] ? -1 : 0;
   }
   [[nodiscard]] bool contains(const R& t) const {
     return side(0, t) == 0 && side(1, t) == 0 && side(2, t) == 0;
   }
-  /// max |x_i| − half_i.
+  /// Largest excess max |x_i| − half_i.
   [[nodiscard]] R excess(const R& t) const {
     const auto one = [&](std::size_t i) {
       const R x = at(i, t);
@@ -67,7 +67,7 @@ struct segment_and_box {
   }
 };
 
-/// Parameters from 0 to 1, in order, between which no coordinate passes the plane of a face.
+/// Parameters from 0 to 1, in order, between which no coordinate crosses the plane of a face.
 template <class R>
 struct face_crossings {
   std::array<R, 8> t{R(0), R(1)};
@@ -87,8 +87,8 @@ struct face_crossings {
   [[nodiscard]] R middle(std::size_t k) const { return (t[k] + t[k + 1]) / 2; }
 };
 
-/// For a segment that passes through a box: where max(|x_i| − half_i) is least, at an end or where
-/// a face that comes nearer takes over from one that is left.
+/// Deepest point of a segment that passes through a box: where max(|x_i| − half_i) is least, at an
+/// end or where a face that comes nearer takes over from one that recedes.
 template <class T, class R>
 [[nodiscard]] T deepest_in_box(const segment_and_box<R>& s, const vector3<T>& from,
                                const vector3<T>& along, const vector3<T>& half) {
@@ -117,26 +117,26 @@ template <class T, class R>
   return best;
 }
 
-/// Outside a box the squared distance Σ max(0, |x_i| − half_i)² is convex in t and quadratic
-/// between crossings of faces, so it is least in the first such interval at whose end it does not
-/// fall any more.
+/// Nearest point of a segment to a box. Outside, the squared distance Σ max(0, |x_i| − half_i)² is
+/// convex in t and quadratic between crossings of faces, so its minimum is in the first such
+/// interval at whose end it does not decrease any more.
 template <class T>
 [[nodiscard]] T nearest_on_segment(const box<T>& b, const vector3<T>& from_outside,
                                    const vector3<T>& along_outside) {
   using R = real_type_t<T>;
-  const vector3<T> from = transform_point(conj(b.placed), from_outside);
-  const vector3<T> along = transform_direction(conj(b.placed), along_outside);
+  const vector3<T> from = transform_point(conj(b.pose), from_outside);
+  const vector3<T> along = transform_direction(conj(b.pose), along_outside);
   segment_and_box<R> s;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto k = Eigen::Index(i);
     s.from[i] = innermost(from[k]);
     s.along[i] = innermost(along[k]);
-    s.half[i] = innermost(b.half_sizes[k]);
+    s.half[i] = innermost(b.half_extents[k]);
   }
   const face_crossings<R> crossings(s);
   for (std::size_t k = 0; k + 1 < crossings.count; ++k) {
     if (s.contains(crossings.middle(k))) {
-      return deepest_in_box(s, from, along, b.half_sizes);
+      return deepest_in_box(s, from, along, b.half_extents);
     }
   }
   for (std::size_t k = 0; k + 1 < crossings.count; ++k) {
@@ -146,7 +146,7 @@ template <class T>
       const int side = s.side(i, crossings.middle(k));
       if (side != 0) {
         const auto j = Eigen::Index(i);
-        slope += (from[j] - side * b.half_sizes[j]) * along[j];
+        slope += (from[j] - side * b.half_extents[j]) * along[j];
         growth += along[j] * along[j];
       }
     }

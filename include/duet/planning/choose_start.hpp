@@ -21,7 +21,8 @@
 #include <utility>
 
 /// \file
-/// From which configuration on a chain can follow a whole path; or where it has no solution.
+/// Start configurations from which a chain can follow a whole path, or the pose of the path that
+/// has no solution.
 
 namespace duet {
 
@@ -29,15 +30,16 @@ namespace detail {
 
 /// \throws invalid_input
 inline void require_options(const start_options& o) {
-  require_positive("choose_start", "starts", o.starts);
+  require_positive("find_start_configuration", "starts", o.max_starts);
   const auto require_part = [](const char* name, double value) {
-    require_option("choose_start", name, value, value > 0 && value <= 1, "within (0, 1]");
+    require_option("find_start_configuration", name, value, value > 0 && value <= 1,
+                   "within (0, 1]");
   };
   require_part("resolution", o.resolution);
   require_part("sampling", o.sampling);
 }
 
-/// A plan with its joint coordinates in vectors of another type.
+/// Plan with its joint coordinates in vectors of another type.
 template <int N, int M>
 [[nodiscard]] motion_plan<N> with_vectors_of(motion_plan<M> plan) {
   if constexpr (N == M) {
@@ -56,7 +58,7 @@ template <int N, int M>
 }
 
 template <class C, class Objective, class Scene, class Follow>
-[[nodiscard]] start_choice<C::joints>
+[[nodiscard]] start_search_result<C::joints>
 chosen_start(const C& chain, const path_function& path, double first, double last,
              const start_options& options, const Objective& objective, const Scene& around,
              const Follow& follow) {
@@ -83,31 +85,33 @@ chosen_start(const C& chain, const path_function& path, double first, double las
 
 } // namespace detail
 
-/// A start from which the tip of a chain follows a whole path, and the plan from there; where there
-/// is none, the first pose of the path that has no solution, and why.
+/// Start configuration from which the tip of a chain follows a whole path, and the plan from there;
+/// if none is found, the first pose of the path that has no solution, and the reason.
 ///
-/// Starts are all solutions for the first pose within the limits: of six joints those of
-/// `all_inverse_kinematics`, of seven points of their `self_motion_curves`, of others what random
-/// starts find. They are tried as by `follow_path` in the order of the objective there, or else of
-/// how far joints are from the middles of their limits; of each curve the best one first. Where a
-/// joint stops at a limit, it begins anew a turn before. Then redundant joints may also move with
-/// the tip in place. Where no start leads to the end, poses along the path are looked at one by
-/// one.
+/// Candidates are all solutions for the first pose within the limits: for six joints those of
+/// `all_inverse_kinematics`, for seven points of their `self_motion_curves`, for others those found
+/// from random initial guesses. They are tried as by `follow_path` in the order of the objective
+/// there, or else of the distances of the joints from the middles of their limits; of each curve
+/// the best one first. If a joint stops at a limit, it is tried again a full turn earlier. Then
+/// redundant joints may also make self-motions. If no start leads to the end, poses along the path
+/// are checked one by one.
 ///
-/// Example: `choose_start(arm, path, 0, 1).plan.joints.front()`
-/// \param path       poses by a parameter, from `first` to `last`, which increases
-/// \param objective  as of `follow_path`
-/// \param around     a `scene`
-/// \return `start_choice`
-/// \throws invalid_input as `follow_path`, and for an objective that is nan at all starts; those
-/// where it is are none
+/// Example: `find_start_configuration(arm, path, 0, 1).plan.joints.front()`
+///
+/// \param path       poses as a function of a parameter, which increases from `first` to `last`
+/// \param objective  as in `follow_path`
+/// \param around     `scene` of bodies and obstacles
+/// \return `start_search_result`
+/// \throws invalid_input as `follow_path`, and for an objective that is nan at all starts; starts
+/// at which it is nan are left out
 template <SerialChain C, PosePath Path, class Objective = no_objective, class Scene = no_scene>
-[[nodiscard]] start_choice<C::joints> choose_start(const C& chain, const Path& path, double first,
-                                                   double last, const start_options& options = {},
-                                                   const Objective& objective = {},
-                                                   const Scene& around = {}) {
+[[nodiscard]] start_search_result<C::joints>
+find_start_configuration(const C& chain, const Path& path, double first, double last,
+                         const start_options& options = {}, const Objective& objective = {},
+                         const Scene& around = {}) {
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
-                  "duet: choose_start: the path's parameter goes from ", first, " to ", last);
+                  "duet: find_start_configuration: the path's parameter goes from ", first, " to ",
+                  last);
   return detail::chosen_start(chain, detail::checked(path), first, last, options, objective, around,
                               [&](const auto& start, const plan_options& how) {
                                 return follow_path(chain, start, path, first, last, how, objective,
@@ -115,13 +119,13 @@ template <SerialChain C, PosePath Path, class Objective = no_objective, class Sc
                               });
 }
 
-/// A start from which the tip of a chain follows a spline of poses over all of its domain.
+/// Start configuration from which the tip of a chain follows a spline of poses over its whole
+/// domain.
 template <SerialChain C, PosePath Spline, class Objective = no_objective, class Scene = no_scene>
   requires requires(const Spline& s) { s.breaks().front(); }
-[[nodiscard]] start_choice<C::joints> choose_start(const C& chain, const Spline& spline,
-                                                   const start_options& options = {},
-                                                   const Objective& objective = {},
-                                                   const Scene& around = {}) {
+[[nodiscard]] start_search_result<C::joints>
+find_start_configuration(const C& chain, const Spline& spline, const start_options& options = {},
+                         const Objective& objective = {}, const Scene& around = {}) {
   return detail::chosen_start(chain, detail::checked(spline), spline.breaks().front(),
                               spline.breaks().back(), options, objective, around,
                               [&](const auto& start, const plan_options& how) {
@@ -130,7 +134,9 @@ template <SerialChain C, PosePath Spline, class Objective = no_objective, class 
 }
 
 template <SerialChain C, VectorLike Start, PosePath Path, class... More>
-DUET_REFUSED("choose_start finds the start: choose_start(chain, path, first, last)")
-start_choice<C::joints> choose_start(const C&, const Start&, const Path&, const More&...);
+DUET_REFUSED(
+    "find_start_configuration finds the start: find_start_configuration(chain, path, first, last)")
+start_search_result<C::joints> find_start_configuration(const C&, const Start&, const Path&,
+                                                        const More&...);
 
 } // namespace duet

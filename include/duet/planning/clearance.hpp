@@ -20,39 +20,42 @@
 #include <vector>
 
 /// \file
-/// How far a chain or a tree is from obstacles and from itself.
+/// Clearance: distance of a chain or a tree from obstacles and from itself (self-collision).
 
 namespace duet {
 
-/// A capsule, or a sphere, fixed to a link of a chain or a tree, in the frame of the link.
-struct link_body {
-  int link;              ///< number of the link
-  capsule<double> shape; ///< in the frame of the link
-  std::string name = {}; ///< for messages and `pairs_apart`, as a robot's description has the link
+/// Collision body: a capsule, or a sphere, fixed to a link of a chain or a tree.
+struct collision_body {
+  int link;              ///< index of the link
+  capsule<double> shape; ///< shape in the frame of the link
+  std::string name =
+      {}; ///< name in messages and for `self_collision_pairs`, that of the link in a description
 };
 
-/// Two bodies that must not touch.
-struct body_pair {
-  std::size_t first = 0;  ///< which of `scene::bodies`
-  std::size_t second = 0; ///< the other one
+/// Collision pair: two bodies that must not touch.
+struct collision_pair {
+  std::size_t first = 0;  ///< index into `scene::bodies`
+  std::size_t second = 0; ///< index of the other one
 };
 
-/// What a body can run into.
+/// Obstacle that a body can collide with: a sphere, box, half-space or capsule.
 using obstacle = std::variant<sphere<double>, box<double>, half_space<double>, capsule<double>>;
 
-/// What a chain or a tree consists of, and what must not touch, in the frame of its base.
+/// Collision bodies of a chain or a tree, and the obstacles and pairs that must not touch.
 struct scene {
-  std::vector<link_body> bodies = {};   ///< what the chain consists of
-  std::vector<obstacle> obstacles = {}; ///< in the frame of the chain's base
-  /// How far planners keep them apart, in units of length.
+  std::vector<collision_body> bodies = {}; ///< collision bodies of the chain
+  std::vector<obstacle> obstacles = {};    ///< obstacles in the frame of the chain's base
+  /// Distance that planners keep, in units of length.
   double margin = 0;
-  /// From how far beyond the margin on planners look at an obstacle before each step.
-  double horizon = .1;
-  /// Bodies that are kept apart as from obstacles; `pairs_apart` lists them.
-  std::vector<body_pair> pairs = {};
+  /// Influence distance beyond the margin, in units of length: nearer obstacles constrain each step
+  /// of a planner.
+  double influence_distance_offset = .1;
+  /// Pairs of bodies that are kept apart like obstacles (self-collision), see
+  /// `self_collision_pairs`.
+  std::vector<collision_pair> pairs = {};
 };
 
-/// What has links with poses, as `serial_chain`, `kinematic_tree`.
+/// Mechanism whose links have poses, such as `serial_chain` and `kinematic_tree`.
 template <class M>
 concept LinkedMechanism = requires(const M& mechanism) {
   typename M::scalar_type;
@@ -60,9 +63,10 @@ concept LinkedMechanism = requires(const M& mechanism) {
   mechanism.pose(std::vector<double>(), 0);
 };
 
-/// Looks whether a scene is one for a chain. For those who extend duet.
-/// \throws invalid_input for shapes that are none (`require_shape`), links that `chain` lacks,
-/// pairs of what are no two bodies, and a margin or horizon that is negative or not finite
+/// Checks whether a scene is valid for a chain. For those who extend duet.
+///
+/// \throws invalid_input for invalid shapes (`require_shape`), links that `chain` lacks, pairs that
+/// are not two bodies of the scene, and a margin or horizon that is negative or not finite
 template <LinkedMechanism C>
 void require_scene(const C& chain, const scene& s) {
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {
@@ -79,51 +83,54 @@ void require_scene(const C& chain, const scene& s) {
                     s.bodies.size());
   }
   detail::require_extent(s.margin, "the margin of a scene");
-  detail::require_extent(s.horizon, "the horizon of a scene");
+  detail::require_extent(s.influence_distance_offset, "the horizon of a scene");
 }
 
-/// Where a body of a chain is nearest to an obstacle, over the scalar of the coordinates θ.
+/// Closest points of a body of a chain and an obstacle, over the scalar of the coordinates θ.
+///
 /// \return `proximity<S>`
 /// \throws invalid_input as `chain.pose`
 template <LinkedMechanism C, VectorLike X>
-[[nodiscard]] auto closest_points(const C& chain, const X& theta, const link_body& body,
+[[nodiscard]] auto closest_points(const C& chain, const X& theta, const collision_body& body,
                                   const obstacle& from) {
   const auto here = transformed(chain.pose(theta, body.link), body.shape);
   return std::visit([&](const auto& o) { return closest_points(here, o); }, from);
 }
 
-/// Where a body of a chain is nearest to another one, which stands as the obstacle.
+/// Closest points of a body of a chain and another one, which takes the role of the obstacle.
+///
 /// \return `proximity<S>`
 /// \throws invalid_input as `chain.pose`
 template <LinkedMechanism C, VectorLike X>
-[[nodiscard]] auto closest_points(const C& chain, const X& theta, const link_body& body,
-                                  const link_body& from) {
+[[nodiscard]] auto closest_points(const C& chain, const X& theta, const collision_body& body,
+                                  const collision_body& from) {
   return closest_points(transformed(chain.pose(theta, body.link), body.shape),
                         transformed(chain.pose(theta, from.link), from.shape));
 }
 
-/// The distance of a body of a chain from an obstacle or another body, and its gradient by θ. By
-/// dual numbers through the poses of the links and the closest points: nᵀ J of the closest point,
-/// n the normal, less nᵀ J of the other body's.
+/// Distance of a body of a chain from an obstacle or another body, and its gradient with respect to
+/// θ, by dual numbers through the poses of the links and the closest points: nᵀ J of the closest
+/// point, n the normal, less nᵀ J of the other body's.
+///
 /// \return `value_and_gradient`
 /// \throws invalid_input as `chain.pose`
 template <LinkedMechanism C, VectorLike X, class From>
-  requires std::constructible_from<obstacle, From> || std::same_as<From, link_body>
-[[nodiscard]] auto distance_and_gradient(const C& chain, const X& theta, const link_body& body,
+  requires std::constructible_from<obstacle, From> || std::same_as<From, collision_body>
+[[nodiscard]] auto distance_and_gradient(const C& chain, const X& theta, const collision_body& body,
                                          const From& from) {
   return gradient([&](const auto& x) { return closest_points(chain, x, body, from).distance; },
                   theta);
 }
 
-/// The least distance of a chain's bodies from obstacles and from each other: which, and where.
+/// Smallest distance of a chain's bodies from obstacles and from each other, with the closest pair.
 template <class S>
 struct chain_clearance {
-  /// In units of length; negative where they overlap, infinite where there is nothing to touch.
+  /// Distance in units of length; negative if they overlap, infinite if there is nothing to touch.
   S distance = S(std::numeric_limits<double>::infinity());
-  std::size_t body = 0;     ///< which of `scene::bodies`
-  std::size_t other = 0;    ///< which of `scene::obstacles`, of `scene::bodies` where `is_self`
-  bool is_self = false;     ///< is it a distance between two bodies?
-  proximity<S> points = {}; ///< of these two
+  std::size_t body = 0;     ///< index into `scene::bodies`
+  std::size_t other = 0;    ///< index into `scene::obstacles`, or into `scene::bodies` if `is_self`
+  bool is_self = false;     ///< true if it is a distance between two bodies
+  proximity<S> points = {}; ///< closest points of the two
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -137,14 +144,14 @@ struct chain_clearance {
 
 namespace detail {
 
-/// Calls visit with where each body of a chain is nearest to each obstacle, and to the other one
-/// of each pair, as a `chain_clearance`.
+/// Calls `visit` with a `chain_clearance` for each body of a chain and each obstacle, and for each
+/// pair of bodies.
 template <class C, class X, class Visit>
 void for_each_proximity(const C& chain, const X& theta, const scene& s, const Visit& visit) {
   using S = std::decay_t<decltype(translation(chain.pose(theta, 0))[0])>;
   std::vector<capsule<S>> placed;
   placed.reserve(s.bodies.size());
-  for (const link_body& each : s.bodies) {
+  for (const collision_body& each : s.bodies) {
     placed.push_back(transformed(chain.pose(theta, each.link), each.shape));
   }
   const auto visit_pair = [&](std::size_t i, std::size_t k, bool is_self, const auto& other) {
@@ -161,14 +168,14 @@ void for_each_proximity(const C& chain, const X& theta, const scene& s, const Vi
   }
 }
 
-/// `duet::clearance` of a scene that has been looked at.
+/// `duet::clearance` of a validated scene.
 template <class C, class X>
 [[nodiscard]] auto least_clearance(const C& chain, const X& theta, const scene& s) {
   using S = std::decay_t<decltype(translation(chain.pose(theta, 0))[0])>;
   chain_clearance<S> result;
   for_each_proximity(chain, theta, s, [&](const chain_clearance<S>& each) {
     const auto least = innermost(result.distance);
-    if (least == least && !(innermost(each.distance) >= least)) { // one that is nan stays
+    if (least == least && !(innermost(each.distance) >= least)) { // a distance that is nan stays
       result = each;
     }
   });
@@ -177,9 +184,10 @@ template <class C, class X>
 
 } // namespace detail
 
-/// How far the chain is from all obstacles at coordinates θ of any scalar, and the bodies of all
-/// pairs from each other, in units of length; negative where they overlap, infinite where there are
-/// none, nan where any distance is.
+/// Clearance of a chain at coordinates θ of any scalar: the smallest distance of its bodies from
+/// all obstacles and of the bodies of all pairs from each other, in units of length; negative if
+/// they overlap, infinite if there are none, nan if any distance is nan.
+///
 /// \return `chain_clearance<S>`
 /// \throws invalid_input as `require_scene` and `chain.pose`
 template <LinkedMechanism C, VectorLike X>

@@ -12,19 +12,19 @@
 #include <concepts>
 
 /// \file
-/// How far a capsule is from an obstacle or another capsule, and where.
+/// Signed distance and closest points of a capsule and an obstacle or another capsule.
 
 namespace duet {
 
-/// Where a body is nearest to an obstacle or another body, or deepest in it.
+/// Closest points of a body and an obstacle or another body, or the deepest ones if they overlap.
 template <class T>
 struct proximity {
-  T distance = T(0); ///< negative where they overlap: by how much
-  /// The point of the body's surface.
+  T distance = T(0); ///< signed distance; if they overlap, negative, the penetration depth
+  /// Point of the body's surface.
   vector3<T> on_body = detail::zero_initialized<vector3<T>>();
-  /// The point of the obstacle's surface.
+  /// Point of the obstacle's surface.
   vector3<T> on_obstacle = detail::zero_initialized<vector3<T>>();
-  /// Unit, out of the obstacle: on_body = on_obstacle + distance · normal.
+  /// Unit normal out of the obstacle: on_body = on_obstacle + distance · normal.
   vector3<T> normal = detail::zero_initialized<vector3<T>>();
 
   /// For those who extend duet: for `to_text`.
@@ -48,7 +48,7 @@ template <class S, class T>
 }
 template <class S, class T>
 [[nodiscard]] box<S> with_scalar(const box<T>& b) {
-  return {dual_quaternion<S>(b.placed), b.half_sizes.template cast<S>()};
+  return {dual_quaternion<S>(b.pose), b.half_extents.template cast<S>()};
 }
 template <class S, class T>
 [[nodiscard]] half_space<S> with_scalar(const half_space<T>& h) {
@@ -57,13 +57,15 @@ template <class S, class T>
 
 } // namespace detail
 
-/// The least of dist(x) − r over the points x of a capsule's axis, r its radius: exact, without
-/// iteration. dist is an obstacle's signed distance, in a box minus that to the nearest face.
+/// Signed distance and closest points: the minimum of dist(x) − r over the points x of a capsule's
+/// axis, r its radius; exact, without iteration. dist is an obstacle's signed distance, in a box
+/// minus that to the nearest face.
 ///
-/// Derivatives by any infinitesimals in body and obstacle are those of the distance and of the
-/// points. Where several points are as near they are those of one of them, in the middle of a side
-/// that is parallel to the axis. Where axes cross or touch, they are those of a motion apart across
-/// both.
+/// Derivatives with respect to any infinitesimals in body and obstacle are those of the distance
+/// and of the points. If several points are equally near they are those of one of them, in the
+/// middle of a side that is parallel to the axis. If axes cross or touch, they are those of a
+/// separating motion perpendicular to both.
+///
 /// \param body  a capsule or a sphere
 /// \param obstacle  a sphere, a capsule, a `box` or a `half_space`
 template <template <class> class Body, class T, template <class> class Obstacle, class U>

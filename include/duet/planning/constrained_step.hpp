@@ -14,20 +14,20 @@
 #include <vector>
 
 /// \file
-/// The step of the joints for a small twist of the tip under linear inequalities: the point nearest
-/// to the origin that keeps them.
+/// Joint step for a small twist of the tip under linear inequalities: the point nearest to the
+/// origin that satisfies them.
 
 namespace duet::detail {
 
-/// normal·x ≥ bound.
+/// Linear inequality normal·x ≥ bound.
 template <class V>
 struct inequality {
   V normal;
   double bound;
 };
 
-/// f − Σ z_i column_i and the z for which that is least. The second round takes care of the first
-/// one's rounding: a Gram matrix has the squared condition.
+/// Least squares: f − Σ z_i column_i and the z for which its norm is least. The second pass removes
+/// round-off of the first: a Gram matrix has the squared condition number.
 template <class V>
 [[nodiscard]] std::pair<V, V> least_squares_on(const std::vector<V>& columns, const V& f) {
   const auto count = Eigen::Index(columns.size());
@@ -54,7 +54,8 @@ template <class V>
   return {residual, z};
 }
 
-/// The least f − Σ u_i column_i with all u_i ≥ 0, by Lawson and Hanson's active sets.
+/// Nonnegative least squares: the least f − Σ u_i column_i with all u_i ≥ 0, by Lawson and Hanson's
+/// active-set method.
 template <class V>
 [[nodiscard]] V nonnegative_residual(const std::vector<V>& columns, const V& f) {
   struct share {
@@ -77,7 +78,8 @@ template <class V>
         chosen.push_back(columns[each.column]);
       }
       const auto [rest, z] = least_squares_on(chosen, f);
-      // Towards z as far as all stay positive; who gets to zero first leaves.
+      // Step towards z as far as all stay nonnegative; the first that becomes zero leaves the
+      // active set.
       double way = 1;
       std::size_t first = active.size();
       for (std::size_t i = 0; i < active.size(); ++i) {
@@ -101,9 +103,9 @@ template <class V>
   return residual;
 }
 
-/// The least x that keeps all inequalities; nothing where no x does. With normals and bounds below
-/// each other as columns, and f = (0, …, 0, 1), x is a multiple of the residual of the nonnegative
-/// least squares (Lawson and Hanson, Solving Least Squares Problems, chapter 23).
+/// Least-norm x that satisfies all inequalities; nothing if there is none. With normals and bounds
+/// below each other as columns, and f = (0, …, 0, 1), x is a multiple of the residual of the
+/// nonnegative least squares (Lawson and Hanson, Solving Least Squares Problems, chapter 23).
 template <class V>
 [[nodiscard]] std::optional<V> least_distance(const std::vector<inequality<V>>& inequalities,
                                               Eigen::Index n) {
@@ -118,21 +120,22 @@ template <class V>
       columns.back().head(n) = each.normal / length;
       columns.back()[n] = each.bound / length;
     } else if (each.bound > 1e-9) {
-      return std::nullopt; // no x has a say in it
+      return std::nullopt; // independent of x
     }
   }
   if (columns.empty()) {
     return V(V::Zero(n));
   }
   const column residual = nonnegative_residual(columns, column(column::Unit(n + 1, n)));
-  // It is 1 / (1 + |x|²).
+  // residual[n] is 1 / (1 + |x|²).
   if (!(residual[n] > 1e-8)) {
     return std::nullopt;
   }
   return V(-residual.head(n) / residual[n]);
 }
 
-/// Takes from steps of the joints what moves the tip.
+/// Projection of joint steps onto the null space of the Jacobian (self-motion), by Gram–Schmidt
+/// orthonormalisation of its rows.
 template <class V>
 class self_motion {
 public:
@@ -152,7 +155,7 @@ public:
   }
 
   [[nodiscard]] V operator()(V step) const {
-    for (int twice = 0; twice < 2; ++twice) { // for the rounding of the first time
+    for (int twice = 0; twice < 2; ++twice) { // the second pass removes round-off
       for (std::size_t i = 0; i < count_; ++i) {
         step -= rows_[i].dot(step) * rows_[i];
       }
@@ -161,18 +164,18 @@ public:
   }
 
 private:
-  std::array<V, 6> rows_; ///< of J, made orthonormal
+  std::array<V, 6> rows_; ///< rows of J, orthonormalised
   std::size_t count_ = 0;
 };
 
 template <class V>
 struct constrained_step_result {
-  std::optional<V> step;          ///< nothing where there is none
-  double smallest_singular_value; ///< of the Jacobian, from above
+  std::optional<V> step;          ///< empty if there is none
+  double smallest_singular_value; ///< that of the Jacobian, from above
 };
 
-/// The Δ nearest to `preferred` with lower ≤ Δ ≤ upper and the inequalities, and with J Δ = e, or
-/// what damping near singularities leaves of that.
+/// Step Δ nearest to `preferred` with lower ≤ Δ ≤ upper and the inequalities, and with J Δ = e up
+/// to damping near singularities.
 template <class J, class E, class V>
 [[nodiscard]] constrained_step_result<V>
 constrained_step(const J& jacobian, const E& e, const V& preferred, const V& lower, const V& upper,

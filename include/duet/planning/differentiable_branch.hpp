@@ -18,18 +18,21 @@
 
 namespace duet {
 
-/// The six joint coordinates of a branch as a function of the goal, and of the arm's geometry, by
-/// the implicit function theorem: those near `joints` with A(θ) = `goal`, over all their scalars.
+/// Six joint coordinates of a branch of inverse kinematics as a function of the goal, and of the
+/// arm's geometry, by the implicit function theorem: those near `joints` with A(θ) = `goal`, over
+/// all their scalars.
 ///
 /// Example: `jacobian([&](const auto& goal) { return differentiable_branch(arm, theta, goal); },
 /// goal)` with `theta` from `all_inverse_kinematics`.
-/// \param forward  the chain; or a callable that returns the pose A of the tip for an Eigen vector
-/// of six coordinates of any scalar, with the derivatives by geometry in what it captures
-/// \param joints   of a branch, in double
+///
+/// \param forward  forward kinematics: the chain; or a callable that returns the pose A of the tip
+/// for an Eigen vector of six coordinates of any scalar, with the derivatives with respect to
+/// geometry in what it captures
+/// \param joints   joint coordinates of a branch, in double
 /// \param goal     a pose, of any scalar of duet
 /// \return an Eigen vector of six coordinates
-/// \throws no_convergence where branches meet: the Jacobian is singular there; invalid_input for
-/// another number of coordinates than six
+/// \throws no_convergence where branches meet: the Jacobian is singular there
+/// \throws invalid_input for a number of coordinates other than six
 template <class Forward, VectorLike X, class S>
 [[nodiscard]] auto differentiable_branch(const Forward& forward, const X& joints,
                                          const dual_quaternion<S>& goal) {
@@ -40,10 +43,10 @@ template <class Forward, VectorLike X, class S>
   for (int i = 0; i < 6; ++i) {
     start[i] = argument::get(joints, i);
   }
-  // The goal as numbers: its infinitesimal of rigid motion is none to differentiate by.
+  // The goal as numbers, as the dual unit of rigid motions is not differentiated by.
   const auto p = real_part(goal), q = dual_part(goal);
   const std::array<S, 8> numbers{p.w(), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
-  // Of the pose of the tip in the frame of the goal, ±1 where they agree, what vanishes there.
+  // Components of the tip's pose in the frame of the goal that vanish where the two agree (±1).
   const auto gap = [&](const auto& theta, const auto& to) {
     using T = std::decay_t<decltype(to[0])>;
     const auto opposite = conj(make_dual_quaternion(quaternion<T>(to[0], to[1], to[2], to[3]),

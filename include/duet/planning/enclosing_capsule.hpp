@@ -19,11 +19,11 @@
 #include <vector>
 
 /// \file
-/// Small capsules around points.
+/// Small bounding capsules of points.
 
 namespace duet {
 
-/// The volume of a capsule, πr²l + 4πr³/3.
+/// Volume of a capsule, πr²l + 4πr³/3.
 [[nodiscard]] inline double volume_of(const capsule<double>& c) {
   const double r = c.radius;
   return std::numbers::pi * r * r * ((c.to - c.from).norm() + 4 * r / 3);
@@ -33,7 +33,8 @@ namespace detail {
 
 using points_in_space = std::vector<vector3<double>>;
 
-/// How far a point is from a segment, in which direction, and beside which part of it.
+/// Distance of a point from a segment, the parameter t of the nearest point, and the direction from
+/// there.
 struct point_beside_segment {
   double distance, t;
   vector3<double> normal;
@@ -46,7 +47,7 @@ beside(const vector3<double>& x, const vector3<double>& from, const vector3<doub
   return {length, t, length > 0 ? vector3<double>(apart / length) : vector3<double>::Zero()};
 }
 
-/// The thinnest capsule with these ends around points.
+/// Thinnest capsule around points with given ends of its axis.
 [[nodiscard]] inline capsule<double>
 around(const points_in_space& points, const vector3<double>& from, const vector3<double>& to) {
   double radius = 0;
@@ -56,7 +57,7 @@ around(const points_in_space& points, const vector3<double>& from, const vector3
   return {from, to, radius};
 }
 
-/// Along a direction, in the middle of what is across it, and a part as long as the points.
+/// Capsule along a direction, centred on the points, with an axis of `part` times their extent.
 [[nodiscard]] inline capsule<double> around(const points_in_space& points,
                                             const vector3<double>& direction, double part) {
   const vector3<double> d = direction.normalized();
@@ -77,15 +78,15 @@ around(const points_in_space& points, const vector3<double>& from, const vector3
   return around(points, middle - end, middle + end);
 }
 
-/// Ends and radius moved to where the volume, to first order, and the square of the way are least
-/// and, to first order, all points are within. What makes the volume fall is a step; the weight of
-/// its square is sought.
+/// Capsule around points of smaller volume. Each step moves ends and radius to minimise the volume,
+/// to first order, plus the squared step while, to first order, all points stay within. Steps that
+/// reduce the volume are accepted; the weight of the squared step is adapted.
 ///
 /// A template so that it can be compiled once.
 template <class Points>
 [[nodiscard]] capsule<double> shrunk(const Points& points, capsule<double> c, int rounds) {
-  using step = Eigen::Matrix<double, 7, 1>; // of `from`, `to` and the radius
-  double reach = .1; // what the first-order change of the volume is multiplied by
+  using step = Eigen::Matrix<double, 7, 1>; // changes of `from`, `to` and the radius
+  double reach = .1;                        // factor of the first-order change of the volume
   double least = volume_of(c);
   for (int round = 0; round < rounds && reach > 1e-10; ++round) {
     const vector3<double> along = c.to - c.from;
@@ -127,7 +128,7 @@ template <class Points>
 DUET_COMPILED_TEMPLATE capsule<double> shrunk(const points_in_space&, capsule<double>, int);
 #endif
 
-/// Directions all around, none of them opposite to another.
+/// Directions all around, no two of them opposite.
 [[nodiscard]] inline points_in_space directions_around() {
   points_in_space result;
   for (int i = -1; i <= 1; ++i) {
@@ -142,7 +143,7 @@ DUET_COMPILED_TEMPLATE capsule<double> shrunk(const points_in_space&, capsule<do
   return result;
 }
 
-/// The farthest of all points from a capsule's surface, outside, in each octant about its middle.
+/// Adds, in each octant about a capsule's centre, the point that is farthest outside its surface.
 inline void add_what_is_outside(const points_in_space& all, const capsule<double>& c,
                                 points_in_space& chosen) {
   const vector3<double> middle = (c.from + c.to) / 2;
@@ -167,22 +168,23 @@ inline void add_what_is_outside(const points_in_space& all, const capsule<double
 
 } // namespace detail
 
-/// A small capsule around points: all of them are inside, to rounding.
+/// Small bounding capsule of points: all of them are inside, to round-off.
 ///
-/// Its volume is a minimum near it, sought from 13 directions; that of all capsules it need not be.
+/// Its volume is a local minimum, sought from 13 directions; the global minimum is not guaranteed.
 /// Only a few points matter: those outermost in a few directions to begin with, and then those that
 /// the capsule around these leaves outside, until there are none.
+///
 /// \throws invalid_input for no points and for points that are not finite
-[[nodiscard]] inline capsule<double> enclosing_capsule(const std::vector<vector3<double>>& points) {
-  detail::require(!points.empty(), "duet: enclosing_capsule: no points");
+[[nodiscard]] inline capsule<double> bounding_capsule(const std::vector<vector3<double>>& points) {
+  detail::require(!points.empty(), "duet: bounding_capsule: no points");
   vector3<double> low = points[0], high = points[0];
   for (const auto& x : points) {
-    detail::require(detail::all_finite(x), "duet: enclosing_capsule: point ", &x - points.data(),
+    detail::require(detail::all_finite(x), "duet: bounding_capsule: point ", &x - points.data(),
                     " is not finite");
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
-  // In units in which the longest edge of what is around them is 2.
+  // Units in which the longest edge of the bounding box is 2.
   const vector3<double> middle = low / 2 + high / 2;
   const double unit = (high - low).maxCoeff() / 2;
   if (!(unit > 0)) {

@@ -14,15 +14,14 @@
 #include <type_traits>
 
 /// \file
-/// Goals of one's own.
+/// User-defined goals given by equations.
 
 namespace duet {
 
-/// The goal that f(A) = 0 for the pose A of the tip, up to six equations, which dual numbers
-/// differentiate.
+/// Goal f(A) = 0 for the pose A of the tip, up to six equations, which dual numbers differentiate.
 ///
 /// \tparam F  A ↦ six numbers, an Eigen vector or an array: three lengths, then three angles in
-///            radians; where there are less equations, zeros. Generic over the scalars of A
+/// radians, zeros for fewer equations. Generic over the scalars of A
 ///
 /// Example: a tip a metre from the origin, `equation_goal{[]<class S>(const dual_quaternion<S>& a)
 /// { return std::array<S, 6>{translation(a).norm() - 1}; }}`
@@ -30,8 +29,8 @@ template <class F>
 struct equation_goal {
   F equations; ///< f
 
-  /// For those who extend duet: what `TipGoal` asks for.
-  [[nodiscard]] wanted_twist wanted(const dual_quaternion<double>& tip) const {
+  /// For those who extend duet: required by `TipGoal`.
+  [[nodiscard]] twist_constraint constraint(const dual_quaternion<double>& tip) const {
     const quaternion<double> r = rotation(tip);
     const vector3<double> t = translation(tip);
     const auto moved = [&](const auto& twist) {
@@ -41,10 +40,10 @@ struct equation_goal {
       return equations(pose(exp(half) * r, at));
     };
     const auto found = jacobian(moved, vector6<double>(vector6<double>::Zero()));
-    wanted_twist result;
-    result.rows = found.jacobian;
+    twist_constraint result;
+    result.matrix = found.jacobian;
     for (int i = 0; i < 6; ++i) {
-      result.least[i] = result.most[i] = -found.value[i];
+      result.lower[i] = result.upper[i] = -found.value[i];
     }
     return result;
   }

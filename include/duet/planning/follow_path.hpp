@@ -25,11 +25,11 @@
 #include <vector>
 
 /// \file
-/// Joint paths that take the tip of a chain along a given path (N25, note 1).
+/// Joint paths along which the tip of a chain follows a given path (N25, note 1).
 
 namespace duet {
 
-/// A function of a parameter, which is to return poses.
+/// Function of a parameter that is to return poses.
 template <class P>
 concept PosePath = std::invocable<const P&, double>;
 
@@ -48,8 +48,8 @@ inline void require_options(const plan_options& o) {
                  "0 or from 1e-6 to 1");
 }
 
-/// A plan along a path that is known to hold unit poses; none where its end is known to be out of
-/// reach.
+/// Plan along a path whose poses have been validated; the start alone if its end is certainly out
+/// of reach.
 template <class C, class Start, class Objective, class Scene>
 [[nodiscard]] motion_plan<C::joints> follow(const C& chain, const Start& start,
                                             const path_function& target, std::vector<double> stops,
@@ -65,10 +65,10 @@ template <class C, class Start, class Objective, class Scene>
   const vector theta = model.joints(start);
   const place_function places = [&](double u) { return model.place(target(u)); };
   const auto gap =
-      model.given_deviation(deviation_between(model.at(theta).tip, places(stops.front())));
-  require(options.tolerance.times(gap) <= 1, "duet: follow_path: the path begins ", gap.length,
-          " units of length and ", gap.angle, " rad away from the tip at the start");
-  model.require_clearance(theta, options.tolerance.length);
+      model.given_deviation(pose_error_between(model.at(theta).tip, places(stops.front())));
+  require(options.tolerance.ratio(gap) <= 1, "duet: follow_path: the path begins ", gap.translation,
+          " units of length and ", gap.rotation, " rad away from the tip at the start");
+  model.require_clearance(theta, options.tolerance.translation);
   if (const auto joints = own_joints(chain, planned_joints<room>(start, chain.size()));
       is_nan_at(objective, joints)) {
     fail_not_a_number("duet: follow_path: the objective is nan at the start,", joints);
@@ -77,7 +77,7 @@ template <class C, class Start, class Objective, class Scene>
   if constexpr (!std::same_as<Objective, no_objective>) {
     slope = [&](const vector& x) {
       const auto joints = own_joints(chain, model.given_joints(x));
-      // The slopes by coordinates as planners count them.
+      // Gradient with respect to coordinates in the planner's units.
       return model.given_joints(planned_joints<room>(slope_of(objective, joints), chain.size()));
     };
   }
@@ -95,7 +95,7 @@ template <class C, class Start, class Objective, class Scene>
     plan.smallest_clearance =
         std::min(plan.smallest_clearance, model.length * model.clearance(w.state.theta));
   }
-  // Steps have told where it is smallest, but for units: at one end of theirs.
+  // The steps have recorded where it is smallest, except for units: at one end of a step.
   const auto most_singular = std::min_element(
       route.waypoints.begin(), route.waypoints.end(), [](const auto& a, const auto& b) {
         return a.smallest_singular_value < b.smallest_singular_value;
@@ -111,7 +111,7 @@ template <class C, class Start, class Objective, class Scene>
   return plan;
 }
 
-/// Along screw motions from pose to pose, pose i at i.
+/// Path along screw motions from pose to pose, pose i at the parameter i.
 template <class T>
 struct path_through {
   std::vector<dual_quaternion<T>> poses;
@@ -134,26 +134,27 @@ template <PosePath Path>
 
 } // namespace detail
 
-/// Joint coordinates that take the tip of a chain along a path from where it is at `start` (N25,
-/// note 1).
+/// Joint path along which the tip frame (end-effector frame) of a chain follows a path from its
+/// pose at `start` (N25, note 1).
 ///
 /// Waypoints are within `tolerance` of the path, the straight joint paths between them within about
 /// `deviation`, each in length and angle, at the same parameter. Each waypoint is met by Newton's
 /// method on the exact twist 2 log(A_target A*), with steps of least norm that keep the limits and
-/// are damped where the smallest singular value is small. What freedom is left lowers the
-/// objectives. Where the joints get stuck and one or more are redundant, those configurations
-/// are searched that can be reached by moving in place, too.
+/// are damped (damped least squares) if the smallest singular value is small. The null space of the
+/// Jacobian serves joint-limit avoidance and lowers the objective. If the joints get stuck and the
+/// arm is redundant, configurations that a self-motion can reach are searched, too.
 ///
-/// \param path         poses by a parameter, from `first` to `last`, which increases
-/// \param objective    a function of θ, generic over scalars, which the joints lower where that
-///                     leaves the tip in place; or something with a member `gradient(theta)` too
-/// \param around       a `scene`: bodies of the chain keep its margin from obstacles, at waypoints
-///                     to `tolerance`, half way between them to `deviation`
-/// \return the plan, its `tau` the parameter; where `reason` is not `reached`, the part up to there
+/// \param path         poses as a function of a parameter, which increases from `first` to `last`
+/// \param objective    null-space (secondary) objective: a function of θ, generic over scalars,
+/// which the joints lower where that leaves the tip in place; or an object with a member
+/// `gradient(theta)` too
+/// \param around       `scene`: bodies of the chain keep its margin from obstacles, at waypoints to
+/// `tolerance`, half way between them to `deviation`
+/// \return the plan, its `tau` the parameter; unless `reason` is `reached`, the part up to there
 /// \throws invalid_input for a start outside the limits or of another size, a path that does not
-///         begin at the tip or goes nowhere, what is no pose, options out of range, a preferred
-///         posture of another size or not finite, an objective that is nan at the start, a `scene`
-///         that is none and one that is too close at the start
+/// begin at the tip or whose parameter does not increase, values that are not poses, options out of
+/// range, a preferred posture of another size or not finite, an objective that is nan at the start,
+/// an invalid `scene` and one that is too close at the start
 template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_objective,
           class Scene = no_scene>
 [[nodiscard]] motion_plan<C::joints>
@@ -170,7 +171,7 @@ follow_path(const C& chain, const Start& start, const Path& path, double first, 
                         around);
 }
 
-/// Plans joint motion that moves the tip along a spline of poses, over all of its domain.
+/// Plans joint motion that moves the tip along a spline of poses, over its whole domain.
 template <SerialChain C, VectorLike Start, PosePath Spline, class Objective = no_objective,
           class Scene = no_scene>
   requires requires(const Spline& s) { s.breaks().front(); }

@@ -9,26 +9,26 @@
 #include <array>
 
 /// \file
-/// What goals are for the search for joint coordinates: linear equations at each configuration.
+/// Goals as linear equations at each configuration, for the search for joint coordinates.
 
 namespace duet::detail {
 
-/// What is left to do at some θ: J Δ = e.
+/// Equations J Δ = e of a goal at some θ.
 template <int Room>
 struct goal_equations {
   chain_state<Room> at;
   small_twist e;
-  pose_deviation left;
-  std::array<bool, 6> is_free{}; ///< of the six equations, those that there are none of
+  pose_error left;
+  std::array<bool, 6> is_free{}; ///< true for each of the six rows without an equation
 };
 
-/// What a pose asks for: all that the tip can do.
+/// Sets the equations of a pose: all six components of the twist.
 template <int Room>
 void set_equations(goal_equations<Room>& x, const tip_place& goal) {
   x.e = error_twist(x.at.tip, goal);
-  x.left = {length_of(goal.translation - x.at.tip.translation), deviation_of(x.e).angle};
+  x.left = {length_of(goal.translation - x.at.tip.translation), deviation_of(x.e).rotation};
 }
-/// Is it certain that a pose is out of reach?
+/// True if a pose is certainly out of reach.
 [[nodiscard]] inline bool is_beyond(const chain_reach& reach, const tip_place& goal,
                                     const pose_tolerance& tolerance) {
   return reach.is_beyond(goal, tolerance);

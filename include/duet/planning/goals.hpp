@@ -29,15 +29,16 @@
 #include <vector>
 
 /// \file
-/// The solution of inverse kinematics that one wants: goals in part, preferred postures,
+/// Inverse kinematics with preferences: partial goals, preferred postures, null-space (secondary)
 /// objectives, obstacles.
 
 namespace duet {
 
 namespace detail {
 
-/// Wishes for the joints of a chain.
-/// \tparam Model  of the chain, among obstacles or not
+/// Objective and obstacle constraints for the joints of a chain.
+///
+/// \tparam Model  model of the chain, with or without obstacles
 template <class C, class Model, class Objective>
 class wishes_of final : public solution_wishes<joint_room(C::joints)> {
   static constexpr int room = joint_room(C::joints);
@@ -88,7 +89,7 @@ private:
   const Objective& objective_;
 };
 
-/// The search for the solutions that are wanted, of one goal after the other.
+/// Search for the preferred solutions of one goal after the other.
 template <class C, class Start, class Objective, class Scene>
 class wanted_solutions {
   static_assert(planning_types<Objective, Scene>::are_good);
@@ -100,7 +101,7 @@ class wanted_solutions {
   static constexpr bool has_objective = !std::same_as<Objective, no_objective>;
 
 public:
-  /// \throws invalid_input for a start or a wish of another size, a scene that is none
+  /// \throws invalid_input for a start or a preferred posture of another size, and an invalid scene
   wanted_solutions(const C& chain, const Start& start, const inverse_kinematics_options& options,
                    const Objective& objective, const Scene& around)
       : start_(start), options_(options), model_((require_size(chain, start), chain), around),
@@ -109,8 +110,8 @@ public:
   }
   wanted_solutions(const wanted_solutions&) = delete;
 
-  /// \param name  which goal it is, called for messages
-  /// \throws invalid_input where the goal, or the objective, is nan wherever it was looked at
+  /// \param name  callable that returns the name of the goal for messages
+  /// \throws invalid_input if the goal or the objective is nan at every configuration evaluated
   template <TipGoal G, class Name>
   [[nodiscard]] result operator()(const G& goal, const Name& name,
                                   const known_solutions& known = {}) const {
@@ -130,7 +131,7 @@ public:
   }
 
 private:
-  /// All solutions of six joints, for an objective to choose from.
+  /// All solutions of a six-joint chain, as candidates for an objective.
   [[nodiscard]] known_solutions all_solutions(const dual_quaternion<double>& goal) const {
     known_solutions known;
     if constexpr (has_objective) {
@@ -145,14 +146,14 @@ private:
     return known;
   }
 
-  /// The best that was found is nan only where all is.
+  /// Rejects nan: the best candidate is nan only if all candidates are.
   template <class Name>
   void require_numbers(const typename solution_search<room>::attempt& x, const Name& name) const {
     const auto fail = [&](const std::string& what) {
       fail_not_a_number("duet: inverse_kinematics: " + what,
                         own_joints(model_.chain(), model_.given_joints(x.joints)));
     };
-    if ((std::isnan(x.left.length) || std::isnan(x.left.angle)) &&
+    if ((std::isnan(x.left.translation) || std::isnan(x.left.rotation)) &&
         std::isfinite(length_of(model_.at(x.joints).tip.translation))) { // not by overflow
       fail(name() + " is nan wherever it was looked at, as at the");
     }
@@ -168,17 +169,17 @@ private:
   solution_search<room> search_;
 };
 
-/// \throws invalid_input for a region that holds no pose, and for what is no pose
+/// \throws invalid_input for a region that contains no pose, and for a goal that is not a pose
 template <class G>
 void check_goal(const G& goal, const std::string& name) {
   if constexpr (std::same_as<G, dual_quaternion<double>>) {
     require_pose(goal, "inverse_kinematics", name);
-  } else if constexpr (std::convertible_to<const G&, const pose_region&>) {
+  } else if constexpr (std::convertible_to<const G&, const task_space_region&>) {
     require_goal(goal, name);
   }
 }
 
-/// out[i] is what is wanted for goals[i].
+/// Preferred solutions of many goals: out[i] for goals[i].
 template <class G, class C, class Start, class Objective, class Scene>
 void find_wanted_solutions(const C& chain, std::span<const G> goals, const Start& start,
                            std::span<inverse_kinematics_result<C::joints>> out,
@@ -199,23 +200,25 @@ void find_wanted_solutions(const C& chain, std::span<const G> goals, const Start
 
 } // namespace detail
 
-/// Joint coordinates within the limits of a chain that take its tip to a goal in part: a
-/// `pose_region`, as `position_goal`, `pointing_goal` and others make it, or any `TipGoal`.
+/// Inverse kinematics for partial goals: joint coordinates within the limits of a chain at which
+/// its tip frame satisfies a `task_space_region`, as returned by `position_goal`, `pointing_goal`
+/// and others, or any `TipGoal`.
 ///
-/// As for poses, with the rows M of what is wanted, M J Δ = e. With an objective, from the first
-/// `options.candidates` solutions that are met with it is lowered within all solutions nearby, and
-/// the joints where it is least are returned. With a `scene` solutions nearby are looked for that
-/// keep its margin, to `options.tolerance.length`.
+/// Damped least squares (Levenberg–Marquardt) as for poses, with the rows M of the constraint:
+/// M J Δ = e. An objective (null-space or secondary objective) is minimised within all solutions
+/// near each of the first `options.candidates` solutions found, and the joints with the least value
+/// are returned: it acts on the freedom of a redundant arm or a partial goal. With a `scene`,
+/// solutions nearby are sought that keep its margin, to `options.tolerance.translation`.
 ///
-/// \param objective  a function of θ, generic over scalars, or something with a member
-///                   `gradient(theta)` too, as `preferred_posture`; nan is worse than any number
-/// \param around     a `scene`
-/// \return the joints, as of poses; `deviation` is what rows of lengths and of angles miss.
-/// `obstacle`: the goal was reached, but too close to obstacles; the joints are such ones
-/// \throws invalid_input as for poses, for a region that holds no pose, a preferred posture of
-/// another size or not finite, a `scene` that is none, and, with joints where it is so, for a goal
-/// that is nan wherever it was looked at and an objective that is nan at all solutions that were
-/// found
+/// \param objective  function of θ, generic over scalars, or an object with a member
+/// `gradient(theta)` too, such as `preferred_posture`; nan counts as larger than any number
+/// \param around     `scene` of bodies and obstacles
+/// \return the joints, as for poses; `deviation` is the error of the rows of lengths and of angles.
+/// `obstacle`: the goal was reached, but only too close to obstacles; the joints are such a
+/// configuration
+/// \throws invalid_input as for poses, for a region that contains no pose, a preferred posture of
+/// another size or not finite, an invalid `scene`, and, with the joints in the message, for a goal
+/// that is nan at every configuration evaluated and an objective that is nan at all solutions found
 template <SerialChain C, TipGoal G, VectorLike Start, class Objective = no_objective,
           class Scene = no_scene>
 [[nodiscard]] inverse_kinematics_result<C::joints>
@@ -228,13 +231,13 @@ inverse_kinematics(const C& chain, const G& goal, const Start& start,
   return solve(goal, [] { return std::string("the goal"); });
 }
 
-/// Joint coordinates that take the tip of a chain to a pose, with an objective or among obstacles
-/// as for goals in part.
+/// Inverse kinematics for a pose with an objective or among obstacles, as for partial goals: joint
+/// coordinates within the limits at which the tip of a chain has the pose `goal`.
 ///
-/// Of six joints, revolute or up to three of them prismatic, an objective is lowered from all
-/// solutions within the limits, `all_inverse_kinematics`, with any full turns that limits allow: a
-/// `preferred_posture` gives the nearest of all where these are complete. At singular poses that
-/// joints can move at, the search from random configurations is added.
+/// For six joints, revolute or up to three of them prismatic, an objective is minimised from all
+/// solutions of `all_inverse_kinematics` within the limits, with any full turns that limits allow:
+/// a `preferred_posture` gives the nearest solution of all if these are complete. At singular poses
+/// with a self-motion, the search from random configurations is added.
 template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
@@ -246,15 +249,15 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
   return solve(goal, [] { return std::string("the goal"); });
 }
 
-/// out[i] = inverse_kinematics(chain, goals[i], start, options, objective, around) of goals in
-/// part, with the same results on any number of cores.
+/// Inverse kinematics of many partial goals: out[i] = inverse_kinematics(chain, goals[i], start,
+/// options, objective, around), with identical results for any number of threads.
 ///
 /// \param goals      all of one type, in a vector, an array or a span
-/// \param objective  as of one goal; on several cores it, and `wanted` of a goal of one's own, is
-///                   called by several threads at once
-/// \throws invalid_input where the sizes differ, for the first goal that holds no pose, and as
+/// \param objective  as for one goal; with several threads it, and `wanted` of a user-defined goal,
+/// is called concurrently
+/// \throws invalid_input if the sizes differ, for the first goal that contains no pose, and as
 /// above
-/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
+/// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
 template <SerialChain C, std::ranges::contiguous_range Goals, VectorLike Start,
           class Objective = no_objective, class Scene = no_scene>
   requires TipGoal<std::ranges::range_value_t<Goals>>
@@ -266,10 +269,10 @@ void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
   detail::find_wanted_solutions<goal>(chain, goals, start, out, options, how, objective, around);
 }
 
-/// out[i] = inverse_kinematics(chain, goals[i], start, options, objective, around) of poses, with
-/// the same results on any number of cores.
+/// Inverse kinematics of many poses: out[i] = inverse_kinematics(chain, goals[i], start, options,
+/// objective, around), with identical results for any number of threads.
 ///
-/// \throws invalid_input, cancelled: as of goals in part
+/// \throws invalid_input, cancelled: as for partial goals
 template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
                         const Start& start, std::span<inverse_kinematics_result<C::joints>> out,

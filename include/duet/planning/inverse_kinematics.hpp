@@ -17,17 +17,18 @@
 #include <string>
 
 /// \file
-/// Joint coordinates for poses of the tip.
+/// Inverse kinematics by damped least squares (Levenberg–Marquardt): joint coordinates for poses of
+/// the tip frame (end-effector frame).
 
 namespace duet {
 
 namespace detail {
 
-/// A search on a chain, which gives results in the chain's own type.
+/// Inverse kinematics search on a chain; results have the vector type of the chain.
 template <class C>
 class search_on_chain {
 public:
-  /// \throws invalid_input for another number of coordinates than of joints
+  /// \throws invalid_input for a start whose size is not the number of joints
   template <class Start>
   search_on_chain(const C& chain, const Start& start, const inverse_kinematics_options& options)
       : model_((require_size(chain, start), chain)),
@@ -49,22 +50,25 @@ private:
 
 } // namespace detail
 
-/// Joint coordinates within the limits of a chain that take its tip to the pose `goal`, either sign
-/// of it.
+/// Inverse kinematics: joint coordinates θ within the limits of a chain at which its tip frame
+/// (end-effector frame) has the pose `goal`, either sign of it, by damped least squares.
 ///
-/// Levenberg and Marquardt's method on the exact twist e = 2 log(A_goal A*) in `frame::hybrid`,
-/// Δ = Jᵀ(J Jᵀ + λ)⁻¹ e with λ growing with |e|² after Sugihara, joints that would leave their
-/// limits being held there; from the given start and, once the error stops falling, from random
-/// configurations. These are the same in every call with the same seed.
+/// Damped least squares (Levenberg–Marquardt) on the exact twist e = 2 log(A_goal A*) in
+/// `frame::hybrid`: Δ = Jᵀ(J Jᵀ + λ)⁻¹ e, with λ growing with |e|² after Sugihara. Joints that
+/// would leave their limits are held there. The search starts from the initial guess `start` and,
+/// once the error stops falling, from random configurations, which are identical in every call with
+/// the same seed.
 ///
-/// \param start  put within the limits; joints whose range holds a whole turn by turning them back
-/// \return the joints; where `reason` is not `reached`, the nearest to the goal that were met with.
-/// `out_of_reach` is certain; the joints are then those of the nearest pose, `deviation` by how
-/// much it misses the goal: by Newton's method from the start and `restarts` random configurations,
-/// that of the least (length / L)² + angle², L the sum of the chain's lengths. That the others mean
-/// there is no solution is not: `joint_limit`, `singular` and `no_progress` say what is in the way
-/// there, `iteration_limit` that nothing is \throws invalid_input for a start that is not finite or
-/// of another size, for a goal that is no pose, and for bad options
+/// \param start  initial guess, a nearby solution for a warm start; moved to within the limits,
+/// revolute joints whose range contains a full turn by full turns
+/// \return the joints; unless `reason` is `reached`, the configuration nearest to the goal that was
+/// found. `out_of_reach` is certain; the joints are then those of the nearest pose and `deviation`
+/// is its error: the minimum of (translation / L)² + rotation², L the sum of the chain's lengths,
+/// by Newton's method from the start and `max_restarts` random configurations. The other reasons do
+/// not prove that there is no solution: `joint_limit`, `singular` and `no_progress` state what
+/// blocks the search there, `iteration_limit` that nothing does
+/// \throws invalid_input for a start that is not finite or of another size, for a goal that is not
+/// a pose, and for invalid options
 template <SerialChain C, VectorLike Start>
 [[nodiscard]] inverse_kinematics_result<C::joints>
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
@@ -74,10 +78,11 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
   return search(goal);
 }
 
-/// out[i] = inverse_kinematics(chain, goals[i], start, options), with the same results on any
-/// number of cores.
-/// \throws invalid_input where the sizes differ, for the first goal that is no pose, and as above
-/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
+/// Inverse kinematics of many goals: out[i] = inverse_kinematics(chain, goals[i], start, options),
+/// with identical results for any number of threads.
+///
+/// \throws invalid_input if the sizes differ, for the first goal that is not a pose, and as above
+/// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
 template <SerialChain C, VectorLike Start>
 void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
                         const Start& start, std::span<inverse_kinematics_result<C::joints>> out,

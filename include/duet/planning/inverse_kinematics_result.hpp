@@ -8,36 +8,37 @@
 #include <cstdint>
 
 /// \file
-/// What `inverse_kinematics` is told, and what it returns.
+/// Options and result of `inverse_kinematics`.
 
 namespace duet {
 
-/// Settings of `inverse_kinematics`.
+/// Options of `inverse_kinematics`.
 struct inverse_kinematics_options {
-  /// How close the tip comes to the goal.
+  /// Maximum error of the tip pose relative to the goal: units of length, and radians.
   pose_tolerance tolerance = 1e-6;
-  /// How many random configurations to begin anew from once the given start has led nowhere.
-  int restarts = 100;
-  /// The most from each of them.
-  int iterations = 50;
-  /// Of the random configurations.
+  /// Maximum number of random restarts if the search does not converge from the given start.
+  int max_restarts = 100;
+  /// Maximum number of iterations per attempt.
+  int max_iterations = 50;
+  /// Seed of the random configurations.
   std::uint64_t seed = 1;
-  /// From how many solutions on an objective is lowered, of which the best is returned.
+  /// Number of solutions from which an objective is minimised; the best result is returned.
   int candidates = 10;
 };
 
-/// What was found; where `reason` is not `reached`, the nearest to the goal that was met with.
+/// Result of `inverse_kinematics`; unless `reason` is `reached`, the configuration nearest to the
+/// goal that was found.
 ///
-/// \tparam N  as of `serial_chain`
+/// \tparam N  as in `serial_chain`
 template <int N>
 struct inverse_kinematics_result {
-  /// Within the limits.
+  /// Joint coordinates within the limits: radians, or units of length for prismatic joints.
   detail::joint_vector<double, N> joints =
       detail::zero_initialized<detail::joint_vector<double, N>>();
-  pose_deviation deviation; ///< of the tip from the goal
-  int iterations = 0;       ///< from all configurations together
-  int restarts = 0;         ///< how many random configurations it began anew from
-  /// Why it ended: `reached` where the tip is at the goal, else what is in the way.
+  pose_error deviation; ///< error of the tip pose relative to the goal
+  int iterations = 0;   ///< number of iterations of all attempts together
+  int restarts = 0;     ///< number of random restarts
+  /// Termination reason: `reached` if the tip is at the goal, otherwise what blocks the search.
   stop_reason reason = stop_reason::no_progress;
 
   /// For those who extend duet: for `to_text`.
@@ -56,8 +57,9 @@ namespace detail {
 inline void require_options(const inverse_kinematics_options& options) {
   constexpr const char* caller = "inverse_kinematics";
   require_positive(caller, "tolerance", options.tolerance);
-  require_positive(caller, "iterations", options.iterations);
-  require_option(caller, "restarts", options.restarts, options.restarts >= 0, "a number from 0 up");
+  require_positive(caller, "max_iterations", options.max_iterations);
+  require_option(caller, "max_restarts", options.max_restarts, options.max_restarts >= 0,
+                 "a number from 0 up");
   require_positive(caller, "candidates", options.candidates);
 }
 

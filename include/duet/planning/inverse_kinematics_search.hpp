@@ -22,20 +22,21 @@
 #include <numbers>
 
 /// \file
-/// The search for joint coordinates that take the tip of a chain to a goal.
+/// Search for joint coordinates that take the tip of a chain to a goal: damped least squares
+/// (Levenberg–Marquardt) with random restarts.
 
 namespace duet {
 
 namespace detail {
 
-/// a < b; what is nan is more than any number.
+/// Comparison a < b with nan greater than any number.
 [[nodiscard]] inline bool is_less(double a, double b) {
   return a < b || (std::isnan(b) && !std::isnan(a));
 }
 
-/// What all searches for configurations of a chain have in common.
+/// Common part of all searches for configurations of a chain.
 ///
-/// \tparam Goal  a pose, or what has a `set_equations` and an `is_beyond` of its own
+/// \tparam Goal  a pose, or a type with its own `set_equations` and `is_beyond`
 template <int Room, class Goal = tip_place>
 class inverse_kinematics_search {
   using vector = small_vector<Room>;
@@ -43,7 +44,7 @@ class inverse_kinematics_search {
 public:
   struct attempt {
     vector joints;
-    pose_deviation left;
+    pose_error left;
     double error; ///< |e|²
     int iterations = 0;
     int restarts = 0;
@@ -71,15 +72,15 @@ public:
 
   [[nodiscard]] attempt operator()(const Goal& goal) const;
 
-  /// From one configuration, without beginning anew.
+  /// Damped least squares from one initial guess, without random restarts.
   [[nodiscard]] attempt approach(vector theta, const Goal& goal) const {
     attempt best{theta, {}, std::numeric_limits<double>::infinity()};
     double before = best.error;
-    int since = 0; // the error last fell by a tenth
+    int since = 0; // iterations since the error last fell by a tenth
     for (int iteration = 0;; ++iteration) {
       const equations now = equations_at(theta, goal);
       const double error = dot(now.e, now.e);
-      const bool is_reached = tolerance_.times(now.left) <= 1;
+      const bool is_reached = tolerance_.ratio(now.left) <= 1;
       if (iteration == 0 || error < best.error || is_reached) {
         best = {theta, now.left, error};
       }
@@ -88,7 +89,7 @@ public:
         since = 0;
       }
       best.iterations = iteration;
-      if (is_reached || since == 4 || iteration == options_.iterations) {
+      if (is_reached || since == 4 || iteration == options_.max_iterations) {
         best.reason = is_reached   ? stop_reason::reached
                       : since == 4 ? stop_reason::no_progress
                                    : stop_reason::iteration_limit;
@@ -99,7 +100,7 @@ public:
     }
   }
 
-  /// Why there is no way on from a configuration.
+  /// Reason why the search cannot continue from a configuration.
   [[nodiscard]] stop_reason obstacle(const vector& theta, const Goal& goal) const {
     const equations here = equations_at(theta, goal);
     if (step(here, damping(here)).is_bounded) {
@@ -118,7 +119,7 @@ public:
     return is_singular ? stop_reason::singular : stop_reason::no_progress;
   }
 
-  /// Uniform within the limits; without them, about the start.
+  /// Random configuration, uniform within the limits; without them, about the start.
   [[nodiscard]] vector configuration(split_mix& random) const {
     vector theta;
     for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
@@ -133,7 +134,7 @@ public:
   }
 
   [[nodiscard]] const vector& start() const { return start_; }
-  /// By how much coordinates can change without changing the pose: by nothing, or a whole turn.
+  /// Changes of the coordinates that leave the pose unchanged: 0 or a full turn.
   [[nodiscard]] const vector& turn() const { return turn_; }
 
 private:
@@ -144,25 +145,26 @@ private:
     return result;
   }
 
-  /// Levenberg and Marquardt's step.
+  /// Levenberg–Marquardt (damped least squares) step.
   [[nodiscard]] bounded_step_result<vector> step(const equations& x, double lambda) const {
     return bounded_step(x.at.jacobian, x.e, model_.lower - x.at.theta - beyond_,
                         model_.upper - x.at.theta + beyond_, {0, lambda});
   }
-  /// The damping that grows with the error.
+  /// Damping, which grows with the error.
   [[nodiscard]] static double damping(const equations& x) {
     return std::min(.02 * dot(x.e, x.e), .08) + 1e-9;
   }
 
-  /// The nearest place from a start on, by the least |way|² + |ω|²: Newton's method with a damping
-  /// that lets no step raise it. Joints at limits that are in the way are held there.
+  /// Nearest pose from a start on, by the least squared distance of the origins plus |ω|²: Newton's
+  /// method with a damping that lets no step increase it. Joints at limits that block them are held
+  /// there.
   template <std::same_as<tip_place> Pose>
   [[nodiscard]] attempt nearest(const vector& start, const Pose& goal) const {
     point here = point_at(start, goal);
     double lambda = 0;
     int iterations = 0;
-    for (bool is_lower = true;
-         is_lower && iterations < options_.iterations && here.steepest > 1e-12 * (1 + here.error);
+    for (bool is_lower = true; is_lower && iterations < options_.max_iterations &&
+                               here.steepest > 1e-12 * (1 + here.error);
          ++iterations) {
       is_lower = false;
       for (; !is_lower && lambda < 1e6 * (1 + here.error); lambda = std::max(4 * lambda, 1e-3)) {
@@ -175,7 +177,7 @@ private:
           theta[i] += (*step)[i];
         }
         const point there = point_at(within_limits(theta), goal);
-        // At the end the error no longer shows what is lower, but its slope does.
+        // Near the end round-off hides what is lower in the error, but not in its gradient.
         const bool is_even = there.error <= here.error * (1 + 1e-14);
         is_lower =
             there.error < here.error * (1 - 1e-14) || (is_even && there.steepest < here.steepest);
@@ -190,11 +192,11 @@ private:
 
   struct point {
     vector theta;
-    pose_deviation left;
-    double error; ///< |way|² + |ω|²
+    pose_error left;
+    double error; ///< squared distance of the origins plus |ω|²
     squared_error<Room> to_second_order;
-    std::array<bool, std::size_t(Room)> is_held{}; ///< by a limit that is in the way
-    double steepest = 0;                           ///< of the slopes of those that are not
+    std::array<bool, std::size_t(Room)> is_held{}; ///< true if held by a limit that blocks it
+    double steepest = 0; ///< largest entry of the gradient of joints that are not held
   };
   template <std::same_as<tip_place> Pose>
   [[nodiscard]] point point_at(const vector& theta, const Pose& goal) const {
@@ -213,7 +215,7 @@ private:
     return result;
   }
 
-  /// Turning joints whose range holds a whole turn are turned back into it, others stop at limits.
+  /// Revolute joints whose range contains a full turn are wrapped into it, others stop at limits.
   [[nodiscard]] vector within_limits(vector theta) const {
     for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
       const double lower = model_.lower[i], upper = model_.upper[i];
@@ -231,8 +233,8 @@ private:
   inverse_kinematics_options options_;
   pose_tolerance tolerance_;
   vector turn_;
-  vector beyond_; ///< how far steps may go beyond limits: any way if they are turned back
-  vector spread_; ///< how far from the start random coordinates are that have no limits
+  vector beyond_; ///< admissible excess of steps beyond limits: infinite if joints are wrapped
+  vector spread_; ///< distance from the start of random coordinates that have no limits
   vector start_;
 };
 
@@ -251,7 +253,7 @@ inverse_kinematics_search<Room, Goal>::operator()(const Goal& goal) const {
   attempt best = search(start_);
   int iterations = best.iterations, restarts = 0;
   split_mix random(options_.seed);
-  while (best.reason != stop_reason::reached && restarts < options_.restarts) {
+  while (best.reason != stop_reason::reached && restarts < options_.max_restarts) {
     const attempt next = search(configuration(random));
     iterations += next.iterations;
     ++restarts;

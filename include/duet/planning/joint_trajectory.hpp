@@ -14,14 +14,14 @@
 #include <vector>
 
 /// \file
-/// Joint coordinates over time.
+/// Joint trajectories: joint coordinates as a function of time.
 
 namespace duet {
 
-/// Joint coordinates with their rates.
+/// State of the joints: coordinates, velocities and accelerations.
 template <class V>
-struct joint_motion {
-  V value = detail::zero_initialized<V>(); ///< θ: radians, or units of length where joints slide
+struct joint_state {
+  V value = detail::zero_initialized<V>();        ///< θ: radians, or units of length if prismatic
   V velocity = detail::zero_initialized<V>();     ///< θ̇, per unit of time
   V acceleration = detail::zero_initialized<V>(); ///< θ̈, per unit of time squared
 
@@ -44,27 +44,27 @@ struct joint_cubic {
   [[nodiscard]] V value(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
   [[nodiscard]] V first(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
   [[nodiscard]] V second(double s) const { return 2 * c2 + 6 * s * c3; }
-  /// This cubic from s on, as one of its own with the parameter counted from there.
+  /// This cubic from s on, as a cubic with the parameter counted from there.
   [[nodiscard]] joint_cubic part(double s, double its_length) const {
     return {value(s), first(s), V(second(s) / 2), c3, its_length};
   }
 };
 
-/// How far along a part of a path, with derivatives by time.
+/// Position on a segment of a path, with derivatives with respect to time.
 struct path_place {
   double s, speed, acceleration, jerk;
 };
 
-/// When a part of a path is where: s = a τ + b τ² + c τ³, where τ sets out with a speed and an
+/// Time scaling of a segment of a path: s = a τ + b τ² + c τ³, where τ starts with a speed and an
 /// acceleration and τ⃛ = growth τ̇; so τ̈ = acceleration + growth τ.
 struct time_law {
-  double time;         ///< of its beginning
-  double speed;        ///< τ̇ there
-  double acceleration; ///< τ̈ there
+  double time;         ///< time at the beginning
+  double speed;        ///< τ̇ at the beginning
+  double acceleration; ///< τ̈ at the beginning
   double growth = 0;
   double a = 1, b = 0, c = 0;
 
-  /// Not beyond the end of a part, of that length.
+  /// Position at time t, not beyond the end of a segment of that length.
   [[nodiscard]] path_place at(double t, double length) const {
     const double since = t - time;
     double tau = since * (speed + since * acceleration / 2);
@@ -87,7 +87,7 @@ struct time_law {
   }
 };
 
-/// A part of a path, and when it is where.
+/// Segment of a path with its time scaling.
 template <class V>
 struct timed_piece {
   time_law law;
@@ -99,7 +99,7 @@ struct timed_piece {
 /// Joint coordinates as a function of time, once continuously differentiable, and twice if there
 /// are limits of jerk.
 ///
-/// \tparam N  as of `serial_chain`
+/// \tparam N  as in `serial_chain`
 template <int N>
 class joint_trajectory {
 public:
@@ -108,21 +108,23 @@ public:
   joint_trajectory(std::vector<detail::timed_piece<vector>> pieces, std::vector<double> times)
       : pieces_(std::move(pieces)), times_(std::move(times)) {}
 
-  /// In seconds, if limits are per second.
+  /// Duration, in seconds if limits are per second.
   [[nodiscard]] double duration() const { return times_.back(); }
-  /// When it passes each of the waypoints.
+  /// Times at which it passes the waypoints.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
-  /// Coordinates, rates and accelerations at time t; where the acceleration jumps, one of the two.
-  /// Up to 8 ulp of the duration beyond an end is that end.
+  /// Coordinates, velocities and accelerations at time t; where the acceleration jumps, one of the
+  /// two. Up to 8 ulp of the duration beyond an end is that end.
+  ///
   /// \throws invalid_input for t outside 0 … duration()
-  [[nodiscard]] joint_motion<vector> operator()(double t) const {
+  [[nodiscard]] joint_state<vector> operator()(double t) const {
     const auto& [law, path] = piece_at(t);
     const auto [s, speed, acceleration, jerk] = law.at(t, path.length);
     const vector slope = path.first(s);
     return {path.value(s), vector(speed * slope),
             vector(acceleration * slope + speed * speed * path.second(s))};
   }
-  /// The rates of change of accelerations at time t; where they jump, one of the two.
+  /// Jerk at time t, the derivatives of the accelerations; where they jump, one of the two.
+  ///
   /// \throws invalid_input as `operator()`
   [[nodiscard]] vector jerk(double t) const {
     const auto& [law, path] = piece_at(t);
@@ -132,7 +134,7 @@ public:
   }
 
 private:
-  /// The one in which t is, which is moved to an end if it is beyond that by rounding.
+  /// Segment that contains t, which is moved to an end if it is beyond that by round-off.
   [[nodiscard]] const detail::timed_piece<vector>& piece_at(double& t) const {
     if (!(t >= 0 && t <= duration())) {
       t = detail::rounded_into(t, 0.0, duration());
@@ -149,7 +151,7 @@ private:
   }
 
   std::vector<detail::timed_piece<vector>> pieces_;
-  std::vector<double> times_; ///< of the waypoints
+  std::vector<double> times_; ///< times of the waypoints
 };
 
 } // namespace duet

@@ -19,109 +19,113 @@
 #include <vector>
 
 /// \file
-/// What a planner is told, and what it returns.
+/// Options and result of the path planners.
 
 namespace duet {
 
-/// How far one pose is from another: its origin in units of length, its axes in radians.
-struct pose_deviation {
-  double length = 0; ///< from origin to origin, in units of length
-  double angle = 0;  ///< between the axes, radians
+/// Error of a pose relative to another: distance of the origins and rotation angle.
+struct pose_error {
+  double translation = 0; ///< distance of the origins, in units of length
+  double rotation = 0;    ///< rotation angle between the axes, radians
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
-    f("length", length);
-    f("angle", angle);
+    f("translation", translation);
+    f("rotation", rotation);
   }
 };
 
-/// How far one pose may be from another, lengths and angles apart: `{.1, 1e-3}` is a tenth of a
-/// unit of length and a milliradian. One number stands for both.
+/// Tolerance of a pose, with separate bounds for lengths and angles: `{.1, 1e-3}` is a tenth of a
+/// unit of length and a milliradian. A single number sets both.
 struct pose_tolerance {
-  double length; ///< from origin to origin, in units of length
-  double angle;  ///< between the axes, radians
+  double translation; ///< maximum distance of the origins, in units of length
+  double rotation;    ///< maximum rotation angle between the axes, radians
 
-  constexpr pose_tolerance(double both) : length(both), angle(both) {}
-  constexpr pose_tolerance(double of_length, double of_angle)
-      : length(of_length), angle(of_angle) {}
+  constexpr pose_tolerance(double both) : translation(both), rotation(both) {}
+  constexpr pose_tolerance(double of_translation, double of_rotation)
+      : translation(of_translation), rotation(of_rotation) {}
 
-  /// How many times as far as that is a deviation? Up to 1 it is within.
-  [[nodiscard]] double times(const pose_deviation& left) const {
-    return std::max(left.length / length, left.angle / angle);
+  /// Ratio of an error to the tolerance, the larger one of length and angle; at most 1 within it.
+  [[nodiscard]] double ratio(const pose_error& error) const {
+    return std::max(error.translation / translation, error.rotation / rotation);
   }
 };
 
-/// Settings of `follow_path` and `plan_screw_motion`. Steps along the path are fractions of it.
+/// Options of `follow_path` and `plan_screw_motion`. Steps along the path are fractions of it.
 struct plan_options {
-  /// How close waypoints come to the path.
+  /// Maximum error of the tip relative to the path at waypoints.
   pose_tolerance tolerance = 1e-6;
-  /// How far the tip may be from it where joints move straight on between waypoints.
+  /// Maximum error of the tip relative to the path between waypoints, where joints move straight
+  /// on.
   pose_tolerance deviation = 1e-5;
-  /// From one waypoint to the next.
+  /// Maximum step along the path from one waypoint to the next.
   double largest_step = .1;
-  /// Below it there is no going on without moving in place.
+  /// Minimum step along the path; below it the plan only continues by a self-motion.
   double smallest_step = 1e-6;
-  /// How fast joints move away from their limits where that leaves the tip in place, in coordinates
-  /// per path.
+  /// Gain of joint-limit avoidance (joint centring): largest rate at which joints move away from
+  /// their limits without moving the tip (in the null space of the Jacobian), in coordinates per
+  /// path.
   double centring = 1;
-  /// Between the places where the tip may stop for the joints to move in place; 0: nowhere.
+  /// Step along the path between the poses at which the tip may stop for a self-motion; 0: none.
   double search_step = .02;
-  /// How far the joints then move from one configuration to the next, in coordinates.
+  /// Step of the joints from one configuration of a self-motion to the next, in coordinates.
   double self_motion_step = .1;
-  /// Of Newton's method, in all.
-  int iterations = 1000000;
+  /// Maximum number of iterations of Newton's method in total.
+  int max_iterations = 1000000;
 };
 
-/// Why a planner stopped. Ways are followed to within 100 `smallest_step` of where they end, 1e-4
-/// of the path: where limits end one nearer than that before a singularity does, both are in the
-/// way, and it is either of the two.
+/// Termination reason of a planner or search. Plans are continued to within 100 `smallest_step` of
+/// where they end, 1e-4 of the path: if limits end one closer than that before a singularity does,
+/// both block it, and the reason is either of the two.
 enum class stop_reason {
   reached,         ///< the tip is at the goal
-  joint_limit,     ///< the way on leads beyond the limits of a joint
-  singular,        ///< the way on leads through a singularity
-  obstacle,        ///< the way on leads too close to an obstacle, or a link to another
+  joint_limit,     ///< the continuation leads beyond the limits of a joint
+  singular,        ///< the continuation leads through a singularity
+  obstacle,        ///< the continuation leads too close to an obstacle, or to self-collision
   no_progress,     ///< steps became too small, for none of these reasons
-  iteration_limit, ///< the number of iterations that was allowed is used up
+  iteration_limit, ///< the maximum number of iterations is used up
   out_of_reach,    ///< the goal is farther away than the links reach
   no_solution      ///< no joint coordinates take the tip there, within limits or not
 };
 
-/// The name of a `stop_reason`.
+/// Name of a `stop_reason`.
 [[nodiscard]] inline const char* to_text(stop_reason reason) {
   constexpr std::array names{"reached",     "joint_limit",     "singular",     "obstacle",
                              "no_progress", "iteration_limit", "out_of_reach", "no_solution"};
   return names[std::size_t(reason)];
 }
 
-/// How far a pose is from another, length and angle apart; the same for a and b as for b and a.
+/// Error between two poses, length and angle separate; symmetric in a and b.
 template <std::floating_point T>
-[[nodiscard]] pose_deviation deviation_between(const dual_quaternion<T>& a,
-                                               const dual_quaternion<T>& b) {
+[[nodiscard]] pose_error pose_error_between(const dual_quaternion<T>& a,
+                                            const dual_quaternion<T>& b) {
   return {(translation(b) - translation(a)).norm(),
           rotation_vector(quaternion<T>(conj(rotation(a)) * rotation(b))).norm()};
 }
 
-/// A path of joint coordinates from the start on, waypoint by waypoint, joints moving straight on
-/// between them. Where the goal is not reached, the path ends as far as the planner came.
+/// Path in configuration space from the start on: waypoints, with straight lines in between. If the
+/// goal is not reached, the path ends as far as the planner came.
 ///
-/// \tparam N  as of `serial_chain`
+/// \tparam N  as in `serial_chain`
 template <int N>
 struct motion_plan {
-  /// Joint coordinates at each waypoint: radians, or units of length where joints slide.
+  /// Configuration at each waypoint: radians, or units of length for prismatic joints.
   std::vector<detail::joint_vector<double, N>> joints;
-  std::vector<dual_quaternion<double>> poses; ///< of the tip, at each waypoint
-  /// The fraction of the screw motion, or the parameter of the path, at each waypoint; the same in
-  /// successive ones where the joints move with the tip in place.
+  std::vector<dual_quaternion<double>> poses; ///< pose of the tip at each waypoint
+  /// Fraction of the screw motion, or parameter of the path, at each waypoint; equal at successive
+  /// waypoints of a self-motion.
   std::vector<double> tau;
-  std::vector<pose_deviation> deviations; ///< from the motion asked for, at each waypoint
-  /// Of the Jacobian in `frame::hybrid`, at any waypoint, estimated from above.
+  std::vector<pose_error> deviations; ///< error relative to the requested motion at each waypoint
+  /// Smallest singular value of the Jacobian in `frame::hybrid` at any waypoint, estimated from
+  /// above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
-  /// Of any joint, at any waypoint, to its nearer limit; in coordinates.
+  /// Smallest distance of any joint from its nearer limit at any waypoint, in coordinates.
   double smallest_limit_margin = std::numeric_limits<double>::infinity();
-  /// Of the bodies of the chain from obstacles, at any waypoint; infinite without.
+  /// Smallest clearance at any waypoint, of bodies from obstacles and in pairs; infinite without
+  /// any.
   double smallest_clearance = std::numeric_limits<double>::infinity();
-  int iterations = 0; ///< of Newton's method, in all
-  /// Why the plan ends where it does: `reached` where that is the goal.
+  int iterations = 0; ///< number of iterations of Newton's method in total
+  /// Termination reason: `reached` if the plan ends at the goal.
   stop_reason reason = stop_reason::no_progress;
 
   /// For those who extend duet: for `to_text`.
@@ -142,8 +146,7 @@ namespace detail {
 
 template <int N, class C, class V>
 void add_waypoint(motion_plan<N>& plan, const C& chain, const V& theta,
-                  const dual_quaternion<double>& pose, double tau,
-                  const pose_deviation& deviation) {
+                  const dual_quaternion<double>& pose, double tau, const pose_error& deviation) {
   plan.joints.push_back(theta);
   plan.poses.push_back(pose);
   plan.tau.push_back(tau);
@@ -155,7 +158,7 @@ void add_waypoint(motion_plan<N>& plan, const C& chain, const V& theta,
   }
 }
 
-/// Coordinates of a chain's joints, as a vector of their own.
+/// Coordinates of a chain's joints, in the vector type of the chain.
 template <class C, class X>
 [[nodiscard]] joint_vector<double, C::joints> own_joints(const C& chain, const X& x) {
   joint_vector<double, C::joints> theta(chain.size());
@@ -177,13 +180,13 @@ void require_start(const C& chain, const Start& start) {
   }
 }
 
-/// \throws invalid_input for what is no pose: "duet: plan: the goal is …"
+/// \throws invalid_input for an argument that is not a pose: "duet: plan: the goal is …"
 inline void require_pose(const dual_quaternion<double>& a, const char* caller,
                          const std::string& name) {
   if (is_unit(a, 1e-6)) {
     return;
   }
-  // A translation that is not finite in one entry is so in none: all are in every entry of p + εq.
+  // If one entry of a translation is not finite, none is: all are in every entry of p + εq.
   const auto turn = rotation(a);
   const auto move = translation(a);
   const auto entry = [](double x) { return x == x ? to_text(x) : "nan"; }; // whatever its sign
@@ -193,12 +196,12 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
   require(is_all_finite(dual_part(a)), "duet: ", caller, ": ", name,
           ": its translation is not finite: (", entry(move[0]), ", ", entry(move[1]), ", ",
           entry(move[2]), ")");
-  const auto square = norm2(a);
+  const auto square = squared_norm(a);
   raise(invalid_input(message("duet: ", caller, ": ", name, " is no unit dual quaternion: |p|^2 = ",
                               square.value(), ", p.q = ", square.epsilon() / 2)));
 }
 
-/// \throws invalid_input for what is no number above 0, if it is one that is asked for
+/// \throws invalid_input unless the value is finite and `is_good`, that is, in the `range` named
 inline void require_option(const char* caller, const char* name, double value, bool is_good,
                            const char* range) {
   require(is_good && value - value == 0, "duet: ", caller, ": ", name, " is ", value, ", not ",
@@ -208,10 +211,10 @@ inline void require_positive(const char* caller, const char* name, double value)
   require_option(caller, name, value, value > 0, "a number above 0");
 }
 inline void require_positive(const char* caller, const char* name, const pose_tolerance& value) {
-  const bool is_length = !(value.length > 0);
-  if (is_length || !(value.angle > 0)) {
-    const std::string part = std::string(name) + (is_length ? ".length" : ".angle");
-    require_positive(caller, part.c_str(), is_length ? value.length : value.angle);
+  const bool is_length = !(value.translation > 0);
+  if (is_length || !(value.rotation > 0)) {
+    const std::string part = std::string(name) + (is_length ? ".translation" : ".rotation");
+    require_positive(caller, part.c_str(), is_length ? value.translation : value.rotation);
   }
 }
 

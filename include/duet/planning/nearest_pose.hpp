@@ -13,20 +13,20 @@
 #include <optional>
 
 /// \file
-/// How far a pose is from a goal as a function of the joints, to second order: what is lowered for
+/// Error of a pose relative to a goal as a function of the joints, to second order: minimised for
 /// the nearest pose to a goal out of reach.
 
 namespace duet::detail {
 
-/// ½|e|², e = [way; 2 log r] from the tip to a goal.
+/// Squared error ½|e|², e = [displacement of the origin; 2 log r] from the tip to a goal.
 template <int Room>
 struct squared_error {
-  small_vector<Room> slope;           ///< its gradient
-  small_matrix<Room, Room> curvature; ///< its second derivatives, the lower half
+  small_vector<Room> slope;           ///< gradient
+  small_matrix<Room, Room> curvature; ///< second derivatives (Hessian), the lower half
 };
 
-/// With [v_k; ω_k] the columns of J in `frame::hybrid` and e = [w; φ], the gradient is −Jᵀe, and
-/// the second derivatives are for j ≤ k
+/// Squared error to second order. With [v_k; ω_k] the columns of J in `frame::hybrid` and e = [w;
+/// φ], the gradient is −Jᵀe, and the second derivatives are for j ≤ k
 ///
 /// v_j·v_k − w·(ω_j × v_k) + ω_j·ω_k + c (φ × ω_j)·(ω_k × φ) − [j < k] ½ φ·(ω_j × ω_k),
 ///
@@ -37,7 +37,7 @@ template <int Room>
                                                    const small_twist& e) {
   const three_vector<double> w{e[0], e[1], e[2]}, phi{e[3], e[4], e[5]};
   const double angle = std::sqrt(dot(phi, phi)), half = angle / 2;
-  // Below, what is lost is less than the slope's rounding moves the solution.
+  // The error of the constant moves the solution less than round-off of the gradient does.
   const double c = angle > 1e-3 ? (1 - half / std::tan(half)) / (angle * angle) : 1. / 12;
   squared_error<Room> result;
   for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
@@ -57,8 +57,8 @@ template <int Room>
   return result;
 }
 
-/// Newton's step to where ½|e|² is least, of the coordinates that are not `held`; nothing where the
-/// curvature and λ together are not positive.
+/// Newton step to the minimum of ½|e|² in the coordinates that are not `held`; nothing if the
+/// curvature and λ together are not positive definite.
 template <int Room>
 [[nodiscard]] std::optional<small_vector<Room>>
 newton_step(const squared_error<Room>& error, const std::array<bool, std::size_t(Room)>& is_held,

@@ -14,23 +14,24 @@
 #include <string>
 
 /// \file
-/// What joints are to lower where the tip leaves them free.
+/// Null-space (secondary) objectives: functions of the joints that are minimised where the tip
+/// leaves the joints free.
 
 namespace duet {
 
 struct scene;
 struct no_scene;
 
-/// No wish.
+/// No objective.
 struct no_objective {};
 
-/// w/2 Σ (θᵢ − θ̂ᵢ)²: a preferred posture θ̂, of weight w.
+/// Preferred posture θ̂ of weight w as an objective: w/2 Σ (θᵢ − θ̂ᵢ)².
 template <class V>
 struct preferred_posture {
-  V posture = detail::zero_initialized<V>(); ///< θ̂, joint coordinates
-  double weight = 1;                         ///< w
+  V posture = detail::zero_initialized<V>(); ///< θ̂, preferred joint coordinates
+  double weight = 1;                         ///< w, weight of the posture
 
-  /// Its value at joint coordinates θ.
+  /// Value at joint coordinates θ.
   template <class X>
   [[nodiscard]] auto operator()(const X& theta) const {
     auto sum = (theta[0] - posture[0]) * (theta[0] - posture[0]);
@@ -39,7 +40,7 @@ struct preferred_posture {
     }
     return sum * (weight / 2);
   }
-  /// Its gradient at joint coordinates θ.
+  /// Gradient at joint coordinates θ.
   template <class X>
   [[nodiscard]] V gradient(const X& theta) const {
     return weight * (theta - posture);
@@ -50,7 +51,8 @@ preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
 
 namespace detail {
 
-/// Looks at types before anything is made of them, as compilers would complain of that first.
+/// Checks argument types before they are used, so that these messages precede other compiler
+/// errors.
 template <class Objective, class Scene>
 struct planning_types {
   static_assert(!std::same_as<Objective, scene>,
@@ -61,7 +63,7 @@ struct planning_types {
   static constexpr bool are_good = true;
 };
 
-/// \throws invalid_input for a posture of another number of joints, or what is not finite in it
+/// \throws invalid_input for a posture of another number of joints, and entries that are not finite
 template <class Objective>
 void require_objective(const Objective&, int) {}
 template <class V>
@@ -75,8 +77,10 @@ void require_objective(const preferred_posture<V>& wish, int joints) {
   require(std::isfinite(wish.weight), "duet: preferred_posture: its weight is ", wish.weight);
 }
 
-/// Says that what a caller was given is nan, and at which joint coordinates.
-/// \param what  "duet: follow_path: the objective is nan at the start,"
+/// Throws the error that an input is nan, with the joint coordinates at which it is.
+///
+/// \param what  beginning of the message, as "duet: follow_path: the objective is nan at the
+/// start,"
 /// \throws invalid_input
 template <class X>
 [[noreturn]] DUET_COLD void fail_not_a_number(const std::string& what, const X& joints) {
@@ -87,17 +91,17 @@ template <class X>
   raise(invalid_input(what + " joints (" + text + ")"));
 }
 
-/// Is an objective nan at joint coordinates?
+/// True if an objective is nan at joint coordinates.
 template <class Objective, class X>
 [[nodiscard]] bool is_nan_at(const Objective& objective, const X& joints) {
   if constexpr (requires { double(objective(joints)); }) {
     return std::isnan(double(objective(joints)));
-  } else { // what has a gradient alone is enough for `follow_path`
+  } else { // an objective that only has a gradient is enough for `follow_path`
     return false;
   }
 }
 
-/// The gradient of an objective: its own, or by dual numbers.
+/// Gradient of an objective: its own member, or automatic differentiation by dual numbers.
 template <class Objective, class X>
 [[nodiscard]] auto slope_of(const Objective& objective, const X& joints) {
   if constexpr (requires { objective.gradient(joints); }) {

@@ -18,20 +18,21 @@
 #include <vector>
 
 /// \file
-/// How planners keep away from obstacles, and links from each other.
+/// Collision avoidance of planners: distance constraints from obstacles and between links.
 
 namespace duet::detail {
 
-/// What keeps a step from θ at the margin of a scene: ∇d·Δ ≥ margin − d for each distance d within
-/// the horizon, with ∇d = Jᵀ [n; p × n] of the closest point p and the normal n there. Joints below
-/// both of two bodies move neither against the other, those between them one alone.
+/// Constraints that keep a step from θ at the margin of a scene: ∇d·Δ ≥ margin − d for each
+/// distance d within the influence distance, with ∇d = Jᵀ [n; p × n] of the closest point p and the
+/// normal n there. Joints below both of two bodies move neither relative to the other, those
+/// between them one alone.
 template <class C, class V>
 [[nodiscard]] std::vector<inequality<V>> margin_inequalities(const C& chain, const V& theta,
                                                              const scene& around) {
   std::vector<inequality<V>> result;
-  std::optional<decltype(jacobian(chain, theta, frame::spatial))> j; // where something is near
+  std::optional<decltype(jacobian(chain, theta, frame::spatial))> j; // if something is near
   for_each_proximity(chain, theta, around, [&](const chain_clearance<double>& nearest) {
-    if (nearest.distance - around.margin < around.horizon) {
+    if (nearest.distance - around.margin < around.influence_distance_offset) {
       if (!j) {
         j = jacobian(chain, theta, frame::spatial);
       }
@@ -58,14 +59,14 @@ template <class C, class V>
   return "body " + std::to_string(i) + (name.empty() ? "" : " (" + name + ")");
 }
 
-/// A chain among the obstacles of a scene.
+/// Model of a chain among the obstacles of a scene.
 template <class C>
 class chain_among_obstacles final : public chain_model<C> {
 public:
   using typename chain_model<C>::state;
   using typename chain_model<C>::vector;
 
-  /// \throws invalid_input for a scene that is none
+  /// \throws invalid_input for an invalid scene
   chain_among_obstacles(const C& chain, const scene& around)
       : chain_model<C>(chain), around_(around) {
     require_scene(chain, around);
@@ -75,7 +76,7 @@ public:
   [[nodiscard]] double clearance(const vector& theta) const override {
     return nearest(theta).distance / this->length;
   }
-  /// `margin_inequalities` of coordinates and lengths as planners count them.
+  /// `margin_inequalities` in the planner's coordinates and lengths.
   [[nodiscard]] std::vector<inequality<joint_vector<double, C::joints>>>
   margins(const vector& theta) const {
     auto result = margin_inequalities(
@@ -105,7 +106,7 @@ public:
       return {planned_joints<int(vector::size())>(*result.step, this->size),
               result.smallest_singular_value};
     }
-    // What cannot be done without obstacles either is not for them to answer for.
+    // A step that is infeasible without obstacles too is not blocked by them.
     return {std::nullopt, result.smallest_singular_value, !step({}).step};
   }
   void require_clearance(const vector& theta, double tolerance) const override {

@@ -14,13 +14,14 @@
 #include <vector>
 
 /// \file
-/// Which bodies of a mechanism can run into each other.
+/// Pairs of collision bodies of a mechanism to be checked for self-collision.
 
 namespace duet {
 
 namespace detail {
 
-/// Are two links one, fixed to each other, or connected by a single joint?
+/// Neighbourhood of links: true if two links are one, fixed to each other, or connected by a single
+/// joint.
 template <LinkedMechanism M>
 class link_neighbours {
 public:
@@ -61,34 +62,35 @@ public:
   }
 
 private:
-  std::vector<std::size_t> body_;  ///< to which link each is fixed
-  std::vector<std::size_t> below_; ///< and on which that one moves
+  std::vector<std::size_t> body_;  ///< link to which each is fixed
+  std::vector<std::size_t> below_; ///< link on which that one moves
 };
 
 } // namespace detail
 
-/// All pairs of bodies but those whose links are one, fixed to each other or connected by a single
-/// joint, and but those whose links have the names of an excluded pair: for `scene::pairs`.
+/// Pairs of bodies to be checked for self-collision, for `scene::pairs`: all except those whose
+/// links are one, fixed to each other or connected by a single joint, and those whose links have
+/// the names of an excluded pair.
 ///
 /// \param mechanism  a chain or a tree
-/// \param excluded   names of links, in either order, as `read_disabled_collisions` has them
-/// \throws invalid_input for bodies on links that `mechanism` has not
+/// \param excluded   names of links, in either order, as returned by `read_disabled_collisions`
+/// \throws invalid_input for bodies on links that `mechanism` lacks
 template <LinkedMechanism M>
-[[nodiscard]] std::vector<body_pair> pairs_apart(const M& mechanism,
-                                                 const std::vector<link_body>& bodies,
-                                                 const std::vector<link_pair>& excluded = {}) {
-  for (const link_body& each : bodies) {
+[[nodiscard]] std::vector<collision_pair>
+self_collision_pairs(const M& mechanism, const std::vector<collision_body>& bodies,
+                     const std::vector<link_pair>& excluded = {}) {
+  for (const collision_body& each : bodies) {
     static_cast<void>(mechanism.link(each.link));
   }
   const detail::link_neighbours<M> are_neighbours(mechanism);
-  const auto is_excluded = [&](const link_body& a, const link_body& b) {
+  const auto is_excluded = [&](const collision_body& a, const collision_body& b) {
     return are_neighbours(a.link, b.link) ||
            std::any_of(excluded.begin(), excluded.end(), [&](const link_pair& names) {
              return (names.first == a.name && names.second == b.name) ||
                     (names.first == b.name && names.second == a.name);
            });
   };
-  std::vector<body_pair> result;
+  std::vector<collision_pair> result;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t k = i + 1; k < bodies.size(); ++k) {
       if (!is_excluded(bodies[i], bodies[k])) {

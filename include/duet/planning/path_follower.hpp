@@ -16,11 +16,11 @@
 #include <vector>
 
 /// \file
-/// The planner behind `follow_path` and `plan_screw_motion`.
+/// Planner behind `follow_path` and `plan_screw_motion`.
 
 namespace duet::detail {
 
-/// Plans along a path, first without stopping; where that comes to an end, with motions in place.
+/// Planner along a path, first without stopping; if that ends early, with self-motions.
 template <int Room>
 class path_follower {
 public:
@@ -29,20 +29,20 @@ public:
   using waypoint = typename traveller::waypoint;
   using route = typename traveller::route;
 
-  /// As of `path_traveller`.
+  /// Arguments as in `path_traveller`.
   path_follower(const planning_model<Room>& model, const place_function& target,
                 std::vector<double> stops, const plan_options& options,
                 const typename traveller::slope_function& slope)
       : steps_(model, target, std::move(stops), options, slope) {}
 
   [[nodiscard]] route plan(const vector& start);
-  /// Nothing but the start.
+  /// Route that consists of the start alone.
   [[nodiscard]] route stay(const vector& start) const { return steps_.stay(start); }
   [[nodiscard]] int iterations() const {
-    return steps_.options.iterations - steps_.iterations_left;
+    return steps_.options.max_iterations - steps_.iterations_left;
   }
 
-  /// Why it ends: what is in the way of the first step that fails, of some that grow.
+  /// Termination reason: what blocks the first step that fails, of some that grow.
   [[nodiscard]] stop_reason reason(const route& x) const {
     if (steps_.is_at_end(x) || steps_.iterations_left <= 0) {
       return steps_.is_at_end(x) ? stop_reason::reached : stop_reason::iteration_limit;
@@ -55,7 +55,7 @@ public:
         continue;
       }
       const bool is_near_singularity = there.smallest_singular_value < 10 * damping_threshold;
-      return there.is_blocked || there.shortfall > steps_.solver.tolerance.length
+      return there.is_blocked || there.shortfall > steps_.solver.tolerance.translation
                  ? stop_reason::obstacle
              : (there.is_bounded || is_near_singularity) && is_stopped_by_limits(x, u)
                  ? stop_reason::joint_limit
@@ -66,9 +66,9 @@ public:
   }
 
 private:
-  /// Do limits end the way? Without them it leads beyond a parameter, from the end or from before
-  /// the singularity there, if need be by a motion in place; or it leaves them on its way through
-  /// that, where no joint is to spare.
+  /// True if limits end the route: without them it leads beyond a parameter, from the end or from
+  /// before the singularity there, if need be by a self-motion; or it leaves them on its path
+  /// through that, if the arm is not redundant.
   [[nodiscard]] bool is_stopped_by_limits(const route& x, double u) const {
     constexpr int enough = 100000;
     traveller free = steps_;
@@ -95,15 +95,16 @@ private:
     return smallest_singular_value_of(x.state.jacobian) < damping_threshold;
   }
 
-  /// A better route with motions in place, from a waypoint of one, or that one.
+  /// Better route with self-motions, from a waypoint of one, or that one.
   [[nodiscard]] route with_search(const route& before, std::size_t first) {
     route begin(before.waypoints.front());
     begin.waypoints.assign(before.waypoints.begin(),
                            before.waypoints.begin() + std::ptrdiff_t(first) + 1);
     route best = before;
     const double whole = steps_.options.search_step, enough = end_resolution();
-    // Ways beside a singularity may lead over it where the tip cannot go: then those that do not.
-    // Or they pass it so near that joints are led to its other side: then shorter steps.
+    // Continuations near a singularity may lead across it where the tip cannot follow; then search
+    // for those that do not. Or they pass it so near that joints get to its other side; then search
+    // with shorter steps.
     for (const auto& [singular, step] :
          {std::pair(damping_threshold, whole), std::pair(no_singular_value, whole),
           std::pair(damping_threshold, whole / 4), std::pair(damping_threshold, whole / 16)}) {
@@ -122,12 +123,12 @@ private:
     }
     return best;
   }
-  /// How near to its end a way is followed, by the parameter.
+  /// Parameter distance from its end to which a continuation is followed.
   [[nodiscard]] double end_resolution() const {
     return 100 * steps_.options.smallest_step * steps_.length;
   }
 
-  /// On along a way that a search has found, and beyond.
+  /// Route along a continuation that a search has found, and beyond.
   [[nodiscard]] route along(route x, const typename self_motion_search<Room>::configurations& way) {
     for (std::size_t i = 1; i < way.size(); ++i) {
       const std::size_t kept = x.waypoints.size();
@@ -147,8 +148,8 @@ private:
     return steps_.continued(std::move(x));
   }
 
-  /// From a waypoint on, a step apart, where the search looks: nearer to it where it is singular,
-  /// as ways out may be short.
+  /// Parameters of the search from a waypoint on, a step apart: nearer to the waypoint if it is
+  /// singular, as escapes may be short.
   [[nodiscard]] std::vector<double> search_parameters(const waypoint& from, double step) const {
     std::vector<double> result = {from.u};
     if (is_singular(from)) {
@@ -169,8 +170,8 @@ private:
     return result;
   }
 
-  /// On to a configuration from the singular one before it: the way back from there leads to it,
-  /// and the joints get to where that ends in place.
+  /// Continues to a configuration from the singular one before it: the path back from there is
+  /// tracked and reversed, and a self-motion leads to where it ends.
   [[nodiscard]] bool travel_back(route& x, const reachable<Room>& to) {
     route back({to.state, to.u, {}, smallest_singular_value_of(to.state.jacobian)});
     back.step = steps_.options.search_step;
@@ -190,7 +191,7 @@ private:
     return true;
   }
 
-  /// In place, to a configuration or as near to it as the joints get.
+  /// Self-motion to a configuration, or as near to it as the joints get.
   void arrive(route& x, const vector& aim) {
     for (double before = std::numeric_limits<double>::infinity();;) {
       const double left = norm(aim - x.back().state.theta);
@@ -208,7 +209,7 @@ private:
 template <int Room>
 typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
   route best = steps_.continued(stay(start));
-  // From where it got stuck, or else from the beginning, and there as far as ways lead.
+  // Search from where it got stuck, or else from the beginning, and there as far as possible.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
     if (steps_.is_at_end(best) || steps_.options.search_step == 0) {
       break;

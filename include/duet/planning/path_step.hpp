@@ -19,7 +19,8 @@
 
 namespace duet::detail {
 
-/// What takes joints away from their limits: up to a `step` that grows towards them.
+/// Joint-centring step (joint-limit avoidance): up to a `step` away from limits, growing towards
+/// them.
 template <class V>
 [[nodiscard]] V towards_middle(const V& theta, const V& lower, const V& upper, double step) {
   V result = theta;
@@ -32,41 +33,42 @@ template <class V>
   return result;
 }
 
-/// Poses by a parameter. Its type is forgotten, so that planners are compiled once for all.
+/// Poses as a function of a parameter. Its type is erased, so that planners are compiled once for
+/// all.
 using path_function = std::function<dual_quaternion<double>(double)>;
-/// Places of the tip by a parameter, lengths as planners count them.
+/// Poses of the tip as a function of a parameter, with lengths in the planner's unit.
 using place_function = std::function<tip_place(double)>;
 
-/// What became of an attempt to bring the tip to a pose.
+/// Result of an attempt to bring the tip to a pose.
 template <int Room>
 struct attempt {
   chain_state<Room> state;
-  pose_deviation left = {}; ///< to the pose
-  /// Of the Jacobians on the way, from above.
+  pose_error left = {}; ///< error of the tip relative to the pose
+  /// Smallest singular value of the Jacobians on the way, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
-  bool is_bounded = false; ///< did a limit hold a joint back?
-  bool is_blocked = false; ///< did obstacles leave no step?
-  double shortfall = 0;    ///< of the margin to obstacles
+  bool is_bounded = false; ///< true if a limit held a joint back
+  bool is_blocked = false; ///< true if obstacles left no step
+  double shortfall = 0;    ///< violation of the margin to obstacles
   int iterations = 0;
 
-  /// How many times the tolerance is what is left?
+  /// Ratio of the remaining error to the tolerance.
   [[nodiscard]] double excess(const pose_tolerance& tolerance) const {
-    return std::max(tolerance.times(left), shortfall / tolerance.length);
+    return std::max(tolerance.ratio(left), shortfall / tolerance.translation);
   }
   [[nodiscard]] bool is_within(const pose_tolerance& tolerance) const {
     return excess(tolerance) <= 1;
   }
 };
 
-/// Brings the tip of a chain to poses nearby, to a tolerance.
+/// Solver that brings the tip of a chain to poses nearby, to a tolerance.
 template <int Room>
 struct pose_solver {
   using vector = small_vector<Room>;
 
   const planning_model<Room>& model;
   pose_tolerance tolerance;
-  vector lower = model.lower, upper = model.upper; ///< the limits that count
-  double damped_below = damping_threshold; ///< singular values with which steps are damped first
+  vector lower = model.lower, upper = model.upper; ///< limits in use
+  double damped_below = damping_threshold; ///< singular value below which steps are damped first
 
   void without_limits() {
     for (std::ptrdiff_t i = 0; i < model.size; ++i) {
@@ -78,7 +80,7 @@ struct pose_solver {
   [[nodiscard]] bool is_endless(std::ptrdiff_t joint) const {
     return model.turns[std::size_t(joint)] && std::isinf(upper[joint] - lower[joint]);
   }
-  /// How far configurations are apart but for whole turns of joints without limits.
+  /// Difference of configurations except for full turns of joints without limits.
   [[nodiscard]] vector without_turns(vector apart) const {
     for (std::ptrdiff_t i = 0; i < model.size; ++i) {
       if (is_endless(i)) {
@@ -88,11 +90,11 @@ struct pose_solver {
     return apart;
   }
 
-  /// Steps without damping and nearer to targets: beside singularities joints that are to swing
-  /// would lag behind.
+  /// Switches to steps without damping and nearer to targets: near singularities joints that are to
+  /// swing would lag behind.
   void without_damping() {
     damped_below = swing_threshold;
-    tolerance = {1e-3 * tolerance.length, 1e-3 * tolerance.angle};
+    tolerance = {1e-3 * tolerance.translation, 1e-3 * tolerance.rotation};
   }
 
   [[nodiscard]] bool is_within_limits(const vector& theta) const {
@@ -104,9 +106,9 @@ struct pose_solver {
     return true;
   }
 
-  /// From a state nearby, the step nearest to `wish` that takes the tip to the target to first
-  /// order, and then Newton's method by least steps, without damping where that is in the way. None
-  /// leaves the limits.
+  /// Result of the step nearest to the desired joint step `wish` that takes the tip from a state
+  /// nearby to the target to first order, and then of Newton's method by least-norm steps, without
+  /// damping if that prevents convergence. No step leaves the limits.
   [[nodiscard]] attempt<Room> approach(const chain_state<Room>& from, const tip_place& target,
                                        const vector& wish) const {
     auto result = approach(from, target, wish, damped_below);
@@ -119,7 +121,7 @@ struct pose_solver {
     return result;
   }
 
-  /// How far do joints go to a target beside a state, to first order, without damping?
+  /// Length of the joint step to a target near a state, to first order, without damping.
   [[nodiscard]] double way_to(const chain_state<Room>& from, const tip_place& target) const {
     const auto step = bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
                                    upper - from.theta, {swing_threshold});
@@ -127,7 +129,7 @@ struct pose_solver {
   }
 
 private:
-  /// \param threshold  of singular values, below which steps are damped
+  /// \param threshold  singular value below which steps are damped
   [[nodiscard]] attempt<Room> approach(const chain_state<Room>& from, const tip_place& target,
                                        const vector& wish, double threshold) const {
     attempt<Room> result;
@@ -140,7 +142,7 @@ private:
       result.left = deviation_of(error);
       result.shortfall = model.shortfall(result.state.theta);
       const double size = result.excess(tolerance);
-      // What does not at least halve the error will not get there.
+      // An iteration that does not at least halve the error will not converge.
       if (size <= 1 || result.iterations == most || size > before / 2 ||
           !move(result, result.state, error, {}, threshold)) {
         return result;
@@ -149,7 +151,7 @@ private:
     }
   }
 
-  /// Rounding may have led beyond the limits.
+  /// Configuration clamped to the limits, which round-off may have violated.
   [[nodiscard]] vector within(vector theta) const {
     for (std::ptrdiff_t i = 0; i < theta.size(); ++i) {
       theta[i] = std::clamp(theta[i], lower[i], upper[i]);
@@ -157,8 +159,8 @@ private:
     return theta;
   }
 
-  /// The step nearest to `wish` that moves the tip by `e` to first order, from a state that may be
-  /// that of x; false where obstacles leave none.
+  /// Takes the step nearest to `wish` that moves the tip by `e` to first order, from a state that
+  /// may be that of x; false if obstacles leave none.
   [[nodiscard]] bool move(attempt<Room>& x, const chain_state<Room>& from, const small_twist& e,
                           const vector& wish, double threshold) const {
     ++x.iterations;
@@ -170,7 +172,7 @@ private:
     }
     if (!beside.is_free) {
       x.is_blocked = true;
-      x.left.length = std::numeric_limits<double>::infinity();
+      x.left.translation = std::numeric_limits<double>::infinity();
       return false;
     }
     const vector aim = within(from.theta + wish);

@@ -16,57 +16,57 @@
 #include <vector>
 
 /// \file
-/// Steps along a path, waypoint by waypoint.
+/// Tracking of a path, waypoint by waypoint.
 
 namespace duet::detail {
 
-/// Takes the joints along a path as far as that goes without motions in place.
+/// Moves the joints along a path as far as possible without self-motions.
 template <int Room>
 class path_traveller {
 public:
   using vector = small_vector<Room>;
-  /// The gradient of what the joints are to lower.
+  /// Gradient of the objective that the joints lower.
   using slope_function = std::function<vector(const vector&)>;
   struct waypoint {
     chain_state<Room> state;
     double u;
-    pose_deviation left = {};
-    /// Of the Jacobians on the way to it, as planners count lengths.
+    pose_error left = {};
+    /// Smallest singular value of the Jacobians on the way to it, in the planner's units.
     double smallest_singular_value = std::numeric_limits<double>::infinity();
   };
   struct route {
     std::vector<waypoint> waypoints;
-    double step = .01; ///< the next one, of the path
+    double step = .01; ///< next step, as a fraction of the path
 
     explicit route(const waypoint& start) : waypoints{start} {}
     [[nodiscard]] const waypoint& back() const { return waypoints.back(); }
   };
 
-  /// \param path        the tip's pose
-  /// \param parameters  those that become waypoints, increasing; the first and the last are the
-  ///                    ends of the path
-  /// \param slope       or nothing
+  /// \param path        pose of the tip as a function of the parameter
+  /// \param parameters  parameters that become waypoints, increasing; the first and the last are
+  /// the ends of the path
+  /// \param slope       gradient of the objective, or nothing
   path_traveller(const planning_model<Room>& model, const place_function& path,
                  std::vector<double> parameters, const plan_options& how,
                  const slope_function& slope)
       : solver{model, model.tolerance(how.tolerance)}, target(path), stops(std::move(parameters)),
-        options(how), length(stops.back() - stops.front()), iterations_left(how.iterations),
+        options(how), length(stops.back() - stops.front()), iterations_left(how.max_iterations),
         deviation_(model.tolerance(how.deviation)), slope_(slope) {}
 
   pose_solver<Room> solver;
   const place_function& target;
   std::vector<double> stops;
   plan_options options;
-  double length; ///< of the path, by its parameter
+  double length; ///< length of the path's parameter interval
   int iterations_left;
 
-  /// Nothing but the start.
+  /// Route that consists of the start alone.
   [[nodiscard]] route stay(const vector& start) const {
     return route({solver.model.at(start), stops.front()});
   }
   [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops.back(); }
 
-  /// As far as possible without motions in place.
+  /// Route continued as far as possible without self-motions.
   [[nodiscard]] route continued(route best) {
     go_on(best);
     for (route before = best; before.waypoints.size() > 1 && !is_at_end(best);) {
@@ -81,16 +81,18 @@ public:
     }
   }
 
-  /// How many times the deviation is the tip off the path half way between two waypoints?
+  /// Ratio of the tip's error to the deviation at a fraction `part` of the step between two
+  /// waypoints.
   [[nodiscard]] double excess_between(const waypoint& a, const waypoint& b,
                                       double part = .5) const {
     const vector between = (1 - part) * a.state.theta + part * b.state.theta;
-    const pose_deviation off =
-        deviation_between(solver.model.at(between).tip, target((1 - part) * a.u + part * b.u));
-    return std::max(deviation_.times(off), solver.model.shortfall(between) / deviation_.length);
+    const pose_error off =
+        pose_error_between(solver.model.at(between).tip, target((1 - part) * a.u + part * b.u));
+    return std::max(deviation_.ratio(off),
+                    solver.model.shortfall(between) / deviation_.translation);
   }
 
-  /// As far as where a route last came near a singularity, if it did.
+  /// Route up to where it last came near a singularity, if it did.
   [[nodiscard]] route before_singularity(route x) const {
     const auto drop_while = [&](bool is_near) {
       while (x.waypoints.size() > 1 &&
@@ -103,7 +105,7 @@ public:
     return x;
   }
 
-  /// On without damping.
+  /// Route continued without damping.
   [[nodiscard]] route undamped(route x) {
     const pose_solver<Room> damped = solver;
     solver.without_damping();
@@ -114,20 +116,21 @@ public:
     return x;
   }
 
-  /// What joints do with the freedom that the tip leaves them.
+  /// Preferences of the joints in the null space of the Jacobian, which the tip leaves free.
   struct wishes {
-    const vector* aim = nullptr; ///< where they should be at the end
-    bool lowers = false;         ///< do they lower the objectives?
+    const vector* aim = nullptr; ///< configuration to reach at the end
+    bool lowers = false;         ///< true if they lower the objectives
   };
 
-  /// On to the parameter `end`, in steps that keep the tip near the path between waypoints too.
+  /// Tracks the path up to the parameter `end`, in steps that keep the tip near it between
+  /// waypoints too.
   ///
-  /// \param part  how much of the path that counts for
-  /// \return false where there is no going on
+  /// \param part  fraction of the path that this counts for
+  /// \return false if there is no continuation
   [[nodiscard]] bool travel(route& x, double end, double part, const wishes& have);
 
 private:
-  /// As far as possible without stopping.
+  /// Continues as far as possible without stopping.
   void go_on(route& x) {
     for (const double stop : stops) {
       if (stop > x.back().u && !travel(x, stop, (stop - x.back().u) / length, {.lowers = true})) {
@@ -136,14 +139,14 @@ private:
     }
   }
 
-  /// What lowers the objectives.
+  /// Descent step of the objectives.
   [[nodiscard]] vector downhill(const vector& theta, double step) const {
     const vector centre =
         towards_middle(theta, solver.model.lower, solver.model.upper, options.centring * step);
     return slope_ ? centre - step * slope_(theta) : centre;
   }
 
-  /// Do the joints move far in a step along the path that is as short as that?
+  /// True if the joints move far in a step along the path that is as short as that.
   [[nodiscard]] bool is_swinging(const waypoint& at, double step) const {
     constexpr double least = 1e-12;
     return solver.damped_below == swing_threshold && step > least &&
@@ -171,7 +174,7 @@ bool path_traveller<Room>::travel(route& x, double end, double part, const wishe
     auto there = solver.approach(here.state, target(u), wish);
     iterations_left -= there.iterations;
     if (have.lowers && there.smallest_singular_value < damping_threshold) {
-      // A wish takes the joints to where the path leads no further.
+      // The objective may lead the joints to where the path does not continue.
       there = solver.approach(here.state, target(u), {});
       iterations_left -= there.iterations;
     }
@@ -179,14 +182,14 @@ bool path_traveller<Room>::travel(route& x, double end, double part, const wishe
     if (there.is_within(solver.tolerance)) {
       const waypoint on{there.state, u, there.left, there.smallest_singular_value};
       const double excess = excess_between(here, on);
-      // Between waypoints the deviation grows with the square of the step.
+      // The deviation between waypoints grows with the square of the step.
       change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
       if (x.step < options.smallest_step && norm(there.state.theta - theta) < least_swing) {
-        change = .25;             // within tolerance of two parameters, but no way on
-      } else if (excess <= .95 || // half way is not quite where it is largest
+        change = .25;             // within tolerance of two parameters, but no progress
+      } else if (excess <= .95 || // not quite largest half way
                  (excess <= 1 && there.smallest_singular_value < 3 * damping_threshold &&
                   excess_between(here, on, .25) <= 1 && excess_between(here, on, .75) <= 1)) {
-        // Beside a singularity steps that are just allowed may lead straight on, shorter ones not.
+        // Near a singularity steps that are just allowed may lead straight on, shorter ones not.
         way = next;
         x.waypoints.push_back(on);
       }

@@ -12,7 +12,7 @@ namespace duet {
 
 namespace detail {
 
-/// The shorter screw motion between two poses (N19), by τ.
+/// Shorter screw motion between two poses (N19), as a function of τ.
 template <class T>
 [[nodiscard]] path_function screw_path(const dual_quaternion<T>& first,
                                        const dual_quaternion<T>& last) {
@@ -32,19 +32,19 @@ DUET_COMPILED_TEMPLATE path_function screw_path(const dual_quaternion<double>&,
 
 } // namespace detail
 
-/// Joint coordinates that take the tip of a chain from where it is at `start` to the pose `goal`
-/// along the screw motion between the two (N19), the shorter way round: `follow_path` along it.
+/// Joint path that moves the tip of a chain from its pose at `start` to the pose `goal` along the
+/// shorter screw motion between the two (N19): `follow_path` along it.
 ///
-/// What the notes' algorithm (N24, `printed_screw_plan`) leaves open: targets are taken from the
-/// motion of the beginning, so nothing drifts; each is met exactly and within the limits; the step
-/// in τ follows from how far the tip is from the screw half way between waypoints; and the arm
-/// moves in place where it would get stuck otherwise.
+/// Resolves what the notes' algorithm (N24, `printed_screw_plan`) leaves open: targets are taken
+/// from the initial motion, so nothing drifts; each is met exactly and within the limits; the step
+/// in τ follows from the distance of the tip from the screw half way between waypoints; and the arm
+/// makes a self-motion where it would get stuck otherwise.
 ///
-/// \return the plan; where `reason` is not `reached`, the part of it up to there. It is the start
-/// alone where the goal is certainly `out_of_reach`: farther away than the links and sliding joints
-/// between the first joint and the last are long
-/// \throws invalid_input for a start outside the limits and for a goal that is no pose, and as
-///         `follow_path`
+/// \return the plan; unless `reason` is `reached`, the part of it up to there. It is the start
+/// alone if the goal is certainly `out_of_reach`: farther away than the total length of the links
+/// and prismatic joints between the first joint and the last
+/// \throws invalid_input for a start outside the limits and for a goal that is not a pose, and as
+/// `follow_path`
 template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] motion_plan<C::joints>
 plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<double>& goal,

@@ -24,24 +24,24 @@
 #endif
 
 /// \file
-/// What planners see of a chain and of what is around it. Nothing in a planner depends on the type
-/// of the chain but the few functions here, so that compilers make it once for all chains.
+/// Models of a chain and its surroundings for planners. Only the few functions here depend on the
+/// type of the chain, so that planners are compiled once for all chains.
 
 namespace duet {
 
-/// No obstacles.
+/// Scene without obstacles.
 struct no_scene {};
 
 } // namespace duet
 
 namespace duet::detail {
 
-/// What stands for the number N of joints of a chain in planners: 8, 16, 32 … are room enough.
+/// Capacity of a planner's vectors for a chain of N joints: 8, 16, 32 …
 [[nodiscard]] constexpr int joint_room(int n) {
   return int(std::bit_ceil(unsigned(std::max({8, n, -n}))));
 }
 
-/// Coordinates as the planner's own. Those of joints that the chain has not got are 0 and stay it.
+/// Coordinates in a planner's vector; entries beyond the joints of the chain are 0 and remain so.
 template <int Room, class X>
 [[nodiscard]] small_vector<Room> planned_joints(const X& theta, int size) {
   small_vector<Room> result;
@@ -51,7 +51,7 @@ template <int Room, class X>
   return result;
 }
 
-/// A configuration of a chain, with its tip's place and Jacobian in `frame::hybrid`.
+/// Configuration of a chain, with its tip's pose and Jacobian in `frame::hybrid`.
 template <int Room>
 struct chain_state {
   small_vector<Room> theta;
@@ -59,47 +59,47 @@ struct chain_state {
   small_matrix<6, Room> jacobian;
 };
 
-/// How far a chain can stretch: the origin of the first joint stands still in the base, that of the
-/// last in the tip's frame, and between the two are links and sliding joints.
+/// Reach of a chain: the origin of the first joint is fixed in the base, that of the last in the
+/// tip's frame, and between the two are links and prismatic joints.
 struct chain_reach {
-  three_vector<double> first; ///< the origin of the first joint
-  three_vector<double> back;  ///< of the last one, in the tip's frame
-  double links = 0, tool = 0; ///< lengths
-  double travel = 0;          ///< of sliding joints
-  double limited_travel = 0;  ///< of those that have limits
+  three_vector<double> first; ///< origin of the first joint in the base
+  three_vector<double> back;  ///< origin of the last joint in the tip's frame
+  double links = 0, tool = 0; ///< total lengths
+  double travel = 0;          ///< total displacement of prismatic joints
+  double limited_travel = 0;  ///< displacement of those that have limits
   bool has_joints = false;
 
-  /// Is it certain that no pose of the tip is as near to the goal as that?
+  /// True if certainly no pose of the tip is within the tolerance of the goal.
   [[nodiscard]] bool is_beyond(const tip_place& goal, const pose_tolerance& tolerance) const {
     const double distance = length_of(goal.point(back) - first);
-    return has_joints &&
-           distance > (links + travel) * (1 + 1e-12) + tolerance.length + tolerance.angle * tool;
+    return has_joints && distance > (links + travel) * (1 + 1e-12) + tolerance.translation +
+                                        tolerance.rotation * tool;
   }
-  /// A length typical of the chain, 1 where there is none in its table. In other units it is that
-  /// many times as large.
+  /// Characteristic length of the chain, 1 if there is none in its table; proportional to the
+  /// numbers in which lengths are given.
   [[nodiscard]] double scale() const {
     const double all = links + tool + limited_travel;
     return all > 0 ? all : 1;
   }
-  /// The reach with lengths in units of one that is given.
+  /// Reach with lengths in units of a given one.
   [[nodiscard]] chain_reach in_units_of(double length) const {
     const double s = 1 / length;
     return {s * first, s * back, s * links, s * tool, s * travel, s * limited_travel, has_joints};
   }
 };
 
-/// A step in the presence of obstacles.
+/// Step in the presence of obstacles.
 template <int Room>
 struct step_beside_obstacles {
-  std::optional<small_vector<Room>> step; ///< nothing where they leave none
-  /// Of the Jacobian, from above.
+  std::optional<small_vector<Room>> step; ///< empty if obstacles leave none
+  /// Smallest singular value of the Jacobian, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
-  bool is_free = true; ///< is there nothing near, or nothing that obstacles could help with?
+  bool is_free = true; ///< true if nothing is near, or the step fails without obstacles too
 };
 
-/// A chain and nothing around it. Lengths are counted in units of the chain's own, those that
-/// joints slide and those of Jacobians, too: what planners do does not depend on the unit of
-/// length. Here alone they are turned into others.
+/// Model of a chain without obstacles. Lengths, also displacements of prismatic joints and those in
+/// Jacobians, are relative to the chain's characteristic length, so that planning does not depend
+/// on the unit of length. They are converted nowhere else.
 template <int Room>
 class planning_model {
 public:
@@ -145,7 +145,8 @@ public:
   }
   virtual ~planning_model() = default;
 
-  /// From and to what a user counts.
+  /// Conversions from and to the user's units.
+  ///
   /// \param theta  a vector of any kind
   template <class X>
   [[nodiscard]] vector joints(const X& theta) const {
@@ -161,7 +162,7 @@ public:
     }
     return theta;
   }
-  /// Rounding may have led beyond the limits.
+  /// Joints in the user's units, clamped to the limits, which round-off may have violated.
   [[nodiscard]] vector given_joints_within_limits(const vector& theta) const {
     vector result = given_joints(theta);
     for (int i = 0; i < size; ++i) {
@@ -185,19 +186,19 @@ public:
     return j;
   }
   [[nodiscard]] pose_tolerance tolerance(const pose_tolerance& x) const {
-    return {x.length / length, x.angle};
+    return {x.translation / length, x.rotation};
   }
-  [[nodiscard]] pose_deviation given_deviation(const pose_deviation& x) const {
-    return {length * x.length, x.angle};
+  [[nodiscard]] pose_error given_deviation(const pose_error& x) const {
+    return {length * x.translation, x.rotation};
   }
 
   int size;          ///< number of joints
-  double length = 1; ///< of the chain, in a user's units
-  vector unit;       ///< of each coordinate, in a user's
+  double length = 1; ///< characteristic length of the chain, in the user's unit
+  vector unit;       ///< unit of each coordinate, in the user's
   vector lower, upper;
   std::array<bool, std::size_t(Room)> turns{}, slides{};
   chain_reach reach;
-  double margin = 0; ///< to obstacles
+  double margin = 0; ///< minimum distance from obstacles
 
   virtual void set(state& of, const vector& theta) const = 0;
   [[nodiscard]] state at(const vector& theta) const {
@@ -206,30 +207,31 @@ public:
     return result;
   }
 
-  /// The distance of the bodies of the chain from obstacles.
+  /// Clearance: distance of the bodies of the chain from obstacles.
   [[nodiscard]] virtual double clearance(const vector&) const {
     return std::numeric_limits<double>::infinity();
   }
-  /// \throws invalid_input where obstacles are closer than their margin
+  /// \throws invalid_input if obstacles are closer than their margin
   virtual void require_clearance(const vector&, double /*tolerance*/) const {}
-  /// How much of that margin is missing.
+  /// Margin violation: the part of the margin that is missing.
   [[nodiscard]] double shortfall(const vector& theta) const {
     return std::max(0.0, margin - clearance(theta));
   }
-  /// The step nearest to `wish` that moves the tip by `e` to first order and keeps the margin.
+  /// Step nearest to the desired joint step `wish` that moves the tip by `e` to first order and
+  /// keeps the margin.
   [[nodiscard]] virtual step_beside_obstacles<Room>
   step_beside(const state& /*from*/, const small_twist& /*e*/, const vector& /*wish*/) const {
     return {};
   }
 
 protected:
-  vector row_unit_; ///< of the coordinates by the length
+  vector row_unit_; ///< units of the coordinates relative to the length
 
 private:
   vector given_lower_, given_upper_;
 };
 
-/// A chain of the type C.
+/// Model of a chain of the type C.
 template <class C>
 class chain_model : public planning_model<joint_room(C::joints)> {
 public:
@@ -254,7 +256,7 @@ void chain_model<C>::set(state& of, const vector& theta) const {
   of.tip.translation = 1 / this->length * of.tip.translation;
   for (std::size_t i = 0; i < of.jacobian.columns.size(); ++i) {
     auto& column = of.jacobian.columns[i].values;
-    const double part = this->row_unit_.values[i]; // of joints that slide ω is 0
+    const double part = this->row_unit_.values[i]; // ω of prismatic joints is 0
     column[0] *= part;
     column[1] *= part;
     column[2] *= part;
@@ -262,13 +264,13 @@ void chain_model<C>::set(state& of, const vector& theta) const {
 }
 
 #ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class chain_model<compiled_chain<robots::panda_arm>>;
-DUET_COMPILED_TEMPLATE class chain_model<compiled_chain<robots::iiwa14_arm>>;
-DUET_COMPILED_TEMPLATE class chain_model<compiled_chain<robots::ur5e_arm>>;
-DUET_COMPILED_TEMPLATE class chain_model<compiled_chain<robots::baxter_left_arm>>;
+DUET_COMPILED_TEMPLATE class chain_model<static_chain<robots::panda_arm>>;
+DUET_COMPILED_TEMPLATE class chain_model<static_chain<robots::iiwa14_arm>>;
+DUET_COMPILED_TEMPLATE class chain_model<static_chain<robots::ur5e_arm>>;
+DUET_COMPILED_TEMPLATE class chain_model<static_chain<robots::baxter_left_arm>>;
 DUET_COMPILED_TEMPLATE class chain_model<serial_chain<6>>;
 DUET_COMPILED_TEMPLATE class chain_model<serial_chain<7>>;
-DUET_COMPILED_TEMPLATE class chain_model<serial_chain<-16>>; // of URDF
+DUET_COMPILED_TEMPLATE class chain_model<bounded_chain<16>>; // of URDF
 #endif
 
 } // namespace duet::detail

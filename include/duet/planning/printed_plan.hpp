@@ -13,24 +13,24 @@
 #include <string>
 
 /// \file
-/// The planner of the lecture notes (N24), and what their notes 1 and 2 make of it (N25). The copy
-/// of the notes has lost the letter of its first three steps; they are as N19, N22 and N23 have
-/// them.
+/// Planner of the lecture notes as printed (N24), and its variants by their notes 1 and 2 (N25).
+/// The copy of the notes has lost the letter of its first three steps; they are as N19, N22 and N23
+/// have them.
 
 namespace duet {
 
-/// Settings of `printed_screw_plan` and `printed_path_plan`.
+/// Options of `printed_screw_plan` and `printed_path_plan`.
 struct printed_plan_options {
-  double tau = .01;                ///< of the small step of ScLERP; paths given by poses have none
-  double beta = 1;                 ///< N23
-  pose_tolerance tolerance = 1e-4; ///< how close the tip must come
-  int iterations = 10000;          ///< the most steps
+  double tau = .01;                ///< step of ScLERP; not used for paths given by poses
+  double beta = 1;                 ///< step factor β of N23
+  pose_tolerance tolerance = 1e-4; ///< maximum error of the tip at the goal
+  int max_iterations = 10000;      ///< maximum number of steps
 };
 
 namespace detail {
 
 /// Steps of N23 towards `next(k, here)`, k = 1, 2, …, until the tip is close to `goal` after
-/// `fewest` steps or more. `keep(k, joints, pose)` is told every waypoint.
+/// `fewest` steps or more. `keep(k, joints, pose)` is called with every waypoint.
 template <class C, class Next, class Keep>
 [[nodiscard]] stop_reason printed_steps(const C& chain, joint_vector<double, C::joints> theta,
                                         const dual_quaternion<double>& goal, int fewest,
@@ -39,11 +39,11 @@ template <class C, class Next, class Keep>
   dual_quaternion<double> here = chain.pose(theta);
   keep(0, theta, here);
   for (int k = 0;; ++k) {
-    const pose_deviation left = deviation_between(here, goal);
-    if (k >= fewest && options.tolerance.times(left) <= 1) {
+    const pose_error left = pose_error_between(here, goal);
+    if (k >= fewest && options.tolerance.ratio(left) <= 1) {
       return stop_reason::reached;
     }
-    if (k == options.iterations) {
+    if (k == options.max_iterations) {
       return stop_reason::iteration_limit;
     }
     bool is_singular = false;
@@ -65,17 +65,18 @@ template <class C, class Next, class Keep>
 
 } // namespace detail
 
-/// N24, as the notes have it: (1) from the start's pose A_s (2) one step of ScLERP towards the
-/// goal, (3) the joints after it by N23, (4) their pose is the next A_s, (5) until it is close to
-/// the goal. By their note 2 this is inverse kinematics too, from any start: the last joints are
-/// the answer.
+/// Planner N24 as printed: (1) from the start's pose A_s (2) one step of ScLERP towards the goal,
+/// (3) the joints after it by N23, (4) their pose is the next A_s, (5) until it is close to the
+/// goal. With note 2 this is inverse kinematics too, from any start: the last joints are the
+/// result.
 ///
 /// For study. Every step starts where the last one ended, so the path drifts from the screw motion
-/// (`deviations`, from its nearest pose); limits of joints are looked at only to stop; and with a
-/// fixed τ of what is left the goal is approached slower and slower: each step leaves about 1 − βτ
-/// of the way, so β does what τ does. \throws invalid_input for a start outside the limits and for
-/// a goal that is no pose
+/// (`deviations`, from its nearest pose); joint limits are only checked to stop; and with a fixed τ
+/// of what is left the goal is approached slower and slower: each step leaves about 1 − βτ of the
+/// motion, so β does what τ does.
+///
 /// \return `motion_plan<N>`
+/// \throws invalid_input for a start outside the limits and for a goal that is not a pose
 template <SerialChain C, VectorLike Start>
 [[nodiscard]] auto printed_screw_plan(const C& chain, const Start& start,
                                       const dual_quaternion<double>& goal,
@@ -92,22 +93,24 @@ template <SerialChain C, VectorLike Start>
       [&](int k, const auto& joints, const dual_quaternion<double>& here) {
         const auto nearest = nearest_on_screw(first, motion, here, 1);
         detail::add_waypoint(plan, chain, joints, here, nearest.tau,
-                             deviation_between(nearest.pose, here));
+                             pose_error_between(nearest.pose, here));
         plan.iterations = k;
       });
   return plan;
 }
 
-/// N25, note 1: N24 along a path given by poses, the interpolation left out. One step of N23
-/// towards each pose in turn, from wherever the last step ended, and further steps towards the last
-/// pose until the tip is close to it. `tau` of a waypoint is the number of the pose it was to
-/// reach, 0 at the start; `deviations` are from that pose, at the start from the first one.
+/// Planner N24 along a path given by poses, without the interpolation (N25, note 1). One step of
+/// N23 towards each pose in turn, from wherever the last step ended, and further steps towards the
+/// last pose until the tip is close to it. `tau` of a waypoint is the number of its target pose, 0
+/// at the start; `deviations` are from that pose, at the start from the first one.
 ///
-/// For study; with limits as in `printed_screw_plan`. A step leaves 1 − β of the way, so with steps
-/// of the length h the tip lags (1 − β)/β h behind; it follows for 0 < β < 2, with β = 1 to the
-/// second order of h. \throws invalid_input for a start outside the limits, for no poses, and for
-/// one that is none
+/// For study; with limits as in `printed_screw_plan`. A step leaves 1 − β of the motion, so with
+/// steps of the length h the tip lags (1 − β)/β h behind; it follows for 0 < β < 2, with β = 1 to
+/// the second order of h.
+///
 /// \return `motion_plan<N>`
+/// \throws invalid_input for a start outside the limits, for no poses, and for one that is not a
+/// pose
 template <SerialChain C, VectorLike Start>
 [[nodiscard]] auto printed_path_plan(const C& chain, const Start& start,
                                      std::span<const dual_quaternion<double>> path,
@@ -124,7 +127,7 @@ template <SerialChain C, VectorLike Start>
       [&](int k, const dual_quaternion<double>&) { return path[target(k)]; },
       [&](int k, const auto& joints, const dual_quaternion<double>& here) {
         detail::add_waypoint(plan, chain, joints, here, k == 0 ? 0. : double(target(k) + 1),
-                             deviation_between(path[target(k)], here));
+                             pose_error_between(path[target(k)], here));
         plan.iterations = k;
       });
   return plan;

@@ -11,22 +11,24 @@
 #include <vector>
 
 /// \file
-/// The step that lowers a quadratic function most under linear equations and inequalities.
+/// Quadratic programming: the step that minimises a quadratic function under linear constraints.
 
 namespace duet::detail {
 
-/// What a step must keep to.
+/// Equality and inequality constraints of a step.
 template <class V>
 struct step_conditions {
   std::vector<inequality<V>> equations;    ///< normal·x = bound
   std::vector<inequality<V>> inequalities; ///< normal·x ≥ bound
 };
 
-/// Orthonormal vectors, and what is orthogonal to them.
+/// Orthonormal vectors (Gram–Schmidt), and the projection onto their orthogonal complement.
 template <class V>
 class orthonormal_rows {
 public:
-  /// Takes in a vector, unless it is a sum of those taken in. \return how long its new part is
+  /// Adds a vector, unless it is linearly dependent on those added before.
+  ///
+  /// \return length of its new component, 0 for none
   double add(const V& row) {
     const V rest = (*this)(row);
     const double length = rest.norm();
@@ -37,9 +39,9 @@ public:
     return is_new ? length : 0;
   }
   [[nodiscard]] const V& back() const { return rows_.back(); }
-  /// The part of x that is orthogonal to all of them.
+  /// Component of x that is orthogonal to all of them.
   [[nodiscard]] V operator()(V x) const {
-    for (int twice = 0; twice < 2; ++twice) { // for the rounding of the first time
+    for (int twice = 0; twice < 2; ++twice) { // the second pass removes round-off
       for (const V& row : rows_) {
         x -= row.dot(x) * row;
       }
@@ -51,14 +53,14 @@ private:
   std::vector<V> rows_;
 };
 
-/// The x that keeps the conditions with the least slope·x + ½ xᵀ B x, B = `curvature` positive
-/// definite; nothing where no x does. With B = L Lᵀ and y = Lᵀx + L⁻¹ slope that is the least y.
+/// Minimiser x of slope·x + ½ xᵀ B x under the constraints, B = `curvature` positive definite;
+/// nothing if no x satisfies them. With B = L Lᵀ and y = Lᵀx + L⁻¹ slope that is the least y.
 template <class V, class M>
 [[nodiscard]] std::optional<V> quadratic_step(const V& slope, const M& curvature,
                                               const step_conditions<V>& conditions) {
   const cholesky<M> factors(curvature);
   orthonormal_rows<V> kept;
-  V aim = V::Zero(slope.size()); // the least that keeps the equations
+  V aim = V::Zero(slope.size()); // the least that satisfies the equations
   for (const inequality<V>& each : conditions.equations) {
     const V row = factors.forward(each.normal);
     const double missing = each.bound - row.dot(aim), length = kept.add(row);

@@ -9,15 +9,18 @@
 #include <Eigen/Core>
 
 /// \file
-/// The joints' rates for a given rate of the tip, of least norm (N22), and the step that follows
-/// from them (N23).
+/// Resolved motion rate: joint velocities of least norm for a given velocity of the tip (N22), and
+/// the step that follows from them (N23).
 
 namespace duet {
 
-/// N22: B = Jᵀ(J Jᵀ)⁻¹ J2 of a chain's tip, n × 7: Θ̇ = B γ̇ are the least joint rates that move the
-/// tip with the rate γ̇ of γ = [t; α]. J is the spatial Jacobian, and "least" is |Θ̇|. Relative
-/// errors are about cond(J) ε, as long as cond(J)² ε is small.
-/// \throws invalid_input where J is not of full row rank, in any lane of batches, and as `jacobian`
+/// Resolved rate matrix (N22): B = Jᵀ(J Jᵀ)⁻¹ J2 of a chain's tip, n × 7: Θ̇ = B γ̇ are the joint
+/// velocities of least norm |Θ̇| that move the tip with the rate γ̇ of γ = [t; α]. J is the spatial
+/// Jacobian. Relative errors are about cond(J) ε, cond the condition number, as long as cond(J)² ε
+/// is small.
+///
+/// \throws invalid_input if J does not have full row rank, in any lane of batches, and as
+/// `jacobian`
 template <SerialChain C, VectorLike X>
 [[nodiscard]] auto resolved_rate_matrix(const C& chain, const X& theta) {
   using S = detail::chain_scalar<C, X>;
@@ -27,15 +30,17 @@ template <SerialChain C, VectorLike X>
   Eigen::Matrix<S, (C::joints > 0 ? C::joints : Eigen::Dynamic), 7, Eigen::ColMajor,
                 (C::joints > 0 ? C::joints : -C::joints), 7>
       b = m.transpose().lazyProduct(solve(gram, rates));
-  // J Jᵀ has the square of J's condition. What J B itself leaves of J2, solved for once more, takes
-  // that back: the error is that of a QR decomposition of Jᵀ (corrected seminormal equations).
+  // J Jᵀ has the squared condition number of J. Solving once more for the residual of J B = J2
+  // takes that back: the error is that of a QR decomposition of Jᵀ (corrected seminormal
+  // equations).
   const Eigen::Matrix<S, 6, 7> rest = rates - m.lazyProduct(b);
   b += m.transpose().lazyProduct(solve(gram, rest));
   return b;
 }
 
-/// N23: Θ(t+h) = Θ(t) + β B (γ(t+h) − γ(t)) towards a pose near that of the tip, α(t+h) taken with
-/// the sign nearer to α(t).
+/// Resolved-rate step (N23): Θ(t+h) = Θ(t) + β B (γ(t+h) − γ(t)) towards a pose near that of the
+/// tip, α(t+h) taken with the sign nearer to α(t).
+///
 /// \throws invalid_input as `resolved_rate_matrix`
 template <SerialChain C, VectorLike X, class T>
 [[nodiscard]] auto resolved_step(const C& chain, const X& theta, const dual_quaternion<T>& next,

@@ -14,7 +14,7 @@
 #include <vector>
 
 /// \file
-/// Plans as files.
+/// Plans and trajectories as CSV files.
 
 namespace duet {
 
@@ -39,9 +39,10 @@ void append_components(std::vector<double>& row, const V& values) {
 
 } // namespace detail
 
-/// Writes the waypoints of a plan as CSV. With all digits and independently of the locale; the
-/// whole file or none: τ, joint coordinates, the tip's position and rotation, its deviations.
-/// Units in the header are those of robots in metres.
+/// Writes the waypoints of a plan as CSV, with all digits and independently of the locale; the
+/// whole file or none: τ, joint coordinates, the tip's position and rotation, its deviations. Units
+/// in the header are those of robots in metres.
+///
 /// \throws invalid_input for a plan without waypoints, file_error
 template <int N>
 void save_plan(const std::string& path, const motion_plan<N>& plan) {
@@ -53,14 +54,16 @@ void save_plan(const std::string& path, const motion_plan<N>& plan) {
     std::vector<double> row{plan.tau[k]};
     detail::append_components(row, plan.joints[k]);
     detail::append_components(row, pose_coordinates(plan.poses[k]));
-    row.push_back(plan.deviations[k].length);
-    row.push_back(plan.deviations[k].angle);
+    row.push_back(plan.deviations[k].translation);
+    row.push_back(plan.deviations[k].rotation);
     text += csv_line(row);
   }
   write_file(path, text);
 }
 
-/// Writes joint coordinates, rates and accelerations at times `step` apart and at the end.
+/// Writes joint coordinates, velocities and accelerations as CSV at times `step` apart and at the
+/// end.
+///
 /// \throws invalid_input for a step that is not positive, file_error
 template <int N>
 void save_trajectory(const std::string& path, const joint_trajectory<N>& trajectory, double step) {

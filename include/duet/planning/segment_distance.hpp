@@ -12,12 +12,12 @@
 #include <limits>
 
 /// \file
-/// Where a segment is nearest to what is round: points, spheres, capsules, and to half-spaces. For
+/// Nearest points of a segment and round shapes (points, spheres, capsules) or half-spaces. For
 /// those who extend duet.
 
 namespace duet::detail {
 
-/// The signed distance of a point and its gradient.
+/// Signed distance of a point and its gradient.
 template <class T>
 struct point_distance {
   T distance;
@@ -29,7 +29,7 @@ template <class T>
   return cross(components(a), components(b));
 }
 
-/// A unit vector across both, or across one where the other has no length or the same direction:
+/// Unit vector perpendicular to both, or to one if the other has no length or the same direction:
 /// constant.
 template <class T>
 [[nodiscard]] vector3<T> across(const vector3<T>& a, const vector3<T>& b) {
@@ -57,7 +57,7 @@ template <class T>
   return innermost(t) < 0 ? T(0) : innermost(t) > 1 ? T(1) : t;
 }
 
-/// Which point from + t · along, 0 ≤ t ≤ 1, is nearest to x.
+/// Parameter t of the point from + t · along, 0 ≤ t ≤ 1, that is nearest to x.
 template <class T>
 [[nodiscard]] T nearest_to_point(const vector3<T>& x, const vector3<T>& from,
                                  const vector3<T>& along) {
@@ -65,11 +65,12 @@ template <class T>
   return innermost(square) == 0 ? T(0) : within_segment(T(along.dot(x - from) / square));
 }
 
-// The signed distance of a point x of a segment, that which is nearest, and the direction out of
-// the obstacle. The segment's own direction is needed where x is on the obstacle's axis or centre,
-// or what is between them is rounding: what leads out is across both.
+// Signed distance of the nearest point x of a segment, and the direction out of the obstacle. The
+// segment's own direction is needed if x is on the obstacle's axis or centre, or their difference
+// is round-off: the direction out is then perpendicular to both.
 
-/// From all points within `radius` of an axis, whose point `nearest` is nearest to x.
+/// Signed distance from all points within `radius` of an axis, whose point `nearest` is nearest to
+/// x.
 template <class T>
 [[nodiscard]] point_distance<T> distance_from_axis(const vector3<T>& nearest, const vector3<T>& x,
                                                    const T& radius, const vector3<T>& along,
@@ -116,12 +117,13 @@ template <class T>
   return nearest_to_point(s.centre, from, along);
 }
 
-/// Lines are nearest to each other where (w − t u) × v is along n = u × v, w between their
-/// beginnings: t = (w × v)·n / n². Where that is beyond an end of one of the segments, an end is
-/// nearest. Products of coordinates, u²v² − (u·v)², would lose t where lines are nearly parallel.
+/// Nearest point of a segment to a capsule. Lines are nearest to each other where (w − t u) × v is
+/// along n = u × v, w between their beginnings: t = (w × v)·n / n². If that is beyond an end of one
+/// of the segments, an end is nearest. Products of coordinates, u²v² − (u·v)², would lose t to
+/// cancellation if lines are nearly parallel.
 ///
-/// There t changes by much with little, and the distance by little with t: within 1e-6 of parallel
-/// t counts as constant, or rounding times its rate would be what gradients consist of.
+/// There t is ill-conditioned, and the distance changes little with t: within 1e-6 of parallel t
+/// counts as constant, or round-off times its rate would be what gradients consist of.
 template <class T>
 [[nodiscard]] T nearest_on_segment(const capsule<T>& c, const vector3<T>& from,
                                    const vector3<T>& along) {
@@ -131,7 +133,7 @@ template <class T>
   const vector3<T> normal = cross_product(along, axis);
   const T square = normal.squaredNorm();
   if (innermost(square) == 0) {
-    return (first + last) / T(2); // the middle of where they are beside each other
+    return (first + last) / T(2); // the middle of where they are side by side
   }
   const auto distance = [&](const T& t) {
     const vector3<T> x = from + t * along;

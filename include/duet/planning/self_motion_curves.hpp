@@ -18,21 +18,21 @@
 #include <vector>
 
 /// \file
-/// Self-motion of arms of seven joints: all configurations for a pose, as curves.
+/// Self-motion of redundant arms of seven joints: all configurations for a pose, as curves.
 
 namespace duet {
 
-/// Settings of `self_motion_curves`.
+/// Options of `self_motion_curves`.
 struct self_motion_options {
-  /// From one point of a curve to the next at most, and between the values at which each joint is
-  /// held in turn to find curves: radians, lengths in parts of the arm's size.
+  /// Maximum distance from one point of a curve to the next, and between the values at which each
+  /// joint is held in turn to find curves: radians, or lengths relative to the arm's size.
   double resolution = .1;
 };
 
-/// A curve of joint coordinates on which the tip stays at its pose; at singular poses also a
-/// component of another dimension, which is told by `dimension`.
+/// Self-motion: a curve of joint coordinates on which the tip stays at its pose; at singular poses
+/// also a component of another dimension, given by `dimension`.
 ///
-/// \tparam N  as of `serial_chain`
+/// \tparam N  as in `serial_chain`
 template <int N>
 struct self_motion_curve {
   /// Configurations one after the other, without jumps of full turns; a sample in no order if
@@ -56,7 +56,7 @@ struct self_motion_curve {
 
 namespace detail {
 
-/// \throws invalid_input for a chain that has not seven joints that turn, but for one that slides
+/// \throws invalid_input for a chain that does not have seven joints, all revolute or one prismatic
 template <class C>
 void require_seven_joints(const C& chain) {
   require(chain.size() == 7, "duet: self_motion_curves: the chain has ", chain.size(),
@@ -71,7 +71,7 @@ void require_seven_joints(const C& chain) {
           " sliding joints, of which 1 is the most");
 }
 
-/// What the search sees of a chain and a goal; it refers to the chain.
+/// Chain and goal as the search uses them; refers to the chain.
 template <class C>
 [[nodiscard]] seven_joints seven_joints_of(const C& chain, const tip_place& goal) {
   using joints = joint_vector<double, C::joints>;
@@ -105,24 +105,26 @@ template <class C>
 
 } // namespace detail
 
-/// All curves of joint coordinates on which an arm of seven joints holds its tip at the pose
-/// `goal`, within limits or not, and at singular poses the components of other dimensions.
+/// All self-motions of a redundant arm of seven joints: curves of joint coordinates on which it
+/// holds its tip at the pose `goal`, within limits or not, and at singular poses the components of
+/// other dimensions.
 ///
 /// Each revolute joint is held in turn at values a `resolution` apart, where the solutions of the
-/// other six are found as by `all_inverse_kinematics`; from these the curves are followed by steps
-/// along the Jacobian's null space and projections by Levenberg and Marquardt's method. Curves that
-/// cross are followed straight on and are as many as cross. A component on which every joint moves
-/// less than `resolution` may be missed.
+/// other six are found as by `all_inverse_kinematics`; from these the curves are traced by
+/// predictor–corrector continuation: steps along the null space of the Jacobian and projections by
+/// the Levenberg–Marquardt method. Curves that cross are followed straight on and are as many as
+/// cross. A component on which every joint moves less than `resolution` may be missed.
 ///
 /// At a singular pose, as with a straight elbow, wrist or shoulder, solutions from 256 random
-/// configurations are added. The dimension at a solution is that of the span of the solutions
-/// beside it. Curves on which the Jacobian is singular everywhere are followed like the others;
-/// there joint coordinates have half of the digits. A component of two or more dimensions is one
-/// element with that `dimension` and a sample of it.
+/// configurations are added. The dimension at a solution is that of the span of the solutions near
+/// it. Curves on which the Jacobian is singular everywhere are followed like the others; there
+/// joint coordinates have half of the digits. A component of two or more dimensions is one element
+/// with that `dimension` and a sample of it.
 ///
-/// \param chain  seven joints that turn, or one of which slides
+/// \param chain  seven joints, all revolute or one of them prismatic
 /// \return a vector of `self_motion_curve`
-/// \throws invalid_input for other chains, a goal that is no pose, and a resolution outside (0, 1]
+/// \throws invalid_input for other chains, a goal that is not a pose, and a resolution outside (0,
+/// 1]
 template <SerialChain C>
 [[nodiscard]] std::vector<self_motion_curve<C::joints>>
 self_motion_curves(const C& chain, const dual_quaternion<double>& goal,

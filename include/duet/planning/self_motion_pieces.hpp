@@ -13,29 +13,29 @@
 #include <vector>
 
 /// \file
-/// The configurations that a chain can move among with its tip in place.
+/// Self-motion components: configurations that a chain can move among with its tip fixed.
 
 namespace duet::detail {
 
-/// A configuration that can be reached, and from which: one at the same parameter, in place, or one
-/// before.
+/// Configuration that can be reached, and its predecessor: one at the same parameter, by a
+/// self-motion, or one before.
 template <int Room>
 struct reachable {
   chain_state<Room> state;
   double u;
-  std::ptrdiff_t from;     ///< its number, −1 for none
-  bool is_way_out = false; ///< is that one singular, and this one beside it?
-  bool is_alone = false;   ///< is it a piece of its own?
+  std::ptrdiff_t from;     ///< index of the predecessor, −1 for none
+  bool is_way_out = false; ///< true if the predecessor is singular, and this one near it
+  bool is_alone = false;   ///< true if it is an isolated component
 };
 
-/// Collects configurations, and with each the piece that it is on.
+/// Collects configurations, and with each the self-motion component that contains it.
 template <int Room>
 class self_motion_pieces {
 public:
   using vector = small_vector<Room>;
 
-  /// \param spacing     how far the joints move from one configuration of a piece to the next
-  /// \param iterations  of Newton's method, at most
+  /// \param spacing     joint step from one configuration of a component to the next
+  /// \param iterations  maximum number of iterations of Newton's method
   self_motion_pieces(const pose_solver<Room>& solver, double spacing, int iterations)
       : solver_(solver), spacing_(spacing), left_(iterations) {
     for (std::ptrdiff_t i = 0; i < solver.model.size; ++i) {
@@ -58,7 +58,7 @@ protected:
     });
   }
 
-  /// Adds the piece that found_[start] is on, unless no more than `tolerance` makes it one.
+  /// Adds the component that contains found_[start], unless only the tolerance makes it one.
   void follow(std::size_t start, const tip_place& target) {
     extend(start, target);
     const bool is_alone =
@@ -77,7 +77,7 @@ protected:
   std::vector<reachable<Room>> found_;
 
 private:
-  /// Whole turns of joints without limits do not count.
+  /// True if near each other except for full turns of joints without limits.
   [[nodiscard]] bool is_near(const vector& a, const vector& b, double square) const {
     const vector apart = a - b;
     const auto square_of = [](const vector& x) { return dot(x, x); };
@@ -85,8 +85,8 @@ private:
            (is_endless_ && square_of(solver_.without_turns(apart)) < square);
   }
 
-  /// Adds what is on a curve with found_[start], in both directions by turns, so that what is near
-  /// comes first.
+  /// Adds the configurations on a curve with found_[start], alternately in both directions, so that
+  /// those nearby come first.
   void extend(std::size_t start, const tip_place& target) {
     const vector along = motion_in_place(found_[start].state.jacobian).any_direction();
     front ends[2] = {{start, along, spacing_}, {start, -1 * along, spacing_}};
@@ -110,7 +110,7 @@ private:
     double step;
   };
 
-  /// One step on; false at the end of the piece.
+  /// Takes one step on; false at the end of the component.
   bool slide(front& end, const tip_place& target) {
     const chain_state<Room>& here = found_[end.at].state;
     // As far as the limits allow.
@@ -141,7 +141,7 @@ private:
     return false;
   }
 
-  bool is_endless_ = false; ///< has any joint no limits?
+  bool is_endless_ = false; ///< true if any joint has no limits
 };
 
 } // namespace duet::detail

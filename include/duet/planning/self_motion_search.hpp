@@ -15,18 +15,18 @@
 #include <vector>
 
 /// \file
-/// What a chain can reach along a path of its tip, if it may also move with the tip in place.
+/// Search for what a chain can reach along a path of its tip if it may also make self-motions.
 
 namespace duet::detail {
 
-/// Collects what is reachable, parameter by parameter.
+/// Collects reachable configurations, parameter by parameter.
 ///
-/// At each parameter the configurations that hold the tip at its pose form curves (one joint to
-/// spare), cut by the limits. One point of such a piece is as good as any other, as the arm can
-/// move along it with the tip in place; so the whole piece is followed, in steps of `spacing`, and
-/// from all its points one step is taken to the next parameter, where those pieces are followed
-/// that are new. With several joints to spare one curve of the manifold is, with none a piece is a
-/// point.
+/// At each parameter the configurations that hold the tip at its pose form curves (one degree of
+/// redundancy), cut by the limits. One point of such a component is as good as any other, as the
+/// arm can reach it by a self-motion; so the whole component is traced, in steps of `spacing`, and
+/// from all its points one step is taken to the next parameter, where those components are traced
+/// that are new. With several degrees of redundancy one curve of the manifold is traced, with none
+/// a component is a point.
 template <int Room>
 class self_motion_search : self_motion_pieces<Room> {
   using base = self_motion_pieces<Room>;
@@ -36,17 +36,17 @@ class self_motion_search : self_motion_pieces<Room> {
 public:
   using typename base::vector;
 
-  /// \param singular  configurations with a singular value below it are left to both sides, too
-  /// \param least     where ways end they are followed in shorter steps, down to this one
+  /// \param singular  singular value below which configurations are left to both sides, too
+  /// \param least     minimum of the shorter steps in which the ends of continuations are sought
   self_motion_search(const pose_solver<Room>& solver, const place_function& target, double spacing,
                      double singular, double least, int iterations)
       : base(solver, spacing, iterations), target_(target), singular_(singular), least_(least) {}
 
-  /// Each configuration a step from the one before.
+  /// Sequence of configurations, each a step from the one before.
   using configurations = std::vector<reachable<Room>>;
 
-  /// Ways from a state at u.front() to u.back(), or as far as they go: one that leads farthest, the
-  /// one that does in whole steps, and one to each other piece that is a point.
+  /// Continuations from a state at u.front() to u.back(), or as far as they go: one that leads
+  /// farthest, the one that does in whole steps, and one to each other isolated component.
   [[nodiscard]] std::vector<configurations> run(const chain_state<Room>& start,
                                                 const std::vector<double>& u) {
     found_.push_back({start, u.front(), -1});
@@ -100,12 +100,13 @@ public:
   [[nodiscard]] int iterations_left() const { return left_; }
 
 private:
-  static constexpr int halvings = 6; ///< of a step from parameter to parameter
-  /// From one to the next: where poses are singular throughout no search ends by itself.
+  static constexpr int halvings = 6; ///< number of halvings of a step from parameter to parameter
+  /// Maximum number of rounds from one to the next: where poses are singular throughout no search
+  /// ends by itself.
   static constexpr int most_rounds = 12;
 
-  /// What is reached at one parameter from the configurations found_[first] to found_[end − 1] at
-  /// another.
+  /// Adds what is reached at one parameter from the configurations found_[first] to found_[end − 1]
+  /// at another.
   void advance(std::size_t first, std::size_t end, double u, double to) {
     const tip_place target = target_(to);
     for (std::size_t i = first; i < end && left_ > 0; ++i) {
@@ -139,13 +140,13 @@ private:
     return result;
   }
 
-  /// On to another parameter, in up to 2^`left` steps.
+  /// Result of a step to another parameter, in up to 2^`left` parts.
   [[nodiscard]] attempt<Room> go(const chain_state<Room>& from, double u, double to, int left) {
     auto direct = tried(from, target_(to), {});
     const bool is_jump = norm(direct.state.theta - from.theta) > .15;
     if ((direct.is_within(solver_.tolerance) && !is_jump) || left == 0) {
       if (is_jump) {
-        direct.left.length = std::numeric_limits<double>::infinity();
+        direct.left.translation = std::numeric_limits<double>::infinity();
       } else if (direct.is_within(solver_.tolerance) && to > farthest_.u) {
         farthest_ = {to, farthest_.now, farthest_.now};
       }
@@ -156,7 +157,7 @@ private:
     return half.is_within(solver_.tolerance) ? go(half.state, middle, to, left - 1) : half;
   }
 
-  /// Configurations for a target near that of a singular one, which lie to both sides of it.
+  /// Adds configurations for a target near that of a singular one, which lie to both sides of it.
   template <class Add>
   void leave(const chain_state<Room>& singular, const tip_place& target, const Add& add) {
     const singular_point<Room> here(singular.jacobian);
@@ -180,8 +181,9 @@ private:
     }
   }
 
-  /// Between two neighbours on a piece of singular configurations: from where the twist to the
-  /// target is one that joint rates make. Beside that Newton's method does not get there.
+  /// Adds a configuration between two neighbours on a component of singular configurations: from
+  /// where joint velocities can produce the twist to the target. Beside that Newton's method does
+  /// not converge.
   template <class Add>
   void leave_between(chain_state<Room> a, chain_state<Room> b, const tip_place& target,
                      const Add& add) {
@@ -210,7 +212,7 @@ private:
     add(tried(b, target, {}));
   }
 
-  /// Does the way back lead to where a configuration is?
+  /// True if the path back leads to the configuration `to`.
   [[nodiscard]] bool leads(const chain_state<Room>& from, double u, const chain_state<Room>& to,
                            double back) {
     const auto end = go(from, u, back, halvings);
@@ -222,7 +224,7 @@ private:
   struct {
     double u = 0;
     std::size_t from = 0, now = 0;
-  } farthest_; ///< how far steps have led, and from which configuration
+  } farthest_; ///< farthest parameter that was reached, and from which configuration
 };
 
 } // namespace duet::detail

@@ -11,47 +11,48 @@
 #include <Eigen/Core>
 
 /// \file
-/// The shapes that arms and obstacles are made of.
+/// Collision shapes of arms and obstacles.
 
 namespace duet {
 
-/// All points no further than `radius` from `centre`.
+/// Sphere: all points at a distance of at most `radius` from `centre`.
 template <class T = double>
 struct sphere {
-  vector3<T> centre = detail::zero_initialized<vector3<T>>(); ///< in units of length
-  T radius = T(0);                                            ///< in units of length
+  vector3<T> centre = detail::zero_initialized<vector3<T>>(); ///< centre, in units of length
+  T radius = T(0);                                            ///< radius, in units of length
 };
 
-/// All points no further than `radius` from the line between two points, which may be one.
+/// Capsule: all points at a distance of at most `radius` from the segment between two points, which
+/// may coincide.
 template <class T = double>
 struct capsule {
-  vector3<T> from; ///< one end of the line, in units of length
-  vector3<T> to;   ///< its other end
-  T radius;        ///< in units of length
+  vector3<T> from; ///< one end of the segment, in units of length
+  vector3<T> to;   ///< other end of the segment
+  T radius;        ///< radius, in units of length
 
   constexpr capsule(const vector3<T>& a, const vector3<T>& b, const T& r)
       : from(a), to(b), radius(r) {}
   constexpr capsule(const sphere<T>& s) : capsule(s.centre, s.centre, s.radius) {}
 };
 
-/// All points whose coordinates in the frame `placed` are, each, between ± `half_sizes`.
+/// Box: all points whose coordinates in the frame `pose` are, each, between ± `half_extents`.
 template <class T = double>
 struct box {
-  dual_quaternion<T> placed{
-      dual<T, 1, screw_tag>(T(1))}; ///< the pose of its centre, along its edges
-  vector3<T> half_sizes =
-      detail::zero_initialized<vector3<T>>(); ///< along its own axes, in units of length
+  dual_quaternion<T> pose{
+      dual<T, 1, screw_tag>(T(1))}; ///< pose of its centre, axes along its edges
+  vector3<T> half_extents =
+      detail::zero_initialized<vector3<T>>(); ///< half extents along its axes, in units of length
 };
 
-/// All points with normal·x ≤ offset: the unit normal points out of the solid. The default is the
-/// ground z ≤ 0.
+/// Half-space: all points with normal·x ≤ offset; the unit normal points out of the solid. The
+/// default is the ground z ≤ 0.
 template <class T = double>
 struct half_space {
-  vector3<T> normal = vector3<T>::UnitZ(); ///< a unit vector, out of the solid
-  T offset = T(0);                         ///< of the boundary along the normal, in units of length
+  vector3<T> normal = vector3<T>::UnitZ(); ///< unit vector, out of the solid
+  T offset = T(0);                         ///< offset along the normal, in units of length
 };
 
-/// A capsule carried along.
+/// Capsule moved by a pose.
 template <class T, class U>
 [[nodiscard]] capsule<promote_t<T, U>> transformed(const dual_quaternion<T>& a,
                                                    const capsule<U>& c) {
@@ -74,8 +75,9 @@ void require_extent(const T& x, const Name&... name) {
 
 } // namespace detail
 
-/// Looks whether a shape is one: finite, of no negative size, with unit quaternions and normals.
+/// Checks whether a shape is valid: finite, of no negative size, with unit quaternions and normals.
 /// For those who extend duet.
+///
 /// \param name  for the message, in parts
 /// \throws invalid_input
 template <class T, class... Name>
@@ -91,10 +93,10 @@ void require_shape(const capsule<T>& c, const Name&... name) {
 }
 template <class T, class... Name>
 void require_shape(const box<T>& b, const Name&... name) {
-  detail::require(is_unit(b.placed, 1e-6), "duet: the pose of ", name...,
+  detail::require(is_unit(b.pose, 1e-6), "duet: the pose of ", name...,
                   " is no unit dual quaternion");
   for (Eigen::Index i = 0; i < 3; ++i) {
-    detail::require_extent(b.half_sizes[i], "half size ", i, " of ", name...);
+    detail::require_extent(b.half_extents[i], "half size ", i, " of ", name...);
   }
 }
 template <class T, class... Name>

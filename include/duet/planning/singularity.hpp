@@ -11,25 +11,25 @@
 #include <utility>
 
 /// \file
-/// Singular configurations: how the tip can stand still there, and which way leads out.
+/// Singular configurations: null space, missing twist and escape direction.
 
 namespace duet::detail {
 
-/// A singular value that counts as none.
+/// Singular value that counts as zero.
 inline constexpr double no_singular_value = 1e-5;
 
-/// How the joints move without the tip; it refers to the Jacobian.
+/// Null space of the Jacobian: motion of the joints without the tip; it refers to the Jacobian.
 template <int Room>
 class motion_in_place {
 public:
   using vector = small_vector<Room>;
 
-  /// \param none  a singular value that counts as none
+  /// \param none  singular value that counts as zero
   explicit motion_in_place(const small_matrix<6, Room>& jacobian, double none = no_singular_value)
       : jacobian_(jacobian), gram_(gram_of(jacobian), {0, none * none}) {}
 
-  /// What of a step leaves the tip in place: λ (JᵀJ + λ)⁻¹ of it, with λ the square of what counts
-  /// as none.
+  /// Projection of a step onto the null space, which leaves the tip in place: λ (JᵀJ + λ)⁻¹ of it,
+  /// with λ the square of what counts as zero.
   [[nodiscard]] vector part_of(vector step) const {
     const small_twist force = gram_.solve(what_is_left({}, jacobian_, step));
     for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
@@ -37,9 +37,9 @@ public:
     }
     return step;
   }
-  /// The direction next to `wish`, of unit length; zero where none is near it.
+  /// Direction of the null space next to `wish`, of unit length; zero if none is near it.
   [[nodiscard]] vector direction(vector wish) const {
-    for (int round = 0; round < 2; ++round) { // the second time for rounding
+    for (int round = 0; round < 2; ++round) { // the second time for round-off
       wish = part_of(wish);
       const double length = norm(wish);
       if (!(length > .3)) {
@@ -49,7 +49,7 @@ public:
     }
     return wish;
   }
-  /// Any direction, of unit length; zero where there is none.
+  /// Any direction of the null space, of unit length; zero if there is none.
   [[nodiscard]] vector any_direction() const {
     vector best;
     double largest = 0;
@@ -57,7 +57,7 @@ public:
       vector unit;
       unit[i] = 1;
       const auto d = direction(unit);
-      if (std::abs(d[i]) > largest) { // d[i] is how much of the unit vector is in d
+      if (std::abs(d[i]) > largest) { // d[i] is the component of the unit vector in d
         largest = std::abs(d[i]);
         best = d;
       }
@@ -70,9 +70,9 @@ private:
   damped_gram gram_;
 };
 
-/// The sign of the determinant of J with a direction of self-motion below it, where one joint is to
-/// spare, else 1. Along a curve of self-motion it stays as it is; it is another beyond where curves
-/// cross, and on the curve beyond where two nearly do.
+/// Sign of the determinant of J with a direction of self-motion below it for one degree of
+/// redundancy, else 1. It is constant along a self-motion curve, and changes beyond a crossing of
+/// curves, and on the curve beyond a near crossing.
 template <int Room>
 [[nodiscard]] double orientation(const small_matrix<6, Room>& jacobian,
                                  const small_vector<Room>& direction) {
@@ -102,7 +102,8 @@ template <int Room>
   return sign;
 }
 
-/// The twist w of unit length that joint rates make least, wᵀJ = 0 in a singular configuration.
+/// Left singular twist: the twist w of unit length that joint velocities produce least, wᵀJ = 0 in
+/// a singular configuration.
 template <int Room>
 [[nodiscard]] small_twist left_out_twist(const small_matrix<6, Room>& jacobian) {
   constexpr double none = 1e-6;
@@ -115,8 +116,8 @@ template <int Room>
   return w;
 }
 
-/// A singular configuration to second order: w, `left_out_twist`, and H, the second derivatives of
-/// the tip's way along w,
+/// Singular configuration to second order: w, `left_out_twist`, and H, the second derivatives of
+/// the tip's displacement along w,
 ///
 /// H_jk = w · [ω_j × v_k; ½ ω_j × ω_k], j ≤ k, of the columns [v; ω] of J in `frame::hybrid`.
 template <int Room>
@@ -138,9 +139,9 @@ public:
     }
   }
 
-  /// The direction, of unit length, in which the configuration is left fastest; its opposite is as
-  /// good. The joint rates n that leave the tip in place no longer do so at θ + s d, by s wᵀHd·n: d
-  /// is the unit vector for which that is largest, of all n of length 1.
+  /// Escape direction, of unit length, in which the singularity is left fastest; its opposite is as
+  /// good. The joint velocities n that leave the tip in place no longer do so at θ + s d, by s
+  /// wᵀHd·n: d is the unit vector for which that is largest, of all n of length 1.
   [[nodiscard]] small_vector<Room> way_out() const {
     small_vector<Room> d;
     for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
@@ -158,8 +159,8 @@ public:
     return d;
   }
 
-  /// The two steps s n, n the direction of least motion of the tip, that move it along w as a small
-  /// twist does: wᵀJn s + ½ s² nᵀHn = w·e. Zero where there are none.
+  /// Two steps s n, n the direction of least motion of the tip, that move it along w as a small
+  /// twist does: wᵀJn s + ½ s² nᵀHn = w·e. Zero if there are none.
   [[nodiscard]] std::array<small_vector<Room>, 2> steps_for(const small_twist& e) const {
     const auto n = motion_in_place(jacobian_, damping_threshold).any_direction();
     const double slope = -dot(w_, what_is_left({}, jacobian_, n)), bend = dot(n, times_h(n));
@@ -188,7 +189,7 @@ private:
   small_matrix<Room, Room> h_;
 };
 
-/// The smallest singular value of a Jacobian, from above.
+/// Smallest singular value of a Jacobian, from above.
 template <int Room>
 [[nodiscard]] double smallest_singular_value_of(const small_matrix<6, Room>& jacobian) {
   return damped_gram(gram_of(jacobian)).smallest();

@@ -8,7 +8,7 @@
 #include <cstddef>
 
 /// \file
-/// Rows of a few doubles and symmetric systems of a few equations. Eigen's expressions and
+/// Vectors of a few doubles and symmetric systems of a few equations. Eigen's expressions and
 /// factorisations take the compiler longer than all the rest of a planner.
 
 namespace duet::detail {
@@ -49,13 +49,13 @@ struct small_vector {
   [[nodiscard]] friend double norm(const small_vector& a) { return std::sqrt(dot(a, a)); }
 };
 
-/// A matrix of `Rows` rows and up to `Room` columns.
+/// Matrix of `Rows` rows and up to `Room` columns.
 template <int Rows, int Room>
 struct small_matrix {
   using Scalar = double;
 
   std::array<small_vector<Rows>, std::size_t(Room)> columns{};
-  std::ptrdiff_t count = Room; ///< of columns
+  std::ptrdiff_t count = Room; ///< number of columns
 
   void resize(std::ptrdiff_t, std::ptrdiff_t n) { count = n; }
   [[nodiscard]] static constexpr std::ptrdiff_t rows() { return Rows; }
@@ -68,12 +68,12 @@ struct small_matrix {
   }
 };
 
-/// The factors L Lᵀ of a symmetric positive semidefinite matrix. An unknown whose pivot is not
-/// above zero is left out: it is 0 in solutions.
+/// Cholesky factors L Lᵀ of a symmetric positive semidefinite matrix. An unknown whose pivot is not
+/// positive is left out: it is 0 in solutions.
 template <class M>
 class cholesky {
 public:
-  /// \param a  its lower half counts
+  /// \param a  matrix, of which the lower half is used
   explicit cholesky(const M& a) : l_(a) {
     for (std::ptrdiff_t j = 0; j < l_.rows(); ++j) {
       for (std::ptrdiff_t i = j; i < l_.rows(); ++i) {

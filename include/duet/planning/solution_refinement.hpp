@@ -19,15 +19,16 @@
 #include <vector>
 
 /// \file
-/// From one solution of a goal to one nearby that keeps clear of obstacles and lowers an objective.
+/// Refinement of a solution of a goal to one nearby that keeps clear of obstacles and minimises an
+/// objective.
 
 namespace duet::detail {
 
-/// Rows of up to `Room` coordinates.
+/// Vector of up to `Room` coordinates.
 template <int Room>
 using room_vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Room, 1>;
 
-/// What is wanted of a solution beside the goal.
+/// Preferences among the solutions of a goal: objective and obstacles.
 template <int Room>
 class solution_wishes {
 public:
@@ -36,15 +37,15 @@ public:
   [[nodiscard]] virtual bool has_objective() const = 0;
   [[nodiscard]] virtual double objective(const small_vector<Room>& theta) const = 0;
   [[nodiscard]] virtual vector slope(const small_vector<Room>& theta) const = 0;
-  /// What keeps a step at the margin to obstacles.
+  /// Inequalities that keep a step at the margin to obstacles.
   [[nodiscard]] virtual std::vector<inequality<vector>>
   clear_of_obstacles(const small_vector<Room>& theta) const = 0;
 };
 
 /// Sequential quadratic programming within the solutions of a goal: each step keeps goal, limits
 /// and margins to first order, and Newton's method leads back to them. The curvature is that of the
-/// function on the set of solutions, after Broyden, Fletcher, Goldfarb and Shanno with Powell's
-/// damping, from the change of the slope's part along it.
+/// function on the set of solutions, after Broyden, Fletcher, Goldfarb and Shanno (BFGS) with
+/// Powell's damping, from the change of the projected gradient.
 template <int Room>
 class solution_refinement {
 public:
@@ -54,10 +55,10 @@ public:
 
   struct point {
     joints theta;
-    pose_deviation left;
-    double excess = 0; ///< of deviation or margin, in tolerances
+    pose_error left;
+    double excess = 0; ///< largest deviation or margin violation, in tolerances
     step_conditions<vector> conditions;
-    double value = 0; ///< of the objective
+    double value = 0; ///< value of the objective
     vector slope;
   };
 
@@ -65,30 +66,30 @@ public:
                       const solution_wishes<Room>& wishes, const pose_tolerance& tolerance)
       : model_(model), goal_(goal), wishes_(wishes), tolerance_(tolerance) {}
 
-  /// From near a solution to one that keeps the margins too and, if there is an objective, where
-  /// that is least nearby. Nothing where that fails.
+  /// Solution near a given configuration that keeps the margins too and, if there is an objective,
+  /// minimises it locally. Nothing if that fails.
   [[nodiscard]] std::optional<point> operator()(const joints& theta, int iterations) const;
 
 private:
-  /// As far as steps go in one direction: beyond, first order says little.
+  /// Largest step in one direction: beyond, first order is inaccurate.
   static constexpr double trusted = .5;
 
   [[nodiscard]] point at(const joints& theta) const {
     point x;
     x.theta = theta;
     const auto state = model_.at(theta);
-    const wanted_twist wanted = goal_.wanted(state.tip);
+    const twist_constraint wanted = goal_.constraint(state.tip);
     x.left = missing_twist(wanted).left;
-    x.excess = std::max(tolerance_.times(x.left), model_.shortfall(theta) / tolerance_.length);
+    x.excess = std::max(tolerance_.ratio(x.left), model_.shortfall(theta) / tolerance_.translation);
     auto& more = x.conditions.inequalities;
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
-      if (wanted.rows.row(i).isZero(0)) {
+      if (wanted.matrix.row(i).isZero(0)) {
         continue;
       }
       const joints row = goal_row(wanted, i, state.jacobian);
       vector normal(model_.size);
       std::copy_n(row.values.begin(), model_.size, normal.begin());
-      const double least = wanted.least[i], most = wanted.most[i];
+      const double least = wanted.lower[i], most = wanted.upper[i];
       if (least == most) {
         x.conditions.equations.push_back({normal, least});
       } else {
@@ -118,7 +119,7 @@ private:
     return theta;
   }
 
-  /// The way back to where all conditions hold, by least steps.
+  /// Point at which all constraints hold again, by least-norm steps.
   [[nodiscard]] std::optional<point> restored(joints theta) const {
     constexpr double close = 1e-7; // well within, for objectives to be compared
     const vector none = vector::Zero(model_.size);
@@ -144,7 +145,7 @@ private:
     return x;
   }
 
-  /// Of the slope, what conditions that hold at their bounds leave.
+  /// Projected gradient: the part of the slope that active constraints leave.
   struct free_slope {
     orthonormal_rows<vector> kept;
     std::size_t count = 0;
@@ -164,7 +165,7 @@ private:
     }
   };
 
-  /// What a step has shown of the curvature.
+  /// Curvature after the update by a step (damped BFGS).
   [[nodiscard]] matrix learned(matrix curvature, bool is_first, const point& before,
                                const point& after) const {
     const free_slope here(before), there(after);
@@ -180,7 +181,7 @@ private:
     const vector bs = curvature * s;
     const double sbs = s.dot(bs);
     if (here.count != there.count || !(sbs > 0)) {
-      return curvature; // of another set
+      return curvature; // another active set
     }
     if (s.dot(y) < .2 * sbs) {
       const double part = .8 * sbs / (sbs - s.dot(y));
@@ -234,7 +235,7 @@ solution_refinement<Room>::operator()(const joints& theta, int iterations) const
     } else if (is_first) {
       break;
     }
-    is_first = !next; // anew where what was learned does not help
+    is_first = !next; // anew if the learned curvature does not help
   }
   return best;
 }

@@ -17,10 +17,12 @@
 #include <vector>
 
 /// \file
-/// The search among the solutions of a goal for one that is wanted.
+/// Search for the preferred one among the solutions of a goal.
 
 namespace duet::detail {
 
+/// Search for solutions from the start and from random configurations, of which each is refined by
+/// `solution_refinement`.
 template <int Room>
 class solution_search {
   using search = inverse_kinematics_search<Room, tip_goal>;
@@ -36,10 +38,10 @@ public:
   /// Solutions within the limits that are known before the search, up to full turns.
   struct known_solutions {
     std::vector<small_vector<Room>> joints;
-    bool is_complete = false; ///< are there no others?
+    bool is_complete = false; ///< true if there are no others
   };
 
-  /// \param wishes  none: the first solution is as good as any
+  /// \param wishes  preferences; null: the first solution is as good as any
   [[nodiscard]] attempt operator()(const tip_goal& goal, const solution_wishes<Room>* wishes,
                                    const known_solutions& known = {}) const;
 
@@ -64,7 +66,7 @@ private:
     for (int i = 0; i < model_.size; ++i) {
       const double turn = search_.turn()[i];
       bool is_lower = turn > 0;
-      while (is_lower) { // by 1, 2, 4 … turns, and back
+      while (is_lower) { // by 1, 2, 4 … full turns, and back
         is_lower = false;
         for (const double side : {-turn, turn}) {
           for (double way = side; std::abs(way) < most && is_lower_by(i, way); way *= 2) {
@@ -94,14 +96,14 @@ solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Ro
   double least = std::numeric_limits<double>::infinity(); // of the objective
   int iterations = 0, candidates = 0, restarts = 0;
   const auto consider = [&](small_vector<Room> theta) {
-    constexpr int rounds = 4; // where joints have moved in place other turns may be nearer
+    constexpr int rounds = 4; // after self-motions other full turns may be nearer
     std::optional<typename solution_refinement<Room>::point> refined;
     for (int k = 0; k < rounds; ++k) {
       const auto other = wishes->has_objective() ? turned(theta, *wishes) : theta;
       if (refined && norm(other - theta) == 0) {
         break;
       }
-      refined = refine(other, options_.iterations);
+      refined = refine(other, options_.max_iterations);
       if (!refined || !wishes->has_objective()) {
         break;
       }
@@ -131,7 +133,7 @@ solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Ro
     if (best.reason != stop_reason::reached && (restarts == 0 || is_less(next.error, best.error))) {
       best = next;
     }
-    if (restarts == options_.restarts || candidates == options_.candidates ||
+    if (restarts == options_.max_restarts || candidates == options_.candidates ||
         (candidates == 1 && !wishes->has_objective())) {
       break;
     }

@@ -17,8 +17,8 @@
 
 namespace duet::detail {
 
-/// Has the chain n joints whose equations are algebraic, as `all_inverse_kinematics` and
-/// `self_motion_curves` want them?
+/// True if the chain has n joints whose equations are algebraic, as `all_inverse_kinematics` and
+/// `self_motion_curves` require.
 template <class C>
 [[nodiscard]] bool is_algebraic(const C& chain, int n) {
   int sliding = 0;
@@ -38,8 +38,8 @@ struct solution_list {
   bool is_complete = false;
 };
 
-/// The solutions of `all_inverse_kinematics` within the limits, each joint turned into them by full
-/// turns. Joints that miss a limit by no more than the tolerance are put there.
+/// Solutions of `all_inverse_kinematics` within the limits, revolute joints moved into them by full
+/// turns. Joints that miss a limit by no more than the tolerance are clamped to it.
 template <class C>
 [[nodiscard]] solution_list<C::joints> solutions_within_limits(const C& chain,
                                                                const dual_quaternion<double>& goal,
@@ -52,7 +52,7 @@ template <class C>
     bool is_within = true;
     for (int i = 0; i < chain.size(); ++i) {
       const bool slides = chain.kind(i) == joint_kind::prismatic;
-      const double slack = slides ? tolerance.length : tolerance.angle;
+      const double slack = slides ? tolerance.translation : tolerance.rotation;
       const double least = chain.limits(i).lower - slack, most = chain.limits(i).upper + slack;
       if (!slides && theta[i] < least) {
         theta[i] += turn * std::ceil((least - theta[i]) / turn);

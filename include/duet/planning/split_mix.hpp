@@ -6,12 +6,13 @@
 #include <cstdint>
 
 /// \file
-/// Random numbers of searches.
+/// Random number generator of searches.
 
 namespace duet::detail {
 
-/// Numbers from 0 to 1, the same on every machine: SplitMix64 (Steele, Lea, Flood, Fast splittable
-/// pseudorandom number generators, 2014). `<random>` would cost the compiler more than the search.
+/// Uniform random numbers from 0 to 1, identical on every machine: SplitMix64 (Steele, Lea, Flood,
+/// Fast splittable pseudorandom number generators, 2014). `<random>` would cost the compiler more
+/// than the search.
 class split_mix {
 public:
   explicit split_mix(std::uint64_t seed) : state_(seed) {}

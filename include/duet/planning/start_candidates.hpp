@@ -22,24 +22,24 @@
 #include <vector>
 
 /// \file
-/// In which ways a chain can begin a path.
+/// Candidates for the start configuration of a path.
 
 namespace duet::detail {
 
-/// The solutions for poses of the tip that a chain has among obstacles, if there are any.
+/// Solutions for poses of the tip of a chain, among obstacles if there are any.
 template <int Room>
 class pose_solutions {
 public:
   using chain = serial_chain<-Room>;
   using joints = joint_vector<double, -Room>;
-  /// Solutions that joints can move between with the tip in place.
+  /// Solutions that are connected by self-motions.
   using family = std::vector<joints>;
 
   pose_solutions(const chain& arm, const scene* around, const pose_tolerance& tolerance)
       : chain_(arm), around_(around), tolerance_(tolerance) {}
 
-  /// All ways for six joints; seven joints along their curves, points `resolution` apart; others,
-  /// and where these find none or not all, as random starts show them.
+  /// All solutions of six joints; of seven joints points of their self-motion curves, `resolution`
+  /// apart; of others, and where these find none or not all, those that random starts find.
   [[nodiscard]] std::vector<family> at(const dual_quaternion<double>& goal,
                                        double resolution) const {
     std::vector<family> result;
@@ -66,19 +66,21 @@ public:
     return result;
   }
 
-  /// One solution, or why there is none.
-  /// \param part  of the tolerance
+  /// One solution, or the reason why there is none.
+  ///
+  /// \param part  fraction of the tolerance
   [[nodiscard]] inverse_kinematics_result<-Room> from(const joints& start,
                                                       const dual_quaternion<double>& goal,
                                                       int restarts, double part = 1) const {
     const inverse_kinematics_options options{
-        .tolerance = {part * tolerance_.length, part * tolerance_.angle}, .restarts = restarts};
+        .tolerance = {part * tolerance_.translation, part * tolerance_.rotation},
+        .max_restarts = restarts};
     return around_ == nullptr
                ? inverse_kinematics(chain_, goal, start, options)
                : inverse_kinematics(chain_, goal, start, options, no_objective{}, *around_);
   }
 
-  /// Joints turned by whole turns into their limits, as far as that is possible.
+  /// Joints moved by full turns into their limits, as far as that is possible.
   [[nodiscard]] joints turned(joints theta) const {
     for (int i = 0; i < chain_.size(); ++i) {
       if (chain_.steps()[std::size_t(i)].turns && !chain_.steps()[std::size_t(i)].slides) {
@@ -97,7 +99,7 @@ public:
   }
   [[nodiscard]] bool is_clear(const joints& theta) const {
     return around_ == nullptr ||
-           clearance(chain_, theta, *around_).distance >= around_->margin - tolerance_.length;
+           clearance(chain_, theta, *around_).distance >= around_->margin - tolerance_.translation;
   }
 
 private:

@@ -22,18 +22,20 @@
 #include <vector>
 
 /// \file
-/// The search for a start from which a chain can follow a path.
+/// Search for a start configuration from which a chain can follow a path.
 
 namespace duet::detail {
 
-/// \tparam Room  for joints
+/// Search for a start configuration.
+///
+/// \tparam Room  capacity for joints
 template <int Room>
 class start_chooser {
   using joints = joint_vector<double, -Room>;
-  using choice = start_choice<-Room>;
+  using choice = start_search_result<-Room>;
   struct candidate {
     joints start;
-    std::size_t rank; ///< in its family
+    std::size_t rank; ///< rank in its family
     double cost;
   };
 
@@ -47,10 +49,10 @@ public:
     std::vector<candidate> candidates = candidates_at(problem_.path(problem_.first));
     plan_options quick = options_.plan;
     quick.search_step = 0;
-    for (std::size_t k = 0; k < candidates.size() && result.starts < options_.starts; ++k) {
+    for (std::size_t k = 0; k < candidates.size() && result.starts < options_.max_starts; ++k) {
       const joints start = candidates[k].start;
       auto plan = problem_.follow(start, quick);
-      // Where a limit was in the way that joint begins anew a turn before it.
+      // A joint that a limit blocked begins anew a full turn before it.
       const joints other = turned_back(start, plan);
       const bool is_known = std::any_of(candidates.begin(), candidates.end(),
                                         [&](const candidate& each) { return each.start == other; });
@@ -61,7 +63,7 @@ public:
         return result;
       }
     }
-    // Then with motions in place, from one start of each family.
+    // Then with self-motions, from one start of each family.
     for (const candidate& each : candidates) {
       const bool is_tried = options_.plan.search_step > 0 && chain_.size() > 6 && each.rank == 0;
       if (is_tried && keep(result, problem_.follow(each.start, options_.plan))) {
@@ -73,7 +75,7 @@ public:
   }
 
 private:
-  /// Is that plan the last one wanted?
+  /// Keeps the better plan; true if it is the last one needed.
   static bool keep(choice& of, motion_plan<-Room> plan) {
     ++of.starts;
     if (of.plan.tau.empty() || plan.tau.back() > of.plan.tau.back() ||
@@ -84,9 +86,10 @@ private:
     return of.reason == stop_reason::reached;
   }
 
-  /// The best of each family, then the second best …; what is near another one is left out, and
-  /// where the objective is nan.
-  /// \throws invalid_input where it is nan at all of them
+  /// Candidates: the best of each family, then the second best …; without those near another one,
+  /// and without those at which the objective is nan.
+  ///
+  /// \throws invalid_input if it is nan at all of them
   [[nodiscard]] std::vector<candidate> candidates_at(const dual_quaternion<double>& pose) const {
     std::vector<candidate> result;
     std::vector<joints> unknown;
@@ -117,8 +120,9 @@ private:
       result.insert(result.end(), chosen.begin(), chosen.end());
     }
     if (result.empty() && !unknown.empty()) {
-      fail_not_a_number("duet: choose_start: the objective is nan at all starts, as at the",
-                        unknown[0]);
+      fail_not_a_number(
+          "duet: find_start_configuration: the objective is nan at all starts, as at the",
+          unknown[0]);
     }
     std::sort(result.begin(), result.end(), is_before);
     return result;
@@ -128,8 +132,8 @@ private:
     return problem_.objective ? problem_.objective(theta) : distance_from_middle(theta);
   }
 
-  /// How far joints are from the middle of their limits, in parts of the range; of those without
-  /// limits, from 0.
+  /// Sum of squared distances of joints from the middle of their limits, relative to the range; of
+  /// those without limits, from 0.
   [[nodiscard]] double distance_from_middle(const joints& theta) const {
     double sum = 0;
     for (int i = 0; i < chain_.size(); ++i) {
@@ -142,7 +146,7 @@ private:
     return sum;
   }
 
-  /// The start with the joints that a plan ends with at a limit a whole turn away from it.
+  /// Start with the joints that a plan ends with at a limit moved a full turn away from it.
   [[nodiscard]] joints turned_back(joints start, const motion_plan<-Room>& plan) const {
     constexpr double turn = 2 * std::numbers::pi, close = 1e-2;
     const joints& end = plan.joints.back();
@@ -190,7 +194,8 @@ private:
     }
   }
 
-  /// What a search for one solution did not find all six joints' solutions may have.
+  /// True if the pose has a solution that the search for one did not find, but all solutions of six
+  /// joints contain.
   [[nodiscard]] bool is_solved_otherwise(const dual_quaternion<double>& pose) const {
     return is_algebraic(chain_, 6) && !solutions_.at(pose, options_.resolution).empty();
   }
@@ -232,12 +237,12 @@ private:
 };
 
 template <int Room>
-[[nodiscard]] start_choice<-Room> chosen_start(const start_problem<Room>& problem) {
+[[nodiscard]] start_search_result<-Room> chosen_start(const start_problem<Room>& problem) {
   return start_chooser<Room>(problem).choose();
 }
 
 #ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE start_choice<-16> chosen_start(const start_problem<16>&);
+DUET_COMPILED_TEMPLATE start_search_result<-16> chosen_start(const start_problem<16>&);
 #endif
 
 } // namespace duet::detail

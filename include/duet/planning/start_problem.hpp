@@ -11,38 +11,39 @@
 #include <optional>
 
 /// \file
-/// What `choose_start` is told, and what it returns.
+/// Options and result of `find_start_configuration`.
 
 namespace duet {
 
-/// Settings of `choose_start`.
+/// Options of `find_start_configuration`.
 struct start_options {
-  /// How paths are followed.
+  /// Options of the planner that follows paths.
   plan_options plan = {};
-  /// How many starts are tried at most.
-  int starts = 64;
-  /// From one configuration to the next at most, where seven joints move with the tip in place.
+  /// Maximum number of starts that are tried.
+  int max_starts = 64;
+  /// Maximum distance from one configuration to the next on self-motion curves of seven joints, as
+  /// `self_motion_options::resolution`.
   double resolution = .3;
-  /// From one pose to the next where poses without a solution are looked for, a fraction of the
-  /// path.
+  /// Distance between the poses that are checked for a solution, a fraction of the path.
   double sampling = .01;
 };
 
-/// What `choose_start` found.
+/// Result of `find_start_configuration`.
 ///
-/// \tparam N  as of `serial_chain`
+/// \tparam N  as in `serial_chain`
 template <int N>
-struct start_choice {
-  /// Along the path from the start that was chosen, `plan.joints.front()`; where none leads to its
-  /// end, the one that comes farthest. Empty where no start has a solution.
+struct start_search_result {
+  /// Plan from the start configuration that was found, `plan.joints.front()`; if none leads to the
+  /// end of the path, the one that comes farthest. Empty if no start has a solution.
   motion_plan<N> plan;
-  int starts = 0; ///< how many were tried
-  /// Where no start leads to the end: the first parameter, to 1e-6 of the path, at which no joint
-  /// coordinates were found; nothing where all poses that were looked at have some.
+  int starts = 0; ///< number of starts tried
+  /// First parameter, to 1e-6 of the path, at which no joint coordinates were found, if no start
+  /// leads to the end; nothing if all poses that were checked have some.
   std::optional<double> unsolved;
-  /// `reached`; else what is in the way there: at `unsolved`, or else of `plan`.
+  /// Termination reason: `reached`; else what blocks the path at `unsolved`, or else that of
+  /// `plan`.
   stop_reason reason = stop_reason::no_solution;
-  /// Is it certain that there is no solution at `unsolved`? Of six joints all are known.
+  /// True if certainly there is no solution at `unsolved`. Of six joints all are known.
   bool is_certain = false;
 
   /// For those who extend duet: for `to_text`.
@@ -57,18 +58,18 @@ struct start_choice {
 
 namespace detail {
 
-/// What the search sees of a chain and a path, whatever their types.
+/// Chain and path as the search uses them, independent of their types.
 template <int Room>
 struct start_problem {
   using joints = joint_vector<double, -Room>;
 
   serial_chain<-Room> chain;
-  const scene* around; ///< or nothing
+  const scene* around; ///< or null
   const path_function& path;
   double first, last;
   const start_options& options;
   std::function<motion_plan<-Room>(const joints&, const plan_options&)> follow;
-  std::function<double(const joints&)> objective; ///< or nothing
+  std::function<double(const joints&)> objective; ///< or empty
 };
 
 } // namespace detail

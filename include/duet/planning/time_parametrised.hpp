@@ -16,7 +16,7 @@
 #include <vector>
 
 /// \file
-/// When a joint path may be where, under limits of velocity, acceleration and jerk.
+/// Time-optimal parametrisation of joint paths under limits of velocity, acceleration and jerk.
 
 namespace duet {
 namespace detail {
@@ -44,84 +44,91 @@ template <int N>
 
 } // namespace detail
 
-/// Which curve through waypoints joints follow.
-enum class joint_curve {
-  /// Every joint stays between its coordinates at neighbouring waypoints, and rises and falls as
-  /// they do, save near ends where rates are given: continuous slopes, those of Fritsch and
-  /// Butland.
+/// Interpolating curve of the joints through waypoints.
+enum class waypoint_interpolation {
+  /// Monotone cubic interpolation: every joint stays between its coordinates at neighbouring
+  /// waypoints, and rises and falls as they do, except near ends with given velocities. Continuous
+  /// slopes, those of Fritsch and Butland.
   monotone,
-  /// The cubic spline, with continuous second derivatives: quicker, as joints that turn back don't
-  /// do so at waypoints, but beyond.
+  /// Cubic spline with continuous second derivatives: faster motions, as joints that reverse do so
+  /// beyond waypoints instead of at them.
   smooth
 };
 
-/// Settings of `time_parametrised`.
-struct time_options {
-  /// At least so many parts of the path have an s̈ of their own, and sixteen between waypoints; with
-  /// limits of jerk half as many, and none for waypoints.
-  int parts = 360;
-  /// Of each joint at the start, the path's direction there; empty: at rest.
-  std::vector<double> initial_rates = {};
-  /// Of each joint at the end, the path's direction there; empty: at rest.
-  std::vector<double> final_rates = {};
-  /// Not said: smooth for chains, where joints keep to their ranges on it, and with limits of jerk;
-  /// otherwise monotone.
-  std::optional<joint_curve> curve = {};
-  /// Limits of each joint's |q⃛|, positive or infinite, for motions on a smooth curve; empty: none.
-  /// At rest at an end accelerations are zero; in motion they are what is quickest, within limits.
+/// Options of `time_optimal_trajectory`.
+struct time_parametrisation_options {
+  /// Minimum number of intervals of the path with an s̈ each, and sixteen between waypoints; with
+  /// jerk limits half as many, and none for waypoints.
+  int min_intervals = 360;
+  /// Velocity of each joint at the start, in the direction of the path there; empty: at rest.
+  std::vector<double> initial_velocities = {};
+  /// Velocity of each joint at the end, in the direction of the path there; empty: at rest.
+  std::vector<double> final_velocities = {};
+  /// Interpolating curve. Default: smooth for chains, where joints keep to their ranges on it, and
+  /// with jerk limits; otherwise monotone.
+  std::optional<waypoint_interpolation> curve = {};
+  /// Limits of |q⃛| of each joint, positive or infinite, for motions on a smooth curve; empty:
+  /// none. Accelerations are zero at an end at rest; at an end in motion they are the fastest
+  /// within limits.
   std::vector<double> jerk = {};
 };
 
-/// The fastest motion of joints along a curve through waypoints that keeps |q̇| and |q̈| of each
-/// within limits, from rest to rest or from given rates to given rates.
+/// Time-optimal motion of joints along a curve through waypoints that keeps |q̇| and |q̈| of each
+/// joint within limits, from rest to rest or from given velocities to given velocities.
 ///
-/// In the phase plane (s, ṡ) of the path the parts have constant s̈ each, and the largest ṡ² come
-/// from one pass backwards and one forwards, as in Pham and Pham, A new approach to time-optimal
-/// path parameterization based on reachability analysis, IEEE T-RO 2018.
-/// Limits are kept everywhere, not only at samples: what bounds them are Bernstein coefficients.
-/// With limits of jerk it is the fastest of those near it (docs/time_parametrisation.md), and
+/// s̈ is constant on each interval of the path in the phase plane (s, ṡ), and the largest squared
+/// path velocities ṡ² come from one pass backwards and one forwards, as in Pham and Pham, A new
+/// approach to time-optimal path parameterization based on reachability analysis, IEEE T-RO 2018
+/// (TOPP-RA).
+/// Limits are kept everywhere, not only at samples: they bound Bernstein coefficients. With jerk
+/// limits the motion is the fastest of those near it (docs/time_parametrisation.md), and
 /// accelerations are continuous: from and to zero at ends at rest; at ends in motion they are not
-/// given, but what is quickest.
+/// given, but are the fastest.
 ///
 /// \param waypoints  joint coordinates, equal neighbours allowed
-/// \param velocity  of each joint, in coordinates per second, positive or infinite
-/// \param acceleration  of each joint, per second², positive and finite
+/// \param velocity  limit of each joint, in coordinates per second, positive or infinite
+/// \param acceleration  limit of each joint, per second², positive and finite
 /// \return `joint_trajectory<N>`
-/// \throws invalid_input for no waypoints, coordinates that are not finite, for limits that are not
-/// positive or of another number than the joints, and for rates that the limits do not allow: the
-/// message says which part of them they do, with limits of jerk also by reason of which joint; with
-/// limits of jerk for a curve whose second derivative jumps
+/// \throws invalid_input for no waypoints, coordinates that are not finite, limits that are not
+/// positive or of another number than the joints, and velocities at ends that the limits do not
+/// allow: the message states which fraction of them they do, with jerk limits also because of which
+/// joint; with jerk limits for a curve whose second derivative jumps
 template <class V, VectorLike Velocity, VectorLike Acceleration>
-[[nodiscard]] auto time_parametrised(const std::vector<V>& waypoints, const Velocity& velocity,
-                                     const Acceleration& acceleration,
-                                     const time_options& options = {}) {
+[[nodiscard]] auto time_optimal_trajectory(const std::vector<V>& waypoints,
+                                           const Velocity& velocity,
+                                           const Acceleration& acceleration,
+                                           const time_parametrisation_options& options = {}) {
   const auto problem = detail::timing_problem_of(waypoints, velocity, acceleration, options);
-  const auto usual = options.jerk.empty() ? joint_curve::monotone : joint_curve::smooth;
-  return detail::timed_along(problem, options.curve.value_or(usual) == joint_curve::smooth);
+  const auto usual =
+      options.jerk.empty() ? waypoint_interpolation::monotone : waypoint_interpolation::smooth;
+  return detail::timed_along(problem,
+                             options.curve.value_or(usual) == waypoint_interpolation::smooth);
 }
 
-/// The quickest motion along a plan's joint positions that keeps to limits of the joints'
-/// velocities and accelerations. \return `joint_trajectory<N>`
-template <int N, VectorLike Velocity, VectorLike Acceleration>
-[[nodiscard]] auto time_parametrised(const motion_plan<N>& plan, const Velocity& velocity,
-                                     const Acceleration& acceleration,
-                                     const time_options& options = {}) {
-  return time_parametrised(plan.joints, velocity, acceleration, options);
-}
-
-/// The fastest motion of a chain's joints within its own limits of velocity and range and given
-/// ones of acceleration, along a smooth curve: where a joint would leave its range on it, its
-/// slopes are those of the monotone curve.
+/// Time-optimal motion along a plan's joint positions within limits of the joints' velocities and
+/// accelerations.
 ///
-/// \param way  a `motion_plan` or a vector of joint coordinates
-/// \param acceleration  of each joint, per second², positive and finite
 /// \return `joint_trajectory<N>`
-/// \throws invalid_input as with velocities; for another number of coordinates than joints; and
-/// where rates at an end take a joint out of its range
+template <int N, VectorLike Velocity, VectorLike Acceleration>
+[[nodiscard]] auto time_optimal_trajectory(const motion_plan<N>& plan, const Velocity& velocity,
+                                           const Acceleration& acceleration,
+                                           const time_parametrisation_options& options = {}) {
+  return time_optimal_trajectory(plan.joints, velocity, acceleration, options);
+}
+
+/// Time-optimal motion of a chain's joints within its own limits of velocity and range and given
+/// ones of acceleration, along a smooth curve: if a joint would leave its range on it, its slopes
+/// are those of the monotone curve.
+///
+/// \param way  joint path: a `motion_plan` or a vector of joint coordinates
+/// \param acceleration  limit of each joint, per second², positive and finite
+/// \return `joint_trajectory<N>`
+/// \throws invalid_input as with velocities; for another number of coordinates than joints; and if
+/// velocities at an end take a joint out of its range
 template <SerialChain C, class Way, VectorLike Acceleration>
-[[nodiscard]] auto time_parametrised(const C& chain, const Way& way,
-                                     const Acceleration& acceleration,
-                                     const time_options& options = {}) {
+[[nodiscard]] auto time_optimal_trajectory(const C& chain, const Way& way,
+                                           const Acceleration& acceleration,
+                                           const time_parametrisation_options& options = {}) {
   const auto& waypoints = detail::waypoints_of(way);
   Eigen::VectorXd velocity(chain.size());
   for (int i = 0; i < chain.size(); ++i) {
@@ -132,8 +139,8 @@ template <SerialChain C, class Way, VectorLike Acceleration>
     problem.lower[i] = chain.limits(i).lower;
     problem.upper[i] = chain.limits(i).upper;
   }
-  return detail::timed_along(problem,
-                             options.curve.value_or(joint_curve::smooth) == joint_curve::smooth);
+  return detail::timed_along(problem, options.curve.value_or(waypoint_interpolation::smooth) ==
+                                          waypoint_interpolation::smooth);
 }
 
 } // namespace duet

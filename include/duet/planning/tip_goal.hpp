@@ -16,30 +16,30 @@
 #include <cstddef>
 
 /// \file
-/// Goals of any type for the search for joint coordinates, which is compiled once for all.
+/// Type-erased goals of the inverse kinematics search, which is compiled once for all of them.
 
 namespace duet::detail {
 
-/// What a search knows of a goal, with lengths as planners count them.
+/// Interface of a goal for the search, with lengths in the planner's unit.
 class tip_goal {
 public:
   virtual ~tip_goal() = default;
-  [[nodiscard]] virtual wanted_twist wanted(const tip_place& tip) const = 0;
+  [[nodiscard]] virtual twist_constraint constraint(const tip_place& tip) const = 0;
   [[nodiscard]] virtual double distance_from(const three_vector<double>&) const { return 0; }
 };
 
-/// A goal of the type G, which knows of a user's lengths alone.
+/// Goal of the type G, which uses the user's unit of length.
 template <TipGoal G>
 class tip_goal_of final : public tip_goal {
 public:
-  /// \param length  that planners count in
+  /// \param length  the planner's unit of length
   tip_goal_of(const G& goal, double length) : goal_(goal), length_(length) {}
-  [[nodiscard]] wanted_twist wanted(const tip_place& tip) const override {
-    wanted_twist x = goal_.wanted(pose_at({tip.rotation, length_ * tip.translation}));
-    x.least.head<3>() /= length_;
-    x.most.head<3>() /= length_;
-    x.rows.topRightCorner<3, 3>() /= length_;
-    x.rows.bottomLeftCorner<3, 3>() *= length_;
+  [[nodiscard]] twist_constraint constraint(const tip_place& tip) const override {
+    twist_constraint x = goal_.constraint(pose_at({tip.rotation, length_ * tip.translation}));
+    x.lower.head<3>() /= length_;
+    x.upper.head<3>() /= length_;
+    x.matrix.topRightCorner<3, 3>() /= length_;
+    x.matrix.bottomLeftCorner<3, 3>() *= length_;
     return x;
   }
   [[nodiscard]] double distance_from(const three_vector<double>& point) const override {
@@ -56,18 +56,18 @@ private:
   double length_;
 };
 
-/// A pose as one goal among others.
+/// Full pose as a goal.
 struct whole_pose {
   tip_place place;
 
-  [[nodiscard]] wanted_twist wanted(const dual_quaternion<double>& tip) const {
-    wanted_twist result;
+  [[nodiscard]] twist_constraint constraint(const dual_quaternion<double>& tip) const {
+    twist_constraint result;
     const small_twist e = error_twist(place_of(tip), place);
-    result.rows.setIdentity();
+    result.matrix.setIdentity();
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
-      result.least[i] = e[i];
+      result.lower[i] = e[i];
     }
-    result.most = result.least;
+    result.upper = result.lower;
     return result;
   }
   [[nodiscard]] double distance_from(const vector3<double>& point) const {
@@ -75,42 +75,42 @@ struct whole_pose {
   }
 };
 
-/// What is wanted of a tip as far as it is missing, and how much that is.
+/// Residual twist: the part of a constraint that is not satisfied yet, and its size.
 struct missing_twist {
   small_twist e;
-  pose_deviation left;
+  pose_error left;
 
-  explicit missing_twist(const wanted_twist& wanted) {
+  explicit missing_twist(const twist_constraint& wanted) {
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
-      e[i] = std::max(wanted.least[i], std::min(wanted.most[i], 0.0));
+      e[i] = std::max(wanted.lower[i], std::min(wanted.upper[i], 0.0));
     }
     left = deviation_of(e);
   }
 };
 
-/// The row of M J, J in `frame::hybrid`.
+/// Row of M J, J in `frame::hybrid`.
 template <int Room>
-[[nodiscard]] small_vector<Room> goal_row(const wanted_twist& wanted, std::ptrdiff_t row,
+[[nodiscard]] small_vector<Room> goal_row(const twist_constraint& wanted, std::ptrdiff_t row,
                                           const small_matrix<6, Room>& jacobian) {
   small_vector<Room> result;
   for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
-      result[k] += wanted.rows(row, i) * jacobian(i, k);
+      result[k] += wanted.matrix(row, i) * jacobian(i, k);
     }
   }
   return result;
 }
 
-/// What is within its bounds asks for nothing.
+/// Sets the equations M J Δ = e of a goal; rows within their bounds impose nothing.
 template <int Room>
 void set_equations(goal_equations<Room>& x, const tip_goal& goal) {
-  const wanted_twist wanted = goal.wanted(x.at.tip);
+  const twist_constraint wanted = goal.constraint(x.at.tip);
   const missing_twist missing(wanted);
   x.e = missing.e;
   x.left = missing.left;
   const small_matrix<6, Room> jacobian = x.at.jacobian;
   for (std::ptrdiff_t i = 0; i < 6; ++i) {
-    const bool is_equation = wanted.least[i] == wanted.most[i] && !wanted.rows.row(i).isZero(0);
+    const bool is_equation = wanted.lower[i] == wanted.upper[i] && !wanted.matrix.row(i).isZero(0);
     x.is_free[std::size_t(i)] = x.e[i] == 0 && !is_equation;
     const auto row =
         x.is_free[std::size_t(i)] ? small_vector<Room>{} : goal_row(wanted, i, jacobian);
@@ -120,11 +120,12 @@ void set_equations(goal_equations<Room>& x, const tip_goal& goal) {
   }
 }
 
-/// The tip is no farther from the first joint than links, sliding joints and tool are long.
+/// True if a goal is certainly out of reach: the tip is never farther from the first joint than the
+/// lengths of links, prismatic joints and tool together.
 [[nodiscard]] inline bool is_beyond(const chain_reach& reach, const tip_goal& goal,
                                     const pose_tolerance& tolerance) {
   const double most = (reach.links + reach.travel + reach.tool) * (1 + 1e-12);
-  return reach.has_joints && goal.distance_from(reach.first) > most + tolerance.length;
+  return reach.has_joints && goal.distance_from(reach.first) > most + tolerance.translation;
 }
 
 #ifdef DUET_COMPILED

@@ -11,11 +11,11 @@
 #include <cmath>
 
 /// \file
-/// Where a chain's tip stands, and how far two places are from each other.
+/// Pose of a chain's tip, and the error between two poses.
 
 namespace duet::detail {
 
-/// Where the tip stands.
+/// Pose of the tip.
 using tip_place = link_displacement<double>;
 
 [[nodiscard]] inline tip_place place_of(const dual_quaternion<double>& a) {
@@ -28,9 +28,9 @@ using tip_place = link_displacement<double>;
   return std::sqrt(dot(x, x));
 }
 
-/// The twist [v; ω], in `frame::hybrid`, of the shorter screw motion from one place to another in
-/// unit time: ω = 2 log r of the rotation r between them, the way between origins
-/// ∫₀¹ exp(sω) v ds, solved for v.
+/// Twist [v; ω], in `frame::hybrid`, of the shorter screw motion from one pose to another in unit
+/// time: ω = 2 log r of the rotation r between them, the displacement of the origin ∫₀¹ exp(sω) v
+/// ds, solved for v.
 [[nodiscard]] inline small_twist error_twist(const tip_place& from, const tip_place& to) {
   quaternion<double> r = to.rotation * conj(from.rotation);
   if (r.w() < 0) {
@@ -49,12 +49,12 @@ using tip_place = link_displacement<double>;
   return {{v.x, v.y, v.z, omega.x, omega.y, omega.z}};
 }
 
-/// The lengths of v and ω. That of v is that of the way where the two places are near.
-[[nodiscard]] inline pose_deviation deviation_of(const small_twist& e) {
+/// Lengths of v and ω. That of v is the distance of the origins if the two poses are near.
+[[nodiscard]] inline pose_error deviation_of(const small_twist& e) {
   return {length_of(three_vector{e[0], e[1], e[2]}), length_of(three_vector{e[3], e[4], e[5]})};
 }
-[[nodiscard]] inline pose_deviation deviation_between(const tip_place& a, const tip_place& b) {
-  return {length_of(b.translation - a.translation), deviation_of(error_twist(a, b)).angle};
+[[nodiscard]] inline pose_error pose_error_between(const tip_place& a, const tip_place& b) {
+  return {length_of(b.translation - a.translation), deviation_of(error_twist(a, b)).rotation};
 }
 
 } // namespace duet::detail

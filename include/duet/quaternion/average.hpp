@@ -21,7 +21,7 @@
 #include <vector>
 
 /// \file
-/// Means of rotations and of poses.
+/// Karcher (Fréchet) means of rotations and of poses.
 
 namespace duet {
 
@@ -40,8 +40,8 @@ inline void require_weights(const char* function, std::size_t count,
           "duet: ", function, ": all weights are 0");
 }
 
-/// Newton's method for the mean of real rotations; also the inverse matrix of its last equation,
-/// which the infinitesimal parts of the mean have in common.
+/// Newton's method for the Karcher mean of real rotations, with the inverse matrix of its last
+/// equation, which serves the infinitesimal parts of the mean too.
 template <class R>
 struct rotation_mean {
   quaternion<R> value;
@@ -63,7 +63,7 @@ struct rotation_mean {
       const vector3<R> step = inverse_slope * residual;
       const R length = step.norm();
       value = normalized(quaternion<R>(value * duet::exp(vector3<R>(step / R(2)))));
-      // Quadratic convergence ends in rounding: the last step is not shorter than the one before.
+      // Quadratic convergence ends in round-off: the last step is not shorter than the one before.
       if (length <= 8 * std::numeric_limits<R>::epsilon() ||
           (length < R(1e-10) && length >= last_step)) {
         return;
@@ -75,7 +75,8 @@ struct rotation_mean {
   }
 
 private:
-  /// The sum of all, each with the sign nearer to the one of most weight, so that it is not zero.
+  /// Initial guess: the weighted sum of all, each with the sign nearer to the one of largest
+  /// weight, so that the sum is not zero.
   static quaternion<R> start(const std::vector<quaternion<R>>& q, const std::vector<R>& weights) {
     const auto most = std::max_element(weights.begin(), weights.end()) - weights.begin();
     const quaternion<R>& reference = q[std::size_t(most)];
@@ -89,27 +90,26 @@ private:
 
 } // namespace detail
 
-/// The mean m of unit quaternions, of rotations or of poses: Σ wᵢ log(m* qᵢ) = 0, each qᵢ with the
-/// sign nearer to m.
+/// Karcher (Fréchet) mean m of unit quaternions, that is of rotations or of poses:
+/// Σ wᵢ log(m* qᵢ) = 0, each qᵢ with the sign nearer to m.
 ///
-/// Of rotations it is the one with the smallest sum of squared angles where all are less than a
-/// quarter turn from some one rotation: there it is unique. Where they are farther apart the
-/// equation may have several solutions, and this is one of them. Of poses it is the bi-invariant
-/// mean: moving or turning all
-/// moves the mean along, from the left and from the right, and its rotation is the mean of the
-/// rotations. Infinitesimal parts, those of poses among them, follow from the equation, not through
-/// the iteration.
+/// For rotations, m minimises the sum of squared angles and is unique if all are less than a
+/// quarter turn from some one rotation. If they are farther apart the equation may have several
+/// solutions, of which one is returned. For poses, m is the bi-invariant mean: a rigid motion of
+/// all poses, from the left or from the right, moves the mean along, and the rotation of m is the
+/// mean of the rotations. Infinitesimal parts, those of poses among them, follow from the equation,
+/// not through the iteration.
 ///
-/// \param weights  wᵢ ≥ 0 in proportion, or none for equal ones
-/// \throws invalid_input for nothing to average, elements that are not finite, and weights that are
-/// negative, not finite, all zero or too many or few; no_convergence where the rotations are all
-/// over the place
+/// \param weights  wᵢ ≥ 0, up to a common factor; empty (the default) for equal weights
+/// \throws invalid_input if there are no elements, if elements are not finite, and if weights are
+///   negative, not finite, all zero or too many or few
+/// \throws no_convergence if the rotations are too far apart
 template <class T>
 [[nodiscard]] quaternion<T> average(const std::vector<quaternion<T>>& q,
                                     const std::vector<double>& weights = {}) {
   using R = real_type_t<T>;
   detail::require_weights("average", q.size(), weights);
-  // In relation to the largest, so that they do not overflow.
+  // Relative to the largest weight, so that the sum does not overflow.
   const double largest = weights.empty() ? 1 : *std::max_element(weights.begin(), weights.end());
   double sum = 0;
   for (std::size_t k = 0; k < q.size(); ++k) {
@@ -140,7 +140,7 @@ template <class T>
   return m;
 }
 
-/// The mean of listed ones, `average({p, q})`; all else as of a vector.
+/// Karcher mean of listed elements, `average({p, q})`; otherwise as for a vector.
 template <class T>
 [[nodiscard]] quaternion<T> average(std::initializer_list<quaternion<T>> q,
                                     const std::vector<double>& weights = {}) {

@@ -10,13 +10,15 @@
 #include <vector>
 
 /// \file
-/// Curves built from SLERP and nothing else: squad and Bézier curves, of rotations and of poses.
+/// Curves by repeated SLERP alone: squad and Bézier curves, of rotations and of poses.
 
 namespace duet {
 
-/// The inner control point of `squad` at q between two neighbours:
-/// s = q exp(−¼(log(q* next) + log(q* previous))). Signs must be aligned. At an end, where there is
-/// no neighbour, q itself serves. \throws invalid_input where one is zero
+/// Inner control point of `squad` at q between two neighbours:
+/// s = q exp(−¼(log(q* next) + log(q* previous))). Signs must be aligned. At an end, without a
+/// neighbour, use q itself.
+///
+/// \throws invalid_input if one of them is zero
 /// \return `quaternion<T>`
 template <class A, Promotable<A> B, Promotable<A> C>
 [[nodiscard]] auto squad_control(const quaternion<A>& previous, const quaternion<B>& q,
@@ -30,19 +32,20 @@ template <class A, Promotable<A> B, Promotable<A> C>
 /// Shoemake's spherical and quadrangle interpolation from a to b with control points p and q:
 /// slerp(slerp(a, b, τ), slerp(p, q, τ), 2τ(1 − τ)). Signs must be aligned, and are not changed.
 ///
-/// With control points by `squad_control` and equal parameter steps, segments join with one angular
-/// velocity, not with one angular acceleration.
+/// With control points by `squad_control` and equal parameter steps, segments join with continuous
+/// angular velocity, but not with continuous angular acceleration.
+///
 /// \return `quaternion<T>`
 template <class A, class P, class Q, class B, class S>
 [[nodiscard]] auto squad(const quaternion<A>& a, const quaternion<P>& p, const quaternion<Q>& q,
                          const quaternion<B>& b, const S& tau) {
-  return slerp(slerp(a, b, tau, way::as_given), slerp(p, q, tau, way::as_given),
-               2 * tau * (1 - tau), way::as_given);
+  return slerp(slerp(a, b, tau, slerp_arc::as_given), slerp(p, q, tau, slerp_arc::as_given),
+               2 * tau * (1 - tau), slerp_arc::as_given);
 }
 
 namespace detail {
 
-/// De Casteljau's repeated SLERP, in place.
+/// De Casteljau's algorithm with SLERP, overwriting its points.
 template <class Points, class S>
 [[nodiscard]] auto de_casteljau(Points q, const S& tau) {
   if (q.empty()) {
@@ -58,9 +61,9 @@ template <class Points, class S>
 
 } // namespace detail
 
-/// The Bézier curve of n + 1 control points at τ ∈ [0, 1] by de Casteljau's repeated SLERP, each
-/// along the shorter way. It starts at the first with n times the velocity of SLERP to the second,
-/// and ends alike. Evaluation does not touch the heap.
+/// Bézier curve of n + 1 control points at τ ∈ [0, 1] by de Casteljau's algorithm with SLERP, each
+/// along the shorter arc. It starts at the first point with n times the velocity of SLERP to the
+/// second, and ends likewise. Does not allocate memory.
 template <class T, std::size_t N, ScalarFor<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> bezier(const std::array<quaternion<T>, N>& points,
                                                  const S& tau) {
@@ -71,9 +74,10 @@ template <class T, std::size_t N, ScalarFor<T> S>
   }
   return detail::de_casteljau(q, tau);
 }
-/// The Bézier curve of a number of control points known at run time, at τ ∈ [0, 1]; copies them to
-/// the heap.
-/// \throws invalid_input where there are no points
+/// Bézier curve of a number of control points known at run time, at τ ∈ [0, 1]; copies them to the
+/// heap.
+///
+/// \throws invalid_input if there are no points
 template <class T, ScalarFor<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> bezier(const std::vector<quaternion<T>>& points,
                                                  const S& tau) {

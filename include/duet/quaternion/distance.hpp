@@ -8,13 +8,14 @@
 #include <duet/quaternion/quaternion.hpp>
 
 /// \file
-/// How far rotations are from each other.
+/// Distances between rotations.
 
 namespace duet {
 
 namespace detail {
 
-/// The rotation vector of conj(a) b, the shorter way, with all digits where a and b are near.
+/// The rotation vector of conj(a) b along the shorter arc, without cancellation if a and b are
+/// near.
 template <class A, class B>
 [[nodiscard]] vector3<promote_t<A, B>> rotation_vector_between(const quaternion<A>& a,
                                                                const quaternion<B>& b) {
@@ -26,10 +27,11 @@ template <class A, class B>
 
 } // namespace detail
 
-/// The square of the angle between two rotations, φ² = |2 log(a* b)|², φ ∈ [0, π] in radians: the
-/// same for b and −b, and in every frame; a and b of unit norm. Smooth where φ < π, also at a = b;
-/// at φ = π, where both ways are as long, derivatives are those of the way of b's own sign. \throws
-/// invalid_input where a or b is zero
+/// Squared angle between two rotations, φ² = |2 log(a* b)|², φ ∈ [0, π] in radians, for a and b of
+/// unit norm. It is the same for b and −b, and in every frame. Smooth if φ < π, also at a = b; at
+/// φ = π both arcs have the same length, and derivatives are those of the arc of b's own sign.
+///
+/// \throws invalid_input if a or b is zero
 template <class A, Promotable<A> B>
   requires(!detail::contains_tag<promote_t<A, B>, screw_tag>())
 [[nodiscard]] promote_t<A, B> squared_distance(const quaternion<A>& a, const quaternion<B>& b) {
@@ -37,9 +39,10 @@ template <class A, Promotable<A> B>
   return turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
 }
 
-/// The distance of two rotations, the angle φ ∈ [0, π] between them in radians: the root of
-/// `squared_distance`, a metric. Its derivative at φ = 0 does not exist.
-/// \throws invalid_input where a or b is zero
+/// Distance between two rotations, the angle φ ∈ [0, π] between them in radians: the root of
+/// `squared_distance`, a metric. Not differentiable at φ = 0.
+///
+/// \throws invalid_input if a or b is zero
 template <class A, Promotable<A> B>
   requires(!detail::contains_tag<promote_t<A, B>, screw_tag>())
 [[nodiscard]] promote_t<A, B> distance(const quaternion<A>& a, const quaternion<B>& b) {

@@ -18,13 +18,13 @@
 #include <type_traits>
 
 /// \file
-/// Euler angles in all twelve sequences. `zyx` means R = R_z(first) R_y(second) R_x(third): the
-/// letters are the axes of the moving body, turned about one after the other; read from the right,
-/// fixed axes.
+/// Intrinsic Euler angles in all twelve sequences. `zyx` (SciPy's upper-case "ZYX") means
+/// R = R_z(first) R_y(second) R_x(third): successive rotations about the axes of the moving body in
+/// the order of the letters; read from the right, extrinsic rotations about fixed axes.
 
 namespace duet::detail {
 
-/// a b + c d to two units in the last place of itself, where nothing overflows or underflows.
+/// a b + c d to two units in its own last place, unless something overflows or underflows.
 template <Real R>
 [[nodiscard]] R sum_of_products(const R& a, const R& b, const R& c, const R& d) {
   if constexpr (std::floating_point<R>) { // Kahan's
@@ -55,15 +55,15 @@ struct euler_sequence {
   /// Axes of the moving body, rotated about in this order; the default is `zyx`.
   int first = 2, second = 1, third = 0;
 
-  /// Are first and third one axis?
+  /// True if the first and the third axis are the same (proper Euler angles).
   [[nodiscard]] constexpr bool is_proper() const { return first == third; }
   /// The axis that is neither first nor second.
   [[nodiscard]] constexpr int other() const { return 3 - first - second; }
-  /// +1 where first, second, other follow x → y → z → x, else −1.
+  /// +1 if first, second, other follow x → y → z → x, else −1.
   [[nodiscard]] constexpr int sign() const { return (second - first + 3) % 3 == 1 ? 1 : -1; }
 };
 
-/// The twelve sequences, named by the axes turned about one after the other.
+/// The twelve intrinsic sequences, named by the axes of the successive rotations.
 inline constexpr euler_sequence xyz{0, 1, 2}, yzx{1, 2, 0}, zxy{2, 0, 1};
 inline constexpr euler_sequence xzy{0, 2, 1}, yxz{1, 0, 2}, zyx{2, 1, 0};
 inline constexpr euler_sequence xyx{0, 1, 0}, yzy{1, 2, 1}, zxz{2, 0, 2};
@@ -98,11 +98,11 @@ template <class T>
   return by_lane([&](const auto& p) { return of_scaled(near_one, p); }, q);
 }
 
-/// Numbers in proportion to cos β cos(α+γ), cos β sin(α+γ), sin β cos(α−γ), sin β sin(α−γ), which
+/// Numbers proportional to cos β cos(α+γ), cos β sin(α+γ), sin β cos(α−γ), sin β sin(α−γ), which
 /// with half angles α, β, γ are those components of R_i R_j R_i.
 ///
-/// A quarter turn about e_j takes e_i to the third axis: R_i R_j(b) R_k(c) R_j(π/2) is
-/// R_i R_j(b + π/2) R_i(∓c).
+/// A quarter turn about e_j takes e_i to the third axis:
+/// R_i R_j(b) R_k(c) R_j(π/2) = R_i R_j(b + π/2) R_i(∓c).
 template <euler_sequence Sequence, class T>
 [[nodiscard]] std::array<T, 4> proper_components(const std::array<T, 4>& q) {
   if constexpr (Sequence.is_proper()) {
@@ -112,8 +112,8 @@ template <euler_sequence Sequence, class T>
   }
 }
 
-/// The angles of a real quaternion. What vanishes with an angle is a sum of two products and as
-/// exact as it is small; what else there is need not be.
+/// Angles of a real quaternion. A quantity that vanishes with an angle is a sum of two products and
+/// so has a small relative error; the others need not.
 template <euler_sequence Sequence, Real R>
 [[nodiscard]] std::array<R, 3> euler_angles(const quaternion<R>& q) {
   using std::atan2;
@@ -161,10 +161,12 @@ using angle_t = std::conditional_t<std::integral<T>, double, T>;
 
 } // namespace detail
 
-/// The rotation R_i(a) R_j(b) R_k(c) of the sequence ijk; angles in the letters' order, radians,
-/// integers among them (degrees are not told apart: 90 is 90 radians).
-/// Example: `from_euler<zyx>(yaw, pitch, roll)`.
+/// Rotation R_i(a) R_j(b) R_k(c) of the intrinsic sequence ijk; angles in the order of the letters,
+/// in radians, integers among them (degrees are not recognised: 90 is 90 radians).
+///
 /// \return `quaternion<T>`
+///
+/// Example: `from_euler<zyx>(yaw, pitch, roll)`.
 template <euler_sequence Sequence, class A, class B, class C>
   requires Promotable<A, promote_t<B, C>>
 [[nodiscard]] auto from_euler(const A& a, const B& b, const C& c) {
@@ -173,13 +175,15 @@ template <euler_sequence Sequence, class A, class B, class C>
          detail::axis_rotation(Sequence.second, T(b)) * detail::axis_rotation(Sequence.third, T(c));
 }
 
-/// The angles of a rotation, q of any norm, in the letters' order.
+/// Intrinsic Euler angles of a rotation, q of any norm, in the order of the letters, in radians.
 ///
-/// First and third lie in [−π, π]; the second in [0, π] where the first and last letters are equal,
-/// else in [−π/2, π/2]. Each is right to a few units in its own last place, however small it is. At
-/// either end of the second angle's range (gimbal lock) only the sum or the difference of the
-/// others is determined; the angles returned still give the rotation, but they have no derivative
-/// there. \throws invalid_input for the zero quaternion
+/// First and third lie in [−π, π]; the second in [0, π] if the first and last letters are equal,
+/// else in [−π/2, π/2]. Each is accurate to a few units in its own last place, however small it is.
+/// At either end of the second angle's range (gimbal lock) only the sum or the difference of the
+/// others is determined; the angles returned still give the rotation, but have no derivatives
+/// there.
+///
+/// \throws invalid_input for the zero quaternion
 template <euler_sequence Sequence, class T>
 [[nodiscard]] std::array<T, 3> euler(const quaternion<T>& q) {
   if constexpr (Infinitesimal<T>) {
@@ -207,9 +211,9 @@ template <euler_sequence Sequence, class T>
   }
 }
 
-/// The matrix A with ω = A [a′, b′, c′]ᵀ in spatial axes, for the angles a, b of the sequence ijk;
-/// the third angle does not enter. Columns are the axes being turned about: e_i, R_i e_j, R_i R_j
-/// e_k.
+/// Matrix A with ω = A [a′, b′, c′]ᵀ in spatial axes, for the angles a, b of the sequence ijk, in
+/// radians; the third angle does not enter. Columns are the axes of the successive rotations: e_i,
+/// R_i e_j, R_i R_j e_k.
 ///
 /// P5 (true form): for `zyx` its columns belong to ψ′, θ′, φ′. Singular in gimbal lock.
 template <euler_sequence Sequence, class A, Promotable<A> B>
@@ -235,15 +239,14 @@ template <euler_sequence Sequence, class A, Promotable<A> B>
   return m;
 }
 
-/// P5 as the copy at hand has it: the matrix A_K with ω = A_K [φ′, θ′, ψ′]ᵀ in spatial axes, for
-/// R = R_z(ψ) R_y(θ) R_x(φ), **with a slip, of the copy or of the print**: its element (3, 1) reads
-/// −sin ψ. Columns are axes of rotation, of length 1; with −sin ψ the first is not, so that no
-/// sequence of Euler angles has this matrix.
+/// P5 as printed in the available copy: the matrix A_K with ω = A_K [φ′, θ′, ψ′]ᵀ in spatial axes,
+/// for R = R_z(ψ) R_y(θ) R_x(φ), **with a slip, of the copy or of the print**: its element (3, 1)
+/// reads −sin ψ. Columns are axes of rotation, of length 1; with −sin ψ the first is not, so that
+/// no sequence of Euler angles has this matrix.
 ///
-/// The true one, −sin θ, is in `euler_rate_matrix<zyx>(psi, theta)`, whose columns are in the
-/// order of the letters: ψ′, θ′, φ′. The two agree where sin ψ = sin θ.
-/// Source: Houdek, Verlinden, Hajžman, "Derivatives of quaternion spline interpolation function for
-/// multibody dynamics", equation (5).
+/// The true one, −sin θ, is in `euler_rate_matrix<zyx>(psi, theta)`, whose columns are in the order
+/// of the letters: ψ′, θ′, φ′. The two agree if sin ψ = sin θ. Source: Houdek, Verlinden, Hajžman,
+/// "Derivatives of quaternion spline interpolation function for multibody dynamics", equation (5).
 template <class A, Promotable<A> B>
 [[nodiscard]] auto printed_euler_rate_matrix(const A& psi, const B& theta) {
   using std::cos;
@@ -257,7 +260,7 @@ template <class A, Promotable<A> B>
   return a;
 }
 
-/// Without a sequence it is not clear about which axes.
+/// Rejected: without a sequence the axes are ambiguous.
 template <class... X>
 DUET_REFUSED("about which axes? from_euler<zyx>(yaw, pitch, roll), in radians")
 quaternion<double> from_euler(const X&...);

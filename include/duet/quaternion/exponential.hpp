@@ -23,12 +23,12 @@
 /// Exponential, logarithm, powers (N4, N5) and spherical interpolation `slerp` (N9), in half
 /// angles.
 ///
-/// All work in s = v·v through functions that are regular at s = 0, so the identity, a pure
+/// All are computed from s = v·v by functions that are regular at s = 0, so the identity, a pure
 /// translation and every order of derivative need no special case.
 
 namespace duet {
 
-/// The exponential of a pure quaternion, exp(v) = cos|v| + v sin|v|/|v| (N4). v = ½ × rotation
+/// Exponential of a pure quaternion, exp(v) = cos|v| + v sin|v|/|v| (N4), v half the rotation
 /// vector.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<detail::differentiable_t<T>> exp(const vector3<T>& v) {
@@ -37,7 +37,7 @@ template <class T>
   return {c[0], v[0] * c[1], v[1] * c[1], v[2] * c[1]};
 }
 
-/// The exponential exp(w + v) = e^w (cos|v| + v sin|v|/|v|) (N4).
+/// Exponential exp(w + v) = e^w (cos|v| + v sin|v|/|v|) (N4).
 template <class T>
 [[nodiscard]] quaternion<T> exp(const quaternion<T>& q) {
   using std::exp;
@@ -46,8 +46,8 @@ template <class T>
 
 namespace detail {
 
-/// exp(b v) for a v that does not depend on all that b depends on: derivatives by b cost no more
-/// than those of a sine and a cosine.
+/// exp(b v) for a v that does not depend on all that b depends on: derivatives with respect to b
+/// cost no more than those of a sine and a cosine.
 template <class S, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>> exp_of_multiple(const S& b,
                                                                              const vector3<T>& v) {
@@ -55,7 +55,7 @@ template <class S, class T>
   return {u[0], v[0] * u[1], v[1] * u[1], v[2] * u[1]};
 }
 
-/// The unit vector û along the vector part of q; undetermined where that is zero.
+/// Unit vector û along the vector part of q; undetermined if that is zero.
 template <class T>
 [[nodiscard]] quaternion<T> axis_of(const quaternion<T>& q) {
   using real = real_type_t<T>;
@@ -66,8 +66,8 @@ template <class T>
       [&] { return v; }));
 }
 
-/// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|². Next to a full turn |v|⁻³ and higher
-/// powers in the derivatives by s would overflow before those by v do.
+/// û φ, the vector part of log q; `s` = |q⃗|², `square` = |q|². Near a full turn |v|⁻³ and higher
+/// powers in the derivatives with respect to s would overflow before those with respect to v do.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> log_vector(const quaternion<T>& q, const T& s,
                                                        const T& square, const char* function) {
@@ -84,7 +84,7 @@ template <class T>
       [=]<class P>(const quaternion<P>& near_one, int) {
         require_not_zero(near_one, function);
         const quaternion<P> v(P(0), near_one.x(), near_one.y(), near_one.z());
-        const P of_v = norm2(v);
+        const P of_v = squared_norm(v);
         return select(
             innermost(near_one.w()) > 0 || innermost(of_v) > least_moderate<real_type_t<P>>(),
             [&] {
@@ -113,18 +113,20 @@ template <class T>
       is_moderate(innermost(square)), q, [&]() DUET_INLINE_LAMBDA { return T(log(square) / 2); },
       []<class P>(const quaternion<P>& near_one, int e) {
         using real = real_type_t<P>;
-        return P(log(norm2(near_one)) / 2 + real(e) * constant::ln2<real>());
+        return P(log(squared_norm(near_one)) / 2 + real(e) * constant::ln2<real>());
       });
 }
 
 } // namespace detail
 
-/// The logarithm log q = log|q| + û φ, φ = atan2(|q⃗|, q₀) ∈ [0, π] (N4): the inverse of exp, in
-/// half angles.
+/// Logarithm log q = log|q| + û φ, φ = atan2(|q⃗|, q₀) ∈ [0, π] (N4): the inverse of exp, in half
+/// angles.
 ///
-/// Never flips the sign of q, so log(−q) is the logarithm the long way round. Singular at q = −|q|,
-/// a full turn, where the axis is undetermined: the value there is (log|q|, π, 0, 0), and
-/// derivatives by the vector part are NaN. \throws invalid_input for the zero quaternion
+/// Never flips the sign of q, so log(−q) belongs to the longer arc. Singular at q = −|q|, a full
+/// turn, where the axis is undetermined: the value there is (log|q|, π, 0, 0), and derivatives with
+/// respect to the vector part are NaN.
+///
+/// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<T> log(const quaternion<T>& q) {
   const T s = q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
@@ -135,7 +137,7 @@ template <class T>
 
 namespace detail {
 
-/// The vector part of log(a* b), where b is on the other side of log(−a* b); `cosine` = a·b.
+/// The vector part of log(a* b), or of log(−a* b) if b is on the other side; `cosine` = a·b.
 template <class A, class B, class T, class Side>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> half_arc(const quaternion<A>& a, const quaternion<B>& b,
                                                      const T& cosine, const Side& other_side,
@@ -143,8 +145,8 @@ template <class A, class B, class T, class Side>
   if (any(innermost(cosine) == 0)) [[unlikely]] {
     require_not_zero(b, function);
   }
-  // a* a has no vector part. Subtracting it first keeps all digits of a small rotation.
-  using end = std::conditional_t<Batched<T>, T, B>; // which of a batch turn round
+  // a* a has no vector part. Subtracting it first avoids cancellation for a small rotation.
+  using end = std::conditional_t<Batched<T>, T, B>; // lanes of a batch differ in sign
   const quaternion<end> aligned = select(
       other_side, [&] { return quaternion<end>(-b); }, [&] { return quaternion<end>(b); });
   const quaternion<T> difference = conj(a) * (aligned - a);
@@ -162,8 +164,8 @@ pow_of_regular(const quaternion<T>& q, const vector3<T>& v, const S& exponent) {
          R(pow(norm(q), exponent));
 }
 
-/// q^ρ away from a full turn, as q^n q^(ρ−n) with the whole number n ≤ 3 next to ρ > 0: of the
-/// k-th derivative, which vanishes with ρ (ρ − 1) … (ρ − k + 1), nothing cancels.
+/// q^ρ away from a full turn, as q^n q^(ρ−n) with the integer n ≤ 3 nearest to ρ > 0, so that
+/// nothing cancels in the k-th derivative, which vanishes with ρ (ρ − 1) … (ρ − k + 1).
 template <class T, class S>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>> pow_by_whole(const quaternion<T>& q,
                                                                           const S& exponent) {
@@ -174,7 +176,7 @@ template <class T, class S>
   } else {
     using real = real_type_t<R>;
     const real value(innermost(exponent));
-    const real square(innermost(norm2(q)));
+    const real square(innermost(squared_norm(q)));
     const auto reaches = [&](int k) { return value > real(k) - real(0.5) && is_moderate(square); };
     real whole(0);
     for (int k = 1; k <= 3; ++k) {
@@ -190,10 +192,10 @@ template <class T, class S>
   }
 }
 
-/// q^ρ = (−1)^n exp(ûπ(ρ − n)) (−q)^ρ with the whole number n next to ρ.
+/// q^ρ = (−1)^n exp(ûπ(ρ − n)) (−q)^ρ with the integer n nearest to ρ.
 ///
-/// Near a full turn û turns arbitrarily fast with q, and the last factor, being near 1, does not
-/// depend on it. For whole ρ nothing does.
+/// Near a full turn û varies arbitrarily fast with q; the last factor, being near 1, does not
+/// depend on û, and for integer ρ nothing does.
 template <class T, class S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow_near_full_turn(const quaternion<T>& q,
                                                              const S& exponent) {
@@ -218,9 +220,10 @@ template <class T, class S>
 
 } // namespace detail
 
-/// The power q^ρ = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar. At q = −|q| the axis û is
-/// undetermined: x is chosen, and derivatives are NaN unless ρ is whole. \throws invalid_input for
-/// the zero quaternion
+/// Power q^ρ = |q|^ρ (cos ρφ + û sin ρφ) (N5), ρ any scalar. At q = −|q| the axis û is
+/// undetermined: x is chosen, and derivatives are NaN unless ρ is an integer.
+///
+/// \throws invalid_input for the zero quaternion
 template <class T, ScalarFor<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow(const quaternion<T>& q, const S& exponent) {
   const auto rho = detail::as_constant<promote_t<T, S>>(exponent);
@@ -235,15 +238,15 @@ template <class T, ScalarFor<T> S>
       [&]() DUET_INLINE_LAMBDA { return detail::pow_by_whole(q, rho); });
 }
 
-/// Which way round `slerp` goes: q and −q are the same rotation, reached by two arcs.
-enum class way {
-  shortest, ///< the sign of b is aligned with a's
-  longest,  ///< the other way round
-  as_given  ///< by the signs as they are
+/// Arc taken by `slerp`: q and −q are the same rotation, reached by two arcs.
+enum class slerp_arc {
+  shortest, ///< shorter arc: the sign of b is aligned with that of a
+  longest,  ///< longer arc
+  as_given  ///< arc of the given signs of a and b
 };
 
-/// Are two rotations, or those of two poses, half a turn apart to within a tolerance in radians, so
-/// that neither way from one to the other is the shorter?
+/// True if two rotations, or those of two poses, are half a turn apart within a tolerance in
+/// radians, so that neither arc between them is the shorter.
 template <class A, class B>
 [[nodiscard]] auto is_half_turn_apart(const quaternion<A>& a, const quaternion<B>& b,
                                       double tolerance = 1e-9) {
@@ -251,28 +254,30 @@ template <class A, class B>
   return 2 * abs(innermost(dot(a, b))) <= tolerance;
 }
 
-/// SLERP, spherical interpolation from a to b, both of unit norm: a (a* b)^τ (N9), along the
-/// shorter arc unless another way is asked for. Where a and b are exactly half a turn apart both
-/// arcs are equal and b is taken as it is, see `is_half_turn_apart`. \throws invalid_input where a
-/// or b is zero
+/// SLERP, spherical linear interpolation from a to b, both of unit norm: a (a* b)^τ (N9), along the
+/// shorter arc by default. If a and b are exactly half a turn apart both arcs have the same length
+/// and b is taken as it is, see `is_half_turn_apart`.
+///
+/// \throws invalid_input if a or b is zero
 /// \return `quaternion<T>`
 template <class A, class B, class S>
   requires Promotable<A, B> && ScalarFor<S, promote_t<A, B>>
 [[nodiscard]] auto slerp(const quaternion<A>& a, const quaternion<B>& b, const S& tau,
-                         way round = way::shortest) {
+                         slerp_arc arc = slerp_arc::shortest) {
   using T = promote_t<A, B>;
   const T cosine = dot(a, b);
-  const auto other_side = (round == way::shortest && innermost(cosine) < 0) ||
-                          (round == way::longest && innermost(cosine) > 0);
+  const auto other_side = (arc == slerp_arc::shortest && innermost(cosine) < 0) ||
+                          (arc == slerp_arc::longest && innermost(cosine) > 0);
   const vector3<T> v = detail::half_arc(a, b, cosine, other_side, "slerp");
   using R = promote_t<T, S>;
   const auto t = detail::as_constant<R>(tau);
   return a * duet::exp(vector3<R>(v[0] * t, v[1] * t, v[2] * t));
 }
 
-/// A unit quaternion is moved by a small rotation vector δ: exp(δ/2) q in spatial and hybrid axes,
-/// q exp(δ/2) in those of the body. Its rate is told as the angular velocity (N7). (It stands here
-/// so that whoever can form a rotation can differentiate by it.)
+/// Tangent space of unit quaternions: a small rotation vector δ is a left perturbation exp(δ/2) q
+/// in spatial and hybrid axes, a right perturbation q exp(δ/2) in body axes. Rates are angular
+/// velocities (N7). (Defined here so that every user of rotations can differentiate with respect to
+/// them.)
 template <class T>
   requires(!detail::contains_tag<T, screw_tag>())
 struct manifold<quaternion<T>> {

@@ -14,10 +14,9 @@
 #include <utility>
 
 /// \file
-/// What a rate of the rotation vector r does to the rotation exp(½r): the Jacobians of the
-/// exponential and their inverses in closed form; and rates of exp(x(t)) along a curve x(t) of
-/// half-angle vectors to any order, by many Stumpff functions of one argument at little more than
-/// the price of two.
+/// Jacobians of the exponential map exp(½r) with respect to the rotation vector r, and their
+/// inverses, in closed form; and rates of exp(x(t)) along a curve x(t) of half-angle vectors to any
+/// order, by many Stumpff functions of one argument at little more than the cost of two.
 ///
 /// Over dual numbers the same functions are those of rigid motion, see dual_quaternion/.
 
@@ -36,9 +35,9 @@ template <Real R, std::size_t Count>
 
 } // namespace detail
 
-/// c_0(s) … c_Highest(s), s ≥ 0, by c_n = 1/n! − s c_{n+2}: downwards from the two highest where
-/// their series converge fast, upwards from cosine and sine elsewhere. Errors are relative to 1/n!
-/// below s = 4, to the larger of c_n and √s^−n above.
+/// Stumpff functions c_0(s) … c_Highest(s), s ≥ 0, by c_n = 1/n! − s c_{n+2}: downwards from the
+/// two highest where their series converge fast, upwards from cosine and sine elsewhere. Errors are
+/// relative to 1/n! below s = 4, to the larger of c_n and √s^−n above.
 template <int Highest, Scalar T>
 [[nodiscard]] DUET_ALWAYS_INLINE std::array<T, std::size_t(Highest) + 1>
 stumpff_sequence(const T& s) {
@@ -79,8 +78,8 @@ stumpff_sequence(const T& s) {
 
 namespace detail {
 
-/// f(0), f(1) … f(Count−1): unrolled for plain numbers, so that indices are constants; unrolled,
-/// dual numbers would take the compiler too long.
+/// f(0), f(1) … f(Count−1): unrolled for plain numbers, so that indices are constants, but not for
+/// dual numbers, which would take too long to compile.
 template <class T, std::size_t Count, class F>
 DUET_ALWAYS_INLINE void each_index(F&& f) {
   if constexpr (Real<T>) {
@@ -93,14 +92,14 @@ DUET_ALWAYS_INLINE void each_index(F&& f) {
   }
 }
 
-/// In half angles the right Jacobian of the exponential is J(x) = a I − b x̂ + c x xᵀ with functions
-/// of s = x·x: a = c₁(4s), b = 2c₂(4s), c = 4c₃(4s). Here are their Taylor coefficients at one s,
-/// element k the k-th derivative by s, divided by k!.
+/// Taylor coefficients, at one s, of the functions a, b, c of s = x·x in the right Jacobian of the
+/// exponential, in half angles: J(x) = a I − b x̂ + c x xᵀ, a = c₁(4s), b = 2c₂(4s), c = 4c₃(4s).
+/// Element k is the k-th derivative with respect to s, divided by k!.
 template <std::size_t Count, class T>
 struct jacobian_coefficients {
   std::array<T, Count> a, b, c;
 
-  /// From (cₙ)′ = (n c_{n+2} − c_{n+1})/2, so that no more is needed than one sequence of them.
+  /// Uses (cₙ)′ = (n c_{n+2} − c_{n+1})/2, so that one sequence of Stumpff functions suffices.
   DUET_ALWAYS_INLINE explicit jacobian_coefficients(const T& s) {
     using R = real_type_t<T>;
     auto e = stumpff_sequence<2 * int(Count) + 1>(T(4 * s));
@@ -118,8 +117,8 @@ struct jacobian_coefficients {
   }
 };
 
-/// f(s(t)), truncated, from f's Taylor coefficients at s(0) and s's for t, of which the first is
-/// not looked at.
+/// f(s(t)), truncated, from f's Taylor coefficients at s(0) and s's with respect to t, of which the
+/// first is not used.
 template <std::size_t Count, class T, std::size_t Given, class S>
 [[nodiscard]] DUET_ALWAYS_INLINE std::array<S, Count> composed(const std::array<T, Given>& f,
                                                                const std::array<S, Count>& s) {
@@ -144,9 +143,9 @@ template <std::size_t Count, class T, std::size_t Given, class S>
   return result;
 }
 
-/// w with Q′ = Q w, the halved angular velocity in body axes, of Q = exp(x(t)): w = J(x) ẋ. In and
-/// out go Taylor coefficients for t: x_1 … x_Count in, w_0 … w_{Count−1} out; x = x_0 is what the
-/// coefficients of the Jacobian were made for.
+/// w with Q′ = Q w, half the angular velocity in body axes, for Q = exp(x(t)): w = J(x) ẋ. Takes
+/// and returns Taylor coefficients in t: takes x_1 … x_Count, returns w_0 … w_{Count−1}; the
+/// coefficients of the Jacobian were computed at x = x_0.
 ///
 /// \tparam S  scalar of the rates: T or above
 template <std::size_t Count, std::size_t Given, class T, class S>
@@ -225,27 +224,28 @@ template <class T>
 
 } // namespace detail
 
-/// J_l with ω^s = J_l(r) ṙ for the rotation exp(½r), r its rotation vector in radians:
-/// J_l = c₁ I + c₂ r̂ + c₃ r rᵀ, cₙ the Stumpff functions of r·r.
+/// Left Jacobian J_l with ω^s = J_l(r) ṙ for the rotation exp(½r), r its rotation vector in
+/// radians: J_l = c₁ I + c₂ r̂ + c₃ r rᵀ, cₙ the Stumpff functions of r·r.
 template <class T>
 [[nodiscard]] matrix3<detail::differentiable_t<T>> left_jacobian(const vector3<T>& r) {
   using S = detail::differentiable_t<T>;
   return detail::exponential_jacobian<S>(r.template cast<S>(), 1);
 }
-/// J_r with ω^b = J_r(r) ṙ: J_r(r) = J_l(−r) = J_l(r)ᵀ.
+/// Right Jacobian J_r with ω^b = J_r(r) ṙ: J_r(r) = J_l(−r) = J_l(r)ᵀ.
 template <class T>
 [[nodiscard]] matrix3<detail::differentiable_t<T>> right_jacobian(const vector3<T>& r) {
   using S = detail::differentiable_t<T>;
   return detail::exponential_jacobian<S>(r.template cast<S>(), -1);
 }
-/// J_l⁻¹ with ṙ = J_l⁻¹(r) ω^s: (φ/2)cot(φ/2) I − ½ r̂ + (1 − (φ/2)cot(φ/2)) r rᵀ/φ², φ = |r|.
-/// Infinite at full turns φ = 2π, 4π …, where exp(½r) stands still in two directions of r.
+/// Inverse left Jacobian J_l⁻¹ with ṙ = J_l⁻¹(r) ω^s:
+/// J_l⁻¹ = (φ/2)cot(φ/2) I − ½ r̂ + (1 − (φ/2)cot(φ/2)) r rᵀ/φ², φ = |r|.
+/// Infinite at full turns φ = 2π, 4π …, where exp(½r) is stationary in two directions of r.
 template <class T>
 [[nodiscard]] matrix3<detail::differentiable_t<T>> left_jacobian_inverse(const vector3<T>& r) {
   using S = detail::differentiable_t<T>;
   return detail::exponential_jacobian_inverse<S>(r.template cast<S>(), 1);
 }
-/// J_r⁻¹ with ṙ = J_r⁻¹(r) ω^b.
+/// Inverse right Jacobian J_r⁻¹ with ṙ = J_r⁻¹(r) ω^b.
 template <class T>
 [[nodiscard]] matrix3<detail::differentiable_t<T>> right_jacobian_inverse(const vector3<T>& r) {
   using S = detail::differentiable_t<T>;

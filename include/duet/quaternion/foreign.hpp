@@ -13,8 +13,8 @@
 #include <vector>
 
 /// \file
-/// What is given for a rotation, a pose or a vector of three, but is none of duet's: functions of
-/// these say what to write instead.
+/// Rotations, poses and three-vectors of other libraries: overloads that reject them and say what
+/// to write instead.
 
 namespace duet::detail {
 
@@ -29,7 +29,7 @@ concept ForeignMotion = requires(const X& x) {
   as_foreign_motion(x);
 };
 
-/// All but columns and matrices of a size known at compile time.
+/// All of Eigen's matrix expressions except columns and matrices of a size known at compile time.
 template <class Derived>
   requires(!std::same_as<Derived, typename Derived::PlainObject> ||
            Derived::RowsAtCompileTime <= 1 || Derived::ColsAtCompileTime < 1)
@@ -52,19 +52,20 @@ void as_foreign_row(const Eigen::MatrixBase<Derived>&);
 template <ForeignMotion X>
 void as_foreign_row(const X&);
 
-/// Rows of rotations or poses of Eigen, by quaternions, matrices or whatever else it has for them.
+/// Rows of rotations or poses of Eigen, as quaternions, matrices or any other of its types.
 template <class Rows>
 concept ForeignRows = requires(const typename Rows::value_type& row) {
   as_foreign_row(row);
 };
 
-/// X is a Q or becomes one by itself. (What is Eigen's seems to, as a constructor refuses it.)
+/// X is a Q or converts to it implicitly. (Eigen's types seem to, as a constructor rejects them.)
 template <class X, class Q>
 concept Becomes = std::convertible_to<X, Q> && !ForeignMotion<std::remove_cvref_t<X>>;
 
 } // namespace duet::detail
 
-/// What `function`, of rotations, poses or vectors, does not take; then the type of its result.
+/// Rejects foreign arguments of `function`, which takes rotations, poses or vectors; then the type
+/// of its result.
 #define DUET_REFUSES_FOREIGN(function, ...)                                                        \
   template <class... X>                                                                            \
     requires(detail::Foreign<X> || ...)                                                            \
@@ -73,7 +74,7 @@ concept Becomes = std::convertible_to<X, Q> && !ForeignMotion<std::remove_cvref_
                          "v[2]) of standard vectors")                                              \
   __VA_ARGS__ function(const X&...);
 
-/// Said where `function` is given rows of Eigen's.
+/// Message for rows of Eigen's passed to `function`.
 #define DUET_REFUSED_FOREIGN_ROWS(function)                                                        \
   DUET_REFUSED(#function ": rows of rotations and poses are those of duet: from_eigen(q) of each " \
                          "quaternion or Isometry3d, in <duet/interop/eigen.hpp>, "                 \

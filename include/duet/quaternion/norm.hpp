@@ -19,12 +19,12 @@
 
 namespace duet {
 
-/// How far from 1 the norm of a given unit quaternion may be: tables are printed with few digits.
+/// Tolerance on the norm of a given unit quaternion: tables are printed with few digits.
 inline constexpr double unit_norm_tolerance = 1e-3;
 
 namespace detail {
 
-/// The real numbers that a quaternion's components are.
+/// The innermost real numbers of a quaternion's components.
 template <class T>
 [[nodiscard]] constexpr quaternion<real_type_t<T>> innermost_of(const quaternion<T>& q) {
   return {innermost(q.w()), innermost(q.x()), innermost(q.y()), innermost(q.z())};
@@ -61,7 +61,7 @@ template <class T>
          is_all_finite(q.z());
 }
 
-/// e such that 2^−e brings a number near 1; 0 for zero and what is not finite.
+/// e such that 2^−e brings a number near 1; 0 for zero and non-finite numbers.
 template <Real R>
 [[nodiscard]] int binary_exponent(const R& x) {
   using std::frexp;
@@ -86,15 +86,14 @@ void require_not_zero(const quaternion<T>& q, const char* function) {
   }
 }
 
-/// f(near_one, e) of q = near_one · 2^e.
+/// f(near_one, e) for q = near_one · 2^e.
 template <class F, class T>
 [[nodiscard]] DUET_COLD DUET_OUT_OF_LINE auto of_scaled(F f, const quaternion<T>& q) {
   const int e = binary_exponent(largest_component(innermost_of(q)));
   return f(scaled_down(q, e), e);
 }
 
-/// usual(), of q in range; lane by lane, where it is not, extreme(near_one, e) of near_one · 2^e =
-/// q.
+/// usual() for q in range; otherwise, lane by lane, extreme(near_one, e) with q = near_one · 2^e.
 template <class Condition, class T, class F, class G>
 [[nodiscard]] DUET_ALWAYS_INLINE auto by_range(const Condition& is_in_range, const quaternion<T>& q,
                                                const F& usual, const G& extreme) {
@@ -109,41 +108,43 @@ template <class T>
 [[nodiscard]] T norm(const quaternion<T>& q) {
   using std::ldexp;
   using std::sqrt;
-  const T square = norm2(q);
+  const T square = squared_norm(q);
   return detail::by_range(
       detail::is_moderate(innermost(square)), q,
       [&]() DUET_INLINE_LAMBDA { return T(sqrt(square)); },
       []<class P>(const quaternion<P>& near_one, int e) {
-        return P(ldexp(P(sqrt(norm2(near_one))), e));
+        return P(ldexp(P(sqrt(squared_norm(near_one))), e));
       });
 }
 
-/// The quaternion of unit norm q/|q|.
+/// Quaternion of unit norm q/|q|.
+///
 /// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] quaternion<T> normalized(const quaternion<T>& q) {
   using std::sqrt;
-  const T square = norm2(q);
+  const T square = squared_norm(q);
   return detail::by_range(
       detail::is_moderate(innermost(square)), q,
       [&]() DUET_INLINE_LAMBDA { return q / T(sqrt(square)); },
       []<class P>(const quaternion<P>& near_one, int) {
         detail::require_not_zero(near_one, "normalized");
-        return near_one / P(sqrt(norm2(near_one)));
+        return near_one / P(sqrt(squared_norm(near_one)));
       });
 }
 
 /// N3: the inverse q⁻¹ = q*/|q|²; for a unit quaternion use `conj`.
+///
 /// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] quaternion<T> inverse(const quaternion<T>& q) {
-  const T square = norm2(q);
+  const T square = squared_norm(q);
   return detail::by_range(
       detail::is_moderate(innermost(square)), q,
       [&]() DUET_INLINE_LAMBDA { return conj(q) / square; },
       [](const auto& near_one, int e) {
         detail::require_not_zero(near_one, "inverse");
-        return detail::scaled_down(conj(near_one) / norm2(near_one), e);
+        return detail::scaled_down(conj(near_one) / squared_norm(near_one), e);
       });
 }
 

@@ -33,8 +33,8 @@ using matrix3 = Eigen::Matrix<T, 3, 3>;
 /// A quaternion w + x i + y j + z k: Hamilton product (ij = k), scalar part first.
 ///
 /// \tparam T  any scalar. Over a real number a unit quaternion is a rotation, acting as v ↦ q v q*.
-///            Over derivative duals it carries its derivatives, over `dual<T, 1, screw_tag>` it is
-///            a dual quaternion, a rigid motion. There is no other implementation.
+///   Over derivative duals it carries its derivatives, over `dual<T, 1, screw_tag>` it is a dual
+///   quaternion, a rigid motion. There is no other implementation.
 template <class T>
 class quaternion {
 public:
@@ -42,15 +42,17 @@ public:
 
   /// Zero.
   constexpr quaternion() : w_(T(0)), x_(T(0)), y_(T(0)), z_(T(0)) {}
+  /// The quaternion w + x i + y j + z k, scalar part first.
   constexpr quaternion(const T& w, const T& x, const T& y, const T& z)
       : w_(w), x_(x), y_(y), z_(z) {}
   /// A scalar as a quaternion: 1 is the identity rotation.
   constexpr explicit quaternion(const T& w) : w_(w), x_(T(0)), y_(T(0)), z_(T(0)) {}
+  /// The quaternion with the scalar part w and the vector part v.
   quaternion(const T& w, const vector3<T>& v) : w_(w), x_(v[0]), y_(v[1]), z_(v[2]) {}
   template <detail::ForeignMotion X>
   DUET_REFUSED("a rotation or pose of Eigen: from_eigen(q) of <duet/interop/eigen.hpp>")
   quaternion(const X&);
-  /// This quaternion over another scalar; implicit where no precision or level is lost.
+  /// Conversion from a quaternion over another scalar; implicit if no precision or level is lost.
   template <class U>
     requires(!std::same_as<U, T> && std::constructible_from<T, U>)
   constexpr explicit(!std::convertible_to<U, T> || !std::same_as<promote_t<T, U>, T>)
@@ -64,9 +66,9 @@ public:
   operator M() const;
 
   [[nodiscard]] constexpr const T& w() const { return w_; } ///< the scalar part
-  [[nodiscard]] constexpr const T& x() const { return x_; } ///< what stands at i
-  [[nodiscard]] constexpr const T& y() const { return y_; } ///< what stands at j
-  [[nodiscard]] constexpr const T& z() const { return z_; } ///< what stands at k
+  [[nodiscard]] constexpr const T& x() const { return x_; } ///< coefficient of i
+  [[nodiscard]] constexpr const T& y() const { return y_; } ///< coefficient of j
+  [[nodiscard]] constexpr const T& z() const { return z_; } ///< coefficient of k
   /// The vector part (x, y, z).
   [[nodiscard]] vector3<T> vec() const { return {x_, y_, z_}; }
 
@@ -107,7 +109,7 @@ template <class T>
   return detail::message(q);
 }
 
-/// Of numbers that cannot be divided there is none.
+/// Rejects scalars that cannot be divided.
 template <class T>
   requires(!Scalar<T>)
 class quaternion<T> {
@@ -130,12 +132,12 @@ struct structure<quaternion<T>> {
   }
 };
 
-/// Of numbers and constants, as a product of them.
+/// Deduces the scalar of a product of the four numbers and constants.
 template <class A, class B, class C, class D>
 quaternion(const A&, const B&, const C&, const D&)
     -> quaternion<promote_t<promote_t<A, B>, promote_t<C, D>>>;
 
-/// Is T a `quaternion`? For those who extend duet.
+/// True if T is a `quaternion`. For those who extend duet.
 template <class T>
 inline constexpr bool is_quaternion = false;
 template <class T>
@@ -160,8 +162,8 @@ operator-(const quaternion<A>& p, const quaternion<B>& q) {
 template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr quaternion<promote_t<A, B>>
 operator*(const quaternion<A>& p, const quaternion<B>& q) {
-  // All four sums grow by one component of p at a time: fewer numbers wait in registers than where
-  // one sum is finished after the other.
+  // All four sums grow by one component of p at a time, which keeps fewer numbers in registers than
+  // finishing one sum after the other.
   using T = promote_t<A, B>;
   T w = p.w() * q.w();
   T x = p.w() * q.x();
@@ -207,8 +209,8 @@ template <class T, detail::ForeignMotion X>
 DUET_REFUSED("a product with a rotation or pose of Eigen: from_eigen(p) * q")
 quaternion<T> operator*(const X&, const quaternion<T>&);
 
-/// A vector is turned by a product on either side, a point moved by poses from one, and a matrix
-/// is another form of what a quaternion is.
+/// Rejects products with vectors and matrices: a vector is rotated by a product on either side, a
+/// point moved by a pose likewise, and a matrix is another representation of a rotation or pose.
 template <class T, class V>
   requires(V::ColsAtCompileTime == 1)
 DUET_REFUSED("a quaternion times a vector: rotate(q, v) turns it, transform_point(A, v) moves a "
@@ -228,7 +230,7 @@ template <class T, class M>
 DUET_REFUSED("a matrix times a quaternion: from_rotation_matrix(R) * q, or R * rotation_matrix(q)")
 matrix3<T> operator*(const Eigen::MatrixBase<M>&, const quaternion<T>&);
 
-/// Componentwise, by value. q and −q are the same rotation but not the same quaternion.
+/// Componentwise equality of values. q and −q are the same rotation but not the same quaternion.
 template <class A, Promotable<A> B>
 [[nodiscard]] constexpr auto operator==(const quaternion<A>& p, const quaternion<B>& q) {
   return p.w() == q.w() && p.x() == q.x() && p.y() == q.y() && p.z() == q.z();
@@ -249,7 +251,7 @@ template <class A, Promotable<A> B>
 
 /// N3: the squared norm |q|² = q q*
 template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr T norm2(const quaternion<T>& q) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr T squared_norm(const quaternion<T>& q) {
   return dot(q, q);
 }
 

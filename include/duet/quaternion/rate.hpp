@@ -17,7 +17,7 @@ namespace duet {
 
 namespace detail {
 
-/// m q of a turn, or its rate, about spatial axes, q m about those of the body.
+/// m q for a rotation m, or its rate, about spatial axes; q m about body axes.
 template <class Frame, class M, class Q>
 [[nodiscard]] DUET_ALWAYS_INLINE auto composed_in(Frame frame, const M& m, const Q& q) {
   if constexpr (is_spatial(frame)) {
@@ -38,12 +38,12 @@ angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame
   return {2 * half.x(), 2 * half.y(), 2 * half.z()};
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected: without a frame the axes are ambiguous.
 template <class A, class B>
 DUET_REFUSED("in which axes? angular_velocity(q, q_dot, frame::spatial) or frame::body")
 vector3<promote_t<A, B>> angular_velocity(const quaternion<A>&, const quaternion<B>&);
 
-/// N7: the rate of a rotation with an angular velocity, q̇ = ½ ω^s q = ½ q ω^b
+/// N7: the rate q̇ of a rotation with a given angular velocity, q̇ = ½ ω^s q = ½ q ω^b
 template <class A, Promotable<A> B, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<A, B>>
 quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_omega) {
@@ -52,13 +52,13 @@ quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_
   return detail::composed_in(frame_of_omega, half, q);
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected: without a frame the axes are ambiguous.
 template <class A, class B>
 DUET_REFUSED("in which axes? quaternion_rate(q, omega, frame::spatial) or frame::body")
 quaternion<promote_t<A, B>> quaternion_rate(const quaternion<A>&, const vector3<B>&);
 
-/// The rate ω̇ of the angular velocity of N7: vec(2 q̈ q*) in spatial axes, vec(2 q* q̈) in body axes;
-/// q of unit norm. (q̇ does not enter, as q̇ q̇* is real.)
+/// Angular acceleration, the rate ω̇ of the angular velocity of N7: vec(2 q̈ q*) in spatial axes,
+/// vec(2 q* q̈) in body axes; q of unit norm. (q̇ does not enter, as q̇ q̇* is real.)
 template <class A, Promotable<A> B, Promotable<A> C, class Frame>
 [[nodiscard]] vector3<promote_t<promote_t<A, B>, C>>
 angular_acceleration(const quaternion<A>& q, const quaternion<B>& /*q_dot*/,
@@ -66,13 +66,14 @@ angular_acceleration(const quaternion<A>& q, const quaternion<B>& /*q_dot*/,
   return angular_velocity(q, q_ddot, frame_of_result);
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected: without a frame the axes are ambiguous.
 template <class A, class B, class C>
 DUET_REFUSED("in which axes? angular_acceleration(q, q_dot, q_ddot, frame::spatial) or frame::body")
 vector3<promote_t<A, B>> angular_acceleration(const quaternion<A>&, const quaternion<B>&,
                                               const quaternion<C>&);
 
-/// q̈ = (½ ω̇ − ¼ |ω|²) q in spatial axes, q (½ ω̇ − ¼ |ω|²) in body axes: of a q whose norm stays 1.
+/// q̈ = (½ ω̇ − ¼ |ω|²) q in spatial axes, q (½ ω̇ − ¼ |ω|²) in body axes, for q of constant unit
+/// norm.
 template <class A, Promotable<A> B, Promotable<A> C, class Frame>
 [[nodiscard]] quaternion<promote_t<promote_t<A, B>, C>>
 quaternion_acceleration(const quaternion<A>& q, const vector3<B>& omega, const vector3<C>& alpha,
@@ -83,7 +84,7 @@ quaternion_acceleration(const quaternion<A>& q, const vector3<B>& omega, const v
   return detail::composed_in(frame_of_omega, half, q);
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected: without a frame the axes are ambiguous.
 template <class A, class B, class C>
 DUET_REFUSED(
     "in which axes? quaternion_acceleration(q, omega, alpha, frame::spatial) or frame::body")
@@ -93,7 +94,8 @@ quaternion<promote_t<A, B>> quaternion_acceleration(const quaternion<A>&, const 
 /// N8: the 3×4 matrix with ω = 2 M q̇ in the order (w, x, y, z): E(q) for spatial, G(q) for body
 /// axes. E Gᵀ = R.
 template <class T, class Frame>
-[[nodiscard]] Eigen::Matrix<T, 3, 4> rate_matrix(const quaternion<T>& q, Frame frame_of_omega) {
+[[nodiscard]] Eigen::Matrix<T, 3, 4> quaternion_rate_matrix(const quaternion<T>& q,
+                                                            Frame frame_of_omega) {
   Eigen::Matrix<T, 3, 4> m;
   if constexpr (detail::is_spatial(frame_of_omega)) {
     m << -q.x(), q.w(), -q.z(), q.y(), //
@@ -107,10 +109,10 @@ template <class T, class Frame>
   return m;
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected: without a frame the axes are ambiguous.
 template <class A>
-DUET_REFUSED("in which axes? rate_matrix(q, frame::spatial) or frame::body")
-Eigen::Matrix<A, 3, 4> rate_matrix(const quaternion<A>&);
+DUET_REFUSED("in which axes? quaternion_rate_matrix(q, frame::spatial) or frame::body")
+Eigen::Matrix<A, 3, 4> quaternion_rate_matrix(const quaternion<A>&);
 
 DUET_REFUSES_FOREIGN(angular_velocity, vector3<double>)
 DUET_REFUSES_FOREIGN(quaternion_rate, quaternion<double>)

@@ -22,15 +22,16 @@
 
 namespace duet {
 
-/// The vector v turned by the rotation of a unit quaternion: q v q*.
+/// Rotates the vector v by a unit quaternion: q v q*.
 template <class T, Promotable<T> U>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<promote_t<T, U>> rotate(const quaternion<T>& q,
                                                                  const vector3<U>& v) {
   return detail::rotated(q, detail::three_vector<const U&>{v[0], v[1], v[2]});
 }
 
-/// Rotation by the angle a about the direction n of any length.
-/// \throws invalid_input where n is zero
+/// Rotation by the angle a, in radians, about the direction n of any length.
+///
+/// \throws invalid_input if n is zero
 template <class T, Promotable<T> S>
 [[nodiscard]] quaternion<detail::differentiable_t<promote_t<T, S>>>
 from_axis_angle(const vector3<T>& n, const S& a) {
@@ -47,15 +48,17 @@ from_axis_angle(const vector3<T>& n, const S& a) {
   return {cos(half), axis.x() * s, axis.y() * s, axis.z() * s};
 }
 
-/// Rotation by |r| about r: exp(r/2).
+/// Rotation by the angle |r|, in radians, about r: exp(r/2).
 template <class T>
 [[nodiscard]] quaternion<detail::differentiable_t<T>> from_rotation_vector(const vector3<T>& r) {
   using S = detail::differentiable_t<T>;
   return duet::exp(vector3<S>(S(r[0]) / 2, S(r[1]) / 2, S(r[2]) / 2));
 }
 
-/// The rotation vector of q, angle times axis, of length at most π: the same for q and −q, q of any
-/// norm. At a half turn (q₀ = 0) both r and −r would do; the one of q's own sign is returned.
+/// Rotation vector of q, angle times axis, of length at most π: the same for q and −q, q of any
+/// norm. At a half turn (q₀ = 0) both r and −r are rotation vectors; the one of q's own sign is
+/// returned.
+///
 /// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] vector3<T> rotation_vector(const quaternion<T>& q) {
@@ -83,8 +86,8 @@ template <class T>
   const auto largest = [](const vector3<T>& x) {
     return largest_component(innermost_of(quaternion<T>(T(0), x)));
   };
-  // The sum is perpendicular to u, up to how far u and v are from unit length. Where that is all
-  // there is, they are opposite.
+  // The sum is perpendicular to u, up to the deviation of u and v from unit length. If the sum is
+  // no larger than that, they are opposite.
   const bool is_determined = same_side || 4 * largest(q.vec()) > largest(sum);
   const auto chosen =
       vector3<real>(innermost(u[0]), innermost(u[1]), innermost(u[2])).unitOrthogonal().eval();
@@ -101,9 +104,10 @@ template <class T>
 
 } // namespace detail
 
-/// The shortest rotation that takes the direction of a to that of b. For opposite directions the
-/// axis is undetermined: one perpendicular to a is chosen, without derivatives.
-/// \throws invalid_input where a or b is zero
+/// Shortest rotation that takes the direction of a to that of b. For opposite directions the axis
+/// is undetermined: one perpendicular to a is chosen, without derivatives.
+///
+/// \throws invalid_input if a or b is zero
 template <class A, Promotable<A> B>
 [[nodiscard]] quaternion<detail::differentiable_t<promote_t<A, B>>>
 from_two_vectors(const vector3<A>& a, const vector3<B>& b) {
@@ -140,7 +144,7 @@ private:
 
 } // namespace detail
 
-/// The matrix R with R v = q v q*, for a unit quaternion.
+/// Rotation matrix R with R v = q v q*, for a unit quaternion.
 template <class T>
 [[nodiscard]] matrix3<T> rotation_matrix(const quaternion<T>& q) {
   return detail::rotation_of_many(q).matrix();
@@ -159,7 +163,7 @@ template <class T>
   require(defect <= tolerance && !(values.determinant() < 0),
           "duet: from_rotation_matrix: not a rotation: |R R^T - 1| = ", defect,
           ", det R = ", values.determinant());
-  // 4q₀², 4q₁² … from the diagonal; dividing by the largest never loses digits.
+  // 4q₀², 4q₁² … from the diagonal; dividing by the largest avoids cancellation.
   const T s[4] = {1 + r(0, 0) + r(1, 1) + r(2, 2), 1 + r(0, 0) - r(1, 1) - r(2, 2),
                   1 - r(0, 0) + r(1, 1) - r(2, 2), 1 - r(0, 0) - r(1, 1) + r(2, 2)};
   const auto larger = [](bool second, const auto& a, const auto& b) {
@@ -182,9 +186,10 @@ template <class T>
 
 } // namespace detail
 
-/// The unit quaternion of a rotation matrix, its largest component positive.
-/// \throws invalid_input where R Rᵀ differs from 1 by more than 1e-6 (1e-3 in single precision), or
-/// det R < 0
+/// Unit quaternion of a rotation matrix, its largest component positive.
+///
+/// \throws invalid_input if R Rᵀ differs from 1 by more than 1e-6 (1e-3 in single precision), or
+///   det R < 0
 template <class T>
 [[nodiscard]] quaternion<detail::differentiable_t<T>> from_rotation_matrix(const matrix3<T>& r) {
   using S = detail::differentiable_t<T>;

@@ -9,8 +9,8 @@
 #include <limits>
 
 /// \file
-/// Values at points where a direction is undetermined: the axis of a full turn, the way between
-/// opposite vectors.
+/// Values at points where a direction is undetermined: the axis of a full turn, the rotation
+/// between opposite vectors.
 
 namespace duet::detail {
 
@@ -29,8 +29,8 @@ struct undetermined_rule {
   }
 };
 
-/// `chosen`, to which the values at neighbouring x, y, z do not tend: its derivatives are NaN, save
-/// by what x, y and z do not depend on.
+/// `chosen`, to which the values at neighbouring x, y, z do not tend: its derivatives are NaN,
+/// except with respect to variables that x, y and z do not depend on.
 template <class T>
 [[nodiscard]] T undetermined(const real_type_t<T>& chosen, const T& x, const T& y, const T& z) {
   if constexpr (Infinitesimal<T>) {

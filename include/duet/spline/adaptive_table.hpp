@@ -19,24 +19,24 @@
 #include <vector>
 
 /// \file
-/// Look-up tables as dense as an error bound asks for, and the error of tables there are.
+/// Lookup tables refined to an error bound, and error estimates of existing tables.
 
 namespace duet {
 
-/// Settings of `adaptive_table`.
-struct table_options {
-  double length = 1; ///< of poses: the distance that counts as much as a turn by one radian
-  std::size_t first_rows = 9;      ///< to begin with, in equal steps
-  std::size_t most_rows = 100'000; ///< more are an error
+/// Options of `adaptive_table`.
+struct adaptive_table_options {
+  double length = 1; ///< characteristic length: distance between poses that counts as 1 rad
+  std::size_t initial_samples = 9;   ///< initial number of samples, equally spaced; at least 4
+  std::size_t max_samples = 100'000; ///< maximum number of samples; more: `no_convergence`
 };
 
-/// A table, the curve through it, and the largest distance of the curve from what it stands for
-/// that was seen: radians, of poses as `distance`.
+/// Lookup table, the curve through it, and the largest distance found between the curve and the
+/// tabulated function: radians, for poses as `distance`.
 template <CurveType Spline>
-struct table_result {
-  look_up_table<typename Spline::scalar_type> table; ///< as few rows as were needed
-  Spline curve;                                      ///< through the table
-  double error; ///< the largest that was seen: radians, of poses units of length
+struct adaptive_table_result {
+  lookup_table<typename Spline::scalar_type> table; ///< as few samples as were needed
+  Spline curve;                                     ///< curve through `table`
+  double error; ///< largest distance found: radians, for poses units of length
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -47,7 +47,7 @@ struct table_result {
 
 namespace detail {
 
-/// The angle between rotations, the distance between poses.
+/// Angle between rotations, or distance between poses.
 template <class T>
 [[nodiscard]] real_type_t<T> miss(const quaternion<T>& a, const quaternion<T>& b, double length) {
   if constexpr (contains_tag<T, screw_tag>()) {
@@ -57,8 +57,9 @@ template <class T>
   }
 }
 
-/// f(u), a unit.
-/// \throws invalid_input
+/// Sample f(u), a unit quaternion or pose.
+///
+/// \throws invalid_input if it is not finite or not a unit
 template <class T, class F, class R>
 [[nodiscard]] quaternion<T> sample_of(const F& f, const R& u) {
   using std::abs;
@@ -71,9 +72,9 @@ template <class T, class F, class R>
   return q;
 }
 
-/// The largest distance from f inside an interval, as far as it matters to a tolerance: at eight
-/// places, and if one of them is not far below the tolerance, at 24 more, the largest of which is
-/// refined. Places are spread unevenly, because a ripple may vanish at even ones.
+/// Largest distance from f inside an interval, as far as it matters to the tolerance: at eight
+/// points, and if the largest is not far below the tolerance, at 24 more, the worst of which is
+/// refined. Points are spread unevenly, because a ripple may vanish at even ones.
 template <class Spline, class F, class R>
 [[nodiscard]] double miss_between(const Spline& s, const F& f, const R& low, const R& high,
                                   double tolerance, double length) {
@@ -112,22 +113,25 @@ template <class Spline, class F, class R>
 
 } // namespace detail
 
-/// The table of f over [first, last] through which the curve of type `Spline` is no farther from f
-/// than the tolerance: intervals are halved where it is.
+/// Tabulates f over [first, last] such that the curve of type `Spline` through the table is no
+/// farther from f than the tolerance. Intervals with larger errors are halved.
 ///
-/// The distance is sampled at eight points of each interval, and at more where it is near the
-/// tolerance, so f must not have detail that these never meet.
-/// \param f          the rotation or pose at a parameter
-/// \param tolerance  radians, of poses as `distance` with `options.length`
-/// \throws invalid_input for a tolerance that is not positive, a range that is empty, and a
-///         function that is not finite or not a unit somewhere, with the parameter; no_convergence
-///         where `options.most_rows` do not reach the tolerance; as `interpolate`
+/// The distance is sampled at eight points of each interval, and at more if it is near the
+/// tolerance, so f must not have detail that these points miss.
+///
+/// \param f          function that returns the rotation or pose at a parameter
+/// \param tolerance  radians, for poses as `distance` with `options.length`
+/// \param ends       end conditions of the curve
+/// \throws invalid_input for a tolerance that is not positive, an empty range, and a function value
+/// that is not finite or not a unit, with the parameter
+/// \throws no_convergence if `options.max_samples` do not reach the tolerance
+/// \throws invalid_sample and others as `interpolate`
 template <CurveType Spline, class F>
-[[nodiscard]] table_result<Spline>
+[[nodiscard]] adaptive_table_result<Spline>
 adaptive_table(const F& f, typename Spline::real_type first, typename Spline::real_type last,
                double tolerance,
                const curve_ends<typename Spline::scalar_type>& ends = not_a_knot{},
-               const table_options& options = {}) {
+               const adaptive_table_options& options = {}) {
   using T = typename Spline::scalar_type;
   using R = typename Spline::real_type;
   static_assert(detail::Becomes<std::invoke_result_t<const F&, const R&>, quaternion<T>>,
@@ -139,8 +143,8 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
             << tolerance << ": the range must not be empty, the tolerance positive";
     detail::raise(invalid_input(message.str()));
   }
-  look_up_table<T> table;
-  const std::size_t rows = std::max<std::size_t>(4, options.first_rows);
+  lookup_table<T> table;
+  const std::size_t rows = std::max<std::size_t>(4, options.initial_samples);
   for (std::size_t i = 0; i < rows; ++i) {
     const R u = i + 1 < rows ? R(first + (last - first) * R(i) / R(rows - 1)) : last;
     table.parameters.push_back(u);
@@ -148,7 +152,7 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
   }
   for (;;) {
     Spline s = interpolate<Spline>(table.parameters, table.elements, ends);
-    look_up_table<T> finer;
+    lookup_table<T> finer;
     double worst = 0;
     for (std::size_t i = 0; i + 1 < table.parameters.size(); ++i) {
       const R& low = table.parameters[i];
@@ -168,9 +172,9 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
     }
     finer.parameters.push_back(table.parameters.back());
     finer.elements.push_back(table.elements.back());
-    if (finer.parameters.size() > options.most_rows) {
+    if (finer.parameters.size() > options.max_samples) {
       message << "duet: adaptive_table: " << table.parameters.size() << " rows reach an error of "
-              << worst << ", not " << tolerance << ", and more than " << options.most_rows
+              << worst << ", not " << tolerance << ", and more than " << options.max_samples
               << " are not allowed";
       detail::raise(no_convergence(message.str()));
     }
@@ -178,18 +182,20 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
   }
 }
 
-/// An estimate of the error of the curve through a table about which nothing else is known: element
-/// i − 1 is the error near row i.
+/// Estimates the error of the curve through a lookup table without further knowledge of the motion:
+/// element i − 1 is the error near sample i.
 ///
-/// The curves through every other row miss the rows left out by about 2^p times what the whole
-/// table's curve misses between its rows, p = `Spline::convergence`; uneven steps are accounted
-/// for. Where the table resolves the motion, the largest estimate is not below the largest error;
-/// of cubic curves it is mostly up to five times as large, of quintic ones and of steps of very
-/// different lengths it may be far larger.
-/// \throws invalid_input for fewer than nine rows; as `interpolate`
+/// The curves through every other sample miss the samples left out by about 2^p times the error of
+/// the whole table's curve between its samples, p = `Spline::convergence`; uneven steps are
+/// accounted for. If the table resolves the motion, the largest estimate is not below the largest
+/// error. For cubic curves it is mostly up to five times as large; for quintic ones and for steps
+/// of very different lengths it may be far larger.
+///
+/// \throws invalid_input for fewer than nine samples
+/// \throws invalid_sample and others as `interpolate`
 template <CurveType Spline>
 [[nodiscard]] std::vector<double>
-estimated_errors(const look_up_table<typename Spline::scalar_type>& table,
+estimated_errors(const lookup_table<typename Spline::scalar_type>& table,
                  const curve_ends<typename Spline::scalar_type>& ends = not_a_knot{},
                  double length = 1) {
   const std::size_t rows = table.parameters.size();
@@ -199,11 +205,11 @@ estimated_errors(const look_up_table<typename Spline::scalar_type>& table,
             << table.elements.size() << " elements";
     detail::raise(invalid_input(message.str()));
   }
-  const auto elements = unit_quaternions(table.elements);
+  const auto elements = normalized_quaternions(table.elements);
   const auto& u = table.parameters;
   std::vector<double> misses(rows, 0.);
-  for (const std::size_t parity : {std::size_t(0), std::size_t(1)}) { // of the rows that stay
-    look_up_table<typename Spline::scalar_type> half;
+  for (const std::size_t parity : {std::size_t(0), std::size_t(1)}) { // of the samples kept
+    lookup_table<typename Spline::scalar_type> half;
     for (std::size_t i = 0; i < rows; ++i) {
       if (i % 2 == parity || i == 0 || i + 1 == rows) {
         half.parameters.push_back(u[i]);
@@ -212,7 +218,7 @@ estimated_errors(const look_up_table<typename Spline::scalar_type>& table,
     }
     const auto s = interpolate<Spline>(half.parameters, half.elements, ends);
     for (std::size_t i = 1 + parity; i + 1 < rows; i += 2) {
-      // In between a miss grows as t²(1 − t)², and with a power of the longer of the two steps.
+      // Between samples errors grow as t²(1 − t)², and with a power of the longer of the two steps.
       const double left = double(u[i] - u[i - 1]), right = double(u[i + 1] - u[i]);
       const double t = left / (left + right), longest = std::max(t, 1 - t);
       const double shape = std::max(.1, 4 * t * (1 - t));

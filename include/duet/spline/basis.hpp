@@ -18,22 +18,22 @@
 #include <vector>
 
 /// \file
-/// B-spline bases of any order over any knots (P1), in the cumulative form that curves over
-/// rotations need (P2).
+/// B-spline bases of any order over any knots (P1), in the cumulative form for curves over
+/// rotations (P2).
 
 namespace duet {
 
-/// The cumulative basis functions that are neither 0 nor 1 at some u, and their derivatives:
-/// element [d][j] is the d-th derivative of B̃_{first+1+j}, j = 0 … Order−2.
+/// Cumulative basis functions that are neither 0 nor 1 at some u, and their derivatives: element
+/// [d][j] is the d-th derivative of B̃_{first+1+j}, j = 0 … Order−2.
 template <class S, int Order, int Derivatives>
 using cumulative_weights =
     std::array<std::array<S, std::size_t(Order) - 1>, std::size_t(Derivatives) + 1>;
 
-/// The B-spline basis of order k (degree k − 1) over non-decreasing knots u_0 … u_{m+k−1}: m
-/// functions, C^{k−2} at simple knots, on the domain [u_{k−1}, u_m].
+/// B-spline basis of order k (degree k − 1) over non-decreasing knots u_0 … u_{m+k−1}: m functions,
+/// C^{k−2} at simple knots, on the domain [u_{k−1}, u_m].
 ///
-/// B̃_i = Σ_{j≥i} B_j (P2). On every span the k − 1 of them that vary are stored as polynomials, so
-/// that non-uniform knots cost no more than uniform ones.
+/// B̃_i = Σ_{j≥i} B_j (P2). On every span the k − 1 varying ones are stored as polynomials, so that
+/// non-uniform knots cost no more than uniform ones.
 template <int Order, Real R = double>
 class bspline_basis : public knot_spans<R> {
   static_assert(Order >= 2, "duet: a B-spline basis needs order 2 or more");
@@ -53,27 +53,26 @@ public:
     }
   }
 
-  /// The knots, each as often as it was given.
+  /// Knots, each as often as it was given.
   [[nodiscard]] const std::vector<R>& knots() const { return knots_; }
-  /// Number of basis functions, which is that of the control elements.
+  /// Number of basis functions, equal to that of the control points.
   [[nodiscard]] std::size_t size() const { return knots_.size() - std::size_t(Order); }
   /// Index of the first of the k functions that do not vanish on a span.
   [[nodiscard]] std::size_t first_function(std::size_t span) const { return spans_[span].first; }
 
-  /// The varying cumulative functions of a span at u, with derivatives, over the scalar of u; a
-  /// built-in number counts as an R. Like any polynomial they may be evaluated outside the span.
+  /// Varying cumulative functions of a span at u, with derivatives, over the scalar of u; a
+  /// built-in number is converted to R. Like any polynomial they may be evaluated outside the span.
   template <int Derivatives, class S>
   [[nodiscard]] DUET_ALWAYS_INLINE auto weights(std::size_t span, const S& u) const {
     using P = std::conditional_t<Arithmetic<S>, R, S>;
     return weights_of<Derivatives>(spans_[span], P(u));
   }
-  /// The weights and their derivatives at a batch of parameters, every lane on its own span.
+  /// Weights and their derivatives at a batch of parameters, each lane on a separate span.
   template <int Derivatives, std::size_t W, class P>
   [[nodiscard]] DUET_ALWAYS_INLINE auto weights(const std::array<std::size_t, W>& spans,
                                                 const P& u) const {
     const auto join = [&](const auto& get) DUET_INLINE_LAMBDA {
-      return joined_lanes<W>([&](std::size_t k)
-                                 DUET_INLINE_LAMBDA { return get(spans_[spans[k]]); });
+      return from_lanes<W>([&](std::size_t k) DUET_INLINE_LAMBDA { return get(spans_[spans[k]]); });
     };
     span_data<real_type_t<P>> data{
         0, join([](const auto& s) DUET_INLINE_LAMBDA { return s.middle; }), {}};
@@ -86,8 +85,8 @@ public:
     return weights_of<Derivatives>(data, u);
   }
 
-  /// B̃_j(to) − B̃_j(from) of the varying functions of a span, as accurate relative to that of them
-  /// which changes most as `to − from` is, however near the two are.
+  /// Increments B̃_j(to) − B̃_j(from) of the varying functions of a span. Relative to the largest
+  /// of them they are as accurate as `to − from`, however close the two parameters.
   [[nodiscard]] std::array<R, std::size_t(Order) - 1> changes(std::size_t span, const R& from,
                                                               const R& to) const {
     const R a = from - spans_[span].middle;
@@ -142,7 +141,7 @@ private:
     (std::make_index_sequence<std::size_t(Order) - 1>{});
   }
 
-  /// Rows D, D + 1 … of the result.
+  /// Derivatives D, D + 1 … of the result.
   template <std::size_t D, class Weights, class S, class Steps>
   DUET_ALWAYS_INLINE static void fill(Weights& result, const span_data<S>& data,
                                       const Steps& steps) {
@@ -169,11 +168,12 @@ private:
     }
   }
 
-  /// For the span [u_i, u_{i+1}): de Boor and Cox's recurrence (P1) and its derivative (P4),
+  /// Cumulative functions on the span [u_i, u_{i+1}): the Cox–de Boor recurrence (P1) and its
+  /// derivative (P4),
   ///   (B_i^r)′ = (r−1) [B_i^{r−1}/(u_{i+r−1} − u_i) − B_{i+1}^{r−1}/(u_{i+r} − u_{i+1})],
   /// at the middle of the span, where all values are positive. Then P3,
   ///   B̃_i′ = (k−1)/(u_{i+k−1} − u_i) B_i^{k−1}.
-  /// The factors (k−1)(k−2)… are left to the end, where they are one exact number.
+  /// The factors (k−1)(k−2)… are applied at the end, where they are one exact number.
   [[nodiscard]] span_data<R> make_span(std::size_t i) const {
     constexpr auto k = std::size_t(Order);
     const R middle = knots_[i] + (knots_[i + 1] - knots_[i]) / 2;
@@ -182,7 +182,7 @@ private:
     b[0][0] = R(1);
     const auto raise = [&](std::size_t r) {
       auto next = decltype(b){};
-      for (std::size_t j = 0; j + 1 < r; ++j) { // B_{f+1}^{r−1} passes on to its two neighbours
+      for (std::size_t j = 0; j + 1 < r; ++j) { // B_{f+1}^{r−1} contributes to its two neighbours
         const std::size_t f = i + 1 + j - r;
         const R left = knots_[f + 1];
         const R right = knots_[f + r];

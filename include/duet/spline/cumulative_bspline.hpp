@@ -18,20 +18,20 @@
 #include <vector>
 
 /// \file
-/// The cumulative B-spline curve over rotations and poses (P2), with exact rates (P3, P4).
+/// Cumulative B-spline curve over rotations and poses (P2), with exact rates (P3, P4).
 
 namespace duet {
 
-/// The cumulative B-spline curve Q(u) = q_0 ∏_{i≥1} exp(ω_i B̃_i(u)), ω_i = log(q_{i−1}⁻¹ q_i):
+/// Cumulative B-spline curve Q(u) = q_0 ∏_{i≥1} exp(ω_i B̃_i(u)), ω_i = log(q_{i−1}⁻¹ q_i), of
 /// order k (degree k − 1), C^{k−2} at simple knots.
 ///
-/// \tparam T      scalar of the control elements: of rotations `double`, of poses
-///                `dual<double, 1, screw_tag>`, either with any infinitesimals
+/// \tparam T      scalar of the control points: `double` for rotations, `dual<double, 1,
+///                screw_tag>` for poses, either with any infinitesimals
 /// \tparam Order  k; 4 is the cubic
 ///
-/// Control elements are numbered from 0 here (the paper's q_{−1}). The ω_i are half-angle vectors,
-/// computed once; evaluation uses no heap. Rates are with respect to u: rad per unit of u, of poses
-/// twists [v; ω] per unit of u.
+/// Control points are numbered from 0 (the paper's q_{−1}). The ω_i are half-angle vectors,
+/// computed once; evaluation uses no heap. Rates are with respect to u: rad per unit of u, for
+/// poses twists [v; ω] per unit of u.
 template <class T, int Order = 4>
 class cumulative_bspline : public piecewise_curve<cumulative_bspline<T, Order>, real_type_t<T>> {
 public:
@@ -39,15 +39,18 @@ public:
   using real_type = real_type_t<T>;
   using basis_type = bspline_basis<Order, real_type>;
   static constexpr int order = Order;
-  /// Against smooth motion, interpolation misses by as much as this power of the step.
+  /// Order of convergence: for smooth motion the interpolation error decreases as this power of the
+  /// step.
   static constexpr int convergence = 3;
 
-  /// As many control elements as the basis, or what its knots make, has functions. They are
-  /// normalised, and their signs aligned from the first to the last, so that the curve takes the
-  /// short way round. \throws invalid_input for a count that does not match, and as
-  /// `aligned_orientations`
+  /// Constructs the curve from one control point for each basis function. Control points are
+  /// normalised and their signs aligned from the first to the last, so that the curve follows the
+  /// shorter arc.
+  ///
+  /// \throws invalid_input for a count that does not match
+  /// \throws invalid_sample as `align_quaternion_signs`
   cumulative_bspline(basis_type basis, std::vector<quaternion<T>> controls)
-      : basis_(std::move(basis)), controls_(aligned_orientations(std::move(controls))) {
+      : basis_(std::move(basis)), controls_(align_quaternion_signs(std::move(controls))) {
     check_count("control elements", controls_.size());
     increments_.reserve(controls_.size());
     increments_.push_back(vector3<T>::Zero());
@@ -60,14 +63,15 @@ public:
   cumulative_bspline(std::vector<real_type> knots, std::vector<quaternion<T>> controls)
       : cumulative_bspline(basis_type(std::move(knots)), std::move(controls)) {}
 
-  /// From controls with signs as they are and increments of any length: how to go the long way
-  /// round, several times too, and how to make a copy from another curve's `controls()` and
-  /// `increments()`. ω_0 does not count.
-  /// \throws invalid_input for counts that do not match; invalid_row as `unit_quaternions`, and
-  /// where exp(ω_i) is not q_{i−1}⁻¹ q_i
+  /// Constructs the curve from control points with signs as they are and increments of any length:
+  /// for longer arcs, also several full turns, and for copies from another curve's
+  /// `control_points()` and `increments()`. ω_0 has no effect.
+  ///
+  /// \throws invalid_input for counts that do not match
+  /// \throws invalid_sample as `normalized_quaternions`, and if exp(ω_i) is not q_{i−1}⁻¹ q_i
   cumulative_bspline(basis_type basis, std::vector<quaternion<T>> controls,
                      std::vector<vector3<T>> increments)
-      : basis_(std::move(basis)), controls_(unit_quaternions(std::move(controls))),
+      : basis_(std::move(basis)), controls_(normalized_quaternions(std::move(controls))),
         increments_(std::move(increments)) {
     check_count("control elements", controls_.size());
     check_count("increments", increments_.size());
@@ -75,17 +79,18 @@ public:
       const auto step = conj(controls_[i - 1]) * controls_[i];
       const auto miss = detail::innermost_of(step - duet::exp(increments_[i]));
       if (!(norm(miss) <= real_type(unit_norm_tolerance))) {
-        detail::raise(invalid_row(i, "the increment does not lead here from the control before"));
+        detail::raise(
+            invalid_sample(i, "the increment does not lead here from the control before"));
       }
     }
     increments_.front() = vector3<T>::Zero();
   }
 
-  /// The basis, which has the knots.
+  /// Basis, which holds the knots.
   [[nodiscard]] const basis_type& basis() const { return basis_; }
-  /// q_0, q_1 …, unit quaternions with aligned signs.
-  [[nodiscard]] const std::vector<quaternion<T>>& controls() const { return controls_; }
-  /// ω_i with exp(ω_i) = q_{i−1}⁻¹ q_i, half angles; ω_0 is zero.
+  /// Control points q_0, q_1 …: unit quaternions with aligned signs.
+  [[nodiscard]] const std::vector<quaternion<T>>& control_points() const { return controls_; }
+  /// Increments ω_i with exp(ω_i) = q_{i−1}⁻¹ q_i, half-angle vectors; ω_0 is zero.
   [[nodiscard]] const std::vector<vector3<T>>& increments() const { return increments_; }
 
 private:

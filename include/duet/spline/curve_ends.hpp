@@ -13,7 +13,7 @@
 #include <cstddef>
 
 /// \file
-/// End conditions as data, so that no equation is compiled for each of them.
+/// End conditions as data, so that equations are not compiled for each of them.
 
 namespace duet {
 namespace detail {
@@ -27,7 +27,7 @@ enum class end_kind {
   periodic
 };
 
-/// \throws invalid_input for a rate that is not finite
+/// \throws invalid_input for a velocity or acceleration that is not finite
 template <class V>
 void check_end_rates(const char* condition, const V& start, const V& end) {
   static_assert(V::SizeAtCompileTime == 3 || V::SizeAtCompileTime == 6,
@@ -48,15 +48,16 @@ void check_end_rates(const char* condition, const V& start, const V& end) {
 
 } // namespace detail
 
-/// What is asked of a curve over T at its ends, whatever kind of curve it is: `natural{}`,
-/// `clamped{…}`, `end_acceleration{…}`, `fully_clamped{…}`, `not_a_knot{}` or `periodic{}`.
-/// \throws invalid_input for a rate that is not finite
+/// End conditions of a curve over T, of any kind: `natural{}`, `clamped{…}`, `end_acceleration{…}`,
+/// `fully_clamped{…}`, `not_a_knot{}` or `periodic{}`.
+///
+/// \throws invalid_input for a velocity or acceleration that is not finite
 template <class T>
 struct curve_ends {
-  using rates = std::array<vector3<T>, 2>; ///< at the start and at the end
+  using rates = std::array<vector3<T>, 2>; ///< values at the start and at the end
 
-  detail::end_kind kind;        ///< which of these
-  rates velocity, acceleration; ///< halved, in spatial axes; zero where none are given
+  detail::end_kind kind;        ///< kind of end conditions
+  rates velocity, acceleration; ///< halved, in spatial axes; zero if not given
 
   explicit curve_ends(detail::end_kind k) : kind(k) {
     velocity.fill(vector3<T>::Constant(T(real_type_t<T>(0))));
@@ -81,7 +82,7 @@ struct curve_ends {
   curve_ends(const not_a_knot&) : curve_ends(detail::end_kind::not_a_knot) {}
   curve_ends(const periodic&) : curve_ends(detail::end_kind::periodic) {}
 
-  /// Anything else is refused.
+  /// Rejects all other types.
   template <class Other>
   curve_ends(const Other&) {
     static_assert(refused<Other>,
@@ -89,7 +90,7 @@ struct curve_ends {
                   "end_acceleration{…}, fully_clamped{…}, not_a_knot{} or periodic{}");
   }
 
-  /// These ends without infinitesimals.
+  /// End conditions without infinitesimal parts.
   [[nodiscard]] curve_ends<real_type_t<T>> real_part() const {
     curve_ends<real_type_t<T>> result(kind);
     for (std::size_t end = 0; end < 2; ++end) {

@@ -8,47 +8,51 @@
 #include <Eigen/Core>
 
 /// \file
-/// What an interpolating curve does at its ends.
+/// End conditions of interpolating curves: natural, clamped, not-a-knot, periodic and others.
 ///
-/// Rates are per unit of the parameter, in spatial axes: angular velocities and accelerations as
-/// 3-vectors for rotations, twists [v; ω] and their derivatives as 6-vectors for poses.
+/// Velocities and accelerations are per unit of the parameter, in spatial axes: angular velocities
+/// and accelerations as 3-vectors for rotations, twists [v; ω] and their derivatives as 6-vectors
+/// for poses.
 
 namespace duet {
-/// No angular or twist acceleration at either end: what to assume when a motion starts and ends
-/// evenly. The assumption is wrong for most motions and costs accuracy near the ends.
+/// Natural ends: no angular or twist acceleration at either end, for motions that start and end
+/// uniformly. The assumption is wrong for most motions and costs accuracy near the ends.
 struct natural {};
 
-/// Given angular velocities, or twists: zero, at rest, unless given.
+/// Clamped ends: given angular velocities or twists; default 0, at rest. (SciPy's `clamped` is
+/// always zero slope.)
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct clamped {
   /// ω or [v; ω] at the first data point, spatial axes, per unit of u.
   V start = detail::zero_initialized<V>();
-  /// Likewise, at the last data point.
+  /// ω or [v; ω] at the last data point, likewise.
   V end = detail::zero_initialized<V>();
 };
 
-/// Given angular accelerations, or derivatives of twists: zero unless given.
+/// Given angular accelerations or derivatives of twists at the ends; default 0.
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct end_acceleration {
   /// ω̇ or [v̇; ω̇] at the first data point, spatial axes, per unit of u².
   V start = detail::zero_initialized<V>();
-  /// Likewise, at the last data point.
+  /// ω̇ or [v̇; ω̇] at the last data point, likewise.
   V end = detail::zero_initialized<V>();
 };
 
-/// Given angular velocities and accelerations, or twists and their derivatives: all that the
-/// ends of a quintic can be told. (Of only one of them, the fifth derivative's continuity at the
-/// second knot takes the other's place.)
+/// Given angular velocities and accelerations, or twists and their derivatives, at both ends: all
+/// conditions that a quintic can meet there. (If only one of them is given, continuity of the fifth
+/// derivative at the second knot replaces the other.)
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct fully_clamped {
-  clamped<V> velocity;              ///< at both ends
-  end_acceleration<V> acceleration; ///< at both ends
+  clamped<V> velocity;              ///< velocities at both ends
+  end_acceleration<V> acceleration; ///< accelerations at both ends
 };
 
-/// The first two pieces are one, and so are the last two: what to assume when nothing is known.
+/// Not-a-knot ends: the first two pieces are one polynomial, and so are the last two; for motions
+/// of which nothing is known at the ends.
 struct not_a_knot {};
 
-/// The motion closes on itself, with its rates; the last row repeats the first.
+/// Periodic curve: the motion and its rates close on themselves; the last data point repeats the
+/// first.
 struct periodic {};
 
 namespace detail {

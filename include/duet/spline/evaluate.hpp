@@ -20,18 +20,18 @@
 #include <string_view>
 
 /// \file
-/// A curve at many parameters.
+/// Evaluation of a curve at many parameters, in SIMD batches and several threads.
 
 namespace duet {
 namespace detail {
 
-/// Scalars that are quickest several at a time, in the lanes of batches.
+/// True for scalars that are fastest in SIMD batches.
 template <class T>
 concept QuickInLanes = std::same_as < real_type_t<T>,
 double > &&(std::same_as<T, double> || std::same_as<T, screw_dual<double>>);
 
-/// To be called where f threw: its error again, with the first parameter from i on that has one,
-/// taken one by one. As it was where none has.
+/// Repeats the error of f with the first parameter from i on that causes one, found one by one;
+/// rethrows the original error if none does. To be called in its handler.
 template <class R, class F>
 [[noreturn]] void rethrow_with_row(std::span<const R> parameters, std::size_t i, const F& f) {
   span_hint hint;
@@ -39,14 +39,14 @@ template <class R, class F>
     catching<invalid_input>(
         [&] { static_cast<void>(f(parameters[i], hint)); },
         [&](const auto& error) {
-          const std::string_view reason = error.what(); // begins as that of invalid_row does
-          raise(invalid_row(i, std::string(reason.substr(std::string_view("duet: ").size()))));
+          const std::string_view reason = error.what(); // begins as that of invalid_sample does
+          raise(invalid_sample(i, std::string(reason.substr(std::string_view("duet: ").size()))));
         });
   }
   raise_again();
 }
 
-/// out[i] = f(parameters[i], hint) with a hint for every block.
+/// Computes out[i] = f(parameters[i], hint), with one hint for every block.
 template <class T, class R, class Out, class F>
 void evaluate_blocks(const char* function, std::span<const R> parameters, std::span<Out> out,
                      execution how, const F& f) {
@@ -86,12 +86,13 @@ void evaluate_blocks(const char* function, std::span<const R> parameters, std::s
 
 } // namespace detail
 
-/// out[i] = s(parameters[i]), quickest where parameters increase; on one core unless more are asked
-/// for, with the same results. Rotations and poses over double are evaluated several at a time, in
-/// the lanes of batches.
-/// \throws invalid_input where the sizes differ; invalid_row for the first parameter outside the
-/// domain of s
-/// \throws cancelled where `how.report` asks for that, see `parallel_for_blocks`
+/// Evaluates a curve at many parameters: out[i] = s(parameters[i]), fastest if parameters increase.
+/// Single-threaded by default; more threads give the same results. Rotations and poses over double
+/// are evaluated in SIMD batches.
+///
+/// \throws invalid_input if the sizes differ
+/// \throws invalid_sample for the first parameter outside the domain of s
+/// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
 template <class Spline>
 void evaluate(const Spline& s, std::span<const typename Spline::real_type> parameters,
               std::span<quaternion<typename Spline::scalar_type>> out, execution how = one_core) {
@@ -100,7 +101,8 @@ void evaluate(const Spline& s, std::span<const typename Spline::real_type> param
       [&](const auto& u, span_hint& hint) DUET_INLINE_LAMBDA { return s(u, hint); });
 }
 
-/// out[i] = s.motion(parameters[i], frame), as `evaluate`.
+/// Evaluates value and rates at many parameters, as `evaluate`: out[i] = s.motion(parameters[i],
+/// frame).
 template <class Spline, class Frame>
 void evaluate_motion(const Spline& s, std::span<const typename Spline::real_type> parameters,
                      Frame frame, std::span<motion<typename Spline::scalar_type>> out,

@@ -24,34 +24,37 @@
 #include <vector>
 
 /// \file
-/// Curves near given rotations or poses: fewer control elements than rows, noise smoothed out.
+/// Least-squares fit of curves to rotations or poses: fewer control points than samples, noise
+/// smoothed out.
 
 namespace duet {
 
-/// A fitted curve, and how far the rows are from it.
+/// Fitted curve and the distances of the samples from it.
 template <CurveType Spline>
 struct fit_result {
   using real_type = typename Spline::real_type;
-  Spline curve; ///< with the knots that were given
-  /// Row by row |2 log(S(uᵢ)* Qᵢ)|: radians, of poses together with (distance/length) as a root of
-  /// the sum of squares; with `fit_options::covariances` standard deviations.
+  Spline curve; ///< fitted curve, with the given knots
+  /// Residual |2 log(S(uᵢ)* Qᵢ)| of each sample: in radians; for poses the root of the sum of
+  /// squares of the angle and (distance/length); with `fit_options::covariances` in standard
+  /// deviations.
   std::vector<real_type> residuals;
-  real_type rms;     ///< root of the weighted mean of their squares, over all rows, outliers too
-  int iterations;    ///< of the least-squares method
-  real_type outlier; ///< residuals beyond this counted as outliers
+  real_type rms;  ///< root of the weighted mean square of `residuals`, outliers included
+  int iterations; ///< number of Levenberg–Marquardt iterations
+  real_type
+      outlier_threshold; ///< outlier threshold in effect: larger residuals counted as outliers
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("residuals", residuals);
     f("rms", rms);
     f("iterations", iterations);
-    f("outlier", outlier);
+    f("outlier_threshold", outlier_threshold);
   }
 };
 
 namespace detail {
 
-/// \throws invalid_input
+/// \throws invalid_input unless there are no weights, or one for each sample, positive and finite
 inline void require_fit_weights(const std::vector<double>& weights, std::size_t rows) {
   require(weights.empty() || weights.size() == rows, "duet: fit: ", weights.size(), " weights for ",
           rows, " rows");
@@ -62,10 +65,11 @@ inline void require_fit_weights(const std::vector<double>& weights, std::size_t 
   }
 }
 
-/// Schoenberg's and Whitney's condition: every control element needs a row of its own where its
+/// Checks the Schoenberg–Whitney condition: every control point needs a separate sample where its
 /// basis function is not zero, or it would be arbitrary.
-/// \param counts  counts(i): does row i?
-/// \throws invalid_input
+///
+/// \param counts  counts(i) is true if sample i counts
+/// \throws invalid_input if the condition is violated
 template <int Order, Real R, class Counts>
 void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u,
                                const Counts& counts, const char* advice) {
@@ -94,18 +98,23 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 
 } // namespace detail
 
-/// The curve of type `Spline` with these knots that is nearest to given rotations or poses. Σ wᵢ
-/// ρ(|2 log(S(uᵢ)* Qᵢ)|) is least, ρ(r) = ½ r² up to `options.outlier`, and rows far beyond it do
-/// not count (`fit_options::outlier`). wᵢ are `options.weights`; residuals are measured by
-/// `options.covariances` where there are some.
+/// Fits a curve of type `Spline` with given knots to rotations or poses.
 ///
-/// Time and memory are linear in the number of rows. The signs of the rows do not matter.
-/// \param knots  of the curve, `knots_at_rows(parameters, 10, Order)` say, or those of chosen
-///               parameters, `clamped_knots(few_parameters, Order)`; more smoothing by fewer
-/// \throws invalid_row for a row that is not finite, not a unit, outside the knots' domain or does
-///         not follow the row before; invalid_input for counts that differ, too few rows somewhere,
-///         a length or weight that is not positive, a limit that is negative, a covariance that is
-///         not positive definite; no_convergence
+/// Minimises Σ wᵢ ρ(|2 log(S(uᵢ)* Qᵢ)|) over the control points by damped least squares
+/// (Levenberg–Marquardt). ρ is Huber's loss, ρ(r) = ½ r² up to the outlier threshold
+/// `options.outlier_threshold`; samples far beyond it do not count. wᵢ are `options.weights`;
+/// residuals are whitened by `options.covariances` if there are any.
+///
+/// Time and memory are linear in the number of samples. The signs of the samples do not matter.
+///
+/// \param knots  knots of the curve, for example `knots_every(parameters, 10, Order)`, or those of
+///               chosen parameters, `clamped_knots(few_parameters, Order)`; fewer knots smooth more
+/// \throws invalid_sample for a sample that is not finite, not a unit, outside the knots' domain or
+/// does not follow the sample before
+/// \throws invalid_input for counts that differ, too few samples on part of the domain, a length or
+/// weight that is not positive, a negative outlier threshold, or a covariance that is not positive
+/// definite
+/// \throws no_convergence if the iteration does not converge
 template <CurveType Spline, class R, detail::RowOf<Spline> T>
 [[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> rows,
                                      std::vector<R> knots, const fit_options& options = {}) {
@@ -114,9 +123,9 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
                 "duet: fit makes cumulative_bspline<T, Order> from quaternion<T>");
   std::ostringstream message;
   detail::check_rows("fit", parameters, rows.size(), 0);
-  if (!(options.length > 0) || !(options.outlier >= 0)) {
-    message << "duet: fit: length " << options.length << " and outlier " << options.outlier
-            << ": the length must be positive, the limit not negative";
+  if (!(options.length > 0) || !(options.outlier_threshold >= 0)) {
+    message << "duet: fit: length " << options.length << " and outlier_threshold "
+            << options.outlier_threshold << ": the length must be positive, the limit not negative";
     detail::raise(invalid_input(message.str()));
   }
   detail::require_fit_weights(options.weights, rows.size());
@@ -130,13 +139,13 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
               << " is outside the knots' domain, " << detail::all_digits(basis.front()) << " to "
               << detail::all_digits(basis.back()) << ": clamped_knots of parameters from "
               << parameters.front() << " to " << parameters.back() << " hold all rows";
-      detail::raise(invalid_row(i, message.str()));
+      detail::raise(invalid_sample(i, message.str()));
     }
   }
   detail::require_rows_for_controls(
       basis, parameters, [](std::size_t) { return true; }, "use fewer knots there");
   detail::bspline_fit<T, Spline::order> problem(basis, parameters,
-                                                unit_quaternions(std::move(rows)), options);
+                                                normalized_quaternions(std::move(rows)), options);
   detail::require_rows_for_controls(
       basis, parameters, [&](std::size_t i) { return problem.counts(i); },
       "the others are outliers; use fewer knots there");
@@ -144,7 +153,7 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
   const std::vector<R> residuals = problem.residuals();
   using std::sqrt;
   const R largest = *std::max_element(residuals.begin(), residuals.end());
-  R squares(0), weights(0); // in relation to the largest, so that they do not overflow
+  R squares(0), weights(0); // relative to the largest, so that they do not overflow
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const R ratio = largest > 0 ? R(residuals[i] / largest) : R(0);
     const R weight = options.weights.empty() ? R(1) : R(options.weights[i]);
@@ -152,10 +161,10 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
     weights += weight;
   }
   const R rms = largest - largest == 0 ? R(largest * sqrt(squares / weights)) : largest;
-  return {problem.curve(basis), residuals, rms, iterations, problem.outlier()};
+  return {problem.curve(basis), residuals, rms, iterations, problem.outlier_threshold()};
 }
 
-/// Rotations for a curve of poses, or the other way round.
+/// Rejected: rotations for a curve of poses, or poses for a curve of rotations.
 template <CurveType Spline, class R, class T, class... More>
   requires(!detail::RowOf<T, Spline>)
 DUET_REFUSED("fit: the curve is over another scalar than the rows: rotations make a "

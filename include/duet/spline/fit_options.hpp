@@ -9,26 +9,27 @@
 #include <vector>
 
 /// \file
-/// What may be chosen of a fit.
+/// Options of `fit`.
 
 namespace duet {
 
-/// Settings of `fit`.
+/// Options of `fit`.
 struct fit_options {
-  /// Of poses: the distance that counts as much as a turn by one radian.
+  /// Characteristic length: distance between poses that counts as much as a rotation by 1 rad.
   double length = 1;
-  /// A residual beyond this counts by its size, not by its square (Huber's loss), and rows that are
-  /// farther off than four times this, and twelve times the median of those around, do not count:
-  /// outliers however far leave the curve where the others take it. Zero: three times the median
-  /// residual. Infinite: plain least squares.
-  double outlier = std::numeric_limits<double>::infinity();
-  /// How much each row counts, wᵢ > 0 in proportion; none: all the same.
+  /// Outlier threshold, in the unit of the residuals. Larger residuals count by their size, not by
+  /// their square (Huber's loss). Samples farther off than four times the threshold and twelve
+  /// times the median of their neighbours are ignored, so that outliers, however far, do not move
+  /// the curve. 0: three times the median residual. Infinity, the default: plain least squares.
+  double outlier_threshold = std::numeric_limits<double>::infinity();
+  /// Relative weights wᵢ > 0 of the samples; empty, the default: all equal.
   std::vector<double> weights = {};
-  /// Σᵢ of the rows' errors, or one matrix for all of them: 3 × 3, rad², of turns in the row's body
-  /// axes, for poses 6 × 6 of the twists [v; ω] there. Residuals are then |Lᵢ⁻¹ rᵢ|, Σᵢ = Lᵢ Lᵢᵀ,
-  /// in standard deviations, `outlier` with them, and `length` does not matter. None: of one size.
+  /// Covariance matrices Σᵢ of the samples' errors, or one for all: 3 × 3 of rotation vectors in
+  /// the sample's body axes, rad²; for poses 6 × 6 of twists [v; ω] there. Residuals, and with them
+  /// `outlier`, are then |Lᵢ⁻¹ rᵢ| in standard deviations, Σᵢ = Lᵢ Lᵢᵀ, and `length` has no effect.
+  /// Empty, the default: errors of one size.
   std::vector<Eigen::MatrixXd> covariances = {};
-  int max_iterations = 100; ///< of the least-squares method
+  int max_iterations = 100; ///< maximum number of Levenberg–Marquardt iterations
 };
 
 } // namespace duet

@@ -6,11 +6,11 @@
 #include <duet/quaternion/quaternion.hpp>
 
 /// \file
-/// Angular velocities and twists as splines compute with them.
+/// Halved angular velocities and twists, the form in which splines compute.
 
 namespace duet::detail {
 
-/// A rate as half a vector, or half a dual vector.
+/// Half of a rate, as a vector or a dual vector.
 template <class T, class V>
 [[nodiscard]] vector3<T> half_rate(const V& rate) {
   const real_type_t<T> half(0.5);

@@ -16,19 +16,21 @@
 #include <vector>
 
 /// \file
-/// Curves through rows whose rates are known.
+/// Hermite interpolation: curves through data points with given velocities.
 
 namespace duet {
 
-/// The C¹ curve through rotations or poses with given velocities at each: Q(u) = Q_i exp(x_i(u −
-/// u_i)) with cubic x_i. Nothing is solved for. Against smooth motion it is fourth-order accurate
-/// in value, third in velocity.
+/// Hermite curve, C¹, through rotations or poses with a given velocity at each: Q(u) = Q_i
+/// exp(x_i(u − u_i)) with cubic x_i. No equations are solved. For smooth motion it is fourth-order
+/// accurate in value, third in velocity.
 ///
-/// \param velocities  angular velocities, of poses twists [v; ω], per unit of the parameter
-/// \param frame       theirs: `frame::spatial` or `frame::body`
+/// \param rows        data points Q_i, unit quaternions or poses; signs are aligned first
+/// \param velocities  angular velocities, for poses twists [v; ω], per unit of the parameter
+/// \param frame       axes of the velocities: `frame::spatial` or `frame::body`
 /// \return `rotation_vector_spline<T, 4>`
-/// \throws invalid_row for a row that no curve can go through, and for a velocity that is not
-/// finite; invalid_input for fewer than two rows or counts that differ
+/// \throws invalid_sample for a data point that no curve can pass through, and for a velocity that
+/// is not finite
+/// \throws invalid_input for fewer than two data points or counts that differ
 template <class Q, class V, FrameConstant Frame>
 [[nodiscard]] auto hermite_spline(const std::vector<real_type_t<Q>>& parameters,
                                   const std::vector<quaternion<Q>>& rows,
@@ -37,12 +39,12 @@ template <class Q, class V, FrameConstant Frame>
   detail::check_rows("hermite_spline", parameters, rows.size(), 2);
   detail::require(velocities.size() == rows.size(), "duet: hermite_spline: ", rows.size(),
                   " rows, but ", velocities.size(), " velocities");
-  auto elements = aligned_orientations(std::vector<quaternion<T>>(rows.begin(), rows.end()));
+  auto elements = align_quaternion_signs(std::vector<quaternion<T>>(rows.begin(), rows.end()));
   std::vector<std::array<vector3<T>, 1>> rates;
   rates.reserve(velocities.size());
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     if (!velocities[i].allFinite()) {
-      detail::raise(invalid_row(i, "the velocity is not finite"));
+      detail::raise(invalid_sample(i, "the velocity is not finite"));
     }
     const vector3<T> half = detail::half_rate<T>(velocities[i]);
     if constexpr (detail::is_spatial(frame)) {
@@ -54,7 +56,7 @@ template <class Q, class V, FrameConstant Frame>
   return rotation_vector_spline<T, 4>(parameters, std::move(elements), rates);
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected: velocities without their frame, which would be ambiguous.
 template <class T, class V>
 DUET_REFUSED("in which axes? hermite_spline(parameters, elements, velocities, frame::spatial) or "
              "frame::body")

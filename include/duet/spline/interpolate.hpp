@@ -29,18 +29,18 @@
 #include <vector>
 
 /// \file
-/// Curves through given rotations or poses, of every kind and with every end, Hermite ones
-/// included.
+/// Interpolation of rotations and poses by cubic and quintic curves with every kind of end
+/// conditions; Hermite curves included.
 
 namespace duet {
 
-/// How an interpolation went.
-struct fit_report {
-  int iterations = 0; ///< of Newton's method
-  /// Of a cumulative curve by how much it misses a turn from one row to the next, rad; of rotation
-  /// vectors by how much its equations are missed, rad per step and its powers.
+/// Report of an interpolation.
+struct interpolation_report {
+  int iterations = 0; ///< number of Newton iterations
+  /// Largest residual. Cumulative curves: error of the rotation between neighbouring samples, rad.
+  /// Rotation-vector curves: error of the equations, rad per step and its powers.
   double residual = 0;
-  double largest_step = 0; ///< the largest turn from one row to the next, rad
+  double largest_step = 0; ///< largest rotation angle between neighbouring samples, rad
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -52,8 +52,8 @@ struct fit_report {
 
 namespace detail {
 
-/// The solution over T by that of the real parts: one step with their Jacobian for every order of
-/// infinitesimals, and one more that takes back what rounding did to the last.
+/// Solution over T, lifted from that over the real numbers: one Newton step with the real Jacobian
+/// for each order of infinitesimals, and one more that removes the round-off of the last.
 template <class Equations, class Newton>
 [[nodiscard]] typename Equations::unknowns lifted_solution(const Equations& equations,
                                                            Newton& newton) {
@@ -76,8 +76,9 @@ template <class Equations, class Newton>
   return x;
 }
 
-/// The last row as the first one again.
-/// \throws invalid_row where it is another
+/// Replaces the last sample by the first, which it must repeat.
+///
+/// \throws invalid_sample if the two differ
 template <class T>
 [[nodiscard]] DUET_COLD DUET_OUT_OF_LINE std::vector<quaternion<T>>
 closed(std::vector<quaternion<T>> q) {
@@ -90,8 +91,8 @@ closed(std::vector<quaternion<T>> q) {
     using R = real_type_t<T>;
     const R off = 2 * length(vector3<R>(innermost(x[0]), innermost(x[1]), innermost(x[2])));
     if (!(off <= tolerance)) {
-      raise(invalid_row(q.size() - 1, message("periodic ends: differs from row 0 by ", off, unit,
-                                              ", but must repeat it")));
+      raise(invalid_sample(q.size() - 1, message("periodic ends: differs from row 0 by ", off, unit,
+                                                 ", but must repeat it")));
     }
   };
   if constexpr (contains_tag<T, screw_tag>()) {
@@ -104,7 +105,7 @@ closed(std::vector<quaternion<T>> q) {
   return q;
 }
 
-/// The scalar of a curve of type `Spline` through rows over T.
+/// Scalar of a curve of type `Spline` through samples over T.
 template <class Spline, class T>
 struct scalar_of_curve {
   using type = T;
@@ -117,8 +118,8 @@ struct scalar_of_curve<Spline, T> {
 template <class Spline, class T>
 using scalar_of_curve_t = typename scalar_of_curve<Spline, T>::type;
 
-/// Rows over T are those of a curve of type `Spline`, or constants for its numbers with
-/// derivatives.
+/// True if samples over T fit a curve of type `Spline`: T is its scalar, or its scalar has
+/// derivatives and T holds constants.
 template <class T, class Spline>
 concept RowOf =
     std::same_as<promote_t<scalar_of_curve_t<Spline, T>, T>, scalar_of_curve_t<Spline, T>> &&
@@ -131,11 +132,11 @@ template <class Spline, class T>
   return std::vector<quaternion<scalar_of_curve_t<Spline, T>>>(rows.begin(), rows.end());
 }
 
-/// The curve of type `Spline` through the rows.
+/// Interpolates the samples by a curve of type `Spline`; reports if `report` is not null.
 template <CurveType Spline, class T>
 [[nodiscard]] Spline curve_through(const std::vector<real_type_t<T>>& parameters,
                                    std::vector<quaternion<T>> q, const curve_ends<T>& ends,
-                                   fit_report* report) {
+                                   interpolation_report* report) {
   constexpr bool is_curve = requires { typename equations_of_t<Spline>; };
   static_assert(is_curve, "duet: interpolate makes cumulative_bspline<T>, a cubic, and "
                           "rotation_vector_spline<T>, or <T, 6>, a quintic");
@@ -148,7 +149,7 @@ template <CurveType Spline, class T>
           "duet: interpolate: a cubic's ends take velocities or accelerations, not both"));
     }
     check_rows("interpolate", parameters, q.size(), equations::least_rows(ends.kind));
-    q = aligned_orientations(std::move(q));
+    q = align_quaternion_signs(std::move(q));
     if (ends.kind == end_kind::periodic) {
       q = closed(std::move(q));
     }
@@ -186,36 +187,36 @@ DUET_COMPILED_TEMPLATE class spline_newton<rotation_vector_quintic_equations<dou
 DUET_COMPILED_TEMPLATE cumulative_bspline<double> curve_through(const std::vector<double>&,
                                                                 std::vector<quaternion<double>>,
                                                                 const curve_ends<double>&,
-                                                                fit_report*);
+                                                                interpolation_report*);
 DUET_COMPILED_TEMPLATE rotation_vector_spline<double> curve_through(const std::vector<double>&,
                                                                     std::vector<quaternion<double>>,
                                                                     const curve_ends<double>&,
-                                                                    fit_report*);
+                                                                    interpolation_report*);
 DUET_COMPILED_TEMPLATE rotation_vector_spline<double, 6>
 curve_through(const std::vector<double>&, std::vector<quaternion<double>>,
-              const curve_ends<double>&, fit_report*);
+              const curve_ends<double>&, interpolation_report*);
 DUET_COMPILED_TEMPLATE cumulative_bspline<screw_dual<double>>
 curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
-              const curve_ends<screw_dual<double>>&, fit_report*);
+              const curve_ends<screw_dual<double>>&, interpolation_report*);
 DUET_COMPILED_TEMPLATE rotation_vector_spline<screw_dual<double>>
 curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
-              const curve_ends<screw_dual<double>>&, fit_report*);
+              const curve_ends<screw_dual<double>>&, interpolation_report*);
 DUET_COMPILED_TEMPLATE rotation_vector_spline<screw_dual<double>, 6>
 curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
-              const curve_ends<screw_dual<double>>&, fit_report*);
+              const curve_ends<screw_dual<double>>&, interpolation_report*);
 #endif
 
 } // namespace detail
 
-/// The curve of type `Spline` with S(u_i) = Q_i: `cumulative_bspline<T>`, the cubic of P2, C²;
-/// `rotation_vector_spline<T>`, the cubic of rotation vectors, C²; `rotation_vector_spline<T, 6>`,
-/// the quintic, C⁴. T is any scalar.
+/// Interpolates rotations or poses: the curve of type `Spline` with S(u_i) = Q_i. `Spline` is
+/// `cumulative_bspline<T>`, the cubic of P2, C²; `rotation_vector_spline<T>`, the cubic of rotation
+/// vectors, C²; or `rotation_vector_spline<T, 6>`, the quintic, C⁴. T is any scalar.
 ///
 /// \param parameters    u_0 < u_1 < …, uniform or not
-/// \param orientations  unit quaternions, or poses; signs are aligned first. Where T is a number
-/// with
-///                      derivatives, rows over its real numbers are constants
-/// \param ends          as below
+/// \param orientations  data points Q_i, unit quaternions or poses; signs are aligned first. If T
+///                      is a number with derivatives, data points over its real numbers are
+///                      constants
+/// \param ends          end conditions, see the table; default `natural{}`
 ///
 /// | ends | cubics | quintic |
 /// |---|---|---|
@@ -226,17 +227,20 @@ curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<doub
 /// | `not_a_knot` | jerk continuous at the next knot | fifth derivative at the next two |
 /// | `periodic` | as smooth as inside | as smooth as inside |
 ///
-/// Unknown are the increments of P2, or the rates at the knots. Their real parts are found by
-/// Newton's method, O(n) a step; where neighbouring rows are far apart, by
-/// continuation from smaller turns. Infinitesimal parts, those of poses and of derivatives with
-/// respect to the data among them, follow from the equations by linear solves, one each and one
-/// more, to rounding. Against smooth motion and with ends that fit it, the cumulative cubic is
-/// third-order accurate in value, second in velocity, first in acceleration; the cubic of rotation
-/// vectors an order more; the quintic sixth, fifth and fourth.
-/// \throws invalid_row for a row that no curve can go through; invalid_input where there are too
-/// few rows (not_a_knot takes as many as the order, periodic ends three, clamped and accelerated
-/// quintics four), the counts differ or an end rate is not finite; no_convergence where no curve
-/// was found: neighbours very far apart, or parameters too uneven for the ends
+/// The unknowns are the increments of P2, or the rates at the knots. Their real parts are found by
+/// Newton's method, O(n) per step, and if neighbouring data points are far apart, by continuation
+/// from smaller rotations. Infinitesimal parts, including those of poses and of derivatives with
+/// respect to the data, follow to round-off by linear solves, one for each order and one more. For
+/// smooth motion and end conditions that fit it, the cumulative cubic is third-order accurate in
+/// value, second in velocity, first in acceleration; the cubic of rotation vectors one order more;
+/// the quintic sixth, fifth and fourth.
+///
+/// \throws invalid_sample for a data point that no curve can pass through
+/// \throws invalid_input for too few data points (`not_a_knot` needs as many as the order, periodic
+/// ends three, clamped and accelerated quintics four), counts that differ, or an end velocity or
+/// acceleration that is not finite
+/// \throws no_convergence if no curve was found: neighbours very far apart, or parameters too
+/// uneven for the end conditions
 template <CurveType Spline, detail::RowOf<Spline> T>
 [[nodiscard]] Spline
 interpolate(const std::vector<real_type_t<T>>& parameters,
@@ -246,18 +250,18 @@ interpolate(const std::vector<real_type_t<T>>& parameters,
   return detail::curve_through<Spline>(
       parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, nullptr);
 }
-/// The curve with S(u_i) = Q_i, and how it went.
+/// Interpolates as above, with a report of the iteration.
 template <CurveType Spline, detail::RowOf<Spline> T>
 [[nodiscard]] Spline
 interpolate(const std::vector<real_type_t<T>>& parameters,
             const std::vector<quaternion<T>>& orientations,
             const std::type_identity_t<curve_ends<detail::scalar_of_curve_t<Spline, T>>>& ends,
-            fit_report& report) {
+            interpolation_report& report) {
   return detail::curve_through<Spline>(
       parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, &report);
 }
 
-/// Rotations for a curve of poses, or the other way round.
+/// Rejected: rotations for a curve of poses, or poses for a curve of rotations.
 template <CurveType Spline, class T, class... More>
   requires(!detail::RowOf<T, Spline>)
 DUET_REFUSED("interpolate: the curve is over another scalar than the rows: rotations make a "

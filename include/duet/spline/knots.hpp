@@ -9,13 +9,13 @@
 #include <vector>
 
 /// \file
-/// Knot vectors.
+/// Knot vectors of splines, and basis functions by definition.
 
 namespace duet {
 namespace detail {
 
 /// \throws invalid_input unless the knots are finite, do not decrease, leave a domain for splines
-/// of this order and repeat none more often than `order` times
+/// of this order and repeat no knot more often than `order` times
 template <Real R>
 void check_knots(const std::vector<R>& knots, int order) {
   const auto fail = [](const auto&... what) {
@@ -47,8 +47,9 @@ void check_knots(const std::vector<R>& knots, int order) {
 
 } // namespace detail
 
-/// The knots of a spline of this order through data at the given parameters: each once, the first
-/// and the last `order` times, so that the curve ends in its first and last control elements.
+/// Clamped knot vector of a spline of this order through data points at the given parameters: each
+/// once, the first and the last `order` times, so that the curve ends at its first and last control
+/// points.
 template <Real R>
 [[nodiscard]] std::vector<R> clamped_knots(const std::vector<R>& parameters, int order) {
   const std::size_t more = std::size_t(order) - 1, last = parameters.size() - 1;
@@ -59,15 +60,16 @@ template <Real R>
   return knots;
 }
 
-/// The knots of a spline of this order for `fit` to rows at the given parameters: one at every n-th
-/// row, so that they are dense where the rows are, and at the first and the last, those repeated as
-/// by `clamped_knots`. The last of them but the end is n to 2 n − 1 rows before it.
-/// \param n  rows to a knot: more smooth more, fewer follow faster motion
-/// \throws invalid_input for n = 0 and fewer than two rows
+/// Knot vector for `fit` of a spline of this order to samples at the given parameters: a knot at
+/// every n-th sample, so that knots are dense where samples are, and at the first and the last,
+/// repeated as by `clamped_knots`. The last inner knot is n to 2 n − 1 samples before the end.
+///
+/// \param n  samples per knot: more smooth more, fewer follow faster motion
+/// \throws invalid_input for n = 0 and fewer than two samples
 template <Real R>
-[[nodiscard]] std::vector<R> knots_at_rows(const std::vector<R>& parameters, std::size_t n,
-                                           int order = 4) {
-  detail::require(n > 0 && parameters.size() > 1, "duet: knots_at_rows: n = ", n, " and ",
+[[nodiscard]] std::vector<R> knots_every(const std::vector<R>& parameters, std::size_t n,
+                                         int order = 4) {
+  detail::require(n > 0 && parameters.size() > 1, "duet: knots_every: n = ", n, " and ",
                   parameters.size(), " rows: n must be positive, and at least two rows there");
   std::vector<R> breaks{parameters.front()};
   for (std::size_t i = n; i < parameters.size() - 1 && n <= parameters.size() - 1 - i; i += n) {
@@ -77,8 +79,8 @@ template <Real R>
   return clamped_knots(breaks, order);
 }
 
-/// The knots of a spline of this order, even, through data at the given parameters that has no knot
-/// where the first order/2 − 1 parameters inside are, nor where the last ones are.
+/// Not-a-knot knot vector of a spline of this even order through data points at the given
+/// parameters: no knots at the first order/2 − 1 inner parameters, nor at the last ones.
 template <Real R>
 [[nodiscard]] std::vector<R> not_a_knot_knots(std::vector<R> parameters, int order) {
   const std::ptrdiff_t left_out = order / 2 - 1;
@@ -87,8 +89,8 @@ template <Real R>
   return clamped_knots(parameters, order);
 }
 
-/// The knots of a periodic spline of this order through data at the given parameters, the last of
-/// which is one period after the first: each once, and continued round on both sides.
+/// Knot vector of a periodic spline of this order through data points at the given parameters, the
+/// last of which is one period after the first: each once, continued periodically on both sides.
 template <Real R>
 [[nodiscard]] std::vector<R> periodic_knots(const std::vector<R>& parameters, int order) {
   const std::size_t n = parameters.size() - 1;
@@ -108,11 +110,11 @@ template <Real R>
 
 namespace detail {
 
-/// `bspline_value` where the domain is known to end at `end`: functions of lower order, as in
+/// Implements `basis_function` for a domain known to end at `end`: functions of lower order, as in
 /// derivatives, have the domain of the spline that they belong to.
 template <Real R>
-[[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u,
-                              const R& end) {
+[[nodiscard]] R basis_function(const std::vector<R>& knots, std::size_t i, int order, const R& u,
+                               const R& end) {
   if (order == 1) {
     const bool inside =
         u == end ? knots[i] < u && u == knots[i + 1] : knots[i] <= u && u < knots[i + 1];
@@ -123,25 +125,25 @@ template <Real R>
   const R right = knots[i + k] - knots[i + 1];
   R sum(0);
   if (left > 0) {
-    sum += (u - knots[i]) / left * bspline_value(knots, i, order - 1, u, end);
+    sum += (u - knots[i]) / left * basis_function(knots, i, order - 1, u, end);
   }
   if (right > 0) {
-    sum += (knots[i + k] - u) / right * bspline_value(knots, i + 1, order - 1, u, end);
+    sum += (knots[i + k] - u) / right * basis_function(knots, i + 1, order - 1, u, end);
   }
   return sum;
 }
 
 } // namespace detail
 
-/// B_i^k(u) by the recurrence of de Boor and Cox (P1): order k, degree k − 1.
+/// B-spline basis function B_i^k(u) by the Cox–de Boor recurrence (P1): order k, degree k − 1.
 ///
 /// The intervals are half-open, [u_i, u_{i+1}); only the last non-empty one of the domain [u_{k−1},
-/// u_m] is closed. (Closed at both ends, as our copy of the paper has them, two would count at
-/// every knot and the functions would not sum to 1.) A term whose denominator is zero is zero. This
-/// is the definition; `bspline_basis` is the fast way.
+/// u_m] is closed. (With intervals closed at both ends, as in our copy of the paper, two would
+/// count at every knot and the functions would not sum to 1.) A term whose denominator is zero is
+/// zero. This is the definition; `bspline_basis` is faster.
 template <Real R>
-[[nodiscard]] R bspline_value(const std::vector<R>& knots, std::size_t i, int order, const R& u) {
-  return detail::bspline_value(knots, i, order, u, knots[knots.size() - std::size_t(order)]);
+[[nodiscard]] R basis_function(const std::vector<R>& knots, std::size_t i, int order, const R& u) {
+  return detail::basis_function(knots, i, order, u, knots[knots.size() - std::size_t(order)]);
 }
 
 } // namespace duet

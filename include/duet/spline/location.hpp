@@ -17,29 +17,30 @@
 #include <vector>
 
 /// \file
-/// Where on a curve a parameter is.
+/// Spans of a curve's domain, the search for the span of a parameter, and the behaviour outside the
+/// domain.
 
 namespace duet {
 
-/// What a curve does outside its domain. Up to 8 ulp beyond an end, of the end of larger magnitude,
-/// is that end: so far sums of steps may be off.
-enum class outside {
+/// Behaviour of a curve outside its domain. Parameters up to 8 ulp beyond an end, of the end of
+/// larger magnitude, count as that end: sums of steps may be off by as much.
+enum class out_of_domain {
   error,      ///< throws invalid_input
-  clamp,      ///< stays where it is at the end, without rates
-  extrapolate ///< goes on with its first or last piece
+  clamp,      ///< keeps the value at the end, with zero rates
+  extrapolate ///< continues the first or last piece
 };
 
-/// The caller's memory of the span that a parameter was in, for parameters that move little from
-/// one evaluation to the next. Any value will do to begin with, and for any curve.
+/// Span of the caller's last parameter, for parameters that change little from one evaluation to
+/// the next. Any initial value is valid, for any curve.
 struct span_hint {
-  std::size_t span = 0; ///< its number
+  std::size_t span = 0; ///< index of the span
 };
 
 } // namespace duet
 
 namespace duet::detail {
 
-/// A number for messages, told apart from its neighbours.
+/// Text of a number for messages, with enough digits to distinguish it from its neighbours.
 template <Real R>
 [[nodiscard]] std::string all_digits(const R& x) {
   if constexpr (std::floating_point<R>) {
@@ -56,7 +57,7 @@ template <Real R>
 
 namespace duet {
 
-/// The non-empty spans of a curve's domain, and which of them holds a parameter.
+/// Non-empty spans of a curve's domain, with a search for the span that holds a parameter.
 template <Real R>
 class knot_spans {
 public:
@@ -69,37 +70,38 @@ public:
     }
   }
 
-  /// The beginning of the domain.
+  /// Beginning of the domain.
   [[nodiscard]] const R& front() const { return breaks_.front(); }
-  /// The end of the domain.
+  /// End of the domain.
   [[nodiscard]] const R& back() const { return breaks_.back(); }
-  /// The distinct knots of the domain.
+  /// Distinct knots of the domain.
   [[nodiscard]] const std::vector<R>& breaks() const { return breaks_; }
   /// Number of spans.
   [[nodiscard]] std::size_t span_count() const { return breaks_.size() - 1; }
-  /// The parameter in the middle of a span.
+  /// Parameter in the middle of a span.
   [[nodiscard]] R middle(std::size_t span) const {
     return breaks_[span] + (breaks_[span + 1] - breaks_[span]) / 2;
   }
 
-  /// Is u in the domain? NaN is not.
+  /// True if u is in the domain; false for NaN.
   [[nodiscard]] DUET_ALWAYS_INLINE bool contains(const R& u) const {
     return u >= breaks_.front() && u <= breaks_.back();
   }
 
-  /// u; the end of the domain that it is beyond by rounding only, see `outside`.
+  /// Returns u, or the end of the domain if u is beyond it by round-off only, see `outside`.
   [[nodiscard]] R rounded_into_domain(const R& u) const {
     return detail::rounded_into(u, breaks_.front(), breaks_.back());
   }
 
-  /// Number of the span that holds u: half-open, the last one closed. Beyond an end by rounding
-  /// only, that at the end.
+  /// Index of the span that holds u. Spans are half-open, the last one closed. Beyond an end by
+  /// round-off only, the span at that end.
+  ///
   /// \throws invalid_input outside the domain
-  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t span_of(const R& u) const {
+  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t find_span(const R& u) const {
     if (!contains(u)) [[unlikely]] {
       return span_beside(u);
     }
-    // Where knots are about uniform the guess is right; otherwise a binary search finds the span.
+    // If knots are about uniform the guess is right; otherwise a binary search finds the span.
     const std::size_t guess = guessed_span(u);
     if (breaks_[guess] <= u && u < breaks_[guess + 1]) [[likely]] {
       return guess;
@@ -107,10 +109,10 @@ public:
     const auto above = std::upper_bound(breaks_.begin(), breaks_.end(), u) - breaks_.begin();
     return std::min(static_cast<std::size_t>(above), span_count()) - 1;
   }
-  /// The span that holds u, looked for in that of the hint and the next one first where knots are
-  /// not about uniform; the hint is updated.
-  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t span_of(const R& u, span_hint& hint) const {
-    return hint.span = is_about_uniform_ ? span_of(u) : span_near(u, hint.span);
+  /// Index of the span that holds u. Unless knots are about uniform, the span of the hint and the
+  /// next one are tried first. Updates the hint.
+  [[nodiscard]] DUET_ALWAYS_INLINE std::size_t find_span(const R& u, span_hint& hint) const {
+    return hint.span = is_about_uniform_ ? find_span(u) : span_near(u, hint.span);
   }
 
 private:
@@ -124,7 +126,7 @@ private:
         return i;
       }
     }
-    return span_of(u);
+    return find_span(u);
   }
   [[nodiscard]] DUET_COLD std::size_t span_beside(const R& u) const {
     if (contains(rounded_into_domain(u))) {
@@ -133,7 +135,7 @@ private:
     detail::raise(invalid_input(detail::message(
         "duet: spline evaluated at ", detail::all_digits(u), ", outside its domain [",
         detail::all_digits(front()), ", ", detail::all_digits(back()), "]",
-        u == u ? "; set_outside_domain(outside::clamp) makes a curve stay at its end" : "")));
+        u == u ? "; set_out_of_domain(out_of_domain::clamp) makes a curve stay at its end" : "")));
   }
 
   std::vector<R> breaks_;

@@ -7,15 +7,16 @@
 #include <vector>
 
 /// \file
-/// Look-up tables of rotations and poses. As files: spline/table_file.hpp.
+/// Lookup tables of rotations and poses. As files: spline/table_file.hpp.
 
 namespace duet {
 
-/// Rotations (T = double) or poses (T = dual<double, 1, screw_tag>) at increasing parameters.
+/// Lookup table of rotations (T = double) or poses (T = dual<double, 1, screw_tag>) at increasing
+/// parameters.
 template <class T>
-struct look_up_table {
-  std::vector<real_type_t<T>> parameters; ///< u_0 < u_1 < …
-  std::vector<quaternion<T>> elements;    ///< as many unit quaternions, or poses
+struct lookup_table {
+  std::vector<real_type_t<T>> parameters; ///< increasing parameters u_0 < u_1 < …
+  std::vector<quaternion<T>> elements;    ///< as many unit quaternions or poses
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {

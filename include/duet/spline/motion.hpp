@@ -24,20 +24,19 @@
 
 namespace duet {
 
-/// A rotation or pose and its rates with respect to the parameter. They are angular velocity (rad
-/// per unit), acceleration and jerk; of poses the twist [v; ω], its derivative and its second
-/// derivative.
+/// Rotation or pose with its rates with respect to the parameter: angular velocity (rad per unit),
+/// acceleration and jerk; for poses the twist [v; ω], its first and its second derivative.
 template <class T>
 struct motion {
   using rate_type = Eigen::Matrix<typename manifold<quaternion<T>>::scalar,
                                   manifold<quaternion<T>>::dimension, 1>;
-  quaternion<T> value = {}; ///< the rotation or pose
+  quaternion<T> value = {}; ///< rotation or pose
   rate_type velocity =
-      detail::zero_initialized<rate_type>(); ///< ω, rad per unit of u; of poses [v; ω]
+      detail::zero_initialized<rate_type>(); ///< ω, rad per unit of u; for poses [v; ω]
   rate_type acceleration =
-      detail::zero_initialized<rate_type>(); ///< the derivative of `velocity`, per unit of u²
+      detail::zero_initialized<rate_type>(); ///< derivative of `velocity`, per unit of u²
   rate_type jerk =
-      detail::zero_initialized<rate_type>(); ///< the derivative of `acceleration`, per unit of u³
+      detail::zero_initialized<rate_type>(); ///< derivative of `acceleration`, per unit of u³
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -60,12 +59,14 @@ struct structure<motion<T>> {
   }
 };
 
-/// The motion in time of a curve whose parameter u is driven by u(t): ω = δ u̇, ω̇ = δ′u̇² + δ ü,
-/// ω̈ = δ″u̇³ + 3 δ′u̇ü + δ u⃛, with the rates δ, δ′, δ″ of m by u in any one frame.
+/// Motion in time of a curve with time scaling u(t):
+///   ω = δ u̇,   ω̇ = δ′u̇² + δ ü,   ω̈ = δ″u̇³ + 3 δ′u̇ü + δ u⃛,
+/// where δ, δ′, δ″ are the rates of m with respect to u in any one frame.
+///
 /// \return `motion<T>`
 template <class T, ScalarFor<T> A, ScalarFor<T> B, ScalarFor<T> C>
-[[nodiscard]] auto chain_rule(const motion<T>& m, const A& u_dot, const B& u_ddot,
-                              const C& u_dddot) {
+[[nodiscard]] auto apply_time_scaling(const motion<T>& m, const A& u_dot, const B& u_ddot,
+                                      const C& u_dddot) {
   using S = promote_t<promote_t<A, B>, C>;
   using result = motion<promote_t<T, S>>;
   using rate = typename result::rate_type;
@@ -82,7 +83,7 @@ template <class T, ScalarFor<T> A, ScalarFor<T> B, ScalarFor<T> C>
 
 namespace detail {
 
-/// A motion whose rates are dual vectors, halved, in body axes.
+/// Motion whose rates are dual vectors, halved, in body axes.
 template <class T>
 struct half_motion {
   quaternion<T> value;
@@ -115,7 +116,7 @@ DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const q
     const quaternion<T> back = conj(e);
     [[maybe_unused]] const real_type_t<T> two(2);
     three_vector<T> w_hat, a_hat, j_hat;
-    if (i == 1) { // all rates are multiples of one vector, which e* … e turns once
+    if (i == 1) { // all rates are multiples of one vector, which e* … e rotates once
       const three_vector<T> turned = rotated(back, components(omega[0]));
       w_hat = b[1][0] * turned;
       if constexpr (Rates >= 2) {
@@ -148,7 +149,8 @@ DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const q
   }
 }
 
-/// c0 exp(ω_1 b_1) exp(ω_2 b_2) … and its rates in body axes, halved (P3, P4 in their true form).
+/// Product c0 exp(ω_1 b_1) exp(ω_2 b_2) … and its rates in body axes, halved (P3, P4 in their true
+/// form).
 ///
 /// With e = exp(ω b) the factors are taken in one after the other:
 ///   w ← e* w e + b′ω,
@@ -156,7 +158,7 @@ DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const q
 ///   j ← e* j e + b‴ω + 2 (b″ŵ + 2b′(â + ŵ × b′ω)) × ω,   â = e* a e.
 /// Q′ = Q w, and 2w, 2a, 2j are angular velocity, acceleration and jerk.
 ///
-/// \tparam Rates  how many of w, a, j are wanted
+/// \tparam Rates   number of the rates w, a, j that are computed
 /// \param weights  element [d][i] is the d-th derivative of b_{i+1}
 template <int Rates, class T, class W, std::size_t Factors>
 [[nodiscard]] DUET_ALWAYS_INLINE half_motion<promote_t<T, W>>
@@ -168,7 +170,7 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
     return exp_of_multiple(weights[0][i], increments[i]);
   };
   if constexpr (sizeof(D) <= 4 * sizeof(real_type_t<D>)) {
-    // All exponentials first: between them nothing else is alive that calls could force to memory.
+    // All exponentials first: then no other values are alive that calls could spill to memory.
     [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
       const std::array<quaternion<D>, Factors> e{factor(I)...};
       m.value = start * e[0];
@@ -187,8 +189,9 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
   return m;
 }
 
-/// From twists in body axes to the motion of the body's origin, ṫ = R v, and of fixed axes. However
-/// far out the body is, nothing cancels: ẗ = R(v̇ + ω × v), t⃛ = R(v̈ + ω̇ × v + 2ω × v̇ + ω × (ω × v)).
+/// Converts twists in body axes to the motion of the body's origin, ṫ = R v, and to fixed axes.
+/// There is no cancellation, however far out the body is:
+///   ẗ = R(v̇ + ω × v),   t⃛ = R(v̈ + ω̇ × v + 2ω × v̇ + ω × (ω × v)).
 template <class T>
 void follow_origin(motion<T>& m) {
   using rate = typename motion<T>::rate_type;
@@ -208,7 +211,7 @@ void follow_origin(motion<T>& m) {
   set(m.velocity, v, omega);
 }
 
-/// Full rates. Axes that turn along change the second derivative of V^s = A V^b A* only:
+/// Full rates from halved ones. Rotating axes change only the second derivative of V^s = A V^b A*:
 /// V̇^s = A V̇^b A*, V̈^s = A (V̈^b + V^b × V̇^b) A*.
 template <class T, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE motion<T> motion_of(half_motion<T> m, Frame) {
@@ -216,7 +219,7 @@ template <class T, class Frame>
   constexpr bool is_hybrid = is_pose && std::is_same_v<Frame, hybrid_frame>;
   constexpr bool is_turned = [] {
     if constexpr (is_hybrid) {
-      return false; // but by the rotation alone, below
+      return false; // rotated by the rotation alone, below
     } else {
       return is_spatial(frame_of_turning(Frame{}));
     }

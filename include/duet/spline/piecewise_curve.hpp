@@ -17,28 +17,29 @@
 #include <vector>
 
 /// \file
-/// What curves made of pieces have in common: how they are evaluated.
+/// Evaluation of piecewise curves: value, rates and behaviour outside the domain.
 
 namespace duet {
 
-/// A curve Q(u) over the spans of a basis.
+/// Curve Q(u) over the spans of a basis.
 ///
-/// \tparam Curve  what derives from it, with `spans()`, the basis, and `on_span<Rates>(span, u)`,
-///                Q with so many of its rates in body axes, halved; for a batch of parameters with
-///                an array of spans, one for each lane
-/// \tparam R      the parameter's real type
+/// \tparam Curve  derived class with `spans()`, the basis, and `on_span<Rates>(span, u)`, Q with
+///                that many of its rates in body axes, halved; for a batch of parameters with an
+///                array of spans, one for each lane
+/// \tparam R      real type of the parameter
 template <class Curve, class R>
 class piecewise_curve {
 public:
-  /// Where the pieces meet, and the ends of the domain: increasing parameters.
+  /// Parameters at which the pieces meet, and the ends of the domain, increasing.
   [[nodiscard]] const std::vector<R>& breaks() const { return curve().spans().breaks(); }
-  /// What the curve does outside its domain: `outside::error` until told otherwise.
-  [[nodiscard]] outside outside_domain() const { return outside_; }
-  /// Says what the curve does outside its domain.
-  void set_outside_domain(outside way) { outside_ = way; }
+  /// Behaviour of the curve outside its domain; default `out_of_domain::error`.
+  [[nodiscard]] out_of_domain behaviour_out_of_domain() const { return outside_; }
+  /// Sets the behaviour of the curve outside its domain.
+  void set_out_of_domain(out_of_domain behaviour) { outside_ = behaviour; }
 
-  /// Q(u).
-  /// \throws invalid_input outside the domain, unless told otherwise
+  /// Value Q(u).
+  ///
+  /// \throws invalid_input outside the domain, unless `set_out_of_domain` permits it
   template <class S>
   [[nodiscard]] auto operator()(const S& u) const {
     return evaluate<0>(u, no_hint{}).value;
@@ -49,9 +50,11 @@ public:
   }
 
   /// Value, velocity, acceleration and jerk with respect to u, in `frame::body` or
-  /// `frame::spatial`; of poses as twists [v; ω] and their derivatives, in `frame::hybrid` with the
-  /// derivatives of translation(Q) as linear parts. (Of rotations hybrid is spatial.)
-  /// \throws invalid_input outside the domain, unless told otherwise
+  /// `frame::spatial`. For poses these are twists [v; ω] and their derivatives; in `frame::hybrid`
+  /// the linear parts are the derivatives of translation(Q). (For rotations `frame::hybrid` is
+  /// `frame::spatial`.)
+  ///
+  /// \throws invalid_input outside the domain, unless `set_out_of_domain` permits it
   template <class S, FrameConstant Frame>
   [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame) const {
     return detail::motion_of(evaluate<3>(u, no_hint{}), frame);
@@ -60,15 +63,16 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE auto motion(const S& u, Frame frame, span_hint& hint) const {
     return detail::motion_of(evaluate<3>(u, hint), frame);
   }
-  /// Without a frame it is not clear which is meant.
+  /// Rejected: a motion without its frame, which would be ambiguous.
   template <class S>
   DUET_REFUSED("in which axes? motion(u, frame::spatial) or frame::body, of poses also "
                "frame::hybrid")
   auto motion(const S& u) const -> decltype(motion(u, frame::body));
 
-  /// Q, Q′ = Q w, Q″ = Q (a − |w|²) and Q‴ = Q (j − |w|² w + w × a − 3 w·a), with halved rates in
-  /// body axes (P3, P4 in their true form).
-  /// \throws invalid_input outside the domain, unless told otherwise
+  /// Derivatives Q, Q′ = Q w, Q″ = Q (a − |w|²) and Q‴ = Q (j − |w|² w + w × a − 3 w·a), with
+  /// halved rates in body axes (P3, P4 in their true form).
+  ///
+  /// \throws invalid_input outside the domain, unless `set_out_of_domain` permits it
   template <class S>
   [[nodiscard]] auto derivatives(const S& u) const {
     const auto m = evaluate<3>(u, no_hint{});
@@ -113,9 +117,9 @@ private:
       is_at_rest = there.is_at_rest;
       u = is_at_rest ? P(there.u) : P(u + (there.u - value));
     } else if constexpr (std::is_same_v<Hint, span_hint>) {
-      span = spans.span_of(value, hint);
+      span = spans.find_span(value, hint);
     } else {
-      span = spans.span_of(value);
+      span = spans.find_span(value);
     }
     auto m = curve().template on_span<Rates>(span, u);
     if (Rates > 0 && is_at_rest) [[unlikely]] {
@@ -124,7 +128,7 @@ private:
     return m;
   }
 
-  /// Lanes may be on different spans.
+  /// Evaluates a batch of parameters; lanes may be on different spans.
   template <int Rates, class P, class Hint>
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate_lanes(P u, Hint& hint) const {
     using reals = real_type_t<P>;
@@ -139,9 +143,9 @@ private:
         i = place_beside(here).span;
         is_inside = false;
       } else if constexpr (std::is_same_v<Hint, span_hint>) {
-        i = spans.span_of(here, hint);
+        i = spans.find_span(here, hint);
       } else {
-        i = spans.span_of(here);
+        i = spans.find_span(here);
       }
     }
     if (is_inside) [[likely]] {
@@ -170,13 +174,13 @@ private:
     return m;
   }
 
-  /// Where a parameter outside the domain is evaluated.
+  /// Point of evaluation for a parameter outside the domain.
   struct place {
-    std::size_t span; ///< the first or the last
+    std::size_t span; ///< first or last span
     R u;
     bool is_at_rest;
   };
-  /// \throws invalid_input where there is no going on
+  /// \throws invalid_input if the curve is not defined there
   [[nodiscard]] DUET_COLD place place_beside(const R& u) const {
     const auto& spans = curve().spans();
     const bool is_before = u < spans.front();
@@ -185,14 +189,14 @@ private:
     if (spans.rounded_into_domain(u) == end) {
       return {span, end, false};
     }
-    const bool is_usable = outside_ == outside::clamp ? u == u : u - u == 0;
-    if (outside_ == outside::error || !is_usable) {
-      static_cast<void>(spans.span_of(u)); // throws
+    const bool is_usable = outside_ == out_of_domain::clamp ? u == u : u - u == 0;
+    if (outside_ == out_of_domain::error || !is_usable) {
+      static_cast<void>(spans.find_span(u)); // throws
     }
-    return {span, outside_ == outside::clamp ? end : u, outside_ == outside::clamp};
+    return {span, outside_ == out_of_domain::clamp ? end : u, outside_ == out_of_domain::clamp};
   }
 
-  outside outside_ = outside::error;
+  out_of_domain outside_ = out_of_domain::error;
 };
 
 } // namespace duet

@@ -16,14 +16,14 @@
 #include <vector>
 
 /// \file
-/// Recorded rotations and poses, whose files may have rows that are bad or out of order.
+/// Recorded rotations and poses from files that may have bad or unordered rows.
 
 namespace duet {
 
-/// A row that was left out or put elsewhere, and why.
-struct recording_fault {
-  std::size_t line = 0; ///< in the file, counted from 1
-  std::string reason;   ///< on one line, as `tx is nan: left out`
+/// Row of a recording that was left out or moved, and the reason.
+struct recording_issue {
+  std::size_t line = 0; ///< line of the file, counted from 1
+  std::string reason;   ///< reason on one line, as `tx is nan: left out`
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -35,12 +35,12 @@ struct recording_fault {
 /// Recorded rotations (T = double) or poses (T = screw_dual<double>).
 template <class T>
 struct recording {
-  look_up_table<T> table;              ///< parameters: seconds since `start`, from 0 on, increasing
-  double start = 0;                    ///< the first time of the file, in seconds
-  std::vector<std::size_t> lines;      ///< where in the file each row stands
-  std::vector<recording_fault> faults; ///< by line
-  std::size_t left_out = 0;            ///< how many rows of the file the table does not have
-  std::string remark;                  ///< how the file was understood, where that is not plain
+  lookup_table<T> table;               ///< parameters: seconds since `start`, from 0 on, increasing
+  double start = 0;                    ///< first time of the file, in seconds
+  std::vector<std::size_t> lines;      ///< line of the file for each sample of the table
+  std::vector<recording_issue> faults; ///< rows left out or moved, by line
+  std::size_t left_out = 0;            ///< number of rows of the file that are not in the table
+  std::string remark;                  ///< assumptions about the format, empty if there were none
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -54,11 +54,12 @@ struct recording {
 
 namespace detail {
 
-/// The rows that are good, in order of time, each time once; the others become faults.
-/// \throws file_error where differences of times overflow
+/// Valid rows in order of time, each time once; the others are added to `faults`.
+///
+/// \throws file_error if differences of times overflow
 [[nodiscard]] inline std::vector<table_row> in_order(const std::string& path,
                                                      std::vector<table_row> rows,
-                                                     std::vector<recording_fault>& faults) {
+                                                     std::vector<recording_issue>& faults) {
   std::sort(rows.begin(), rows.end(), [](const table_row& a, const table_row& b) {
     return a.time < b.time || (!(b.time < a.time) && a.line < b.line);
   });
@@ -123,24 +124,26 @@ template <class T>
 
 } // namespace detail
 
-/// Reads recorded rotations or poses of any format that `load_table` reads, with T as there. Rows
-/// that are not finite, no units or rotations, or repeat a time, are left out, rows out of order
-/// sorted in, and `faults` names them all.
+/// Reads recorded rotations or poses from any format that `load_table` reads, with the same T.
+/// Leaves out rows that are not finite, not units or rotations, or repeat a time; sorts rows that
+/// are out of order. `faults` lists all of them.
 ///
-/// Parameters are the differences of the times in the file, with all its digits: of nanoseconds
-/// since 1970, too, of which a double of seconds holds steps of 238.
+/// Parameters are the differences of the times in the file, with all its digits, even for
+/// nanoseconds since 1970, which a double in seconds resolves only to 238 ns.
+///
 /// \param times  as `load_table`
 /// \return `recording<double>` or `recording<screw_dual<double>>`
-/// \throws file_error for a file without a row that is good, or whose columns are in doubt; with
-/// the line of a row that is ragged or has cells that are no numbers
+/// \throws file_error for a file without a valid row or with ambiguous columns; with the line of a
+/// row that is ragged or has cells that are not numbers
 template <class T>
 [[nodiscard]] recording<detail::table_numbers_t<T>> load_recording(const std::string& path,
                                                                    const std::string& times = {}) {
   return detail::loaded_recording<detail::table_numbers_t<T>>(path, times, nullptr);
 }
 
-/// Reads a recording whose rotations are Euler angles, in the columns, sequence and unit given. All
-/// else is as without; the file needs a header.
+/// Reads a recording whose rotations are Euler angles, in the given columns, sequence and unit.
+/// Otherwise as above; the file needs a header.
+///
 /// \return `recording<double>` or `recording<screw_dual<double>>`
 template <class T>
 [[nodiscard]] recording<detail::table_numbers_t<T>> load_recording(const std::string& path,

@@ -10,7 +10,7 @@
 #include <vector>
 
 /// \file
-/// What is given for the rows of a curve, or left out, and cannot be.
+/// Compile-time rejection of wrong or missing samples of a curve.
 
 namespace duet::detail {
 
@@ -24,8 +24,8 @@ inline constexpr bool is_standard_vector<std::vector<X, Allocator>> = true;
 
 } // namespace duet::detail
 
-/// What `function<Spline>`, with the arguments that are said, does not take; `result<Spline>` is
-/// the type of its result.
+/// Declares rejected overloads of `function<Spline>` for arguments other than those shown;
+/// `result<Spline>` is the type of its result.
 #define DUET_REFUSES_ROWS(function, result, arguments)                                             \
   template <CurveType Spline, class U, detail::ForeignRows Rows, class... More>                    \
   DUET_REFUSED_FOREIGN_ROWS(function)                                                              \

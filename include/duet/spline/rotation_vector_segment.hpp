@@ -15,13 +15,13 @@
 #include <utility>
 
 /// \file
-/// One piece of a rotation-vector spline: exp(x(t)) with a polynomial x of half-angle vectors that
-/// goes from zero to a given one, and what its rates at both ends have to do with each other.
+/// One piece of a rotation-vector spline, exp(x(t)) with a polynomial x of half-angle vectors from
+/// zero to a given one, and the relations between its rates at both ends.
 
 namespace duet::detail {
 
-/// A polynomial's Taylor coefficients about t, the first `Count` of them, from those about zero.
-/// Constant term first.
+/// First `Count` Taylor coefficients of a polynomial about t, from those about zero. Constant term
+/// first.
 template <std::size_t Count, class T, std::size_t Size, class S>
 [[nodiscard]] DUET_ALWAYS_INLINE auto taylor_shift(const std::array<vector3<T>, Size>& c,
                                                    const S& t) {
@@ -43,12 +43,12 @@ template <std::size_t Count, class T, std::size_t Size, class S>
   return result;
 }
 
-/// The part of a piece that does not change while its rates are sought: it takes the parameter h
-/// and ends at exp(d), d of the scalar T.
+/// Part of a piece that is constant while its rates are solved for: its length h in the parameter
+/// and its end exp(d), d over the scalar T.
 ///
-/// A knot's rates are Taylor coefficients of w, Q′ = Q w: the halved angular velocity in body axes,
-/// its derivative, half its second derivative … The polynomial of order k (degree k − 1) has room
-/// for k/2 − 1 of them at each end.
+/// The rates at a knot are Taylor coefficients of w, Q′ = Q w: the halved angular velocity in body
+/// axes, its derivative, half its second derivative … The polynomial of order k (degree k − 1)
+/// takes k/2 − 1 of them at each end.
 template <class T, int Order>
 class rotation_vector_segment {
   static_assert(Order == 4 || Order == 6,
@@ -56,7 +56,7 @@ class rotation_vector_segment {
 
 public:
   using real = real_type_t<T>;
-  /// How many rates a knot has of its own.
+  /// Number of rates given at each knot.
   static constexpr std::size_t own = std::size_t(Order) / 2 - 1;
   using knot_rates = std::array<vector3<T>, own>;
   using coefficients = std::array<vector3<T>, std::size_t(Order)>;
@@ -65,7 +65,7 @@ public:
       : h_(h), d_(d), at_end_(dot(components(d), components(d))),
         inverse_(right_jacobian_inverse((real(2) * components(d)).eigen())) {}
 
-  /// x_0 … x_{k−1} about the start, where x_0 = 0.
+  /// Coefficients x_0 … x_{k−1} about the start, where x_0 = 0.
   [[nodiscard]] coefficients polynomial(const knot_rates& start, const knot_rates& end) const {
     coefficients x;
     x[0] = vector3<T>::Constant(T(real(0)));
@@ -73,7 +73,7 @@ public:
     const real per_h = 1 / h_;
     const vector3<T> v = times_inverse(end[0]); // ẋ at the end
     const vector3<T> mean = per_h * components(d_);
-    // What is missing to go straight on at the start's rates, in powers of h.
+    // Deviations from straight continuation at the start's rates, in powers of h.
     if constexpr (Order == 4) {
       for (int i = 0; i < 3; ++i) {
         const T a = mean[i] - start[0][i];
@@ -97,9 +97,9 @@ public:
     return x;
   }
 
-  /// The cubic once more, where velocities and accelerations of the knots are known that agree with
-  /// each other: from its ends and ẍ there. However short the piece, differences of velocities are
-  /// not divided by h: the accelerations are met to rounding, and so are the velocities.
+  /// Coefficients of the cubic from its ends and ẍ there, for known velocities and accelerations at
+  /// the knots that agree with each other. Differences of velocities are not divided by h, however
+  /// short the piece: accelerations and velocities are met to round-off.
   [[nodiscard]] coefficients
   polynomial_of_accelerations(const std::array<vector3<T>, 2>& start,
                               const std::array<vector3<T>, 2>& end) const {
@@ -117,7 +117,8 @@ public:
     return x;
   }
 
-  /// x_1 … x_Count at the start, or about the end, that make these rates w_0 … w_{Count−1}.
+  /// Taylor coefficients x_1 … x_Count at the start, or about the end, for the rates w_0 …
+  /// w_{Count−1}.
   template <std::size_t Count>
   [[nodiscard]] std::array<vector3<T>, Count>
   taylor_at_start(const std::array<vector3<T>, Count>& w) const {
@@ -130,7 +131,7 @@ public:
                            [this](const vector3<T>& v) { return times_inverse(v); });
   }
 
-  /// Of the cubic: w_0, w_1 and, of three, w_2 at its start and at its end.
+  /// Rates of the cubic at its start and its end: w_0, w_1 and, for `count` = 3, w_2.
   [[nodiscard]] std::array<std::array<vector3<T>, 3>, 2> rates(const coefficients& x,
                                                                std::size_t count) const {
     static_assert(Order == 4);
@@ -148,7 +149,7 @@ public:
     return w;
   }
 
-  /// w_0 … w_{Count−1} at the start, or the end, from x_1 … x_Count about it.
+  /// Rates w_0 … w_{Count−1} at the start, or the end, from x_1 … x_Count about it.
   template <std::size_t Count>
   [[nodiscard]] std::array<vector3<T>, Count>
   rates_at_start(const std::array<vector3<T>, Count>& x) const {
@@ -160,7 +161,7 @@ public:
     return half_body_rates(at_end_, d_, x);
   }
 
-  /// How w_0 … w_{Count−1} at one end change by x_1 … x_Count about it: see
+  /// Derivatives of w_0 … w_{Count−1} at one end with respect to x_1 … x_Count about it, see
   /// `half_body_rate_gradients`.
   template <std::size_t Count>
   [[nodiscard]] auto gradients_at_start(const std::array<vector3<T>, Count>& x) const {
@@ -170,12 +171,12 @@ public:
   [[nodiscard]] auto gradients_at_end(const std::array<vector3<T>, Count>& x) const {
     return half_body_rate_gradients(at_end_, d_, x);
   }
-  /// J(d)⁻¹
+  /// Inverse Jacobian J(d)⁻¹.
   [[nodiscard]] const matrix3<T>& inverse() const { return inverse_; }
 
   using rate_gradients = std::array<std::array<std::array<matrix3<T>, 2>, 3>, 2>;
-  /// Of the cubic: element [end][k][knot] is ∂w_k/∂w_0, w_k at its start (end 0) or its end (1),
-  /// k < `count`, w_0 at its start (knot 0) or its end (1).
+  /// Derivatives of the cubic's rates: element [end][k][knot] is ∂w_k/∂w_0, w_k at its start (end
+  /// 0) or its end (1), k < `count`, w_0 at its start (knot 0) or its end (1).
   [[nodiscard]] rate_gradients
   gradients_by_velocities(const vector3<T>& start, const vector3<T>& end, std::size_t count) const {
     static_assert(Order == 4);
@@ -184,8 +185,8 @@ public:
     rate_gradients result;
     result[0][0] = {one, none};
     result[1][0] = {none, one};
-    // w_1 is 2 x_2 at the start and 2 J y_2 + J̇ v at the end, of which J̇ v changes by 2 (J̇ + ŵ J)
-    // δv.
+    // w_1 is 2 x_2 at the start and 2 J y_2 + J̇ v at the end, of which J̇ v changes by 2 (J̇ + ŵ
+    // J) δv.
     const vector3<T> v = times_inverse(end);
     const T turn = 2 * dot(components(d_), components(v));
     matrix3<T> slope =
@@ -206,7 +207,8 @@ public:
       const coefficients x = polynomial({start}, {end}), y = taylor_shift<4>(x, h_);
       const std::array of{gradients_at_start<3>({x[1], x[2], x[3]})[2],
                           gradients_at_end<3>({y[1], y[2], y[3]})[2]};
-      // What ẋ at the start and at the end do to x_1, x_2, x_3, and to y_1, y_2, y_3.
+      // Derivatives of x_1, x_2, x_3 and of y_1, y_2, y_3 with respect to ẋ at the start and at the
+      // end.
       const real a = per_h, aa = a * a, o(0);
       const real factors[2][2][3] = {{{real(1), -2 * a, aa}, {o, -a, aa}},
                                      {{o, a, aa}, {real(1), 2 * a, aa}}};
@@ -228,7 +230,7 @@ private:
     return result;
   }
 
-  /// Each x_{k+1} from w_k less what the ones before make of it.
+  /// Computes each x_{k+1} from w_k minus the contribution of the coefficients before.
   template <std::size_t Count, class Coefficients, class X, class Inverse>
   [[nodiscard]] static std::array<vector3<T>, Count>
   taylor_of_rates(const Coefficients& jacobian, const X& at, const std::array<vector3<T>, Count>& w,
@@ -248,7 +250,7 @@ private:
     return x;
   }
 
-  /// ẍ at the end, where w and its derivative are given.
+  /// Second derivative ẍ at the end for given w and its derivative.
   [[nodiscard]] vector3<T> second_at_end(const std::array<vector3<T>, 2>& end) const {
     return times_inverse(components(end[1]) - components(bend(times_inverse(end[0]))));
   }

@@ -32,16 +32,18 @@ template <class T, int Order, class Piece>
 class rotation_vector_equations;
 } // namespace detail
 
-/// The curve Q(u) = Q_i exp(x_i(u − u_i)) between the knots u_i and u_{i+1}, with polynomials x_i
-/// of half-angle vectors, x_i(0) = 0, exp(x_i(u_{i+1} − u_i)) = Q_i* Q_{i+1}.
+/// Piecewise-polynomial rotation-vector curve Q(u) = Q_i exp(x_i(u − u_i)) between the knots u_i
+/// and u_{i+1}, with polynomials x_i of half-angle vectors, x_i(0) = 0, exp(x_i(u_{i+1} − u_i)) =
+/// Q_i* Q_{i+1}.
 ///
-/// \tparam T      scalar of the elements: a real number for rotations, dual<R, 1, screw_tag> for
+/// \tparam T      scalar of the data points: a real number for rotations, dual<R, 1, screw_tag> for
 ///                poses, derivative duals inside either
 /// \tparam Order  4: cubic, made from angular velocities at the knots; 6: quintic, from angular
 ///                velocities and accelerations
 ///
-/// `interpolate` finds the rates that make the curve C² or, of order 6, C⁴. Given rates make it a
-/// Hermite curve, C¹ or C². Rates are with respect to u: rad per unit of u.
+/// `interpolate` finds the rates that make the curve C² or, for order 6, C⁴. Given rates make it a
+/// Hermite curve, C¹ or C². Rates are with respect to u: rad per unit of u, for poses twists [v;
+/// ω].
 template <class T, int Order = 4>
 class rotation_vector_spline
     : public piecewise_curve<rotation_vector_spline<T, Order>, real_type_t<T>> {
@@ -51,22 +53,27 @@ public:
   using scalar_type = T;
   using real_type = real_type_t<T>;
   static constexpr int order = Order;
-  /// Against smooth motion, interpolation misses by as much as this power of the step.
+  /// Order of convergence: for smooth motion the interpolation error decreases as this power of the
+  /// step.
   static constexpr int convergence = Order;
 
-  /// The Hermite curve: halved rates at the knots in body axes, element [i][0] is w with Q′ = Q w,
-  /// [i][1] its derivative (order 6 only). Elements are normalised and their signs aligned.
-  /// \throws invalid_row as `aligned_orientations`, for parameters that do not increase and for a
-  /// rate that is not finite; invalid_input for fewer than two rows or counts that differ
+  /// Constructs the Hermite curve from data points and halved rates at the knots in body axes:
+  /// element [i][0] is w with Q′ = Q w, [i][1] its derivative (order 6 only). Data points are
+  /// normalised and their signs aligned.
+  ///
+  /// \throws invalid_sample as `align_quaternion_signs`, for parameters that do not increase and
+  /// for a rate that is not finite
+  /// \throws invalid_input for fewer than two data points, counts that differ, or parameters so far
+  /// apart or so close that derivatives overflow
   rotation_vector_spline(
       const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
       const std::vector<std::array<vector3<T>, std::size_t(Order) / 2 - 1>>& half_rates)
       : spans_(spans_over(checked(parameters, elements, half_rates, "rates", 0))),
-        elements_(aligned_orientations(std::move(elements))) {
+        elements_(align_quaternion_signs(std::move(elements))) {
     for (std::size_t i = 0; i < half_rates.size(); ++i) {
       for (const vector3<T>& rate : half_rates[i]) {
         if (!rate.allFinite()) {
-          detail::raise(invalid_row(i, "a rate is not finite"));
+          detail::raise(invalid_sample(i, "a rate is not finite"));
         }
       }
     }
@@ -79,34 +86,37 @@ public:
     }
   }
 
-  /// The curve with these polynomials, constant terms first: how to make a copy from another
-  /// curve's `knots()`, `elements()` and `pieces()`. Elements are normalised; signs are as they
-  /// are. \throws invalid_row as `unit_quaternions`, for parameters that do not increase and where
-  /// a piece does not lead to the next element; invalid_input for fewer than two rows or counts
-  /// that differ
+  /// Returns the curve with these polynomials, constant terms first, as for a copy from another
+  /// curve's `knots()`, `elements()` and `pieces()`. Data points are normalised; signs stay as they
+  /// are.
+  ///
+  /// \throws invalid_sample as `normalized_quaternions`, for parameters that do not increase and if
+  /// a piece does not end at the next data point
+  /// \throws invalid_input for fewer than two data points, counts that differ, or parameters so far
+  /// apart or so close that derivatives overflow
   [[nodiscard]] static rotation_vector_spline
   from_pieces(const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
               std::vector<std::array<vector3<T>, std::size_t(Order)>> pieces) {
     checked(parameters, elements, pieces, "pieces", 1);
     rotation_vector_spline result(made_of_pieces{}, parameters,
-                                  unit_quaternions(std::move(elements)), std::move(pieces));
+                                  normalized_quaternions(std::move(elements)), std::move(pieces));
     for (std::size_t i = 0; i < result.pieces_.size(); ++i) {
       const auto x =
           detail::taylor_shift<1>(result.pieces_[i], real_type(parameters[i + 1] - parameters[i]));
       const auto step = conj(result.elements_[i]) * result.elements_[i + 1];
       const auto miss = detail::innermost_of(step - duet::exp(x[0]));
       if (!(norm(miss) <= real_type(unit_norm_tolerance))) {
-        detail::raise(invalid_row(i + 1, "the piece before does not lead here"));
+        detail::raise(invalid_sample(i + 1, "the piece before does not lead here"));
       }
     }
     return result;
   }
 
-  /// u_0 … u_n
+  /// Knots u_0 … u_n.
   [[nodiscard]] const std::vector<real_type>& knots() const { return spans_.breaks(); }
-  /// Q_0 … Q_n
+  /// Data points Q_0 … Q_n, unit quaternions or poses.
   [[nodiscard]] const std::vector<quaternion<T>>& elements() const { return elements_; }
-  /// x_i, by their coefficients.
+  /// Coefficients of the polynomials x_i, constant terms first.
   [[nodiscard]] const std::vector<std::array<vector3<T>, std::size_t(Order)>>& pieces() const {
     return pieces_;
   }
@@ -123,7 +133,7 @@ private:
       : spans_(spans_over(parameters)), elements_(std::move(elements)), pieces_(std::move(pieces)) {
   }
 
-  /// \param missing  by how many fewer than the elements the parts must be
+  /// \param missing  number by which the parts are fewer than the data points
   template <class Elements, class Parts>
   static const std::vector<real_type>& checked(const std::vector<real_type>& parameters,
                                                const Elements& elements, const Parts& parts,
@@ -135,7 +145,7 @@ private:
     return parameters;
   }
 
-  /// \throws invalid_input where they are so far apart, or so close, that rates overflow
+  /// \throws invalid_input if parameters are so far apart, or so close, that derivatives overflow
   [[nodiscard]] static knot_spans<real_type> spans_over(const std::vector<real_type>& u) {
     const auto is_finite = [](const real_type& x) { return x - x == 0; };
     detail::require(is_finite(u.back() - u.front()),

@@ -24,18 +24,18 @@
 #include <vector>
 
 /// \file
-/// Tables of rotations and poses as files: CSV, TUM, EuRoC, KITTI. Those that may have bad rows:
+/// Files of rotations and poses: CSV, TUM, EuRoC, KITTI. Files that may have bad rows:
 /// spline/recording.hpp.
 
 namespace duet {
 
-/// How a table is written. When it is read, the file tells.
+/// File format in which a table is written. Reading detects it from the file.
 enum class table_format {
-  csv,         ///< `u,x,y,z,qw,qx,qy,qz`, of rotations `u,qw,qx,qy,qz`, under a header
-  csv_seconds, ///< the same with `t [s]` for `u`: of recordings, whose parameters are times
+  csv,         ///< `u,x,y,z,qw,qx,qy,qz`, for rotations `u,qw,qx,qy,qz`, under a header
+  csv_seconds, ///< as `csv`, with `t [s]` for `u`: for recordings, whose parameters are times
   tum,         ///< `timestamp tx ty tz qx qy qz qw`, in seconds and metres
   euroc,       ///< `timestamp,x,y,z,qw,qx,qy,qz` under the data set's header, whole nanoseconds
-  kitti        ///< the matrix [R t] row by row, 12 numbers; the parameters in a file of their own
+  kitti        ///< matrix [R t] row by row, 12 numbers; the parameters in a separate file
 };
 
 namespace detail {
@@ -43,7 +43,7 @@ namespace detail {
 template <class T>
 inline constexpr bool is_rotation_scalar = std::is_same_v<T, double>;
 
-/// The numbers of the rotations or poses that a caller names by `T`: by their numbers or whole.
+/// Scalar of the rotations or poses that T names: T is the scalar itself or a quaternion over it.
 template <class T>
 struct table_numbers {};
 template <class T>
@@ -56,7 +56,7 @@ struct table_numbers<quaternion<T>> : table_numbers<T> {};
 template <class T>
 using table_numbers_t = typename table_numbers<T>::type;
 
-/// What stands in a file of rotations or poses, as `T` says.
+/// Rotation or pose of a row in a file, depending on T.
 template <class T>
 [[nodiscard]] quaternion<T> element_of(const table_row& row) {
   if constexpr (is_rotation_scalar<T>) {
@@ -66,7 +66,7 @@ template <class T>
   }
 }
 
-/// Of a file of commas, that of the parameters.
+/// Name of the parameter column in CSV files.
 [[nodiscard]] inline std::string parameter_name(table_format format) {
   return format == table_format::csv_seconds ? "t [s]" : "u";
 }
@@ -81,7 +81,7 @@ template <class T>
   return line;
 }
 
-/// Whole nanoseconds, rounded. (Seconds to 2^63 ns.)
+/// Nearest whole number of nanoseconds. (Seconds to 2^63 ns.)
 [[nodiscard]] inline std::int64_t nanoseconds_of(double seconds) {
   require(std::abs(seconds) < 9.2e9, "duet: save_table: ", to_text(seconds),
           " s are beyond 9.2e18 nanoseconds");
@@ -89,8 +89,8 @@ template <class T>
   return std::int64_t(whole) * 1'000'000'000 + std::llround((seconds - whole) * 1e9);
 }
 
-/// The rows of poses, and what is above them.
-[[nodiscard]] inline std::string text_of(const look_up_table<screw_dual<double>>& table,
+/// Header and rows of a file of poses.
+[[nodiscard]] inline std::string text_of(const lookup_table<screw_dual<double>>& table,
                                          table_format format) {
   std::string text;
   if (format == table_format::tum) {
@@ -126,7 +126,7 @@ template <class T>
   }
   return text;
 }
-[[nodiscard]] inline std::string text_of(const look_up_table<double>& table, table_format format) {
+[[nodiscard]] inline std::string text_of(const lookup_table<double>& table, table_format format) {
   require(is_csv(format),
           "duet: save_table: TUM, EuRoC and KITTI files hold poses, not rotations alone");
   std::string text = parameter_name(format) + ",qw,qx,qy,qz\n";
@@ -139,20 +139,23 @@ template <class T>
 
 } // namespace detail
 
-/// Writes a table of rotations or poses with all digits and independently of the locale; the whole
-/// file or none, of two files both or none. Parameters are seconds in TUM's and EuRoC's files and
-/// those of `csv_seconds`, EuRoC's round them to whole nanoseconds; KITTI's have none.
+/// Writes a lookup table of rotations or poses with all digits and independently of the locale.
+/// Writes the whole file or nothing, of two files both or neither. Parameters are seconds in TUM
+/// and EuRoC files and in `csv_seconds`; EuRoC files round them to whole nanoseconds, KITTI files
+/// have no parameters.
 ///
-/// Read back, parameters and quaternions have the same bits, and places differ by rounding, as a
-/// dual quaternion holds half the product of both. In EuRoC's files that is so of parameters from
-/// 2^23 s on and of the nearest doubles to whole nanoseconds; KITTI's matrices hold quaternions to
-/// rounding, without their sign.
-/// \param times  where KITTI's parameters go, a line each; empty: nowhere
-/// \throws invalid_input where there are not as many parameters as elements, for rotations in a
-/// format of poses, times of another format than KITTI's, and times that EuRoC's cannot tell apart;
-/// file_error
+/// Read back, parameters and quaternions have the same bits, and positions differ by round-off, as
+/// a dual quaternion holds half the product of both. For EuRoC files this holds for parameters from
+/// 2^23 s on and for the nearest doubles to whole nanoseconds; KITTI matrices hold quaternions to
+/// round-off, without their sign.
+///
+/// \param times  file for the parameters of KITTI's format, one a line; empty: not written
+/// \throws invalid_input if the numbers of parameters and elements differ, for rotations in a
+/// format of poses, for `times` with another format than KITTI's, and for times that EuRoC's format
+/// cannot distinguish
+/// \throws file_error if a file cannot be written
 template <class T>
-void save_table(const std::string& path, const look_up_table<T>& table,
+void save_table(const std::string& path, const lookup_table<T>& table,
                 table_format format = table_format::csv, const std::string& times = {}) {
   detail::require(table.parameters.size() == table.elements.size(),
                   "duet: save_table: ", table.parameters.size(), " parameters for ",
@@ -174,9 +177,9 @@ void save_table(const std::string& path, const look_up_table<T>& table,
 namespace detail {
 
 template <class T>
-[[nodiscard]] look_up_table<T> loaded_table(const std::string& path, const std::string& times,
-                                            const euler_columns* angles) {
-  look_up_table<T> table;
+[[nodiscard]] lookup_table<T> loaded_table(const std::string& path, const std::string& times,
+                                           const euler_columns* angles) {
+  lookup_table<T> table;
   for_each_table_row(path, times, !is_rotation_scalar<T>, angles, [&](const table_row& row) {
     if (!row.fault.empty()) {
       raise(file_error(path, row.line, row.fault));
@@ -198,42 +201,44 @@ template <class T>
 
 } // namespace detail
 
-/// Reads a table of rotations (T = double) or poses (T = screw_dual<double>) of any format that
-/// `save_table` writes; `quaternion<double>` and `dual_quaternion<double>` for T are the same.
-/// Also files of `rostopic echo -p`, and with semicolons in place of commas. Rotations are read
-/// from files of poses, too, whose places are passed over. The file tells which one it is, and in
-/// which order its columns are: by a header, a first line or a comment, or the number of columns,
-/// see spline/tables/row_format.hpp.
+/// Reads a lookup table of rotations (T = double) or poses (T = screw_dual<double>) from any format
+/// that `save_table` writes; `quaternion<double>` and `dual_quaternion<double>` are accepted for T,
+/// too. Also reads files of `rostopic echo -p`, and semicolons instead of commas. Rotations are
+/// read from files of poses, too, ignoring the positions. The format and the order of columns are
+/// detected from a header (a first line or a comment) or the number of columns, see
+/// spline/tables/row_format.hpp.
 ///
 /// Parameters are the doubles nearest to the seconds of the file, whatever its unit of time, with
-/// places in metres; columns named u or tau are taken as they are. (Doubles of seconds since 1970
-/// are 2.4e-7 s apart: `load_recording` keeps the digits.) Quaternions are normalised whose norm is
-/// 1 to `unit_norm_tolerance`; of matrices with R Rᵀ = 1 to `rotation_matrix_tolerance` it takes
-/// the nearest rotation. \param times  for KITTI's files: a file with the time of each row, in
-/// seconds; without, the
+/// positions in metres; columns named u or tau are taken as they are. (Doubles of seconds since
+/// 1970 are 2.4e-7 s apart: `load_recording` keeps the digits.) Quaternions with norm 1 to
+/// `unit_norm_tolerance` are normalised; matrices with R Rᵀ = 1 to `rotation_matrix_tolerance` are
+/// replaced by the nearest rotation.
+///
+/// \param times  for KITTI files: a file with the time of each row, in seconds; without it, the
 ///               parameters are 0, 1, 2 …
-/// \return `look_up_table<double>` or `look_up_table<screw_dual<double>>`
-/// \throws file_error for a file without rows, or whose columns are in doubt; with the line of a
-/// row that is ragged, not finite, no unit or rotation, or does not follow the one before, and with
-/// the column and its value
+/// \return `lookup_table<double>` or `lookup_table<screw_dual<double>>`
+/// \throws file_error for a file without rows or with ambiguous columns; with line, column and
+/// value for a row that is ragged, not finite, not a unit or rotation, or does not follow the one
+/// before
 template <class T>
-[[nodiscard]] look_up_table<detail::table_numbers_t<T>> load_table(const std::string& path,
-                                                                   const std::string& times = {}) {
+[[nodiscard]] lookup_table<detail::table_numbers_t<T>> load_table(const std::string& path,
+                                                                  const std::string& times = {}) {
   return detail::loaded_table<detail::table_numbers_t<T>>(path, times, nullptr);
 }
 
-/// Reads a table whose rotations are Euler angles, in the columns, sequence and unit given. All
-/// else is as without; the file needs a header.
-/// \return `look_up_table<double>` or `look_up_table<screw_dual<double>>`
+/// Reads a lookup table whose rotations are Euler angles, in the given columns, sequence and unit.
+/// Otherwise as above; the file needs a header.
+///
+/// \return `lookup_table<double>` or `lookup_table<screw_dual<double>>`
 template <class T>
-[[nodiscard]] look_up_table<detail::table_numbers_t<T>> load_table(const std::string& path,
-                                                                   const euler_columns& angles) {
+[[nodiscard]] lookup_table<detail::table_numbers_t<T>> load_table(const std::string& path,
+                                                                  const euler_columns& angles) {
   return detail::loaded_table<detail::table_numbers_t<T>>(path, {}, &angles);
 }
 
 template <class T = void, class... More>
   requires(!requires { typename detail::table_numbers_t<T>; })
 DUET_REFUSED("load_table<double> reads rotations, load_table<screw_dual<double>> poses")
-look_up_table<double> load_table(const std::string&, const More&...);
+lookup_table<double> load_table(const std::string&, const More&...);
 
 } // namespace duet

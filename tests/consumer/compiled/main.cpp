@@ -59,21 +59,22 @@ void read_an_arm() {
 }
 
 void move_a_mechanism() {
-  const auto at = [](double x) { return duet::along_axis({x, 0, 0}, {0, 0, 1}); };
+  const auto at = [](double x) { return duet::frame_with_z_axis({x, 0, 0}, {0, 0, 1}); };
   const duet::kinematic_tree tree(
       {.links = {{"ground"}, {"crank"}, {"coupler"}, {"rocker"}},
        .joints = {{"crank", "ground", "crank", {duet::joint_kind::continuous}},
                   {"coupler", "crank", "coupler", {duet::joint_kind::continuous, at(.3)}},
                   {"rocker", "ground", "rocker", {duet::joint_kind::continuous, at(.8)}}}});
   // A parallelogram.
-  const duet::closed_tree mechanism(
-      tree, {{{duet::loop_kind::hinge, {"coupler", at(.8)}, {"rocker", at(.3)}}}});
-  const auto ways = duet::all_positions(mechanism, {0}, Eigen::VectorXd::Constant(1, 1));
-  for (const duet::loop_position& each : ways.positions) {
+  const duet::closed_chain_mechanism mechanism(
+      tree, {{{duet::constraint_kind::revolute, {"coupler", at(.8)}, {"rocker", at(.3)}}}});
+  const auto ways =
+      duet::find_assembly_configurations(mechanism, {0}, Eigen::VectorXd::Constant(1, 1));
+  for (const duet::assembly_configuration& each : ways.positions) {
     std::printf("found %d times, mobility %d\n", each.found,
                 duet::mobility(mechanism, each.coordinates).mobility);
     print("position", each.coordinates, 3);
-    const duet::loop_motion motion(mechanism, each.coordinates, {0});
+    const duet::driven_motion motion(mechanism, each.coordinates, {0});
     print("on", motion(1.3), 3);
     const auto whole = duet::trace(motion);
     print("traced", whole.positions.back(), 3);

@@ -92,8 +92,8 @@ void print_arms() {
   using namespace duet::expression;
   constexpr symbol<"theta1"> theta1;
   constexpr symbol<"theta2"> theta2;
-  const auto formula =
-      screw(axis::z, theta1) * slide(axis::x, 0.5) * screw(axis::y, theta2) * slide(axis::x, 0.3);
+  const auto formula = screw(axis::z, theta1) * translation_along(axis::x, 0.5) *
+                       screw(axis::y, theta2) * translation_along(axis::x, 0.3);
   const auto [tip, columns] = jacobian(formula, wrt(theta1, theta2),
                                        duet::frame::spatial)(theta1 = theta[0], theta2 = theta[1]);
   print_all(tip, columns);

@@ -4,7 +4,7 @@
 #include <duet/derivative/tangent_coordinates.hpp>
 
 int main() {
-  const auto f = [](const auto& x, const auto& k) { return duet::column(x[0] * k, x[1]); };
+  const auto f = [](const auto& x, const auto& k) { return duet::make_vector(x[0] * k, x[1]); };
 #ifdef DUET_MUST_FAIL
   const Eigen::VectorXd x = Eigen::Vector2d(1, 2);
 #else

@@ -5,7 +5,7 @@
 
 int main() {
 #ifdef DUET_MUST_FAIL
-  const auto f = [](const auto& x) { return duet::column(x[0], x[1]); };
+  const auto f = [](const auto& x) { return duet::make_vector(x[0], x[1]); };
 #else
   const auto f = [](const auto& x) { return x[0] * x[1]; };
 #endif

@@ -30,7 +30,7 @@ void decompose(const matrix<D>& a, const matrix<series>& b, const matrix<std::co
 #else
 auto decompose(const matrix<D>& a) {
   const Eigen::SelfAdjointEigenSolver<matrix<double>> plain(matrix<double>::Identity());
-  return duet::column(duet::symmetric_eigen(a).values[0], duet::svd(a).values[0],
-                      plain.eigenvalues()[0]);
+  return duet::make_vector(duet::symmetric_eigen(a).values[0], duet::svd(a).values[0],
+                           plain.eigenvalues()[0]);
 }
 #endif

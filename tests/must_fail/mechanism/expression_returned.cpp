@@ -10,6 +10,6 @@ int main() {
 #else
   const auto closure = [](const auto& x, const auto& u) { return (x * u - x).eval(); };
 #endif
-  const duet::closed_loop loop(closure, start, 2.0); // mistake
+  const duet::constrained_mechanism loop(closure, start, 2.0); // mistake
   return loop(2.0)[0] == 0 ? 0 : 1;
 }

@@ -9,10 +9,10 @@
 int main() {
   const auto arm = duet::robots::panda();
 #if DUET_MUST_FAIL == 1
-  const auto six = with_locked(arm, "elbow", -1.5);
+  const auto six = with_locked_joint(arm, "elbow", -1.5);
 #elif DUET_MUST_FAIL == 2
   const auto seven = with_limits(arm, "elbow", {-2, -1});
 #else
-  const auto six = with_locked(with_limits(arm, 3, {-2, -1}), 3, -1.5);
+  const auto six = with_locked_joint(with_limits(arm, 3, {-2, -1}), 3, -1.5);
 #endif
 }

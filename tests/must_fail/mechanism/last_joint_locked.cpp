@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: with_locked: no joint would be left to move
+// expect: duet: with_locked_joint: no joint would be left to move
 
 #include <duet/mechanism/adapted.hpp>
 
@@ -11,4 +11,4 @@ using joints = std::array<duet::joint<>, 1>;
 using joints = std::array<duet::joint<>, 2>;
 #endif
 
-const auto locked = with_locked(duet::serial_chain(joints{}), 0, .5);
+const auto locked = with_locked_joint(duet::serial_chain(joints{}), 0, .5);

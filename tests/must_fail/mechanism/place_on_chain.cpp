@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: PlaceOnChain
+// expect: FrameOnChain
 
 #include <duet/mechanism/jacobian.hpp>
 #include <duet/mechanism/robots.hpp>

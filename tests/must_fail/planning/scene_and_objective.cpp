@@ -24,13 +24,13 @@ int main() {
 #elif DUET_MUST_FAIL == 3
   static_cast<void>(follow_path(arm, start, path, 0, 1, {}, around));
 #elif DUET_MUST_FAIL == 4
-  static_cast<void>(choose_start(arm, path, 0, 1, {}, around));
+  static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, around));
 #elif DUET_MUST_FAIL == 5
   static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, spheres));
 #elif DUET_MUST_FAIL == 6
   static_cast<void>(follow_path(arm, start, path, 0, 1, {}, no_objective{}, spheres));
 #elif DUET_MUST_FAIL == 7
-  static_cast<void>(choose_start(arm, path, 0, 1, {}, no_objective{}, spheres));
+  static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, no_objective{}, spheres));
 #else
   static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, around));
 #endif

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: choose_start finds the start
+// expect: duet: find_start_configuration finds the start
 // within: 3
 // flags: -DDUET_COMPILED
 
@@ -15,8 +15,8 @@ int main() {
   };
 #ifdef DUET_MUST_FAIL
   const Eigen::Matrix<double, 7, 1> start = Eigen::Matrix<double, 7, 1>::Zero();
-  std::cout << choose_start(arm, start, path, 0.5, 1).starts << "\n";
+  std::cout << find_start_configuration(arm, start, path, 0.5, 1).starts << "\n";
 #else
-  std::cout << choose_start(arm, path, 0.5, 1).starts << "\n";
+  std::cout << find_start_configuration(arm, path, 0.5, 1).starts << "\n";
 #endif
 }

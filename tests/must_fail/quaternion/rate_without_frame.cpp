@@ -19,7 +19,7 @@ int main() {
 #elif DUET_MUST_FAIL == 4
   std::cout << quaternion_rate(q, omega) << "\n";
 #elif DUET_MUST_FAIL == 5
-  std::cout << duet::rate_matrix(q) << "\n";
+  std::cout << duet::quaternion_rate_matrix(q) << "\n";
 #elif DUET_MUST_FAIL == 6
   std::cout << angular_acceleration(q, q_dot, q_dot) << "\n";
 #elif DUET_MUST_FAIL == 7
@@ -27,7 +27,7 @@ int main() {
 #else
   std::cout << angular_velocity(q, q_dot, duet::frame::body).transpose() << "\n"
             << quaternion_rate(q, omega, duet::frame::body) << "\n"
-            << duet::rate_matrix(q, duet::frame::body) << "\n"
+            << duet::quaternion_rate_matrix(q, duet::frame::body) << "\n"
             << angular_acceleration(q, q_dot, q_dot, duet::frame::body) << "\n"
             << quaternion_acceleration(q, omega, omega, duet::frame::body) << "\n";
 #endif

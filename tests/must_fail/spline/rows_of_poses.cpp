@@ -18,14 +18,15 @@ int main() {
 #if DUET_MUST_FAIL == 1
   const auto s = interpolate<of_rotations>({0, 1, 2}, poses);
 #elif DUET_MUST_FAIL == 2
-  std::cout << interpolate<of_rotations>(u, poses).controls().size() << "\n";
+  std::cout << interpolate<of_rotations>(u, poses).control_points().size() << "\n";
 #elif DUET_MUST_FAIL == 3
-  std::cout << interpolate<of_poses>(u, std::vector<quaternion<double>>(3)).controls().size();
+  std::cout << interpolate<of_poses>(u, std::vector<quaternion<double>>(3)).control_points().size();
 #elif DUET_MUST_FAIL == 4
   std::cout << fit<of_rotations>(u, poses, u).rms << "\n";
 #else
-  std::cout << interpolate<of_poses>({0, 1, 2}, poses).controls().size() << "\n"
-            << interpolate<of_rotations>(u, std::vector<quaternion<double>>(3)).controls().size()
-            << fit<of_poses>(u, poses, u).rms << "\n";
+  std::cout
+      << interpolate<of_poses>({0, 1, 2}, poses).control_points().size() << "\n"
+      << interpolate<of_rotations>(u, std::vector<quaternion<double>>(3)).control_points().size()
+      << fit<of_poses>(u, poses, u).rms << "\n";
 #endif
 }

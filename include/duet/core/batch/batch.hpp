@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-// First, as it says which C++ is needed.
+// First, as it checks the C++ version.
 #include <duet/core/config.hpp>
 
 #include <duet/core/batch/packets.hpp>
@@ -16,14 +16,14 @@
 #include <utility>
 
 /// \file
-/// Several real numbers at once as one scalar: every formula of the library over `batch` is its own
-/// vector version. Functions of batches are in batch/math.hpp.
+/// Several real numbers at once as one scalar (SIMD): every formula of the library over `batch` is
+/// its own vector version. Functions of batches are in batch/math.hpp.
 
 namespace duet {
 DUET_ABI_BEGIN
 
-/// What a comparison of two batches says, lane by lane. It is no `bool`: branch by `select`, or ask
-/// `any` or `all`.
+/// Result of comparing two batches, lane by lane. It is not a `bool`: branch by `select`, or reduce
+/// it by `any` or `all`.
 template <class T, int W>
 class lane_mask {
 public:
@@ -68,7 +68,7 @@ public:
   [[nodiscard]] friend DUET_ALWAYS_INLINE lane_mask operator!(const lane_mask& m) {
     return from_packets([&](int p) DUET_INLINE_LAMBDA { return ~m.packets_[p]; });
   }
-  // Nothing is left out: where the right side must not be evaluated, there is `select`.
+  // Both sides are always evaluated: if the right side must not be, use `select`.
   [[nodiscard]] friend DUET_ALWAYS_INLINE lane_mask operator&&(const lane_mask& a,
                                                                const lane_mask& b) {
     return from_packets([&](int p) DUET_INLINE_LAMBDA { return a.packets_[p] & b.packets_[p]; });
@@ -86,14 +86,13 @@ private:
   packet packets_[std::size_t(storage::count)];
 };
 
-/// W numbers of type T that take every step together, lane by lane.
+/// W numbers of type T that take every step together, lane by lane (SIMD).
+///
+/// Arithmetic types convert implicitly, to that number in all lanes. The result in a lane does not
+/// depend on the others. Comparisons are lane by lane too, a `lane_mask`.
 ///
 /// \tparam T  float or double, in vectors of the target; another floating-point type, in an array
-/// \tparam W  how many, a power of two; as many as one vector of the target holds unless told
-///            otherwise
-///
-/// Arithmetic types convert implicitly, to that number in all lanes. What a lane becomes does not
-/// depend on the others. Comparisons are lane by lane too, a `lane_mask`.
+/// \tparam W  number of lanes, a power of two; by default as many as one vector of the target holds
 template <std::floating_point T, int W = detail::native_lanes<T>>
 class batch {
   static_assert(W >= 1 && (W & (W - 1)) == 0, "duet: batch<T, W> needs a power of two as W");
@@ -217,7 +216,7 @@ public:
     });
   }
 
-  /// Lane by lane, in brackets.
+  /// Writes the numbers lane by lane, in brackets.
   friend std::ostream& operator<<(std::ostream& out, const batch& x) {
     for (int i = 0; i < W; ++i) {
       out << (i == 0 ? "[" : ", ") << x[i];
@@ -244,7 +243,7 @@ struct lane_traits<batch<T, W>> {
   using type = T;
 };
 
-/// A choice lane by lane: both callables are evaluated and blended lane by lane, only one where all
+/// Selection lane by lane: both callables are evaluated and blended lane by lane, only one if all
 /// lanes agree.
 template <class T, int W, std::invocable F, std::invocable G>
 [[nodiscard]] DUET_ALWAYS_INLINE auto select(const lane_mask<T, W>& condition, F&& f, G&& g) {

@@ -14,13 +14,13 @@
 #include <utility>
 
 /// \file
-/// Batches taken apart into lanes and put together again: for what has too many branches to take
-/// all lanes in one step, and for tables. All of it reaches into whatever holds scalars by
-/// `structure`, and into infinitesimal numbers by their parts.
+/// Splitting batches into lanes and joining lanes to batches: for code with too many branches to
+/// take all lanes in one step, and for tables. All functions reach the scalars inside any object by
+/// `structure`, and infinitesimal numbers by their parts.
 
 namespace duet {
 
-/// x as its lane i has it; what is no batch is the same in all.
+/// x in lane i; an x without batches is the same in all lanes.
 template <class X>
   requires(Structured<X> || std::is_enum_v<X>)
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto lane(const X& x, [[maybe_unused]] int i) {
@@ -57,14 +57,14 @@ template <class X, class... Rest>
 
 /// The object over batches whose lane i of W is get(i).
 template <std::size_t W, class Get>
-[[nodiscard]] DUET_ALWAYS_INLINE auto joined_lanes(const Get& get) {
+[[nodiscard]] DUET_ALWAYS_INLINE auto from_lanes(const Get& get) {
   return [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
     return detail::joined(get(I)...);
   }
   (std::make_index_sequence<W>{});
 }
 
-/// a in the lanes that the mask has set, b in the others.
+/// a in the lanes that are set in the mask, b in the others.
 template <class T, int W, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE X blended(const lane_mask<T, W>& m, const X& a, const X& b) {
   const auto of_parts = [&](const auto& p, const auto& q)
@@ -76,14 +76,14 @@ template <class T, int W, class X>
   }
 }
 
-/// How many lanes the scalars in an object have.
+/// Number of lanes of the scalars in an object.
 template <class X>
 inline constexpr int lane_count = lane_traits<real_type_t<typename structure<X>::scalar>>::lanes;
 
 namespace detail {
 
-/// The first `count` numbers in memory, and the last of them again beyond: what lanes are left over
-/// at the end of a range must not matter.
+/// The first `count` numbers in memory, then repeats the last of them: surplus lanes at the end of
+/// a range must not matter.
 template <class B>
 [[nodiscard]] DUET_ALWAYS_INLINE B load_some(const typename B::value_type* from,
                                              std::size_t count) {
@@ -97,12 +97,12 @@ template <class B>
 template <std::size_t W, class Row>
 [[nodiscard]] DUET_ALWAYS_INLINE auto gathered(const std::array<std::size_t, W>& indices,
                                                const Row& row) {
-  return joined_lanes<W>([&](std::size_t k)
-                             DUET_INLINE_LAMBDA -> const auto& { return row[indices[k]]; });
+  return from_lanes<W>([&](std::size_t k)
+                           DUET_INLINE_LAMBDA -> const auto& { return row[indices[k]]; });
 }
 
-/// f of the lanes of the arguments one after the other, the results put together again; each is
-/// that of plain numbers. Of arguments without lanes it is f itself.
+/// f of the lanes of the arguments one after the other, the results joined again; each is that of
+/// plain numbers. For arguments without lanes it is f itself.
 template <class F, class... X>
 [[nodiscard]] auto by_lane(const F& f, const X&... x) {
   constexpr int width = std::max({lane_count<X>...});
@@ -114,7 +114,7 @@ template <class F, class... X>
     for (int i = 0; i < width; ++i) {
       results[std::size_t(i)] = f(lane(x, i)...);
     }
-    return joined_lanes<std::size_t(width)>(
+    return from_lanes<std::size_t(width)>(
         [&](std::size_t i) DUET_INLINE_LAMBDA -> const result& { return results[i]; });
   }
 }

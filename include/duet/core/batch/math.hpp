@@ -32,14 +32,15 @@ template <class F, class T, int W, class... Rest>
   return result;
 }
 
-/// By the C library.
+/// Sine and cosine by the C library, lane by lane.
 template <class T, int W>
 [[nodiscard]] DUET_OUT_OF_LINE sine_cosine<batch<T, W>> sine_cosine_of_lanes(batch<T, W> x) {
   return {each_lane([](T a) { return std::sin(a); }, x),
           each_lane([](T a) { return std::cos(a); }, x)};
 }
 
-/// By the kernel of vector_sine_cosine.hpp, which all lanes must be small enough for.
+/// Sine and cosine by the kernel of vector_sine_cosine.hpp, for which all lanes must be small
+/// enough.
 template <class T, int W>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<batch<T, W>>
 sine_cosine_of_small(const batch<T, W>& x) {
@@ -54,7 +55,7 @@ sine_cosine_of_small(const batch<T, W>& x) {
               [&](int p) DUET_INLINE_LAMBDA { return both[std::size_t(p)].cosine; })};
 }
 
-/// Where some lanes are large, infinite or not a number.
+/// Sine and cosine if some lanes are large, infinite or not a number.
 template <class T, int W>
 [[nodiscard]] DUET_OUT_OF_LINE DUET_COLD sine_cosine<batch<T, W>>
 sine_cosine_of_mixed(const batch<T, W> x, const lane_mask<T, W> is_small) {
@@ -114,7 +115,7 @@ template <class T, int W>
   return detail::sine_cosine_of_batch(x).cosine;
 }
 
-/// The size of the number in each lane.
+/// Absolute value of the number in each lane.
 template <class T, int W>
 [[nodiscard]] DUET_ALWAYS_INLINE batch<T, W> abs(const batch<T, W>& x) {
   return batch<T, W>::from_packets(
@@ -189,7 +190,7 @@ template <class T, int W>
   return detail::each_lane([exponent](T a) { return std::ldexp(a, exponent); }, x);
 }
 
-/// What `<cmath>` says of the number in each lane.
+/// Classification by `<cmath>` of the number in each lane.
 template <class T, int W>
 [[nodiscard]] lane_mask<T, W> signbit(const batch<T, W>& x) {
   return detail::test_lanes([](T a) { return std::signbit(a); }, x);

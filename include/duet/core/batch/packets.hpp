@@ -11,7 +11,7 @@
 #include <utility>
 
 /// \file
-/// What batches are made of: vectors of the width that the target has, or arrays.
+/// Storage of batches: vectors of the target's width, or arrays.
 
 namespace duet::detail {
 
@@ -33,7 +33,7 @@ struct packet_type<T, W> {
   using type = vector_of<T, W>;
 };
 
-/// How W lanes of T are kept: in `count` packets of `width` lanes.
+/// Storage of W lanes of T: `count` packets of `width` lanes.
 template <class T, int W>
 struct packets {
   static constexpr int width = native_lanes<T> > 1 && W > native_lanes<T> ? native_lanes<T> : W;

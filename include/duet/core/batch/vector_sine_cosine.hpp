@@ -25,7 +25,7 @@ struct sine_cosine {
   T cosine;
 };
 
-/// From here on, and for infinities and NaN, the C library is asked: n below would have too many
+/// Limit from which, and for infinities and NaN, the C library is used: n below would have too many
 /// bits.
 inline constexpr double vector_sine_limit = 8e5;
 
@@ -37,7 +37,7 @@ concept VectorOfDoubles = requires(V v) {
   v = blended_packets(v < v, v, -v);
 };
 
-/// The lanes that are too large, by the C library.
+/// Replaces the lanes that are too large by results of the C library.
 template <VectorOfDoubles V>
 DUET_OUT_OF_LINE DUET_COLD inline void replace_sines_of_large(const V& x, sine_cosine<V>& y) {
   for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) {
@@ -48,7 +48,7 @@ DUET_OUT_OF_LINE DUET_COLD inline void replace_sines_of_large(const V& x, sine_c
   }
 }
 
-/// Sines and cosines of r + tail, |r| ≤ π/4 and the tail what r rounded off.
+/// Sines and cosines of r + tail, |r| ≤ π/4, the tail being the round-off of r.
 template <VectorOfDoubles V>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<V> vector_sine_and_cosine_of_reduced(const V& r,
                                                                                   const V& tail) {
@@ -66,8 +66,8 @@ template <VectorOfDoubles V>
           rounded + (((1.0 - rounded) - half) + (z2 * c - r * tail))};
 }
 
-/// Sines and cosines of a vector all lanes of which are below `vector_sine_limit`; others give
-/// garbage.
+/// Sines and cosines of a vector with all lanes below `vector_sine_limit`; other lanes are
+/// undefined.
 template <VectorOfDoubles V>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<V> vector_sine_and_cosine_of_moderate(const V& x) {
   // x = n π/2 + r + tail with |r| ≤ π/4. π/2 in three parts of 33 bits, whose products with n are
@@ -109,10 +109,10 @@ template <VectorOfDoubles V>
   return all != 0;
 }
 
-/// sin x and cos x, lane by lane: within one unit of the last place of the truth.
+/// sin x and cos x, lane by lane, accurate to one unit in the last place.
 template <VectorOfDoubles V>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<V> vector_sine_and_cosine(const V& x) {
-#ifdef __FAST_MATH__ // would drop what the reduction compensates
+#ifdef __FAST_MATH__ // would drop the terms that the reduction compensates
   sine_cosine<V> y{};
   for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) {
     y.sine[i] = std::sin(x[i]);
@@ -122,8 +122,8 @@ template <VectorOfDoubles V>
   using bits = decltype(x < x);
   const V size = with_bits_of<V>(with_bits_of<bits>(x) & (bits{} + ~(1LL << 63)));
   if (are_all_below(size, 0x1.921fb54442d18p-1)) { // π/4: nothing to reduce
-    // Compilers leave out a subtracted 0, but not −0, and then fuse other products with sums than
-    // above: a lane would depend on its neighbours in the last bit.
+    // Compilers drop a subtracted 0, but not −0, and then fuse other products with sums than above:
+    // a lane would depend on its neighbours in the last bit.
     return vector_sine_and_cosine_of_reduced(x, -V{});
   }
   sine_cosine<V> y = vector_sine_and_cosine_of_moderate(x);
@@ -134,7 +134,7 @@ template <VectorOfDoubles V>
   return y;
 }
 
-/// Two doubles and more are taken in vectors.
+/// True if the sines and cosines are computed in vectors: for two doubles and more.
 template <class... T>
 inline constexpr bool takes_sines_at_once = sizeof...(T) > 1 && (std::same_as<T, double> && ...);
 
@@ -157,7 +157,8 @@ public:
 private:
   static constexpr int lanes = DUET_VECTOR_BYTES < 32 ? 2 : 4;
   static constexpr std::size_t vectors = (Count + lanes - 1) / lanes;
-  /// More of them would be more code than processors keep decoded.
+  /// Maximum number of vectors computed inline: more code would exceed the instructions that
+  /// processors keep decoded.
   static constexpr std::size_t most_in_line = 8;
   using packet = vector_of<double, lanes>;
 

@@ -6,7 +6,8 @@
 #include <bit>
 
 /// \file
-/// `std::bit_cast`, also where the compiler has it and the standard library has not, as libc++ 13.
+/// `std::bit_cast`, also if the compiler supports it but the standard library does not, as libc++
+/// 13.
 
 namespace duet::detail {
 

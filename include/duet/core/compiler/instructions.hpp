@@ -9,7 +9,7 @@
 #include <concepts>
 #include <type_traits>
 
-// The whole of it costs a compiler a third of what Eigen/Core does.
+// The whole header costs a compiler a third of the time of Eigen/Core.
 #ifndef DUET_PORTABLE
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -21,11 +21,12 @@
 #endif
 
 /// \file
-/// What compilers do not make of loops over the lanes of a vector; in plain C++20 these loops.
+/// Vector instructions that compilers do not generate from loops over lanes; in plain C++20 the
+/// loops.
 
 namespace duet::detail {
 
-/// Is any lane of a mask set?
+/// True if any lane of a mask is set.
 template <class Mask>
 [[nodiscard]] DUET_ALWAYS_INLINE bool any_lane(const Mask& m) {
 #ifndef DUET_PORTABLE

@@ -13,13 +13,13 @@
 
 namespace duet::detail {
 
-/// What one lane of a comparison of T is: all bits set, or none.
+/// Type of one lane of a comparison of T: all bits set, or no bit.
 template <class T>
 using lane_answer =
     std::conditional_t<sizeof(T) == sizeof(std::int64_t), std::int64_t, std::int32_t>;
 
-/// W elements with the operators of a compiler's vector, lane by lane: for types that there are no
-/// vectors of, and where the compiler has none.
+/// W elements with the operators of a compiler's vector, lane by lane: for types without vectors,
+/// and for compilers without them.
 template <class T, int W>
 struct lane_array {
   T lanes[std::size_t(W)];
@@ -51,7 +51,7 @@ struct lane_array {
     return map([](T x) { return T(~x); }, a);
   }
 
-// An operator of two vectors, and of a vector and a number.
+// Operators of two vectors, and of a vector and a number.
 #define DUET_LANE_BY_LANE(op, value)                                                               \
   friend auto operator op(const lane_array& a, const lane_array& b) {                              \
     return map([](T x, T y) { return value; }, a, b);                                              \

@@ -6,13 +6,13 @@
 #include <cmath>
 
 /// \file
-/// exp, log, √, sin and cos of built-in numbers, told to do nothing but compute; of others, and in
-/// plain C++20, the functions of these names.
+/// exp, log, √, sin and cos of built-in numbers, declared free of side effects; of other numbers,
+/// and in plain C++20, the functions of these names.
 ///
-/// Each of the C library's functions may write errno, so clang reloads after every call what is in
-/// memory, and no longer knows that two sines are of one x. Told that nobody looks at errno, it
-/// keeps all in registers, makes √ one instruction, and one call of the sine and the cosine of one
-/// x. g++ does well by itself.
+/// Each of the C library's functions may write errno, so clang reloads memory after every call, and
+/// no longer recognises two sines of one x. Declared as not writing errno, they let it keep all in
+/// registers, make √ one instruction, and merge the sine and the cosine of one x into one call. g++
+/// does well by itself.
 
 namespace duet::detail {
 

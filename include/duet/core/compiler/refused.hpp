@@ -4,14 +4,15 @@
 #include <duet/core/config.hpp>
 
 /// \file
-/// Overloads for mistakes: compilers choose them where no other fits, and say at the very line what
-/// helps, before anything else. (A failed static_assert in a header is reported after the path by
-/// which the header was included.)
+/// Overloads that catch mistakes: compilers choose them if no other fits, and print a remedy for
+/// that line first. (A failed static_assert in a header is reported after the path by which the
+/// header was included.)
 
-/// Stands before a declaration whose use is the mistake. It has no body, and a result of the type
-/// that is expected, as far as that is known: else compilers say first that nothing can be done
-/// with it, as in `std::cout << f(x)` or `const auto [y, dy] = f(x)`.
-/// In plain C++20 it is said as a warning, and then what has no body does not link.
+/// Precedes a declaration whose use is a mistake. It has no body, and a result of the expected
+/// type, as far as it is known: otherwise compilers first report that the result cannot be used, as
+/// in `std::cout << f(x)` or `const auto [y, dy] = f(x)`.
+///
+/// Plain C++20 gives a warning, and the missing body does not link.
 #ifdef DUET_PORTABLE
 #define DUET_REFUSED(sentence) [[deprecated("duet: " sentence)]]
 #else

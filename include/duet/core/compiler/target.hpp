@@ -2,20 +2,20 @@
 #pragma once
 
 /// \file
-/// Which compiler and which target it is.
+/// Detection of the compiler and the target.
 ///
-/// This folder is the seam between duet and what a compiler has beyond C++20: nothing else in
+/// This folder is the seam between duet and a compiler's extensions of C++20: nothing else in
 /// duet's headers names a compiler, a processor or an extension (house/tree). Every name here has a
-/// version in plain C++20 as well, which gives the same results. It is taken where the compiler has
-/// not GNU's extensions, and where a program defines `DUET_PORTABLE`, so that it can be tested.
+/// version in plain C++20 as well, which gives the same results. It is used if the compiler lacks
+/// GNU's extensions, and if a program defines `DUET_PORTABLE`, so that it can be tested.
 
 #if !defined(DUET_PORTABLE) && !defined(__GNUC__) && !defined(__clang__)
 #define DUET_PORTABLE
 #endif
 
 /// Width in bytes of the vectors that batches fill, the target's own, and of those that packed
-/// partials are stored in: the same, save that clang does better with two 256-bit vectors there
-/// than with one of 512 bits, where a row fills no more than two of these.
+/// partials are stored in: the same, except that clang does better with two 256-bit vectors there
+/// than with one of 512 bits, if a row fills no more than two of these.
 #if defined(__AVX512F__)
 #define DUET_BATCH_BYTES 64
 #ifdef __clang__
@@ -36,8 +36,8 @@
 #endif
 
 /// The vector width follows the compiler's -m flags and is part of the layout of `dual`, and so is
-/// whether vectors are the compiler's. These inline namespaces make both part of the name too:
-/// files built in different ways do not link.
+/// the kind of vectors, the compiler's or arrays. These inline namespaces make both part of the
+/// name too: files built with different settings do not link.
 #ifdef DUET_PORTABLE
 #define DUET_ABI_BEGIN                                                                             \
   inline namespace portable {                                                                      \
@@ -52,7 +52,7 @@
 
 namespace duet::detail {
 
-/// clang makes less of a branch that is seldom taken than of masks, g++ the other way round.
+/// clang gains less from a rarely taken branch than from masks, g++ the other way round.
 #ifdef __clang__
 inline constexpr bool masks_beat_branches = true;
 #else

@@ -7,18 +7,18 @@
 #include <type_traits>
 
 /// \file
-/// What only compilers know of types.
+/// Type information from compiler built-ins.
 
 namespace duet::detail {
 
-/// Are they the same type? The compiler's own answer makes no class template.
+/// True if A and B are the same type. The built-in instantiates no class template.
 #ifdef DUET_PORTABLE
 #define DUET_IS_SAME(A, B) std::is_same_v<A, B>
 #else
 #define DUET_IS_SAME(A, B) __is_same(A, B)
 #endif
 
-/// A text that is another for every type, and longer for one that has the other within its name.
+/// A text that differs for every type, and is longer for a type whose name contains another's.
 /// (`std::source_location` has it, too, in the standard libraries of newer compilers.)
 template <class T>
 [[nodiscard]] constexpr std::string_view type_text() {

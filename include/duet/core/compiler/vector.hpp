@@ -27,11 +27,11 @@ struct vector_type {
 #endif
 
 /// W numbers of type T, float or double, with its operators, also between a vector and a number.
-/// Comparisons give a vector of integers of that size, all bits of a lane set or none.
+/// Comparisons give a vector of integers of that size, with all bits of a lane set or no bit.
 template <class T, int W>
 using vector_of = typename vector_type<T, W>::type;
 
-/// a where the mask is set, b elsewhere.
+/// a in the lanes that are set in the mask, b elsewhere.
 template <class Mask, class V>
 [[nodiscard]] DUET_ALWAYS_INLINE V blended_packets(const Mask& m, const V& a, const V& b) {
   if constexpr (std::is_class_v<V>) {
@@ -63,7 +63,7 @@ template <int... I, class V>
 #endif
 }
 
-/// x, or 0 where the factor is 0: without a branch, which g++ makes of a conditional expression.
+/// x, or 0 if the factor is 0: without the branch that g++ generates for a conditional expression.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE T unless_zero(T factor, T x) {
 #ifndef DUET_PORTABLE

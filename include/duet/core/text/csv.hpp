@@ -21,16 +21,16 @@ namespace duet {
 
 /// A row of a file, as numbers.
 struct csv_row {
-  std::size_t line = 0;        ///< where it stands in the file, counted from 1
-  std::string name;            ///< the first cell where it is not a number, else empty
+  std::size_t line = 0;        ///< line number in the file, counted from 1
+  std::string name;            ///< the first cell if it is not a number, else empty
   std::vector<double> numbers; ///< the other cells
 };
 
-/// The rows of a file, whose cells are apart by commas, semicolons or blanks. Empty lines and lines
-/// from `#` on are passed over; a first line without any number is the header.
+/// The rows of a file, whose cells are separated by commas, semicolons or blanks. Empty lines and
+/// text from `#` on are ignored; a first line without any number is the header.
 class csv_file {
 public:
-  /// \param columns  how many numbers each row must hold; 0: any, the first cell may be a name
+  /// \param columns  number of cells with numbers per row; 0: any, the first cell may be a name
   /// \throws file_error
   explicit csv_file(const std::string& path, std::size_t columns = 0) {
     std::vector<std::string_view> cells;
@@ -72,12 +72,12 @@ public:
     }
   }
 
-  /// Its rows, one or more, in order.
+  /// Its rows, at least one, in order.
   [[nodiscard]] const std::vector<csv_row>& rows() const { return rows_; }
-  /// The names of the columns, empty where the file has none: rows are in the file's order, so
-  /// whoever counts on another one looks here.
+  /// Names of the columns, empty if the file has none: rows are in the order of the file, so check
+  /// the names if you rely on another order.
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }
-  /// Where the names stand, counted from 1; 0 where the file has none.
+  /// Line number of the names, counted from 1; 0 if the file has none.
   [[nodiscard]] std::size_t header_line() const { return header_line_; }
 
 private:
@@ -86,9 +86,9 @@ private:
   std::size_t header_line_ = 0;
 };
 
-/// A name as a cell: without what would end the cell or the line, or begin a comment. What is then
-/// blank or a number has `_` before it.
-[[nodiscard]] inline std::string csv_name(const std::string& text) {
+/// A name as a cell: without characters that would end the cell or the line, or begin a comment. If
+/// the result is blank or a number, `_` is put before it.
+[[nodiscard]] inline std::string csv_sanitized(const std::string& text) {
   std::string name;
   for (const char c : printable(text)) {
     if (c != ',' && c != ';' && c != '"' && c != '#') {
@@ -104,7 +104,7 @@ private:
 [[nodiscard]] inline std::string csv_header(const std::vector<std::string>& names) {
   std::string line;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    line += (i > 0 ? "," : "") + csv_name(names[i]);
+    line += (i > 0 ? "," : "") + csv_sanitized(names[i]);
   }
   return line + "\n";
 }

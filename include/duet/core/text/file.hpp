@@ -41,7 +41,7 @@ namespace detail {
   return {path, "cannot be written: " + std::generic_category().message(error)};
 }
 
-/// A stream of C, closed when it goes.
+/// A stream of C, closed by the destructor.
 class c_file {
 public:
   c_file(const std::string& path, const char* mode) : file_(std::fopen(path.c_str(), mode)) {}
@@ -50,12 +50,12 @@ public:
   ~c_file() { close(); }
 
   [[nodiscard]] bool is_open() const { return file_ != nullptr; }
-  /// Is all of it written? Else errno says why not.
+  /// True if everything was written; otherwise errno gives the reason.
   [[nodiscard]] bool write(const std::string& content) {
     return std::fwrite(content.data(), 1, content.size(), file_) == content.size() &&
            std::fflush(file_) == 0;
   }
-  /// \return no error
+  /// \return true if there was no error
   bool close() {
     std::FILE* const file = std::exchange(file_, nullptr);
     return file == nullptr || std::fclose(file) == 0;
@@ -65,22 +65,24 @@ private:
   std::FILE* file_;
 };
 
-/// Is there something at a path that is neither a file nor a folder: a device, a pipe, a socket?
+/// True if a path leads to something that is neither a file nor a folder: a device, a pipe, a
+/// socket.
 [[nodiscard]] inline bool is_special_file(const std::string& path) {
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   return exists(status) && !is_regular_file(status) && !is_directory(status);
 }
 
-/// Is it the file that standard output goes to, by whatever name? To replace it would lose the
-/// rest. Of terminals and pipes `equivalent` may not know.
+/// True if it is the file that standard output is redirected to, under any name. Replacing it would
+/// lose the rest. For terminals and pipes `equivalent` may fail.
 [[nodiscard]] inline bool is_standard_output(const std::string& path) {
   std::error_code ignored;
   return std::filesystem::equivalent(path, "/dev/stdout", ignored);
 }
 
-/// The file that a path leads to over all links, there or not.
-/// \throws file_error where something is there that is no file, or one that may not be written
+/// The file that a path leads to over all links, existing or not.
+///
+/// \throws file_error if it exists and is not a file, or may not be written
 [[nodiscard]] inline std::filesystem::path link_target(const std::string& path) {
   constexpr int most_links = 40;
   std::filesystem::path result(path);
@@ -111,14 +113,15 @@ private:
   return result;
 }
 
-/// The name of a draft, for handlers of signals: these can neither lock nor allocate, and may run
-/// while another thread is done with the draft. Only who has changed `owner` to `busy` uses `name`.
+/// Name of a draft, for signal handlers: these can neither lock nor allocate, and may run while
+/// another thread finishes with the draft. Only the thread that has changed `owner` to `busy` uses
+/// `name`.
 struct listed_draft {
   static constexpr unsigned long nobody = 0, busy = 1;
   static_assert(std::atomic<unsigned long>::is_always_lock_free);
 
   std::atomic<unsigned long> owner{nobody};
-  std::array<char, 4096> name{}; ///< as long as a path can be on Linux
+  std::array<char, 4096> name{}; ///< the maximum length of a path on Linux
 };
 inline constinit std::array<listed_draft, 64> listed_drafts{};
 inline std::atomic<unsigned long> last_draft{listed_draft::busy};
@@ -133,7 +136,7 @@ inline void remove_drafts() noexcept {
     if (owner > listed_draft::busy &&
         draft.owner.compare_exchange_strong(owner, listed_draft::busy)) {
 #if __has_include(<unistd.h>)
-      ::unlink(draft.name.data()); // POSIX does not say so of std::remove
+      ::unlink(draft.name.data()); // POSIX does not guarantee it for std::remove
 #else
       std::remove(draft.name.data());
 #endif
@@ -142,25 +145,26 @@ inline void remove_drafts() noexcept {
   }
 }
 
-/// A file under another name, in the same folder, until it is whole: then it takes its place, and
-/// has the permissions of the one that was there. Without `commit` it is removed.
+/// A file under another name, in the same folder, until it is complete: `commit` then replaces the
+/// target, with the permissions of the previous file. Without `commit` it is removed.
 ///
 /// Links are followed, so that a link stays one.
 class file_draft {
 public:
-  /// Makes the draft, an empty file.
-  /// \throws file_error where the file cannot be written
+  /// Creates the draft, an empty file.
+  ///
+  /// \throws file_error if the file cannot be written
   explicit file_draft(const std::string& path) : path_(path), target_(detail::link_target(path)) {
     using enum std::filesystem::perms;
     for (int number = 0;; ++number) {
-      // Nobody else has this name: files are made, not opened.
+      // Nobody else has this name: files are created, not opened.
       const auto time = std::chrono::system_clock::now().time_since_epoch().count();
       name_ = (target_.parent_path() /
                (".duet-" + std::to_string(time) + "-" + std::to_string(number) + ".part"))
                   .string();
-      enlist(); // before it is made: a signal in between would leave it
+      enlist(); // before it is created: a signal in between would leave it
       if (detail::c_file(name_, "wbx").is_open()) {
-        // Who may not read the file may not read its draft.
+        // Users who may not read the file may not read its draft.
         if (const auto error = take_permissions(owner_read | owner_write)) {
           remove();
           detail::raise(detail::cannot_write(path, error.value()));
@@ -182,10 +186,11 @@ public:
     }
   }
 
-  /// Where it is until then.
+  /// Path of the draft until it is committed.
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// Writes all of it.
+  /// Writes the whole content.
+  ///
   /// \throws file_error
   void write(const std::string& content) const {
     detail::c_file out(name_, "wb");
@@ -194,7 +199,8 @@ public:
     }
   }
 
-  /// Puts it in its place.
+  /// Replaces the target by the draft.
+  ///
   /// \throws file_error
   void commit() {
     std::error_code error = take_permissions(std::filesystem::perms::none);
@@ -209,7 +215,7 @@ public:
   }
 
 private:
-  /// Those of the file that is there, if one is, and these.
+  /// Sets the permissions of the existing file, if there is one, and these.
   [[nodiscard]] std::error_code take_permissions(std::filesystem::perms also) const {
     std::error_code error;
     const auto before = std::filesystem::status(target_, error);
@@ -253,10 +259,11 @@ private:
   std::string path_;
   std::filesystem::path target_;
   std::string name_;
-  unsigned long id_ = 0; ///< in the list of drafts; of this one alone
+  unsigned long id_ = 0; ///< unique number in the list of drafts
 };
 
-/// Finds out before the work whether `write_file` could write its result; changes nothing.
+/// Checks before a computation that `write_file` could write its result; changes nothing.
+///
 /// \throws file_error
 inline void require_writable(const std::string& path) {
   if (!detail::is_special_file(path) && !detail::is_standard_output(path)) {
@@ -264,8 +271,9 @@ inline void require_writable(const std::string& path) {
   }
 }
 
-/// Writes a whole file or none: a `file_draft`, which then takes the file's place. Links are
-/// followed; to a device, a pipe or standard output it writes directly.
+/// Writes a whole file or nothing: a `file_draft`, which then replaces the file. Links are
+/// followed; a device, a pipe or standard output is written directly.
+///
 /// \throws file_error
 inline void write_file(const std::string& path, const std::string& content) {
   if (detail::is_standard_output(path)) {
@@ -276,7 +284,7 @@ inline void write_file(const std::string& path, const std::string& content) {
     return;
   }
   if (detail::is_special_file(path)) {
-    std::fflush(stdout); // it may go there, too: what was printed before comes first
+    std::fflush(stdout); // it may go there, too: earlier output comes first
     detail::c_file out(path, "wb");
     if (!out.is_open() || !out.write(content) || !out.close()) {
       detail::raise(detail::cannot_write(path, errno));

@@ -8,13 +8,14 @@
 #include <system_error>
 
 /// \file
-/// Two files that belong together.
+/// Two files written together.
 
 namespace duet {
 namespace detail {
 
-/// Puts two drafts in their places. Where the second cannot take its own, what was at that of the
-/// first, `path`, is put back.
+/// Replaces two targets by their drafts. If the second cannot be replaced, the previous file of the
+/// first, at `path`, is restored.
+///
 /// \throws file_error
 inline void commit_both(const std::string& path, file_draft& first, file_draft& second) {
   namespace fs = std::filesystem;
@@ -42,9 +43,10 @@ inline void commit_both(const std::string& path, file_draft& first, file_draft& 
 
 } // namespace detail
 
-/// Writes two files, each as a whole, or neither of them. (Devices and pipes take nothing back:
-/// what goes there is written after the drafts of others, and of two of them the first before the
+/// Writes two files, each as a whole, or neither of them. (Output to devices and pipes cannot be
+/// taken back: it is written after the drafts of others, and of two of them the first before the
 /// second.)
+///
 /// \throws file_error, also for two names of one file
 inline void write_files(const std::string& first, const std::string& first_content,
                         const std::string& second, const std::string& second_content) {

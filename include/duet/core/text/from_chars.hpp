@@ -15,25 +15,25 @@
 #include <system_error>
 
 /// \file
-/// `std::from_chars` of `double`, also where the standard library has none, as libc++ before 20.
+/// `std::from_chars` of `double`, also if the standard library lacks it, as libc++ before 20.
 
 namespace duet::detail {
 
-/// How many of the first characters are decimal digits.
+/// Number of leading decimal digits.
 [[nodiscard]] inline std::size_t count_of_digits(std::string_view text) {
   return std::size_t(
       std::find_if(text.begin(), text.end(), [](char c) { return c < '0' || c > '9'; }) -
       text.begin());
 }
 
-/// Does the text begin with the word, in whichever letters? The word's are small.
+/// True if the text begins with the word, ignoring case. The word is in lower case.
 [[nodiscard]] inline bool begins_with(std::string_view text, std::string_view word) {
   return text.size() >= word.size() &&
          std::equal(word.begin(), word.end(), text.begin(),
                     [](char a, char b) { return a == b || a == b - 'A' + 'a'; });
 }
 
-/// The length of the infinity or NaN that the text begins with, 0 for none.
+/// Length of the infinity or NaN that the text begins with, 0 if there is neither.
 [[nodiscard]] inline std::size_t read_not_finite(std::string_view text, double& value) {
   if (begins_with(text, "inf")) {
     value = std::numeric_limits<double>::infinity();
@@ -55,8 +55,8 @@ namespace duet::detail {
   return 3;
 }
 
-/// As `std::from_chars(first, last, value)`, by `std::strtod`, which rounds as well and looks at
-/// the locale for the point alone. So it is given none: 12.5e3 as 125e2.
+/// As `std::from_chars(first, last, value)`, by `std::strtod`, which rounds as well and depends on
+/// the locale for the decimal point alone. So the text passed has no point: 12.5e3 as 125e2.
 [[nodiscard]] inline std::from_chars_result from_chars_by_strtod(const char* first,
                                                                  const char* last, double& value) {
   const std::string_view text(first, std::size_t(last - first));
@@ -91,7 +91,7 @@ namespace duet::detail {
     const std::size_t length = count_of_digits(text.substr(begin));
     if (length > 0) {
       long long written = 0;
-      for (const char digit : text.substr(begin, length)) { // beyond 10¹⁵ it is all the same
+      for (const char digit : text.substr(begin, length)) { // beyond 10¹⁵ it makes no difference
         written = std::min(written * 10 + (digit - '0'), 1'000'000'000'000'000LL);
       }
       exponent += divides ? -written : written;
@@ -108,7 +108,7 @@ namespace duet::detail {
   return {first + end, std::errc()};
 }
 
-/// `std::from_chars` is there for the number, and not only for integers.
+/// True if the standard library has `std::from_chars` for the number, and not only for integers.
 template <class T>
 concept HasFromChars = requires(const char* text, T& value) {
   { std::from_chars(text, text, value) } -> std::same_as<std::from_chars_result>;

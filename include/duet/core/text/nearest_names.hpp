@@ -12,13 +12,14 @@
 #include <vector>
 
 /// \file
-/// What was perhaps meant by a name that is not there.
+/// Suggestions for an unknown name.
 
 namespace duet::detail {
 
-/// How many letters are to be put in, left out or changed (Levenshtein's distance).
+/// Number of letters to insert, delete or change (Levenshtein distance).
 [[nodiscard]] inline std::size_t letters_apart(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1); // of the letters of a so far, to each beginning of b
+  // distance of the letters of a so far to each prefix of b
+  std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t(0));
   for (std::size_t i = 0; i < a.size(); ++i) {
     std::size_t diagonal = std::exchange(row[0], i + 1);
@@ -31,14 +32,14 @@ namespace duet::detail {
   return row.back();
 }
 
-/// `there are "a", "b" … and 7 more`, those that are most like the name first.
+/// `there are "a", "b" … and 7 more`, the most similar names first.
 [[nodiscard]] inline std::string nearest_names(std::string_view name,
                                                const std::vector<std::string>& names) {
   constexpr std::size_t most = 6;
   if (names.empty()) {
     return "there are none";
   }
-  std::vector<std::pair<std::size_t, std::size_t>> order; // how far, and which
+  std::vector<std::pair<std::size_t, std::size_t>> order; // distance and index
   for (std::size_t i = 0; i < names.size(); ++i) {
     order.emplace_back(letters_apart(name, names[i]), i);
   }

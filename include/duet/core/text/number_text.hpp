@@ -23,7 +23,7 @@ template <std::floating_point T>
 
 namespace detail {
 
-/// Without blanks at both ends.
+/// The text without blanks at both ends.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
   const auto first = text.find_first_not_of(blanks);
@@ -33,8 +33,8 @@ namespace detail {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// As `parse_number`, with the reason why not: `result_out_of_range` for a number beyond the
-/// range of a double, `invalid_argument` for what is no number.
+/// As `parse_number`, with the reason of failure: `result_out_of_range` for a number beyond the
+/// range of a double, `invalid_argument` for text that is not a number.
 [[nodiscard]] inline std::errc read_number(std::string_view text, double& value) {
   text = trimmed(text);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
@@ -46,8 +46,8 @@ namespace detail {
 
 } // namespace detail
 
-/// The number that the whole text spells, blanks around it and a leading plus sign aside; `inf` and
-/// `nan` are numbers too. Nothing where the text is anything else.
+/// The number that the whole text spells, ignoring blanks around it and a leading plus sign; `inf`
+/// and `nan` are numbers too. Empty if the text is anything else.
 [[nodiscard]] inline std::optional<double> parse_number(std::string_view text) {
   double value = 0;
   if (detail::read_number(text, value) != std::errc()) {

@@ -8,15 +8,14 @@
 #include <string_view>
 
 /// \file
-/// Text from outside, as a message may show it.
+/// Untrusted text in a form that a message may show.
 
 namespace duet {
 
 namespace detail {
 
-/// The bytes of the UTF-8 character that a text begins with; 0 where it begins with none, or with
-/// one that tells a terminal what to do: a control character, a line separator, a change of the
-/// direction of writing.
+/// Number of bytes of the UTF-8 character that a text begins with; 0 if there is none, or if it
+/// controls a terminal: a control character, a line separator, a change of the writing direction.
 [[nodiscard]] inline std::size_t shown_bytes(std::string_view text) {
   const auto byte = [text](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -46,9 +45,9 @@ namespace detail {
 
 } // namespace detail
 
-/// Text from outside (a file's name, its cells, an argument) as a message may show it: on one line,
-/// and without what a terminal would obey. Control characters and bytes that are no UTF-8 become
-/// `\n`, `\t`, `\r` or `\x1b`; of more than 1000 bytes the middle is left out.
+/// Untrusted text (a file's name, its cells, an argument) as a message may show it: on one line,
+/// and without terminal commands. Control characters and invalid UTF-8 bytes become `\n`, `\t`,
+/// `\r` or `\x1b`; of more than 1000 bytes the middle is omitted.
 [[nodiscard]] inline std::string printable(std::string_view text) {
   constexpr std::size_t most = 1000;
   if (text.size() > most) {

@@ -16,19 +16,18 @@
 #endif
 
 /// \file
-/// Progress for people.
+/// Progress display for people.
 
 namespace duet {
 
-/// Where progress is shown, and how often.
+/// Settings of a progress display.
 struct progress_display {
-  std::FILE* stream = stderr; ///< where to
-  bool is_terminal = false;   ///< one line, written over and over, instead of many
-  double interval = 10;       ///< seconds from line to line, and to the first
+  std::FILE* stream = stderr; ///< stream to write to
+  bool is_terminal = false;   ///< true: one line, overwritten repeatedly, instead of many
+  double interval = 10;       ///< seconds between lines, and before the first
 
-  /// Standard error: every second where that is a terminal, else every ten. The environment
-  /// variable `DUET_PROGRESS_INTERVAL` gives other seconds; with 0 nothing is passed over, with
-  /// `inf` all is.
+  /// Settings for standard error: every second if it is a terminal, else every ten. The environment
+  /// variable `DUET_PROGRESS_INTERVAL` sets other seconds; 0 shows everything, `inf` nothing.
   [[nodiscard]] static progress_display standard() {
 #if __has_include(<unistd.h>)
     const bool is_terminal = isatty(STDERR_FILENO) == 1;
@@ -42,7 +41,7 @@ struct progress_display {
   }
 };
 
-/// Tells people how far a long run is, `progress: 3 of 40 blocks`, and nothing of a short one: a
+/// Shows the progress of a long run, `progress: 3 of 40 blocks`, and nothing for a short one: a
 /// report for `execution` or `comparison_options`.
 ///
 /// Example: `progress_line line("blocks"); parallel_for(n, body, {.threads = 0, .report = line});`
@@ -59,13 +58,13 @@ public:
     }
   }
 
-  /// Shows how many are done, where that is due.
+  /// Shows the number of completed elements, if a line is due.
   void operator()(const progress& p) {
     say(std::to_string(p.done) + " of " + std::to_string(p.count) + " " + things_,
         p.done == p.count && has_spoken_);
   }
 
-  /// Shows a text where one is due.
+  /// Prints a text if a line is due.
   void say(const std::string& text, bool is_last = false) {
     const std::chrono::duration<double> silence = std::chrono::steady_clock::now() - spoke_;
     if (silence.count() >= display_.interval || is_last) {

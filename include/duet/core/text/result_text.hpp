@@ -16,14 +16,14 @@
 namespace duet {
 namespace detail {
 
-/// Stands for what looks at the fields of a result.
+/// Placeholder for a visitor of the fields of a result.
 struct any_field {
   void operator()(std::string_view, const auto&) const {}
 };
 
 } // namespace detail
 
-/// A result that shows its fields: `x.for_each_field(f)` calls f(name, field) for each.
+/// A result with accessible fields: `x.for_each_field(f)` calls f(name, field) for each.
 template <class X>
 concept Result = requires(const X& x) {
   x.for_each_field(detail::any_field{});
@@ -31,7 +31,7 @@ concept Result = requires(const X& x) {
 
 namespace detail {
 
-/// A class with a `to_text` in its own namespace, as rotations and poses have.
+/// A class with a separate `to_text` in its namespace, as rotations and poses have.
 template <class X>
 concept TextOfItsOwn = std::is_class_v<X> && requires(const X& x) {
   { to_text(x) } -> std::convertible_to<std::string>;
@@ -71,7 +71,7 @@ template <class M>
   return text + (is_column ? ")" : "]");
 }
 
-/// A number, vector, matrix, rotation, list of these …; nothing of what has no text.
+/// A number, vector, matrix, rotation, list of these …; empty for types without text.
 template <class X>
 std::string field_text(const X& x) {
   if constexpr (std::same_as<X, bool>) {

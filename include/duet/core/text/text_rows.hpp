@@ -20,8 +20,9 @@
 
 namespace duet::detail {
 
-/// Opens a file to be read, byte by byte as it is.
-/// \return what is wrong with it, empty if nothing
+/// Opens a file for reading, byte by byte as it is.
+///
+/// \return the problem, empty if there is none
 [[nodiscard]] inline std::string open_input(const std::string& path, std::ifstream& in) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) { // opens, and fails when it is read
@@ -31,8 +32,9 @@ namespace duet::detail {
   return in ? "" : "cannot be read";
 }
 
-/// All of a file, byte by byte as it is.
-/// \throws file_error for what cannot be read and for more than that many megabytes
+/// Content of a file, byte by byte as it is.
+///
+/// \throws file_error if it cannot be read or exceeds that many megabytes
 [[nodiscard]] inline std::string whole_content(const std::string& path, std::size_t megabytes) {
   std::ifstream in;
   if (const std::string fault = open_input(path, in); !fault.empty()) {
@@ -64,7 +66,8 @@ void for_each_word(std::string_view text, const F& f) {
 
 /// Calls f(number, text) for every line, counted from 1, without its end and without a byte order
 /// mark.
-/// \throws file_error for what cannot be read or is no text
+///
+/// \throws file_error if the file cannot be read or is not text
 template <class F>
 void for_each_line(const std::string& path, const F& f) {
   std::ifstream in;
@@ -79,7 +82,7 @@ void for_each_line(const std::string& path, const F& f) {
       if (unread.size() > 1'000'000) {
         raise(file_error(path, line, "more than a million characters: no file of rows"));
       }
-      // What is unread goes to the front, and more behind it.
+      // Moves the unread text to the front, and reads more behind it.
       std::copy(unread.begin(), unread.end(), buffer.begin());
       const std::size_t size = unread.size();
       if (2 * size > buffer.size()) {
@@ -109,7 +112,7 @@ void for_each_line(const std::string& path, const F& f) {
   }
 }
 
-/// What stands before `#`, and after it.
+/// Text before `#`, and the comment after it.
 struct split_line {
   std::string_view text, comment;
 
@@ -120,9 +123,9 @@ struct split_line {
   }
 };
 
-/// The cells of a line: apart by semicolons where it has any, else by commas where it has any, one
-/// at its end not counted, else by blanks, where units in brackets, as in `t [s]`, belong to the
-/// cell before.
+/// The cells of a line: separated by semicolons if it has any, else by commas if it has any, one at
+/// its end not counted, else by blanks, where units in brackets, as in `t [s]`, belong to the cell
+/// before.
 inline void split_cells(std::string_view text, std::vector<std::string_view>& cells) {
   cells.clear();
   text = trimmed(text);
@@ -148,7 +151,7 @@ inline void split_cells(std::string_view text, std::vector<std::string_view>& ce
   }
 }
 
-/// Would it be a number with a decimal point in place of a comma?
+/// True if it would be a number with a decimal point instead of a comma.
 [[nodiscard]] inline bool has_decimal_comma(std::string_view cell) {
   const std::size_t comma = cell.find(',');
   if (comma == cell.npos) {
@@ -160,7 +163,7 @@ inline void split_cells(std::string_view text, std::vector<std::string_view>& ce
   return read_number(text, number) != std::errc::invalid_argument;
 }
 
-/// Does a line of cells hold no number?
+/// True if a line of cells holds no number.
 [[nodiscard]] inline bool are_words(const std::vector<std::string_view>& cells) {
   return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
     double number = 0;
@@ -169,8 +172,9 @@ inline void split_cells(std::string_view text, std::vector<std::string_view>& ce
 }
 
 /// The number of a cell.
-/// \return what is wrong with it as a number, empty if nothing
-/// \throws file_error where it is no number
+///
+/// \return the problem with it as a number, empty if there is none
+/// \throws file_error if it is not a number
 [[nodiscard]] inline std::string read_cell(const std::string& path, std::size_t line,
                                            const std::string& name, std::string_view cell,
                                            double& number) {

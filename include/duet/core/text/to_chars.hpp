@@ -14,13 +14,13 @@
 #include <system_error>
 
 /// \file
-/// The shortest text of a number, also where the standard library has no `std::to_chars` of it, as
+/// The shortest text of a number, also if the standard library has no `std::to_chars` for it, as
 /// libc++ before 14.
 
 namespace duet::detail {
 
-/// The number that is spelt, rounded to nearest. There is no point in it: that of the locale would
-/// be expected.
+/// The number spelt by the text, rounded to nearest. The text has no decimal point, which would
+/// have to be that of the locale.
 template <std::floating_point T>
 [[nodiscard]] T nearest_to(const std::string& text) {
   if constexpr (std::same_as<T, float>) {
@@ -32,7 +32,7 @@ template <std::floating_point T>
   }
 }
 
-/// Digits without a point; the first stands for units of 10^exponent.
+/// Digits without a point; the first is in units of 10^exponent.
 struct decimal_digits {
   std::string digits;
   int exponent = 0;
@@ -44,7 +44,7 @@ struct decimal_digits {
   }
 };
 
-/// x > 0 rounded to so many digits, to nearest.
+/// x > 0 rounded to nearest with this number of digits.
 template <std::floating_point T>
 [[nodiscard]] decimal_digits rounded_digits(T x, int count) {
   char buffer[64];
@@ -60,7 +60,7 @@ template <std::floating_point T>
   return result;
 }
 
-/// The fewest digits that x > 0 is nearest to, and of these the nearest to x.
+/// The fewest digits whose nearest number is x > 0, and of these the nearest to x.
 template <std::floating_point T>
 [[nodiscard]] decimal_digits shortest_digits(T x) {
   for (int count = 1;; ++count) {
@@ -68,8 +68,8 @@ template <std::floating_point T>
     if (count >= std::numeric_limits<T>::max_digits10 || result.spells(x)) {
       return result;
     }
-    // Above a power of two numbers are twice as far apart as below: what is farther from it may be
-    // its text where what is nearer is not. (After a 9 it has fewer digits, and was looked at.)
+    // Above a power of two numbers are twice as far apart as below: a text farther from it may be
+    // valid if a nearer one is not. (After a 9 it has fewer digits, and was checked.)
     if (result.digits.back() != '9') {
       ++result.digits.back();
       if (result.spells(x)) {
@@ -79,8 +79,8 @@ template <std::floating_point T>
   }
 }
 
-/// As `std::to_chars` of x has it, by `std::snprintf`: plain or scientific, whichever is shorter,
-/// plain if neither is.
+/// As `std::to_chars` of x, by `std::snprintf`: plain or scientific, whichever is shorter, plain if
+/// neither is.
 template <std::floating_point T>
 [[nodiscard]] std::string shortest_text_by_printf(T x) {
   const std::string sign = std::signbit(x) ? "-" : "";
@@ -106,7 +106,7 @@ template <std::floating_point T>
             digits.substr(std::size_t(exponent) + 1);
   } else {
     plain = digits + std::string(std::size_t(exponent + 1 - count), '0');
-    if (plain.size() <= scientific.size()) { // all digits of the integer that it is
+    if (plain.size() <= scientific.size()) { // all digits of the integer
       plain.resize(plain.size() + 1);
       std::snprintf(plain.data(), plain.size(), "%.0Lf", static_cast<long double>(std::abs(x)));
       plain.pop_back();
@@ -115,13 +115,13 @@ template <std::floating_point T>
   return sign + (plain.size() <= scientific.size() ? plain : scientific);
 }
 
-/// `std::to_chars` is there for the number.
+/// True if the standard library has `std::to_chars` for the number.
 template <class T>
 concept HasToChars = requires(char* text, T value) {
   { std::to_chars(text, text, value) } -> std::same_as<std::to_chars_result>;
 };
 
-/// What `std::to_chars(first, last, x)` writes.
+/// Text of `std::to_chars(first, last, x)`.
 template <std::floating_point T>
 [[nodiscard]] std::string shortest_text(T x) {
   if constexpr (HasToChars<T>) {

@@ -12,17 +12,17 @@
 #include <cmath>
 
 /// \file
-/// The derivatives of roots, exponentials, logarithms and circular functions: the one place where
-/// each stands. (Hyperbolic and special functions: special.hpp.)
+/// Derivatives of roots, exponentials, logarithms and circular functions, each defined here alone.
+/// (Hyperbolic and special functions: special.hpp.)
 ///
-/// A rule has `value(x)`, the function over any scalar, and `slope(x, y)`, its derivative at x
-/// where the value there is y. Both are generic: for a nested scalar they recurse, for a taylor
-/// number the slope is itself a series. Forms are chosen to be accurate over the whole domain. Sine
-/// and cosine, each the slope of the other, have no slopes here: lift.hpp computes both at once.
+/// A rule has `value(x)`, the function over any scalar, and `slope(x, y)`, its derivative at x with
+/// value y. Both are generic: for a nested scalar they recurse, for a taylor number the slope is
+/// itself a series. Forms are chosen to be accurate over the whole domain. Sine and cosine, each
+/// the slope of the other, have no slopes here: lift.hpp computes both at once.
 
 namespace duet::detail {
 
-/// Is |x| < ½? There derivatives of (1 − x)(1 + x) would cancel, beyond it 1 − x² does.
+/// True if |x| < ½: there derivatives of (1 − x)(1 + x) would cancel, beyond it 1 − x² does.
 template <class T>
 [[nodiscard]] auto is_below_half(const T& x) {
   if constexpr (Real<real_type_t<T>>) {
@@ -41,7 +41,7 @@ template <class T>
 }
 
 /// √(1 − x²), of complex numbers √(1 − x) √(1 + x): the branch that arcsines need, also on the
-/// cuts, and no overflow.
+/// cuts, without overflow.
 template <class T>
 [[nodiscard]] T root_of_one_minus_square(const T& x) {
   using std::sqrt;
@@ -69,8 +69,8 @@ template <class T>
   return map_reals(x, [](const complex& z) { return complex(-z.imag(), z.real()); });
 }
 
-/// 1/cos²x of a complex number. Far from the real axis the cosine overflows, and by 1 + tan²x it
-/// would cancel.
+/// 1/cos²x of a complex number. Far from the real axis the cosine overflows, and 1 + tan²x would
+/// cancel.
 template <class T>
 [[nodiscard]] T inverse_square_of_cosine(const T& x) {
   using std::abs;
@@ -113,7 +113,7 @@ struct cbrt {
   }
   template <class T>
   T slope(const T&, const T& y) const {
-    using std::pow; // of products of y one factor would be 0 and the other's derivative infinite
+    using std::pow; // in products of y one factor would be 0 and the other's derivative infinite
     return static_cast<T>(pow(y, -2)) / 3;
   }
 };

@@ -19,7 +19,8 @@
 /// elementary.hpp and its like. Complex numbers have those of `<complex>` that are in complex.hpp's
 /// list.
 ///
-/// By value where Boost.Math declares f(T): with const D& neither would be more specialised.
+/// Arguments are passed by value if Boost.Math declares f(T): with const D& neither would be more
+/// specialised.
 
 namespace duet {
 
@@ -77,8 +78,8 @@ template <Infinitesimal D>
 
 namespace detail {
 
-/// A constant as what exponents and bases are held in: arithmetic types become reals of the
-/// precision of D.
+/// A constant exponent or base as stored in rules: arithmetic types become reals of the precision
+/// of D.
 template <class D, class U>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto as_constant(const U& x) {
   if constexpr (Arithmetic<U>) {
@@ -88,7 +89,7 @@ template <class D, class U>
   }
 }
 
-/// Apply a rule of several arguments in their common nesting.
+/// Applies a rule of several arguments in their common nesting.
 template <class Rule, class... A>
 [[nodiscard]] auto lift_promoted(const Rule& rule, const A&... a) {
   using common = std::common_type_t<A...>;
@@ -97,8 +98,8 @@ template <class Rule, class... A>
 
 } // namespace detail
 
-/// The power x^p. A constant exponent or base has no slope of its own, so `pow(x, 0)`, `pow(0, p)`
-/// and `pow(−2, 2)` are regular.
+/// Power x^p. A constant exponent or base has no slope, so `pow(x, 0)`, `pow(0, p)` and
+/// `pow(−2, 2)` are regular.
 template <class A, class B>
   requires(detail::MixedScalars<A, B> || detail::MixedReals<A, B>)
 [[nodiscard]] auto pow(const A& x, const B& p) {
@@ -122,7 +123,7 @@ template <class A, class B>
   }
 }
 
-/// The angle of the point (x, y), in (−π, π].
+/// Angle of the point (x, y), in (−π, π] radians.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto atan2(const A& y, const B& x) {
   return detail::lift_promoted(rule::atan2{}, y, x);
@@ -145,13 +146,13 @@ template <class A, class B, class C>
   return detail::lift_promoted(rule::fma{}, x, y, z);
 }
 
-/// The rest of x/y, with the sign of x.
+/// Remainder of x/y, with the sign of x.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmod(const A& x, const B& y) {
   return detail::lift_promoted(rule::fmod{}, x, y);
 }
 
-/// The rest of x/y, nearest to 0.
+/// Remainder of x/y, nearest to 0.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto remainder(const A& x, const B& y) {
   return detail::lift_promoted(rule::remainder{}, x, y);

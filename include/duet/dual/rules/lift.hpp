@@ -9,8 +9,8 @@
 #include <cmath>
 
 /// \file
-/// From the rule of a function to the function over infinitesimal numbers; and sin x with cos x, of
-/// which a derivative always needs both.
+/// Lifts the rule of a function to the function over infinitesimal numbers; and sin x with cos x,
+/// both of which are needed by each derivative.
 
 namespace duet::rule {
 
@@ -37,7 +37,7 @@ template <class T>
   return {sinh(x), cosh(x)};
 }
 
-/// Sine and cosine of an x whose innermost value has the sine and the cosine y already.
+/// Sine and cosine of x, given those of its innermost value as y.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE sine_cosine<T>
 sine_and_cosine_from(const sine_cosine<real_type_t<T>>& y, const T& x) {
@@ -58,7 +58,7 @@ template <class Rule, class T, int W, class... Rest>
   return each_lane([&](const auto&... lane) { return rule.value(lane...); }, x, rest...);
 }
 
-// One by one the rules of sine and cosine would evaluate both for each.
+// Applied separately, the rules of sine and cosine would each evaluate both.
 
 template <Infinitesimal D>
 [[nodiscard]] DUET_ALWAYS_INLINE D lift(const rule::sin&, const D& x) {

@@ -11,8 +11,8 @@
 #include <numeric>
 
 /// \file
-/// The derivatives of atan2, hypot, fma, lerp, midpoint and the remainders. `slopes(y, x…)`
-/// returns the partial derivatives where the value is y.
+/// Derivatives of atan2, hypot, fma, lerp, midpoint and the remainders. `slopes(y, x…)` returns the
+/// partial derivatives at the value y.
 
 namespace duet::rule {
 
@@ -24,7 +24,7 @@ struct atan2 {
   }
   template <class T>
   std::array<T, 2> slopes(const T&, const T& y, const T& x) const {
-    // By the ratio of the smaller to the larger: x² + y² would overflow or vanish first.
+    // Uses the ratio of the smaller to the larger: x² + y² would overflow or vanish first.
     using std::abs;
     return select(
         detail::quiet_less_equal(abs(innermost(y)), abs(innermost(x))),
@@ -89,7 +89,8 @@ struct hypot {
   }
 
 private:
-  /// By ratios to the largest: 1/r − x²/r³, the derivative of x/r, would cancel where x is that.
+  /// Uses ratios to the largest: 1/r − x²/r³, the derivative of x/r, would cancel if x is the
+  /// largest.
   template <class T, class... Rest>
   static std::array<T, 1 + sizeof...(Rest)> by_largest(const T& largest, const Rest&... rest) {
     using std::sqrt;
@@ -122,7 +123,7 @@ struct fma {
   }
 };
 
-/// fmod and remainder: x − n y, where the integer n does not change.
+/// fmod and remainder: x − n y with a constant integer n.
 struct fmod {
   template <class T>
   T value(const T& x, const T& y) const {
@@ -155,7 +156,7 @@ struct lerp {
     if constexpr (std::floating_point<lane_type_t<T>> || Infinitesimal<T>) {
       using std::lerp;
       return lerp(a, b, t);
-    } else { // <cmath> knows built-in types only
+    } else { // <cmath> supports built-in types only
       return select(
           t < T(0.5), [&] { return T(a + t * (b - a)); }, [&] { return T(b - (1 - t) * (b - a)); });
     }
@@ -173,7 +174,7 @@ struct midpoint {
     if constexpr (std::floating_point<lane_type_t<T>> || Infinitesimal<T>) {
       using std::midpoint;
       return midpoint(a, b);
-    } else { // <numeric> knows built-in types only; wider exponents leave room for the sum
+    } else { // <numeric> supports built-in types only; wider exponents leave room for the sum
       return (a + b) / 2;
     }
   }

@@ -13,15 +13,15 @@
 #include <type_traits>
 
 /// \file
-/// The functions of `<cmath>` that are linear, constant or chosen piece by piece, over dual and
-/// Taylor numbers; those that take numbers apart; and classification. All decide by the innermost
-/// value.
+/// The functions of `<cmath>` that are linear, constant or selected piecewise, over dual and Taylor
+/// numbers; those that decompose numbers; and classification. All branch on the innermost value.
 ///
-/// By value where Boost.Math declares f(T): with const D& neither would be more specialised.
+/// Arguments are passed by value if Boost.Math declares f(T): with const D& neither would be more
+/// specialised.
 
 namespace duet {
 
-/// What `<cmath>` says of the innermost value.
+/// Classification of the innermost value, as in `<cmath>`.
 [[nodiscard]] auto signbit(RealInfinitesimal auto x) {
   using std::signbit;
   const auto is_negative = signbit(innermost(x));
@@ -52,7 +52,7 @@ namespace duet {
   return fpclassify(innermost(x));
 }
 
-/// The quiet comparisons of `<cmath>`: no exception where either is NaN.
+/// The quiet comparisons of `<cmath>`: no exception if either is NaN.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto isunordered(const A& a, const B& b) {
   using std::isnan;
@@ -83,7 +83,7 @@ template <RealInfinitesimal D>
 /// |x|, as `abs`.
 [[nodiscard]] auto fabs(const RealInfinitesimal auto& x) { return abs(x); }
 
-/// |magnitude| with the sign of `sign`, which only its sign bit enters.
+/// |magnitude| with the sign of `sign`, of which only the sign bit is used.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto copysign(const A& magnitude, const B& sign) {
   using std::signbit;
@@ -94,7 +94,7 @@ template <class A, detail::MixedReals<A> B>
       [&] { return common(-x); });
 }
 
-/// The larger of two; where one is NaN the other, as in `<cmath>`.
+/// The larger of two; if one is NaN the other, as in `<cmath>`.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmax(const A& a, const B& b) {
   using std::isnan;
@@ -104,7 +104,7 @@ template <class A, detail::MixedReals<A> B>
       isnan(innermost(a)) || detail::quiet_less(real(innermost(a)), real(innermost(b))),
       [&] { return common(b); }, [&] { return common(a); });
 }
-/// The smaller of two; where one is NaN the other, as in `<cmath>`.
+/// The smaller of two; if one is NaN the other, as in `<cmath>`.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fmin(const A& a, const B& b) {
   using std::isnan;
@@ -115,7 +115,7 @@ template <class A, detail::MixedReals<A> B>
       [&] { return common(b); }, [&] { return common(a); });
 }
 
-/// max(a − b, 0); NaN where either is.
+/// max(a − b, 0); NaN if either is.
 template <class A, detail::MixedReals<A> B>
 [[nodiscard]] auto fdim(const A& a, const B& b) {
   using common = promote_t<A, B>;
@@ -125,7 +125,7 @@ template <class A, detail::MixedReals<A> B>
       [&] { return common(a - b); });
 }
 
-/// The rounding of `<cmath>`: flat wherever it is differentiable.
+/// Rounding functions of `<cmath>`: their derivatives are zero wherever they exist.
 template <RealInfinitesimal D>
 [[nodiscard]] D floor(const D& x) {
   using std::floor;

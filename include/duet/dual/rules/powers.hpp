@@ -15,11 +15,11 @@
 #include <type_traits>
 
 /// \file
-/// The derivatives of powers, by the base, by the exponent and by both; see elementary.hpp.
+/// Derivatives of powers, with respect to the base, the exponent and both; see elementary.hpp.
 
 namespace duet::detail {
 
-/// What decides how fast 0^x vanishes: x, or its real part.
+/// The part of x that determines how fast 0^x vanishes: x, or its real part.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr decltype(auto) real_part(const T& x) {
   if constexpr (Real<T>) {
@@ -29,7 +29,7 @@ template <class T>
   }
 }
 
-/// log b as a number that T's numbers can be multiplied by; that of −2 is complex where they are.
+/// log b as a number that multiplies T's numbers; log(−2) is complex if they are.
 template <class T, class Base>
 [[nodiscard]] DUET_ALWAYS_INLINE auto log_of_base(const Base& base) {
   using std::log;
@@ -40,8 +40,8 @@ template <class T, class Base>
   }
 }
 
-/// The power of two constants as `<complex>` has it for their types; it is a C. (Of other numbers
-/// than built-in ones libc++ has it of two complex ones only.)
+/// Power of two constants as `<complex>` has it for their types; it is a C. (For other than
+/// built-in numbers libc++ has only that of two complex ones.)
 template <class C, class X, class P>
 [[nodiscard]] C complex_power_of_constants(const X& x, const P& p) {
   using std::pow;
@@ -61,8 +61,8 @@ template <class C, class X, class P>
   }
 }
 
-/// x^p as slopes need it: of complex numbers with 0⁰ = 1, of which `<complex>` makes NaN, and with
-/// whole powers by products, which the logarithm of a large x would cost digits.
+/// x^p for use in slopes: for complex numbers with 0⁰ = 1, for which `<complex>` returns NaN, and
+/// with integer powers by products, as the logarithm of a large x would cost digits.
 template <class T, class Exponent>
 [[nodiscard]] T power_in_slope(const T& x, const Exponent& p);
 
@@ -106,7 +106,7 @@ struct power {
   }
 };
 
-/// x ↦ b^x. Where b = 0 the value jumps at x = 0 and is flat beyond.
+/// x ↦ b^x. For b = 0 the value jumps at x = 0 and is flat beyond.
 template <class Base>
 struct exponential {
   Base base;
@@ -119,7 +119,8 @@ struct exponential {
   template <class T>
   T slope(const T& x, const T& y) const {
     const T regular = y * detail::log_of_base<T>(base);
-    // 0^x log 0 vanishes, and so do its derivatives by the base, but those of order x and above.
+    // 0^x log 0 vanishes, and so do its derivatives with respect to the base, except those of order
+    // x and above.
     const auto& real_x = detail::real_part(innermost(x));
     using R = std::remove_cvref_t<decltype(real_x)>;
     const auto vanishes =
@@ -164,7 +165,7 @@ template <class T>
   return n < 0 ? T(integer<T>(1) / result) : result;
 }
 
-/// Whole exponents up to this one are taken by products in slopes of complex powers.
+/// Integer exponents up to this one are computed by products in slopes of complex powers.
 inline constexpr int whole_power_limit = 64;
 
 template <class T, class Exponent>

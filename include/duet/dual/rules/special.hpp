@@ -13,7 +13,7 @@
 #include <limits>
 
 /// \file
-/// The derivatives of the error, gamma and hyperbolic functions and the inverses of these; see
+/// Derivatives of the error, gamma and hyperbolic functions and the inverses of these; see
 /// elementary.hpp.
 
 namespace duet {
@@ -22,20 +22,21 @@ namespace detail {
 template <class T>
 [[nodiscard]] T digamma(const T& argument);
 
-/// π cot πx. The tangent has a pole where the cotangent is 0, at which derivatives would be lost.
+/// π cot πx. The tangent has a pole at the zeros of the cotangent, where derivatives would be lost.
 template <class T>
 [[nodiscard]] T cotangent_of_half_turns(const T& x) {
   using std::cos;
   using std::round;
   using std::sin;
   using real = real_type_t<T>;
-  // Whole periods go first, they would cost the digits of πx.
+  // Whole periods are removed first: they would cost the digits of πx.
   const T angle = (x - real(round(innermost(x)))) * constant::pi<real>();
   return constant::pi<real>() * cos(angle) / sin(angle);
 }
 
-/// ψ(x) = Γ′(x)/Γ(x), from its asymptotic series after enough steps ψ(x) = ψ(x + 1) − 1/x. Nothing
-/// but algebra, log, sin and cos, so every scalar of duet gives the derivatives of ψ too.
+/// Digamma function ψ(x) = Γ′(x)/Γ(x), from its asymptotic series after enough steps
+/// ψ(x) = ψ(x + 1) − 1/x. Only algebra, log, sin and cos, so every scalar of duet gives the
+/// derivatives of ψ too.
 template <class T>
 [[nodiscard]] T digamma_of_one(const T& argument) {
   using std::log;

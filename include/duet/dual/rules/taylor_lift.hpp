@@ -11,7 +11,7 @@
 #include <cstddef>
 
 /// \file
-/// From the rule of a function to the function over Taylor numbers.
+/// Lifts the rule of a function to the function over Taylor numbers.
 ///
 /// For y = f(x) the chain rule y′ = f′(x) x′ gives, coefficient by coefficient,
 /// k y_k = Σ_{j=1…k} j x_j s_{k−j}, where s is the series of the slope f′(x). The slope is needed
@@ -50,8 +50,8 @@ template <class T, class S>
   }
 }
 
-/// x / k. To built-in reals 1/k is a constant, of half a unit in the last place: a division would
-/// be the slowest link of the chain that coefficients make.
+/// x / k. For built-in reals 1/k is a constant, accurate to half a unit in the last place: a
+/// division would be the slowest link in the chain of coefficients.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr T divided_by_order(const T& x, int k) {
   if constexpr (std::floating_point<T>) {
@@ -103,14 +103,14 @@ template <class Rule, class T, int K, class Tag>
   }
 }
 
-/// Where the compiler may call it.
+/// Variant that the compiler may call instead of inlining it.
 template <class Rule, class T, int K, class Tag>
 [[nodiscard]] inline taylor<T, K, Tag> lift_by_call(const Rule& rule, const taylor<T, K, Tag>& x) {
   return lift_in_place(rule, x);
 }
 
-/// Up to this order of built-in numbers a call, with all coefficients through memory, costs more
-/// than what it computes.
+/// Maximum order for inlining over built-in numbers: there a call, with all coefficients through
+/// memory, costs more than its computation.
 inline constexpr int in_place_order = 3;
 
 /// The further coefficients of s and c, s′ = c x′ and c′ = Sign s x′.
@@ -135,7 +135,7 @@ inline void extend_pair(const taylor<T, K, Tag>& x, taylor<T, K, Tag>& s, taylor
   });
 }
 
-/// Of several arguments.
+/// Variant for several arguments.
 template <class Rule, class T, int K, class Tag, class... Rest>
 [[nodiscard]] inline taylor<T, K, Tag> lift_by_call(const Rule& rule, const taylor<T, K, Tag>& x,
                                                     const taylor<T, K, Tag>& y,

@@ -15,16 +15,16 @@
 #include <cstddef>
 
 /// \file
-/// Sine and cosine of a multiple of a constant angle, told by the angle's square: what the
-/// exponential of b v is made of, where v does not depend on what b does.
+/// Sine and cosine of a multiple of a constant angle, given by the square of the angle: the
+/// functions in the exponential of b v, if v does not depend on the variables of b.
 ///
-/// With the universal functions U_n(b; α) = bⁿ c_n(αb²), derivatives by b need no further Stumpff
-/// functions: U_0′ = −α U_1, U_1′ = U_0. That by α needs one more,
+/// With the universal functions U_n(b; α) = bⁿ c_n(αb²), derivatives with respect to b need no
+/// further Stumpff functions: U_0′ = −α U_1, U_1′ = U_0. That with respect to α needs one more,
 /// H = ∂U_1/∂α = b³ c₁′(αb²), with ∂U_0/∂α = −½ b U_1 and H′ = −½ b U_1.
 
 namespace duet::detail {
 
-/// U_0, U_1 and, where there are three, H.
+/// U_0, U_1 and, if `Count` is 3, H.
 template <class T, std::size_t Count>
 using universal_values = std::array<T, Count>;
 
@@ -52,7 +52,7 @@ template <Real R>
 template <std::size_t Count, class B, class A>
 [[nodiscard]] DUET_ALWAYS_INLINE auto universal_functions(const B& b, const A& alpha);
 
-/// By the Stumpff functions of αb², whatever depends on what.
+/// Universal functions by the Stumpff functions of αb², for any dependence of b and α.
 template <std::size_t Count, class D>
 [[nodiscard]] DUET_ALWAYS_INLINE universal_values<D, Count>
 universal_functions_by_square(const D& b, const D& alpha) {
@@ -71,7 +71,7 @@ universal_functions_by_square(const D& b, const D& alpha) {
   }
 }
 
-/// From the functions of the value of b to those of b; α is the same for both.
+/// Lifts the functions of the value of b to those of b; α is the same for both.
 template <std::size_t Count, class T, int K, class Tag, class V, class A>
 [[nodiscard]] DUET_ALWAYS_INLINE auto lifted_by_b(const universal_values<V, Count>& below,
                                                   const taylor<T, K, Tag>& b, const A& alpha) {
@@ -124,7 +124,7 @@ template <std::size_t Count, class B, class V, class A>
   return u;
 }
 
-/// From the functions of the value of α to those of α, of first order, by all three of them; b is
+/// Lifts the functions of the value of α to those of α, of first order, by all three of them; b is
 /// the same for both.
 template <class V, class B, class A>
 [[nodiscard]] DUET_ALWAYS_INLINE auto lifted_by_alpha(const universal_values<V, 3>& below,
@@ -135,7 +135,7 @@ template <class V, class B, class A>
   return universal_values<D, 2>{x.composed(below[0], slope), x.composed(below[1], below[2])};
 }
 
-/// Does T have the outermost level of D?
+/// True if T has the outermost level of D.
 template <class T, class D>
 [[nodiscard]] constexpr bool has_level_of() {
   if constexpr (Infinitesimal<D>) {
@@ -145,14 +145,14 @@ template <class T, class D>
   }
 }
 
-/// Can a function of an A be told by its slope alone?
+/// A number whose functions are determined by value and slope alone.
 template <class A>
 concept FirstOrder = requires(const A& x) {
   x.composed(x.value(), x.value());
 };
 
-/// U_0(b; α) and U_1(b; α), α ≥ 0; with Count 3 also H. Neither argument is widened to what the
-/// other depends on.
+/// U_0(b; α) and U_1(b; α), α ≥ 0; with `Count` 3 also H. Neither argument is widened to the
+/// variables of the other.
 template <std::size_t Count, class B, class A>
 [[nodiscard]] DUET_ALWAYS_INLINE auto universal_functions(const B& b, const A& alpha) {
   using D = promote_t<B, A>;

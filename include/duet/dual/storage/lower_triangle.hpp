@@ -12,18 +12,18 @@
 
 namespace duet::detail {
 
-/// Up to this many packets all loops are unrolled.
+/// Maximum number of packets for which all loops are unrolled.
 inline constexpr int triangle_unroll_limit = 32;
 
-/// The rows of the lower triangle of an N × N matrix, each in as many packets as it needs; what the
-/// last packet of a row holds beyond the diagonal is of no account.
+/// The rows of the lower triangle of an N × N matrix, each in as many packets as it needs; the
+/// contents of the last packet of a row beyond the diagonal are ignored.
 template <class T, int N>
 class lower_triangle {
   static constexpr int width = packing<T, N>::width;
   using packet = typename packing<T, N>::packet;
   using row_type = partials<T, N>;
 
-  /// Row i has ⌊i / width⌋ + 1 packets; so many have all rows before one. Unsigned: the rounding of
+  /// Number of packets in all rows before one; row i has ⌊i / width⌋ + 1. Unsigned: the rounding of
   /// a signed division costs clang's Hessian of 3 a sixth.
   static constexpr int packets_before(int row) {
     const unsigned i = unsigned(row), full = i / width;

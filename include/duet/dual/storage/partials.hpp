@@ -15,9 +15,9 @@
 /// \file
 /// Storage of the partial derivatives of a `dual`, and the one operation on it: `map`.
 ///
-/// Built-in floating-point partials are kept in compiler vectors of the width the target has, the
-/// last one padded with zeros; others in a plain array. All loops are unrolled at compile time and
-/// inlined, which is what keeps partials in registers.
+/// Built-in floating-point partials are kept in compiler vectors of the target's width, the last
+/// one padded with zeros; others in a plain array. All loops are unrolled at compile time and
+/// inlined, which keeps partials in registers.
 
 namespace duet::detail {
 
@@ -29,14 +29,15 @@ namespace duet::detail {
   return p;
 }
 
-/// Partials are unrolled up to this many packets or elements; a longer row is a loop, whose every
-/// intermediate result goes through memory.
+/// Maximum number of packets or elements for which partials are unrolled; a longer row is a loop,
+/// whose every intermediate result goes through memory.
 inline constexpr int unroll_limit = 64;
 
-/// Rows of many packets leave few registers for all that a statement reads, and compilers copy to
-/// the stack what they read before. Told that memory may have changed, they read it again from
-/// where it is. (Measured. With two or three 512-bit packets, first derivatives and `second_dual`
-/// gain a tenth, duals over duals lose a fifth; with four and more that is slower.)
+/// True if rows are read again from memory after a compiler barrier. Rows of many packets leave few
+/// registers for the operands of a statement, and compilers copy to the stack what they read
+/// before. With a barrier they read it again from its original position. (Measured. With two or
+/// three 512-bit packets, first derivatives and `second_order_dual` gain a tenth, duals over duals
+/// lose a fifth; with four and more that is slower.)
 [[nodiscard]] constexpr bool is_reread(int packets) {
   return DUET_VECTOR_BYTES < 64 ? packets >= 4 : packets == 2 || packets == 3;
 }
@@ -53,7 +54,7 @@ DUET_ALWAYS_INLINE constexpr void unrolled(F&& f) {
   }
 }
 
-/// How N numbers are packed: in vectors of the width the target has, or one by one.
+/// Packing of N numbers: in vectors of the target's width, or one by one.
 template <class T, int N>
 struct packing {
   static constexpr int width = 1;
@@ -65,7 +66,7 @@ struct packing {
 template <class T, int N>
   requires(N > 1 && (std::same_as<T, float> || std::same_as<T, double>))
 struct packing<T, N> {
-  // Where clang does better with halves of vectors, that is for short rows only.
+  // If clang does better with halves of vectors, it does so for short rows only.
   static constexpr int bytes = N * int(sizeof(T)) > 128 ? DUET_BATCH_BYTES : DUET_VECTOR_BYTES;
   static constexpr int native = bytes / int(sizeof(T));
   static constexpr int width = ceil_to_power_of_two(N) < native ? ceil_to_power_of_two(N) : native;

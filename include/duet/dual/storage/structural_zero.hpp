@@ -12,7 +12,7 @@
 #include <type_traits>
 
 /// \file
-/// The chain rule, with zeros that survive infinite slopes.
+/// The chain rule with structural zeros, which survive infinite slopes.
 ///
 /// An exactly zero partial means "does not depend on". Multiplied by the infinite or undefined
 /// slope of √, log, pow or a division at a singular point it must stay zero, or constants would
@@ -20,7 +20,7 @@
 
 namespace duet::detail {
 
-/// Is `x`, with every infinitesimal part, an exact zero?
+/// True if `x`, with every infinitesimal part, is an exact zero.
 template <class T>
 [[nodiscard]] constexpr auto is_structural_zero(const T& x) {
   if constexpr (Infinitesimal<T>) {
@@ -30,8 +30,8 @@ template <class T>
   }
 }
 
-/// Are `x` and all its infinitesimal parts finite? (x − x is NaN for infinities and NaN, else 0,
-/// and asking for ≥ takes one branch where = takes two: one for NaN.)
+/// True if `x` and all its infinitesimal parts are finite. (x − x is NaN for infinities and NaN,
+/// else 0; comparing by ≥ takes one branch, by = two: one for NaN.)
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_all_finite(const T& x) {
   if constexpr (Infinitesimal<T>) {
@@ -46,7 +46,7 @@ template <class T>
 template <class T>
 [[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial);
 
-/// slope · partial for a partial of a slope, which is zero where the slope does not depend on the
+/// slope · partial for a partial of a slope, which is zero if the slope does not depend on the
 /// inner variable.
 template <class T>
 [[nodiscard]] constexpr T product_of_partial(const T& slope, const T& partial) {
@@ -55,8 +55,8 @@ template <class T>
       [&] { return guarded_product(slope, partial); });
 }
 
-/// slope · partial, zero where the partial is a structural zero; for nested scalars part by part,
-/// or what does not depend on the inner variable would be poisoned by it.
+/// slope · partial, zero if the partial is a structural zero; for nested scalars part by part, or
+/// parts that do not depend on the inner variable would be poisoned by it.
 template <class T>
 [[nodiscard]] constexpr T guarded_product(const T& slope, const T& partial) {
   return select(
@@ -70,8 +70,8 @@ template <class T>
       });
 }
 
-/// slope · partial for a built-in number, a batch or a packet of them, without a branch: what stays
-/// in one block is merged and scheduled better.
+/// slope · partial for a built-in number, a batch or a packet of them, without a branch: code in
+/// one block is merged and scheduled better.
 template <class T, class P>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr P masked_product(const T& slope, const P& partial) {
   if constexpr (lane_traits<T>::is_batch) {
@@ -96,19 +96,19 @@ template <class T>
   }
 }
 
-/// A row of more packets than this is masked only where a slope turns out not to be finite. Masks
-/// of 512-bit packets cost more than those of others, and those of 128 bits take copies of their
-/// operands; clang does without that branch better where packets are larger.
+/// A row of more packets than this is masked only if a slope turns out not to be finite. Masks of
+/// 512-bit packets cost more than those of others, and those of 128 bits take copies of their
+/// operands; clang does better without that branch if packets are larger.
 inline constexpr int branch_limit = DUET_VECTOR_BYTES < 32 ? 0 : DUET_VECTOR_BYTES < 64 ? 2 : 1;
 inline constexpr int mask_limit = !masks_beat_branches     ? branch_limit
                                   : DUET_VECTOR_BYTES > 16 ? std::numeric_limits<int>::max()
                                                            : 0;
 
-/// Up to this many packets that is done in place: a call would cost the registers of what lives on
-/// after it, though it is never made.
+/// Up to this many packets that is done inline: a call would cost the registers of values live
+/// after it, even if it is never made.
 inline constexpr int in_place_limit = 32;
 
-// How partials are combined: `kernel(product, p…)` for each of them, where product(slope, p) is
+// Combinations of partials: `kernel(product, p…)` for each of them, where product(slope, p) is
 // slope · p with surviving zeros.
 
 /// slope · p
@@ -170,8 +170,8 @@ template <class Kernel, class Row, class T>
   }
 }
 
-/// Element by element. Out of line and by value: were the rows passed by reference, they would live
-/// in memory also where all slopes are finite.
+/// Element by element. Out of line and by value: rows passed by reference would live in memory even
+/// if all slopes are finite.
 template <class Kernel, class Row, class... Rows>
 [[nodiscard]] DUET_OUT_OF_LINE DUET_COLD constexpr Row guarded_chain(Kernel kernel, Row row,
                                                                      Rows... rows) {
@@ -179,7 +179,7 @@ template <class Kernel, class Row, class... Rows>
   return Row::map_elements([&](const auto&... p) { return kernel(product, p...); }, row, rows...);
 }
 
-/// The kernel applied to rows of partials; are its slopes finite?
+/// Applies the kernel to rows of partials; the mask is true if its slopes are finite.
 template <template <class> class Kernel, class T, class Mask, class Row, class... Rows>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Row
 combined(const Kernel<T>& kernel, const Mask& is_finite, const Row& row, const Rows&... rows) {
@@ -219,9 +219,9 @@ template <class T, class Row>
   return combined(kernel, kernel.is_finite(), a, b);
 }
 
-/// sum(product) with a product in which zeros on the right survive. Where the probe, a sum of all
-/// factors on the left, is finite, plain products do; the processor guesses that and the products
-/// need not wait for masks.
+/// sum(product) with a product in which zeros on the right survive. If the probe, a sum of all
+/// factors on the left, is finite, plain products suffice; the processor predicts that, and the
+/// products need not wait for masks.
 template <class T, class Sum>
 DUET_ALWAYS_INLINE constexpr auto with_surviving_products([[maybe_unused]] const T& probe,
                                                           const Sum& sum) {

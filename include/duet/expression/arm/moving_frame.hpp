@@ -122,7 +122,7 @@ struct about_axis {
 };
 /// A translation along the I-th coordinate axis.
 template <int I>
-struct along_axis {
+struct frame_with_z_axis {
   static constexpr bool turns = false;
 };
 /// Any rigid motion, by its value and its twists.
@@ -151,7 +151,7 @@ public:
     }
   }
   template <bool, int I>
-  DUET_ALWAYS_INLINE void append(along_axis<I>, double d) {
+  DUET_ALWAYS_INLINE void append(frame_with_z_axis<I>, double d) {
     place_ = place_ + d * axis<I>();
   }
   template <bool>
@@ -175,7 +175,7 @@ public:
     write_twist<IsSet>(column, cross(place_, omega), omega);
   }
   template <bool IsSet, int I>
-  DUET_ALWAYS_INLINE void write(along_axis<I>, double* column, double rate) const {
+  DUET_ALWAYS_INLINE void write(frame_with_z_axis<I>, double* column, double rate) const {
     write_twist<IsSet>(column, rate * axis<I>(), lanes_of(0, 0, 0, 0));
   }
   /// Any twist ω + εv, told in the frame's own axes.

@@ -63,7 +63,7 @@ struct link_of<applied_node<op::turn, unit_vector_node<kind::dual_vector, I>, An
 };
 template <int I, class D>
 struct link_of<applied_node<op::slide, unit_vector_node<kind::vector, I>, D>> {
-  using link = along_axis<I>;
+  using link = frame_with_z_axis<I>;
   using nodes = mp11::mp_list<D>;
   template <class Motion>
   using twist = rate_t<D, Motion>;

@@ -15,26 +15,27 @@
 #include <vector>
 
 /// \file
-/// Where branches of a curve of positions meet, and the ways that leave from there. For those who
-/// extend duet.
+/// Branch points of a curve of configurations, and the tangents of the branches there. For those
+/// who extend duet.
 
 namespace duet::detail {
 
-/// A point in which branches meet.
+/// A branch point of a curve.
 struct branching {
-  Eigen::VectorXd x; ///< as of `curve_point`
-  /// Unit tangents: the way on, those of other branches in pairs of opposites, the way back.
+  Eigen::VectorXd x; ///< coordinates as in `curve_point`
+  /// Unit tangents: straight on, those of other branches in pairs of opposites, back.
   std::vector<Eigen::VectorXd> ways;
-  std::vector<curve_point> beside; ///< a point of the curve on each way
+  std::vector<curve_point> beside; ///< a point of the curve along each tangent
 };
 
 class branch_finder {
 public:
   explicit branch_finder(const loop_curve& curve) : curve_(curve) {}
 
-  /// The point before the end of a curve where branches meet, to rounding; nothing where there is
-  /// none, or they touch each other, so that second derivatives do not tell them apart.
-  /// \param step  the last one that led nowhere, halved: branches are near if it is small
+  /// The branch point ahead of a point of the curve, to round-off; empty if there is none, or if
+  /// branches touch there, so that second derivatives do not separate them.
+  ///
+  /// \param step  half of the last rejected step; a branch point is near if it is small
   [[nodiscard]] std::optional<branching> ahead(const curve_point& from, double step) const {
     const auto x = step < 1e-3 ? singular_point(from, 4 * step) : std::nullopt;
     if (!x || from.tangent.dot(*x - from.x) <= 0) {
@@ -69,22 +70,22 @@ public:
   }
 
 private:
-  /// Where A loses some of its rank and F vanishes: Gauss' and Newton's method for x and W with
+  /// Point where A loses rank and F vanishes, by the Gauss–Newton method for x and W with
   ///
   ///   UᵀF = 0,   AᵀU W = 0,   W₀ᵀW = 1,
   ///
-  /// where U spans the image of A beside that point, so that equations which depend on others are
-  /// left out; W spans what is lost of it. These are more equations than unknowns, but where
-  /// branches cross all are fulfilled, and their matrix is regular: it takes no direction to zero,
-  /// but for a v ≠ 0 in the kernel of A with wᵀ ∂²F(v, ·) = 0 on that, as where branches touch.
-  /// Where they only nearly meet some are not fulfilled.
+  /// where U spans the image of A near that point, so that redundant equations are omitted, and W
+  /// spans the lost part of the image. There are more equations than unknowns, but at a crossing of
+  /// branches all are fulfilled and their matrix has full column rank: its kernel is zero except if
+  /// there is a v ≠ 0 in the kernel of A with wᵀ ∂²F(v, ·) = 0 on that kernel, as where branches
+  /// touch. Where branches only nearly meet some equations are not fulfilled.
   [[nodiscard]] std::optional<Eigen::VectorXd> singular_point(const curve_point& from,
                                                               double within) const {
     const Eigen::MatrixXd& u = from.image;
     const Eigen::Index n = from.x.size(), r = u.cols();
     const ranked_matrix reduced(Eigen::MatrixXd(u.transpose().lazyProduct(from.matrix)));
     const Eigen::VectorXd& s = reduced.singular_values();
-    Eigen::Index lost = 0; // of the rank, as far as can be seen from here
+    Eigen::Index lost = 0; // rank that is lost, as far as visible from here
     while (lost < r && s[r - 1 - lost] < 10 * within * s[0]) {
       ++lost;
     }
@@ -130,9 +131,9 @@ private:
     return std::nullopt;
   }
 
-  /// The lines along which rates have accelerations: v in the kernel K of A with wᵀ ∂²F(v, v) = 0
-  /// for all w across its image. For a kernel of two columns these are the zeros of a form in the
-  /// plane, else they are looked for from random starts.
+  /// Lines along which rates have accelerations: v in the kernel K of A with wᵀ ∂²F(v, v) = 0 for
+  /// all w orthogonal to its image. For a kernel of dimension two these are the zeros of a form in
+  /// the plane, otherwise they are searched for from random starts.
   [[nodiscard]] std::vector<Eigen::VectorXd> tangents(const Eigen::VectorXd& x) const {
     const ranked_matrix a(curve_.matrix(x));
     const Eigen::MatrixXd kernel = a.kernel();
@@ -164,16 +165,16 @@ private:
     return result;
   }
 
-  /// The first of these rates that is none of rounding.
+  /// The first of these rates that is not round-off.
   [[nodiscard]] static double first_that_moves(const Eigen::VectorXd& rates) {
     const auto moves = [](double x) { return std::abs(x) > 1e-9; };
     const auto found = std::find_if(rates.begin(), rates.end(), moves);
     return found == rates.end() ? 0 : *found;
   }
 
-  /// The angles θ within a half turn for which all forms vanish at (cos θ, sin θ), from the one
-  /// that they are nearest to multiples of, a cos² θ + 2 b cos θ sin θ + c sin² θ, as
-  /// (a + c) / 2 + (a − c) / 2 cos 2θ + b sin 2θ.
+  /// The angles θ within a half turn for which all forms vanish at (cos θ, sin θ), from the form of
+  /// which they all are nearly multiples, a cos² θ + 2 b cos θ sin θ + c sin² θ = (a + c) / 2 + (a
+  /// − c) / 2 cos 2θ + b sin 2θ.
   [[nodiscard]] static std::vector<double>
   zeros_in_plane(const std::vector<Eigen::MatrixXd>& forms) {
     Eigen::MatrixXd parts(Eigen::Index(forms.size()), 3);
@@ -199,7 +200,7 @@ private:
     return result;
   }
 
-  /// A point of the curve that is left for from x along a tangent.
+  /// A point of the curve that leaves x along a tangent.
   [[nodiscard]] std::optional<curve_point> beside(const Eigen::VectorXd& x,
                                                   const Eigen::VectorXd& tangent) const {
     for (double step = 1e-3; step > 1e-5; step /= 2) {

@@ -12,15 +12,15 @@
 #include <vector>
 
 /// \file
-/// How loops are closed. For those who extend duet.
+/// Loop closure by damped least squares. For those who extend duet.
 
 namespace duet::detail {
 
-/// The numbers from 0 to n, without these.
+/// The numbers from 0 to n − 1 except for these.
 [[nodiscard]] inline std::vector<int> all_but(int n, const std::vector<int>& these) {
   std::vector<int> result;
   for (const int i : these) {
-    require(0 <= i && i < n, "duet: closed_tree: no coordinate ", i, " of ", n);
+    require(0 <= i && i < n, "duet: closed_chain_mechanism: no coordinate ", i, " of ", n);
   }
   for (int i = 0; i < n; ++i) {
     if (std::find(these.begin(), these.end(), i) == these.end()) {
@@ -30,7 +30,7 @@ namespace duet::detail {
   return result;
 }
 
-/// ∂F/∂q, each column per unit of its coordinate.
+/// Constraint Jacobian ∂F/∂q, each column per unit of its coordinate.
 template <class Mechanism>
 [[nodiscard]] Eigen::MatrixXd unit_jacobian(const Mechanism& of, const Eigen::VectorXd& q) {
   return of.constraint_jacobian(q) * of.units().asDiagonal();
@@ -40,7 +40,7 @@ template <class Mechanism>
   return ranked_matrix(unit_jacobian(of, q));
 }
 
-/// These columns of a matrix.
+/// The columns of a matrix at these indices.
 [[nodiscard]] inline Eigen::MatrixXd columns(const Eigen::MatrixXd& of,
                                              const std::vector<int>& these) {
   Eigen::MatrixXd result(of.rows(), Eigen::Index(these.size()));
@@ -49,7 +49,7 @@ template <class Mechanism>
   }
   return result;
 }
-/// These numbers of a vector.
+/// The entries of a vector at these indices.
 [[nodiscard]] inline Eigen::VectorXd entries(const Eigen::VectorXd& of,
                                              const std::vector<int>& these) {
   Eigen::VectorXd result(Eigen::Index(these.size()));
@@ -59,7 +59,7 @@ template <class Mechanism>
   return result;
 }
 
-/// Puts numbers in place of these of a vector.
+/// Replaces the entries of a vector at these indices.
 inline void put(const Eigen::VectorXd& numbers, const std::vector<int>& these,
                 Eigen::VectorXd& into) {
   for (std::size_t i = 0; i < these.size(); ++i) {
@@ -67,11 +67,11 @@ inline void put(const Eigen::VectorXd& numbers, const std::vector<int>& these,
   }
 }
 
-/// Levenberg's and Marquardt's method for F(q) = 0.
+/// Damped least squares (Levenberg–Marquardt method) for F(q) = 0.
 template <class Mechanism>
 class closing {
 public:
-  /// \param free  coordinates that may move
+  /// \param free  numbers of the coordinates that may move
   closing(const Mechanism& of, const Eigen::VectorXd& guess, const std::vector<int>& free,
           int most_steps = 200)
       : of_(of), free_(free), q_(guess), f_(of.residuals(guess)), norm_(f_.norm()) {
@@ -86,7 +86,7 @@ public:
   [[nodiscard]] const Eigen::VectorXd& coordinates() const { return q_; }
 
 private:
-  /// One that reduces the residual; false where there is none.
+  /// Makes a step that reduces the residual; false if there is none.
   [[nodiscard]] bool step() {
     const Eigen::MatrixXd j = columns(unit_jacobian(of_, q_), free_);
     const ranked_matrix svd(j);
@@ -114,14 +114,14 @@ private:
         return goes_on;
       }
       if (norm_ < 1e-14) {
-        return false; // rounding
+        return false; // round-off
       }
       damping_ *= 10;
     }
     return false;
   }
 
-  static constexpr double longest = 1; ///< of a step
+  static constexpr double longest = 1; ///< maximum norm of a step
   const Mechanism& of_;
   std::vector<int> free_;
   Eigen::VectorXd q_, f_;

@@ -17,34 +17,35 @@
 #include <vector>
 
 /// \file
-/// The curve of positions along a straight line of some coordinates. For those who extend duet.
+/// Curve of configurations along a straight line of the driven coordinates. For those
+/// who extend duet.
 
 namespace duet::detail {
 
-/// A position on the curve: x = (dependent coordinates per unit, s), and what follows from it.
+/// A configuration on the curve, x = (dependent coordinates per unit, s), with its derivatives.
 struct curve_point {
   Eigen::VectorXd x;
-  Eigen::VectorXd tangent; ///< dx per unit of length
-  Eigen::MatrixXd matrix;  ///< A
+  Eigen::VectorXd tangent; ///< unit tangent dx per unit of arc length
+  Eigen::MatrixXd matrix;  ///< the matrix A of `loop_curve`
   Eigen::MatrixXd image;   ///< orthonormal columns that span the image of A
-  double least;            ///< of the singular values of A that are not zero
+  double least;            ///< smallest nonzero singular value of A
 
   [[nodiscard]] double s() const { return x[x.size() - 1]; }
   [[nodiscard]] double s_rate() const { return tangent[tangent.size() - 1]; }
 };
 
-/// The positions q(s) of a mechanism whose drives are on the straight line u₀ + s w, |w| = 1 in
-/// units of the coordinates, as a curve in (q_dependent, s), which goes on smoothly where s turns
-/// back: A = (∂F/∂q_dependent, ∂F/∂u w) has its tangent as kernel.
+/// The configurations q(s) of a mechanism whose driven coordinates are on the straight line u₀ + s
+/// w, |w| = 1 in units of the coordinates, as a curve in (q_dependent, s), which is smooth where s
+/// reverses: the kernel of A = (∂F/∂q_dependent, ∂F/∂u w) is its tangent.
 class loop_curve {
 public:
-  /// \param way  of the drives, per unit of each; of any length but 0
-  loop_curve(const closed_tree& of, const Eigen::VectorXd& q0, std::vector<int> drives,
+  /// \param way  direction of the driven coordinates, each per unit; of any length except for 0
+  loop_curve(const closed_chain_mechanism& of, const Eigen::VectorXd& q0, std::vector<int> drives,
              const Eigen::VectorXd& way)
       : of_(of), q0_(q0), drives_(std::move(drives)), dependent_(all_but(of.size(), drives_)),
         way_(way.normalized()) {}
 
-  /// Where it begins; nothing where it has no direction there.
+  /// The first point; empty if the curve has no tangent there.
   [[nodiscard]] std::optional<curve_point> start(double direction) const {
     Eigen::VectorXd x(Eigen::Index(dependent_.size()) + 1);
     x << entries(q0_.cwiseQuotient(of_.units()), dependent_), 0;
@@ -58,7 +59,7 @@ public:
     put(entries(q, drives_) + x[x.size() - 1] * way_, drives_, q);
     return q.cwiseProduct(of_.units());
   }
-  /// Their rates along a tangent.
+  /// Rates of all coordinates along a tangent.
   [[nodiscard]] Eigen::VectorXd rates(const Eigen::VectorXd& tangent) const {
     Eigen::VectorXd v(of_.size());
     put(tangent.head(tangent.size() - 1), dependent_, v);
@@ -66,10 +67,11 @@ public:
     return v.cwiseProduct(of_.units());
   }
 
-  /// The next point on it, so far on along the tangent; nothing where that is too far for all to
-  /// change little: the tangent's direction, the way back to the curve, and the volume that the
-  /// equations and the tangent span, which keeps its sign unless another branch meets the curve.
-  /// (Where two more meet it, it may keep its sign: near such points half the way is looked at.)
+  /// The next point, at a step along the tangent (predictor) and back to the curve (corrector).
+  /// Empty if the step is too large for the direction of the tangent, the distance back to the
+  /// curve, and the volume spanned by the equations and the tangent to change little. That volume
+  /// keeps its sign unless another branch meets the curve. (If two more meet it, it may keep its
+  /// sign: near such points half the step is checked.)
   [[nodiscard]] std::optional<curve_point> advance(const curve_point& from, double step) const {
     const auto to = reached(from, step);
     if (to && from.least + to->least < 2 * step && !reached(from, step / 2)) {
@@ -78,14 +80,16 @@ public:
     return to;
   }
 
-  /// The point near x that is reached by the shortest steps, of which the first is not longer than
-  /// `most`. \param before  its tangent goes along
+  /// The point near x that is reached by minimum-norm steps.
+  ///
+  /// \param before  the tangent to orient the new one by
+  /// \param most    maximum norm of the first step
   [[nodiscard]] std::optional<curve_point> beside(Eigen::VectorXd x, const Eigen::VectorXd& before,
                                                   double most) const {
     return correct(x, false, most) ? point(x, before) : std::nullopt;
   }
 
-  /// The point at s, where one near it is known.
+  /// The point at s, from a point near it.
   [[nodiscard]] std::optional<curve_point> at(double s, const curve_point& near_by,
                                               double how_near) const {
     Eigen::VectorXd x = near_by.x;
@@ -93,13 +97,14 @@ public:
     return correct(x, true, how_near) ? point(x, near_by.tangent) : std::nullopt;
   }
 
-  /// From one point to another, `step` along the tangent and back to the curve.
+  /// A step along the tangent from one point and the point of the curve that it leads to.
   struct stretch {
     curve_point end;
     double step;
   };
-  /// As far as to where a rate, a function of points whose sign changes over the stretch, is zero:
-  /// by false position, halving the weight of an end that stays (Illinois).
+  /// The part of a step up to the zero of a rate, a function of points that changes sign along the
+  /// step: by the Illinois variant of regula falsi (false position), which halves the weight of a
+  /// bound that is kept.
   template <class Rate>
   [[nodiscard]] stretch zero(const curve_point& from, const curve_point& to, double step,
                              const Rate& rate) const {
@@ -126,11 +131,11 @@ public:
     return result;
   }
 
-  /// F at x.
+  /// Residuals F at x.
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& x) const {
     return of_.residuals(coordinates(x));
   }
-  /// A.
+  /// The matrix A at x.
   [[nodiscard]] Eigen::MatrixXd matrix(const Eigen::VectorXd& x) const {
     const Eigen::MatrixXd j = unit_jacobian(of_, coordinates(x));
     Eigen::MatrixXd a(j.rows(), x.size());
@@ -138,7 +143,7 @@ public:
     return a;
   }
 
-  /// The forms wᵀ ∂²F(K v, K v) of v, for each column w.
+  /// The quadratic forms wᵀ ∂²F(K v, K v) in v, for each column w.
   [[nodiscard]] std::vector<Eigen::MatrixXd>
   forms(const Eigen::VectorXd& x, const Eigen::MatrixXd& w, const Eigen::MatrixXd& k) const {
     Eigen::MatrixXd ways(of_.size(), k.cols());
@@ -178,7 +183,7 @@ private:
     return m.fullPivLu().determinant();
   }
 
-  /// Newton's method with the shortest steps, of which the first must not be longer than `most`.
+  /// Corrector: Newton's method with minimum-norm steps, of which the first must not exceed `most`.
   [[nodiscard]] bool correct(Eigen::VectorXd& x, bool s_is_held, double most) const {
     const Eigen::Index n = x.size() - (s_is_held ? 1 : 0);
     double before = most;
@@ -206,7 +211,7 @@ private:
     return false;
   }
 
-  const closed_tree& of_;
+  const closed_chain_mechanism& of_;
   Eigen::VectorXd q0_;
   std::vector<int> drives_, dependent_;
   Eigen::VectorXd way_;

@@ -14,50 +14,52 @@
 #include <span>
 
 /// \file
-/// The equations of loops and their derivatives. For those who extend duet.
+/// Loop-closure equations and their derivatives. For those who extend duet.
 
 namespace duet::detail {
 
-/// What a loop asks of the pose (r, t) of its second frame in its first: that some of the six
-/// numbers t and 2 (r_x, r_y, r_z) vanish. Those of a rotation vanish where it is none, or one
-/// about z, and nowhere else, so axes do not come to rest the wrong way round.
-[[nodiscard]] inline std::span<const int> vanishing_components(loop_kind kind) {
+/// Components of the pose (r, t) of the second frame relative to the first, of the six numbers
+/// t and 2 (r_x, r_y, r_z), that a constraint requires to vanish. Those of a rotation vanish
+/// for the identity, or rotations about z, and nowhere else, so axes cannot converge to the
+/// opposite direction.
+[[nodiscard]] inline std::span<const int> vanishing_components(constraint_kind kind) {
   static constexpr std::array all{0, 1, 2, 3, 4, 5};
   static constexpr std::array slides{0, 1, 3, 4, 5};
   static constexpr std::array on_axis{0, 1, 3, 4};
   static constexpr std::array in_plane{2, 3, 4};
   const std::span<const int> whole(all);
   switch (kind) {
-  case loop_kind::weld:
+  case constraint_kind::fixed:
     return whole;
-  case loop_kind::hinge:
+  case constraint_kind::revolute:
     return whole.first(5);
-  case loop_kind::slider:
+  case constraint_kind::prismatic:
     return slides;
-  case loop_kind::cylindrical:
+  case constraint_kind::cylindrical:
     return on_axis;
-  case loop_kind::planar:
+  case constraint_kind::planar:
     return in_plane;
-  case loop_kind::universal:
-  case loop_kind::ball:
+  case constraint_kind::universal:
+  case constraint_kind::spherical:
     return whole.first(3);
   default:
     return {};
   }
 }
 
-/// A loop, ready to be evaluated.
+/// A loop-closure constraint, prepared for evaluation.
 struct loop_equations {
-  loop_kind kind;
-  relative_frame frames; ///< the second, as the first sees it
-  double rod = 0;        ///< its length
+  constraint_kind kind;
+  relative_frame frames; ///< the second frame relative to the first
+  double rod = 0;        ///< length of a rod
 
   [[nodiscard]] Eigen::Index size() const {
-    const bool has_one_more = kind == loop_kind::universal || kind == loop_kind::rod;
+    const bool has_one_more =
+        kind == constraint_kind::universal || kind == constraint_kind::distance;
     return Eigen::Index(vanishing_components(kind).size()) + (has_one_more ? 1 : 0);
   }
 
-  /// Of the pose a; lengths in parts of `unit`.
+  /// Residuals at the relative pose a; lengths relative to `unit`.
   template <class S, class Out>
   void residuals(const dual_quaternion<S>& a, double unit, Out&& out) const {
     const quaternion<S> r = rotation(a);
@@ -67,16 +69,17 @@ struct loop_equations {
       const int m = k % 3;
       out[i++] = k < 3 ? S(t[m] / unit) : S(2 * (m == 0 ? r.x() : m == 1 ? r.y() : r.z()));
     }
-    if (kind == loop_kind::universal) { // x · R y
+    if (kind == constraint_kind::universal) { // x · R y
       out[i] = 2 * (r.x() * r.y() - r.w() * r.z());
-    } else if (kind == loop_kind::rod) { // smooth where both frames meet, and nearly |t| − length
+    } else if (kind == constraint_kind::distance) { // smooth if both origins coincide, and nearly
+                                                    // |t| − length
       out[i] = (t[0] * t[0] + t[1] * t[1] + t[2] * t[2] - rod * rod) / (2 * rod * unit);
     }
   }
 
-  /// Their derivatives by what the twist (ṫ, ω) in the axes of the first frame is linear in: the
-  /// columns of J, its Jacobian in `frame::hybrid`. With 2 ṙ = ω r, twice the vector of r moves by
-  /// w ω + ω × (x, y, z).
+  /// Derivatives of the residuals with respect to the variable of which the twist (ṫ, ω) in the
+  /// axes of the first frame is linear: J is the Jacobian of the relative pose in `frame::hybrid`.
+  /// With 2 ṙ = ω r, twice the vector of r moves by w ω + ω × (x, y, z).
   template <class S, class J, class Out>
   void jacobian(const dual_quaternion<S>& a, const J& j, double unit, Out&& out) const {
     const quaternion<S> r = rotation(a);
@@ -93,9 +96,9 @@ struct loop_equations {
       for (const int k : vanishing_components(kind)) {
         out(i++, c) = k < 3 ? S(velocity[k % 3] / unit) : turning[k % 3];
       }
-      if (kind == loop_kind::universal) {
+      if (kind == constraint_kind::universal) {
         out(i, c) = omega[1] * y_axis[2] - omega[2] * y_axis[1];
-      } else if (kind == loop_kind::rod) {
+      } else if (kind == constraint_kind::distance) {
         out(i, c) = t.dot(velocity) / (rod * unit);
       }
     }

@@ -24,14 +24,15 @@
 #include <vector>
 
 /// \file
-/// How a motion is followed, which the library duet::compiled holds. For those who extend duet.
+/// Predictor–corrector continuation of a `driven_motion`. Compiled into duet::compiled. For those
+/// who extend duet.
 
 namespace duet {
 
 namespace detail {
 
-/// The names of the coordinates that move most, of those whose rates are not zero.
-[[nodiscard]] inline std::string moving_coordinates(const closed_tree& of,
+/// Names of the coordinates that move most, among those whose rates are not zero.
+[[nodiscard]] inline std::string moving_coordinates(const closed_chain_mechanism& of,
                                                     const Eigen::VectorXd& rates) {
   const Eigen::VectorXd sizes = rates.cwiseQuotient(of.units()).cwiseAbs();
   std::string result;
@@ -46,30 +47,31 @@ namespace detail {
 } // namespace detail
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION loop_motion::loop_motion(closed_tree mechanism, const Eigen::VectorXd& q0,
-                                                std::vector<int> drives,
-                                                const loop_motion_options& options)
+DUET_COMPILED_FUNCTION
+driven_motion::driven_motion(closed_chain_mechanism mechanism, const Eigen::VectorXd& q0,
+                             std::vector<int> drives, const loop_motion_options& options)
     : mechanism_(std::move(mechanism)), drives_(std::move(drives)),
       dependent_(detail::all_but(mechanism_.size(), drives_)), options_(options),
       start_(mechanism_.closed(q0, drives_)), solve_(solver(start_)) {
   const detail::ranked_matrix all = detail::linearised(mechanism_, start_);
   const Eigen::Index free = mechanism_.size() - all.rank();
-  detail::require(free == Eigen::Index(drives_.size()), "duet: loop_motion: ", drives_.size(),
+  detail::require(free == Eigen::Index(drives_.size()), "duet: driven_motion: ", drives_.size(),
                   " drives, but the loops leave ", free, " independent rates");
   require_accelerations();
 }
 
-DUET_COMPILED_FUNCTION loop_motion loop_motion::moved_to(const Eigen::VectorXd& u) const {
-  loop_motion result = *this;
+DUET_COMPILED_FUNCTION driven_motion
+driven_motion::warm_started_at(const Eigen::VectorXd& u) const {
+  driven_motion result = *this;
   result.start_ = (*this)(u);
   result.solve_ = solver(result.start_);
   return result;
 }
 
-DUET_COMPILED_FUNCTION Eigen::MatrixXd loop_motion::solver(const Eigen::VectorXd& q) const {
+DUET_COMPILED_FUNCTION Eigen::MatrixXd driven_motion::solver(const Eigen::VectorXd& q) const {
   const Eigen::MatrixXd j = detail::columns(detail::unit_jacobian(mechanism_, q), dependent_);
   const detail::ranked_matrix svd(j);
-  detail::require(svd.rank() == j.cols(), "duet: loop_motion: ", driven(),
+  detail::require(svd.rank() == j.cols(), "duet: driven_motion: ", driven(),
                   " does not determine the rates of the other coordinates: a dead point");
   Eigen::MatrixXd result(j.cols(), j.rows());
   for (Eigen::Index i = 0; i < j.rows(); ++i) {
@@ -79,7 +81,7 @@ DUET_COMPILED_FUNCTION Eigen::MatrixXd loop_motion::solver(const Eigen::VectorXd
   return result;
 }
 
-DUET_COMPILED_FUNCTION void loop_motion::require_accelerations() const {
+DUET_COMPILED_FUNCTION void driven_motion::require_accelerations() const {
   using T = detail::along_line;
   for (const int drive : drives_) {
     Eigen::Matrix<T, Eigen::Dynamic, 1> q = start_.cast<T>();
@@ -94,40 +96,41 @@ DUET_COMPILED_FUNCTION void loop_motion::require_accelerations() const {
     for (const T& x : q) {
       largest = std::max({largest, std::abs(x.derivative(1)), std::abs(x.derivative(2))});
     }
-    detail::require(left <= 1e-7 * largest * largest, "duet: loop_motion: a rate of ",
+    detail::require(left <= 1e-7 * largest * largest, "duet: driven_motion: a rate of ",
                     mechanism_.tree().coordinate_names()[std::size_t(drive)],
                     " fulfils the equations, but has no acceleration: it does not move so");
   }
 }
 
-DUET_COMPILED_FUNCTION std::string loop_motion::driven() const {
+DUET_COMPILED_FUNCTION std::string driven_motion::driven() const {
   std::string result;
   for (const int i : drives_) {
     result += (result.empty() ? "" : ", ") + mechanism_.tree().coordinate_names()[std::size_t(i)];
   }
   return printable(result);
 }
-DUET_COMPILED_FUNCTION std::string loop_motion::text(const Eigen::VectorXd& q) const {
+DUET_COMPILED_FUNCTION std::string driven_motion::text(const Eigen::VectorXd& q) const {
   std::string result;
   for (const int i : drives_) {
     result += (result.empty() ? "" : ", ") + to_text(q[i]);
   }
   return drives_.size() == 1 ? result : "(" + result + ")";
 }
-[[noreturn]] DUET_COMPILED_FUNCTION void loop_motion::fail(const std::string& what,
-                                                           const Eigen::VectorXd& q,
-                                                           const Eigen::VectorXd& target) const {
+[[noreturn]] DUET_COMPILED_FUNCTION void driven_motion::fail(const std::string& what,
+                                                             const Eigen::VectorXd& q,
+                                                             const Eigen::VectorXd& target) const {
   const Eigen::VectorXd u = detail::entries(q, drives_);
   Eigen::VectorXd to = q;
   detail::put(target, drives_, to);
-  detail::raise(cannot_close("duet: loop_motion: cannot close beyond " + driven() + " = " +
-                                 text(q) + " on the way from " + text(start_) + " to " + text(to) +
-                                 ": " + what,
-                             {u.begin(), u.end()}));
+  detail::raise(loop_closure_failure("duet: driven_motion: cannot close beyond " + driven() +
+                                         " = " + text(q) + " on the way from " + text(start_) +
+                                         " to " + text(to) + ": " + what,
+                                     {u.begin(), u.end()}));
 }
 
-DUET_COMPILED_FUNCTION Eigen::VectorXd loop_motion::followed(const Eigen::VectorXd& target) const {
-  detail::require(target.allFinite(), "duet: loop_motion: drives are not finite");
+DUET_COMPILED_FUNCTION Eigen::VectorXd
+driven_motion::followed(const Eigen::VectorXd& target) const {
+  detail::require(target.allFinite(), "duet: driven_motion: drives are not finite");
   const Eigen::VectorXd units = mechanism_.units();
   const Eigen::VectorXd way =
       (target - detail::entries(start_, drives_)).cwiseQuotient(detail::entries(units, drives_));
@@ -136,8 +139,8 @@ DUET_COMPILED_FUNCTION Eigen::VectorXd loop_motion::followed(const Eigen::Vector
     return start_;
   }
   const detail::loop_curve curve(mechanism_, start_, drives_, way);
-  constexpr double least = 1e-7; // of steps
-  auto here = *curve.start(1);   // its direction is known: drives determine all rates
+  constexpr double least = 1e-7; // minimum step
+  auto here = *curve.start(1);   // its tangent is defined: drives determine all rates
   const auto require_step = [&](double step) {
     if (step < least) {
       fail("no step leads on, branches touch or coordinates are singular",

@@ -22,8 +22,8 @@
 #include <vector>
 
 /// \file
-/// The search for all ways in which loops close, which the library duet::compiled holds. For those
-/// who extend duet.
+/// Search for assembly configurations from random initial guesses. Compiled into duet::compiled.
+/// For those who extend duet.
 
 namespace duet {
 
@@ -31,16 +31,17 @@ namespace detail {
 
 class position_search {
 public:
-  position_search(const closed_tree& of, const Eigen::VectorXd& at, const std::vector<int>& held)
+  position_search(const closed_chain_mechanism& of, const Eigen::VectorXd& at,
+                  const std::vector<int>& held)
       : of_(of), at_(at), free_(all_but(of.size(), held)), turns_(of) {}
 
-  [[nodiscard]] loop_positions run(const loop_search_options& options) {
-    loop_positions result;
+  [[nodiscard]] assembly_search_result run(const assembly_search_options& options) {
+    assembly_search_result result;
     random_source random(options.seed);
     const auto is_enough = [&] {
-      const double chance = result.chance_of_more() + 1. / std::max(1, result.closed);
-      return result.starts >= options.starts &&
-             (result.starts >= options.most_starts || chance <= options.chance_of_more);
+      const double chance = result.missing_probability() + 1. / std::max(1, result.closed);
+      return result.starts >= options.random_starts &&
+             (result.starts >= options.max_starts || chance <= options.missing_probability);
     };
     for (; !is_enough(); ++result.starts) {
       const closing found(of_, guess(random), free_, 100);
@@ -66,7 +67,7 @@ private:
     return q;
   }
 
-  /// Without whole turns.
+  /// The coordinates without full turns.
   [[nodiscard]] Eigen::VectorXd wrapped(Eigen::VectorXd q) const {
     constexpr double turn = 2 * std::numbers::pi;
     for (const int i : free_) {
@@ -86,7 +87,7 @@ private:
     return q;
   }
 
-  /// Where every link is: two positions are one where all links stand at the same places.
+  /// Poses of all links: two configurations are the same if all links have the same poses.
   [[nodiscard]] std::vector<Eigen::Matrix<double, 7, 1>> places(const Eigen::VectorXd& q) const {
     std::vector<Eigen::Matrix<double, 7, 1>> result;
     for (const dual_quaternion<double>& a : of_.tree().poses(q)) {
@@ -98,7 +99,7 @@ private:
   }
   [[nodiscard]] static bool are_same(const std::vector<Eigen::Matrix<double, 7, 1>>& a,
                                      const std::vector<Eigen::Matrix<double, 7, 1>>& b) {
-    constexpr double rounding = 1e-6; // singular positions are known to half the digits
+    constexpr double rounding = 1e-6; // singular configurations are known to half the digits
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double turned = std::min((a[i].head<4>() - b[i].head<4>()).norm(),
                                      (a[i].head<4>() + b[i].head<4>()).norm());
@@ -109,7 +110,7 @@ private:
     return true;
   }
 
-  void add(loop_positions& result, const Eigen::VectorXd& q) {
+  void add(assembly_search_result& result, const Eigen::VectorXd& q) {
     const auto where = places(q);
     for (std::size_t i = 0; i < places_.size(); ++i) {
       if (are_same(where, places_[i])) {
@@ -118,7 +119,7 @@ private:
       }
     }
     places_.push_back(where);
-    loop_position found{q, 0, 1, true};
+    assembly_configuration found{q, 0, 1, true};
     const Eigen::MatrixXd j = columns(unit_jacobian(of_, q), free_);
     const Eigen::VectorXd s = ranked_matrix(j).singular_values();
     found.smallest_singular_value = s.size() == 0 || s.size() < j.cols() ? 0 : s[s.size() - 1];
@@ -129,7 +130,8 @@ private:
     result.positions.push_back(found);
   }
 
-  [[nodiscard]] static bool comes_first(const loop_position& a, const loop_position& b) {
+  [[nodiscard]] static bool comes_first(const assembly_configuration& a,
+                                        const assembly_configuration& b) {
     for (Eigen::Index i = 0; i < a.coordinates.size(); ++i) {
       if (std::abs(a.coordinates[i] - b.coordinates[i]) > 1e-6) {
         return a.coordinates[i] < b.coordinates[i];
@@ -138,7 +140,7 @@ private:
     return false;
   }
 
-  const closed_tree& of_;
+  const closed_chain_mechanism& of_;
   Eigen::VectorXd at_;
   std::vector<int> free_;
   coordinate_turns turns_;
@@ -148,13 +150,13 @@ private:
 } // namespace detail
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION loop_positions all_positions(const closed_tree& mechanism,
-                                                    const std::vector<int>& held,
-                                                    const Eigen::VectorXd& at,
-                                                    const loop_search_options& options) {
-  detail::require(Eigen::Index(held.size()) == at.size(), "duet: all_positions: ", held.size(),
+DUET_COMPILED_FUNCTION assembly_search_result
+find_assembly_configurations(const closed_chain_mechanism& mechanism, const std::vector<int>& held,
+                             const Eigen::VectorXd& at, const assembly_search_options& options) {
+  detail::require(Eigen::Index(held.size()) == at.size(),
+                  "duet: find_assembly_configurations: ", held.size(),
                   " coordinates are held, but ", at.size(), " numbers given");
-  detail::require(at.allFinite(), "duet: all_positions: coordinates are not finite");
+  detail::require(at.allFinite(), "duet: find_assembly_configurations: coordinates are not finite");
   Eigen::VectorXd q = Eigen::VectorXd::Zero(mechanism.size());
   static_cast<void>(detail::all_but(mechanism.size(), held));
   for (std::size_t i = 0; i < held.size(); ++i) {

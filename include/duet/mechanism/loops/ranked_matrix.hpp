@@ -7,18 +7,19 @@
 #include <Eigen/SVD>
 
 /// \file
-/// Which rows and columns of a matrix depend on others. For those who extend duet.
+/// Rank-revealing singular value decomposition. For those who extend duet.
 
 namespace duet::detail {
 
-/// A matrix whose singular values tell which rows and columns depend on others.
+/// Singular value decomposition of a matrix with its numerical rank: the dependent
+/// rows and columns.
 class ranked_matrix {
 public:
   explicit ranked_matrix(const Eigen::MatrixXd& a)
       : u_(Eigen::MatrixXd::Identity(a.rows(), a.rows())),
         v_(Eigen::MatrixXd::Identity(a.cols(), a.cols())) {
-    if (a.size() > 0) { // Eigen has no singular values of nothing
-      // Full pivots, as that takes compilers a third of the time.
+    if (a.size() > 0) { // Eigen has no singular values of empty matrices
+      // Full pivoting takes compilers a third of the time.
       const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
           a, Eigen::ComputeFullU | Eigen::ComputeFullV);
       u_ = svd.matrixU();
@@ -30,27 +31,28 @@ public:
     }
   }
 
-  /// Singular values below this part of the largest one count as zero: near a singular position
-  /// they are as far from it as q, and q where equations are singular is known to half the digits.
+  /// Relative tolerance of the rank: singular values below this fraction of the largest one count
+  /// as zero. Near a singular configuration they are as far from zero as q is from it, and q is
+  /// known to half the digits where equations are singular.
   static constexpr double least = 1e-6;
 
   [[nodiscard]] Eigen::Index rank() const { return rank_; }
   [[nodiscard]] const Eigen::VectorXd& singular_values() const { return s_; }
-  /// U and V of U S Vᵀ.
+  /// U and V of the decomposition U S Vᵀ.
   [[nodiscard]] const Eigen::MatrixXd& left() const { return u_; }
   [[nodiscard]] const Eigen::MatrixXd& right() const { return v_; }
-  /// Orthonormal columns that span the image.
+  /// Orthonormal basis of the image (column space), as columns.
   [[nodiscard]] Eigen::MatrixXd image() const { return u_.leftCols(rank_); }
-  /// Orthonormal columns across the image.
+  /// Orthonormal basis of the orthogonal complement of the image, as columns.
   [[nodiscard]] Eigen::MatrixXd cokernel() const { return u_.rightCols(u_.cols() - rank_); }
-  /// Orthonormal columns that it takes to zero.
+  /// Orthonormal basis of the kernel (null space), as columns.
   [[nodiscard]] Eigen::MatrixXd kernel() const { return v_.rightCols(v_.cols() - rank_); }
-  /// The shortest of the x with A x nearest to b, where A is taken to have a rank.
+  /// Minimum-norm least-squares solution of A x = b, where A is taken to have a given rank.
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const {
     const Eigen::VectorXd y = u_.leftCols(rank).transpose() * b;
     return v_.leftCols(rank) * y.cwiseQuotient(s_.head(rank));
   }
-  /// V (σ / (σ² + λ)) Uᵀ b
+  /// Damped least-squares solution V (σ / (σ² + λ)) Uᵀ b.
   [[nodiscard]] Eigen::VectorXd damped_solve(const Eigen::VectorXd& b, double lambda) const {
     const Eigen::VectorXd y = u_.leftCols(s_.size()).transpose() * b;
     const auto damped = [&](double sigma, double x) {

@@ -17,13 +17,15 @@
 
 namespace duet::detail {
 
-/// What the equations are differentiated twice with.
-using along_line = taylor<double, 2, derivative_tag<closed_tree>>;
+/// Scalar for second derivatives of the equations.
+using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
 
-/// The forms wᵀ ∂²F(K v, K v) of v, a symmetric matrix for each column w, by F along the lines of
-/// single columns of K and of sums of two: 2 b(u, v) = b(u + v, u + v) − b(u, u) − b(v, v).
-/// \param columns  K, per unit of each coordinate
-[[nodiscard]] inline std::vector<Eigen::MatrixXd> quadratic_forms(const closed_tree& of,
+/// The quadratic forms wᵀ ∂²F(K v, K v) in v, a symmetric matrix for each column w, from F along
+/// the lines of single columns of K and of sums of two: 2 b(u, v) = b(u + v, u + v) − b(u, u) −
+/// b(v, v).
+///
+/// \param columns  K, each row per unit of its coordinate
+[[nodiscard]] inline std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
                                                                   const Eigen::VectorXd& q,
                                                                   const Eigen::MatrixXd& w,
                                                                   const Eigen::MatrixXd& columns) {
@@ -62,7 +64,7 @@ using along_line = taylor<double, 2, derivative_tag<closed_tree>>;
   return result;
 }
 
-/// A unit vector, none more probable than others.
+/// A uniformly distributed unit vector.
 [[nodiscard]] inline Eigen::VectorXd random_direction(random_source& random, Eigen::Index n) {
   Eigen::VectorXd result(n);
   do {
@@ -73,7 +75,7 @@ using along_line = taylor<double, 2, derivative_tag<closed_tree>>;
   return result.normalized();
 }
 
-/// The derivatives of all forms by v, in rows.
+/// Derivatives of all forms with respect to v, in rows.
 [[nodiscard]] inline Eigen::MatrixXd slopes(const std::vector<Eigen::MatrixXd>& forms,
                                             const Eigen::VectorXd& v) {
   Eigen::MatrixXd result(Eigen::Index(forms.size()), v.size());
@@ -83,8 +85,8 @@ using along_line = taylor<double, 2, derivative_tag<closed_tree>>;
   return result;
 }
 
-/// A unit v for which all forms vanish, by Newton's method from a start; nothing where it leads to
-/// none.
+/// A unit vector v for which all forms vanish, by Newton's method from an initial guess; empty if
+/// it does not converge.
 [[nodiscard]] inline std::optional<Eigen::VectorXd>
 common_zero(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd v, double rounding) {
   const auto count = Eigen::Index(forms.size());

@@ -17,20 +17,21 @@
 #include <vector>
 
 /// \file
-/// What is around a position, which the library duet::compiled holds. For those who extend duet.
+/// Configurations near a given one, for the mobility. Compiled into duet::compiled. For those who
+/// extend duet.
 
 namespace duet {
 
 namespace detail {
 
-/// Looks around a position. Lengths are in parts of the mechanism's.
+/// Search around a configuration. Lengths are relative to that of the mechanism.
 class surroundings {
 public:
-  explicit surroundings(const closed_tree& of) : of_(of) {}
+  explicit surroundings(const closed_chain_mechanism& of) : of_(of) {}
 
-  /// Is there, among the rates that fulfil the equations, one with an acceleration: a v in the
-  /// kernel K of ∂F/∂q for which wᵀ ∂²F(v, v) = 0 for all w across its image? Newton's method on
-  /// the unit sphere, from many starts.
+  /// True if one of the rates that fulfil the equations has an acceleration: a v in the kernel K of
+  /// ∂F/∂q for which wᵀ ∂²F(v, v) = 0 for all w orthogonal to its image. By Newton's method on the
+  /// unit sphere, from many starts.
   [[nodiscard]] bool has_acceleration(const Eigen::VectorXd& q, const ranked_matrix& a) {
     const Eigen::MatrixXd kernel = a.kernel();
     const Eigen::MatrixXd across = a.cokernel();
@@ -43,7 +44,7 @@ public:
     return false;
   }
 
-  /// A position about so far away, along the kernel.
+  /// A configuration at about the distance `far_away`, along a random direction of the kernel.
   [[nodiscard]] std::optional<Eigen::VectorXd>
   position(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel, double far_away) {
     const Eigen::VectorXd way = kernel * direction(kernel.cols());
@@ -55,7 +56,8 @@ public:
     return std::nullopt;
   }
 
-  /// The dimension that positions around q span: shaky directions lead back.
+  /// Dimension spanned by the configurations around q; first-order flexible directions
+  /// lead back to q.
   [[nodiscard]] int dimension(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel) {
     constexpr double step = .02;
     const Eigen::Index count = 2 * kernel.cols() + 2;
@@ -76,14 +78,14 @@ public:
 private:
   [[nodiscard]] Eigen::VectorXd direction(Eigen::Index n) { return random_direction(random_, n); }
 
-  const closed_tree& of_;
+  const closed_chain_mechanism& of_;
   random_source random_{1};
 };
 
 } // namespace detail
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION mobility_result mobility(const closed_tree& mechanism,
+DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& mechanism,
                                                 const Eigen::VectorXd& q) {
   const double residual = mechanism.residuals(q).norm();
   detail::require(residual <= 1e-9, "duet: mobility: the loops are not closed: residual ",

@@ -21,20 +21,21 @@
 #include <vector>
 
 /// \file
-/// How a motion is traced, which the library duet::compiled holds. For those who extend duet.
+/// Trace of a motion through its dead points. Compiled into duet::compiled. For those
+/// who extend duet.
 
 namespace duet {
 
 namespace detail {
 
-/// What a curve is like at its start, to see that it comes back.
+/// Start of a curve with its rates, to detect that the curve returns.
 class way_back {
 public:
-  way_back(const closed_tree& of, const loop_curve& curve, const curve_point& start)
+  way_back(const closed_chain_mechanism& of, const loop_curve& curve, const curve_point& start)
       : units_(of.units()), angles_(coordinate_turns(of).angles), q_(curve.coordinates(start.x)),
         rates_(curve.rates(start.tangent).cwiseQuotient(units_)) {}
 
-  /// Does the start lie between both points?
+  /// True if the start is between both points.
   [[nodiscard]] bool is_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
     const Eigen::VectorXd way = (to - from).cwiseQuotient(units_);
     const Eigen::VectorXd before = apart(from), after = before + way;
@@ -44,7 +45,7 @@ public:
   }
 
 private:
-  /// But for whole turns.
+  /// Difference of q from the start, except for full turns.
   [[nodiscard]] Eigen::VectorXd apart(const Eigen::VectorXd& q) const {
     Eigen::VectorXd result = (q - q_).cwiseQuotient(units_);
     for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -60,15 +61,15 @@ private:
   Eigen::VectorXd q_, rates_;
 };
 
-/// Follows a motion along one of its drives.
+/// Traces a motion along one of its driven coordinates.
 class tracer {
 public:
-  tracer(const loop_motion& motion, int drive, const loop_trace_options& options)
+  tracer(const driven_motion& motion, int drive, const trace_options& options)
       : of_(motion.mechanism()), options_(options),
         curve_(of_, motion.start(), motion.drives(),
                Eigen::VectorXd::Unit(Eigen::Index(motion.drives().size()), drive)) {}
 
-  [[nodiscard]] loop_trace_result run() {
+  [[nodiscard]] motion_trace run() {
     result_.positions = follow(1);
     result_.positions.insert(result_.positions.begin(), curve_.coordinates(curve_.start(1)->x));
     if (!result_.is_closed) {
@@ -135,7 +136,7 @@ private:
         {i, curve_.coordinates(x), rates, moving_coordinates(of_, rates)});
   }
 
-  /// A point behind one in which branches meet, if steps became so small that it may be near.
+  /// A point behind a branch point, if steps became so small that one may be near.
   [[nodiscard]] std::optional<curve_point> past_branch_point(const curve_point& from, double step) {
     const auto found = branch_finder(curve_).ahead(from, step);
     if (!found) {
@@ -161,17 +162,17 @@ private:
     return to;
   }
 
-  const closed_tree& of_;
-  loop_trace_options options_;
+  const closed_chain_mechanism& of_;
+  trace_options options_;
   loop_curve curve_;
-  loop_trace_result result_;
+  motion_trace result_;
 };
 
 } // namespace detail
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION loop_trace_result trace(const loop_motion& motion, int drive,
-                                               const loop_trace_options& options) {
+DUET_COMPILED_FUNCTION motion_trace trace(const driven_motion& motion, int drive,
+                                          const trace_options& options) {
   const auto count = int(motion.drives().size());
   detail::require(0 <= drive && drive < count, "duet: trace: no drive ", drive, " of ", count);
   return detail::tracer(motion, drive, options).run();

@@ -24,50 +24,54 @@
 #include <vector>
 
 /// \file
-/// How a mechanism with loops is made and closed, which the library duet::compiled holds. For those
-/// who extend duet.
+/// Construction and loop closure of closed-chain mechanisms. Compiled into duet::compiled. For
+/// those who extend duet.
 
 namespace duet {
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION closed_tree::closed_tree(kinematic_tree tree, loop_description given)
+DUET_COMPILED_FUNCTION closed_chain_mechanism::closed_chain_mechanism(kinematic_tree tree,
+                                                                      loop_constraints given)
     : tree_(std::move(tree)), given_(std::move(given)) {
   measure();
   for (std::size_t i = 0; i < given_.loops.size(); ++i) {
-    const tree_loop& loop = given_.loops[i];
+    const loop_constraint& loop = given_.loops[i];
     equations_.push_back({loop.kind, {frame(i, loop.second), frame(i, loop.first)}, loop.length});
     if (equations_.back().frames.frame.link == equations_.back().frames.observer.link) {
       detail::bad_loop(given_, i, "both frames are on the link \"" + loop.first.link + "\"");
     }
-    if (loop.kind == loop_kind::rod && !(loop.length > 0 && std::isfinite(loop.length))) {
+    if (loop.kind == constraint_kind::distance &&
+        !(loop.length > 0 && std::isfinite(loop.length))) {
       detail::bad_loop(given_, i, "its length is " + to_text(loop.length));
     }
     rows_ += equations_.back().size();
   }
 }
 
-DUET_COMPILED_FUNCTION Eigen::VectorXd closed_tree::residuals(const Eigen::VectorXd& q) const {
+DUET_COMPILED_FUNCTION Eigen::VectorXd
+closed_chain_mechanism::residuals(const Eigen::VectorXd& q) const {
   return residuals_at(q);
 }
 DUET_COMPILED_FUNCTION Eigen::MatrixXd
-closed_tree::constraint_jacobian(const Eigen::VectorXd& q) const {
+closed_chain_mechanism::constraint_jacobian(const Eigen::VectorXd& q) const {
   return jacobian_at(q);
 }
 
-DUET_COMPILED_FUNCTION Eigen::VectorXd closed_tree::closed(const Eigen::VectorXd& guess,
-                                                           const std::vector<int>& held) const {
-  detail::require(guess.allFinite(), "duet: closed_tree: the guess is not finite");
+DUET_COMPILED_FUNCTION Eigen::VectorXd
+closed_chain_mechanism::closed(const Eigen::VectorXd& guess, const std::vector<int>& held) const {
+  detail::require(guess.allFinite(), "duet: closed_chain_mechanism: the guess is not finite");
   const detail::closing found(*this, guess, detail::all_but(size(), held));
   if (!found.has_closed()) {
-    detail::raise(cannot_close("duet: closed_tree: no position near the guess: residual " +
-                                   to_text(found.residual()),
-                               {guess.begin(), guess.end()}));
+    detail::raise(
+        loop_closure_failure("duet: closed_chain_mechanism: no position near the guess: residual " +
+                                 to_text(found.residual()),
+                             {guess.begin(), guess.end()}));
   }
   return found.coordinates();
 }
 
 DUET_COMPILED_FUNCTION std::vector<int>
-closed_tree::independent_coordinates(const Eigen::VectorXd& q) const {
+closed_chain_mechanism::independent_coordinates(const Eigen::VectorXd& q) const {
   Eigen::MatrixXd rates = detail::linearised(*this, q).kernel();
   std::vector<int> result;
   while (Eigen::Index(result.size()) < rates.cols()) { // the pivots alone: less to compile
@@ -83,8 +87,8 @@ closed_tree::independent_coordinates(const Eigen::VectorXd& q) const {
   return result;
 }
 
-DUET_COMPILED_FUNCTION attached_frame<double> closed_tree::frame(std::size_t i,
-                                                                 const loop_frame& at) const {
+DUET_COMPILED_FUNCTION attached_frame<double>
+closed_chain_mechanism::frame(std::size_t i, const constraint_frame& at) const {
   const auto& links = tree_.table().link_numbers;
   const auto found = links.find(at.link);
   if (found == links.end()) {
@@ -96,18 +100,18 @@ DUET_COMPILED_FUNCTION attached_frame<double> closed_tree::frame(std::size_t i,
                      "no link \"" + at.link + "\": " + detail::nearest_names(at.link, names));
   }
   const auto& [r, t] = at.offset;
-  if (!std::isfinite(t[0] + t[1] + t[2]) || !std::isfinite(norm2(r))) {
+  if (!std::isfinite(t[0] + t[1] + t[2]) || !std::isfinite(squared_norm(r))) {
     detail::bad_loop(given_, i, "its frame on \"" + at.link + "\" is not finite");
   }
   return {found->second, at.offset};
 }
 
-DUET_COMPILED_FUNCTION void closed_tree::measure() {
+DUET_COMPILED_FUNCTION void closed_chain_mechanism::measure() {
   const auto longest = [&](const placement<double>& at) {
     const auto& t = at.translation;
     length_ = std::max(length_, std::hypot(t[0], t[1], t[2]));
   };
-  for (const tree_loop& loop : given_.loops) {
+  for (const loop_constraint& loop : given_.loops) {
     longest(loop.first.offset);
     longest(loop.second.offset);
     length_ = std::max(length_, loop.length);

@@ -19,12 +19,12 @@
 namespace duet {
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION mesh_surface read_mesh(const std::string& path) {
+DUET_COMPILED_FUNCTION triangle_mesh read_mesh(const std::string& path) {
   std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return 'A' <= c && c <= 'Z' ? char(c + ('a' - 'A')) : c; });
   constexpr std::size_t most_megabytes = 256;
-  mesh_surface result;
+  triangle_mesh result;
   if (ending == ".dae") {
     const detail::collada_document document(
         path, detail::xml_parser(path, most_megabytes, detail::xml_text::kept).root());

@@ -133,7 +133,7 @@ private:
       fail_at_end("endsolid");
     }
   }
-  /// Is the line of these words, but for those of one letter?
+  /// True if the line has these words, except for those of one letter.
   void require_line(std::string_view form) const {
     std::size_t i = 0;
     bool is_so = true;

@@ -11,11 +11,11 @@
 #include <cstddef>
 
 /// \file
-/// Angles by equations that are linear in their cosines and sines.
+/// Angles from equations that are linear in their cosines and sines.
 
 namespace duet::detail {
 
-/// a + b cos θ + c sin θ
+/// Trigonometric polynomial a + b cos θ + c sin θ.
 struct turning_value {
   double a = 0, b = 0, c = 0;
 
@@ -25,22 +25,24 @@ struct turning_value {
   [[nodiscard]] double rate(double theta) const {
     return c * std::cos(theta) - b * std::sin(theta);
   }
-  /// Of the most that it can be away from a.
+  /// Squared amplitude, that of the largest deviation from a.
   [[nodiscard]] double square() const { return b * b + c * c; }
 };
 
-/// Zeros nearer than that count as one, of multiplicity 2: rounding takes them that far apart.
+/// Distance below which two zeros count as one, of multiplicity 2: round-off
+/// separates them by as much.
 inline constexpr double one_angle = 3e-7;
 
-/// Calls visit(θ, multiplicity) where a + b cos θ + c sin θ = 0, and where it nearly is: the pair
-/// of zeros there may be complex by rounding alone, of a, b and c by angles that were
-/// ill-conditioned.
-/// \param error  of a, b and c, if that is more than rounding
-/// \return false if all of it is zero to round-off, if an error decides whether there are zeros, or
-///   if there would be some but for 1e-5 of what varies: `f` may be known no better
+/// Calls visit(θ, multiplicity) for the zeros of a + b cos θ + c sin θ, also where it is nearly
+/// zero: the pair of zeros there may be complex only because of round-off in a, b and c, which come
+/// from ill-conditioned angles.
+///
+/// \param error  error of a, b and c, if it exceeds round-off
+/// \return false if the function is zero to round-off, if an error decides whether there are zeros,
+/// or if a change by 1e-5 of the amplitude would add some: `f` may be no more accurate
 template <class Visit>
 bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
-  constexpr double rounding = 1e-12, nearly = 1e-9, not_quite = 1e-5;
+  constexpr double rounding = 1e-12, nearly = 1e-9, not_quite = 1e-8;
   const double r = std::sqrt(f.b * f.b + f.c * f.c);
   if (!(r > rounding)) {
     return std::abs(f.a) > rounding;
@@ -58,12 +60,13 @@ bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
   return std::abs(std::abs(cosine) - 1) * r >= error;
 }
 
-/// Two equations f(θ) = g(φ).
+/// System of two equations f(θ) = g(φ).
 struct angle_pairs {
   std::array<turning_value, 2> f, g;
 
   /// Calls visit(θ, φ, multiplicity) for each solution.
-  /// \return false where one of the angles is undetermined
+  ///
+  /// \return false if one of the angles is undetermined
   template <class Visit>
   bool operator()(const Visit& visit) const {
     const double by_theta = regularity(f), by_phi = regularity(g);
@@ -88,21 +91,22 @@ private:
   [[nodiscard]] static double determinant(const two_values& f) {
     return f[0].b * f[1].c - f[0].c * f[1].b;
   }
-  /// The determinant in parts of the squared size of its rows.
+  /// Determinant relative to the squared size of its rows.
   [[nodiscard]] static double regularity(const two_values& f) {
     const double size = f[0].b * f[0].b + f[0].c * f[0].c + f[1].b * f[1].b + f[1].c * f[1].c;
     return size > 1e-18 ? std::abs(determinant(f)) / size : 0;
   }
 
-  /// Does it not depend on its angle, but for rounding?
+  /// True if f does not depend on its angle, to round-off.
   [[nodiscard]] static bool is_still(const two_values& f) {
     constexpr double rounding = 1e-12;
     return std::max(f[0].square(), f[1].square()) <= rounding * rounding;
   }
-  /// θ may be any: φ by the equation that says most of it, where the other one holds, too.
+  /// Solves for φ if θ is arbitrary: by the equation with the larger amplitude, where the other one
+  /// holds, too.
   template <class Visit>
   static void by_rest(const two_values& f, const two_values& g, const Visit& visit) {
-    constexpr double rounding = 1e-6; // of φ where the zeros nearly coincide
+    constexpr double rounding = 1e-6; // for φ where the zeros nearly coincide
     const std::size_t k = g[0].square() >= g[1].square() ? 0 : 1;
     static_cast<void>(
         visit_zeros({g[k].a - f[k].a, g[k].b, g[k].c}, [&](double phi, int multiplicity) {
@@ -112,7 +116,7 @@ private:
         }));
   }
 
-  /// A sum of both equations has no θ.
+  /// Solves a system of which a linear combination of both equations does not depend on θ.
   template <class Visit>
   static bool by_one(const two_values& f, const two_values& g, const Visit& visit) {
     const double at_0 = std::hypot(f[0].b, f[0].c), at_1 = std::hypot(f[1].b, f[1].c);
@@ -131,8 +135,10 @@ private:
     return has_phi && is_determined;
   }
 
-  /// (cos θ, sin θ) = u + V (cos φ, sin φ), whose square is 1.
-  /// \return false if all of it is zero to round-off, or if zeros are nearly real but not visited
+  /// Solves (cos θ, sin θ) = u + V (cos φ, sin φ), whose square is 1.
+  ///
+  /// \return false if the equation is zero to round-off, or if zeros are
+  /// nearly real but not visited
   template <class Visit>
   static bool by_both(const two_values& f, const two_values& g, const Visit& visit) {
     const double d = determinant(f);
@@ -146,7 +152,7 @@ private:
     const complex q0(v[0] / 2, -w[0] / 2), q1(v[1] / 2, -w[1] / 2);
     const double squares = u[0] * u[0] + u[1] * u[1] + 2 * (std::norm(q0) + std::norm(q1));
     const std::array<complex, 3> left{squares - 1, 2. * (u[0] * q0 + u[1] * q1), q0 * q0 + q1 * q1};
-    // How much larger rounding is than that of coefficients of which the largest is 1.
+    // Ratio of round-off to that of coefficients of which the largest is 1.
     const double noise =
         (squares + 1) /
         std::sqrt(std::max({std::norm(left[0]), std::norm(left[1]), std::norm(left[2])}));
@@ -166,7 +172,7 @@ private:
         visit(std::atan2(u[1] + v[1] * c + w[1] * s, u[0] + v[0] * c + w[0] * s), phi,
               multiplicity);
       };
-      // Two zeros that nearly coincide, which rounding may have made complex: z and 1/z̄.
+      // Two zeros z and 1/z̄ that nearly coincide, which round-off may have made complex.
       if (off > error && off < std::min(1e-2, 1e-11 * sensitivity)) {
         visit_at(std::arg(z) - off, 1);
         visit_at(std::arg(z) + off, 1);

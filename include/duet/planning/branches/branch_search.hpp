@@ -9,35 +9,35 @@
 #include <cstddef>
 
 /// \file
-/// Which way all solutions of a loop are found.
+/// Selection of the method that finds all solutions of a loop of six joints.
 
 namespace duet {
 
-/// How `all_inverse_kinematics` found the solutions.
-enum class branch_method {
-  spherical_wrist, ///< closed form: three axes, one after the other, meet in a point
-  parallel_axes,   ///< closed form: three axes, one after the other, are parallel
-  three_slides,    ///< closed form: three joints slide
-  two_slides,      ///< zeros of a polynomial: two joints slide
-  elimination      ///< zeros of a determinant
+/// Method by which `all_inverse_kinematics` found the solutions.
+enum class solution_method {
+  spherical_wrist, ///< closed form: three consecutive axes meet in a point
+  parallel_axes,   ///< closed form: three consecutive axes are parallel
+  three_prismatic, ///< closed form: three prismatic joints
+  two_prismatic,   ///< zeros of a polynomial: two prismatic joints
+  elimination      ///< zeros of a determinant (Raghavan–Roth)
 };
 
-/// The name of a `branch_method`.
-[[nodiscard]] inline const char* to_text(branch_method method) {
-  constexpr std::array names{"spherical_wrist", "parallel_axes", "three_slides", "two_slides",
+/// Name of a `solution_method`.
+[[nodiscard]] inline const char* to_text(solution_method method) {
+  constexpr std::array names{"spherical_wrist", "parallel_axes", "three_prismatic", "two_prismatic",
                              "elimination"};
   return names[std::size_t(method)];
 }
 
 namespace detail {
 
-/// All solutions of a loop, by the way that suits it.
+/// All solutions of a loop, by the method that suits its geometry.
 class branch_search {
 public:
   explicit branch_search(const joint_loop& loop);
 
   [[nodiscard]] const loop_answer& answer() const { return answer_; }
-  [[nodiscard]] branch_method method() const { return method_; }
+  [[nodiscard]] solution_method method() const { return method_; }
 
 private:
   branch_search() = default;
@@ -45,14 +45,16 @@ private:
   void search(const joint_loop& loop);
   void search_beside(const joint_loop& loop);
   /// Solves the loop that begins with its joint number `first` as a loop of the type `Form`.
+  ///
+  /// \return false if no solution is found and coordinates are undetermined
   template <class Form, class... Rest>
-  bool solve(branch_method method, int first, const joint_loop& loop, const Rest&... rest);
+  bool solve(solution_method method, int first, const joint_loop& loop, const Rest&... rest);
 
   loop_answer answer_;
-  branch_method method_ = branch_method::elimination;
+  solution_method method_ = solution_method::elimination;
 };
 
-/// All solutions of a loop by elimination, as of arms of no special geometry.
+/// All solutions of a loop by Raghavan–Roth elimination, for arms without special geometry.
 [[nodiscard]] DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop);
 
 } // namespace detail

@@ -22,12 +22,13 @@
 #include <optional>
 
 /// \file
-/// Which way all solutions of a loop are found; the library duet::compiled holds it.
+/// Selection of the method that finds all solutions of a loop of six joints. Compiled into
+/// duet::compiled.
 
 namespace duet::detail {
 
 #ifdef DUET_DEFINES_COMPILED
-/// The point in which the axes of three joints meet, if there is one.
+/// Common point of the axes of three joints, if there is one.
 [[nodiscard]] inline std::optional<vector3d> common_point(const loop_joint& a, const loop_joint& b,
                                                           const loop_joint& c) {
   constexpr double rounding = 1e-9, across = 1e-6;
@@ -47,13 +48,13 @@ namespace duet::detail {
 }
 
 template <class Form, class... Rest>
-bool branch_search::solve(branch_method method, int first, const joint_loop& loop,
+bool branch_search::solve(solution_method method, int first, const joint_loop& loop,
                           const Rest&... rest) {
   constexpr int most = std::same_as<Form, sliding_loop> ? 2 : 8;
   constexpr double rounding = 1e-13, beside = .01;
   const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
     const loop_gap gap(loop, theta);
-    if (gap.twist.norm() > rounding * gap.size) { // beside a singularity
+    if (gap.twist.norm() > rounding * gap.size) { // near a singularity
       six_coordinates refined = theta;
       if (close_loop(loop, refined) && (refined - theta).norm() < beside * gap.size) {
         theta = refined;
@@ -86,17 +87,17 @@ DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop) {
 
 DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
   search(loop);
-  if (answer_.solutions.empty() && method_ != branch_method::elimination) {
+  if (answer_.solutions.empty() && method_ != solution_method::elimination) {
     search_beside(loop);
   }
   const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop);
-  if (method_ != branch_method::two_slides) { // which knows where joints always move in place
+  if (method_ != solution_method::two_prismatic) { // which detects permanent self-motion itself
     answer_.is_complete = is_certain || (answer_.is_complete && !is_always_singular(loop));
   }
 }
 
-/// Round-off may have made a double solution complex. Of a goal next to it, it is so or two real
-/// ones.
+/// Searches for solutions with slightly displaced goals: round-off may have made a double solution
+/// complex, and with a nearby goal it is complex or two real ones.
 inline void branch_search::search_beside(const joint_loop& loop) {
   constexpr int times = 6;
   constexpr double by = 1e-7;
@@ -117,13 +118,13 @@ inline void branch_search::search(const joint_loop& loop) {
   const auto sliding =
       std::count_if(joints.begin(), joints.end(), [](const loop_joint& j) { return !j.turns; });
   if (sliding == 3) {
-    solve<sliding_loop>(branch_method::three_slides, 0, loop);
+    solve<sliding_loop>(solution_method::three_prismatic, 0, loop);
     return;
   }
   if (sliding == 2) {
     const auto in_place = parallel_slides_of(loop);
-    answer_ = in_place ? solve_parallel_slides(*in_place) : solve_general_loop<two_slides>(loop);
-    method_ = branch_method::two_slides;
+    answer_ = in_place ? solve_parallel_slides(*in_place) : solve_general_loop<two_prismatic>(loop);
+    method_ = solution_method::two_prismatic;
     return;
   }
   const auto from = [&](int first) {
@@ -138,11 +139,11 @@ inline void branch_search::search(const joint_loop& loop) {
     const int first = int(i), after = (first + 3) % 6;
     if (const auto centre = common_point(a, b, c)) {
       const vector3d in_loop = after == 0 ? *centre : inverse_place(loop.closing).point(*centre);
-      if (solve<spherical_loop>(branch_method::spherical_wrist, after, from(after), in_loop)) {
+      if (solve<spherical_loop>(solution_method::spherical_wrist, after, from(after), in_loop)) {
         return;
       }
     } else if (are_parallel(a, b) && are_parallel(b, c)) {
-      if (solve<planar_loop>(branch_method::parallel_axes, first, from(first))) {
+      if (solve<planar_loop>(solution_method::parallel_axes, first, from(first))) {
         return;
       }
     }

@@ -11,34 +11,39 @@
 #include <cstddef>
 
 /// \file
-/// The loop that a chain of six joints and a goal make.
+/// Loop equation of a chain of six joints with its tip (end effector) at a goal.
 
 namespace duet::detail {
 
-/// The axes of a chain's joints where all coordinates are zero, in a frame in their middle and in
-/// units of their size.
+/// Joint axes of a chain in the zero configuration, in a frame at their centre and in units of
+/// their size.
 struct chain_axes {
   std::array<loop_joint, 6> joints{};
-  tip_place tip{}; ///< where all coordinates are zero, in the base's frame and units
+  tip_place tip{}; ///< pose in the zero configuration, in the frame and units of the base
   three_vector<double> middle{};
   double size = 1;
 
-  /// \param skip  the number of a joint that is left out, at the coordinate that it has in θ
+  /// Takes the axes from a chain.
+  ///
+  /// \param skip  index of a joint that is left out, fixed at its coordinate in
+  /// θ; negative: no joint
   template <class C, class X>
   chain_axes(const C& chain, const X& theta, int skip) {
     tip = attached(walk<true, double>(
                        chain, theta, chain.size(),
                        [&](Eigen::Index i, const auto& step, const auto& axis, const auto& point) {
                          if (i != skip) {
-                           joints[std::size_t(i > skip && skip >= 0 ? i - 1 : i)] = {step.turns(),
-                                                                                     axis, point};
+                           joints[std::size_t(i > skip && skip >= 0 ? i - 1 : i)] = {
+                               step.is_rotational(), axis, point};
                          }
                        }),
                    chain.tip().offset);
     choose_units();
   }
 
-  /// \param goal  of the tip, in the base
+  /// Loop equation with the tip at a goal.
+  ///
+  /// \param goal  tip pose in the base frame
   [[nodiscard]] joint_loop loop_to(const tip_place& goal) const {
     tip_place closing = goal * inverse_place(tip);
     closing.translation = 1 / size * (closing.point(middle) - middle);
@@ -46,7 +51,8 @@ struct chain_axes {
   }
 
 private:
-  /// The middle is the point whose squared distances from the axes have the least sum.
+  /// Finds the centre and the size of the axes, and scales them. The centre is the point with the
+  /// smallest sum of squared distances from the axes.
   void choose_units();
 };
 

@@ -12,7 +12,8 @@
 #include <cmath>
 
 /// \file
-/// Of which size a loop of six joints is, and about where, which the library duet::compiled holds.
+/// Characteristic length and centre of a loop of six joints, used for scaling. Compiled into
+/// duet::compiled.
 
 namespace duet::detail {
 
@@ -26,8 +27,9 @@ DUET_COMPILED_FUNCTION void chain_axes::choose_units() {
     squares += across;
     sum += across * p;
   }
-  // Where all axes are parallel `squares` is singular: damped, and as often as the damping is to be
-  // forgotten where they are not. (Eigen's decompositions take g++ two seconds to compile.)
+  // If all axes are parallel `squares` is singular. It is therefore damped, and the solution is
+  // refined as often as is needed to remove the effect of the damping otherwise. (Eigen's
+  // decompositions take g++ two seconds to compile.)
   const Eigen::Matrix3d damped = (squares + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
   for (int k = 0; k < 6; ++k) {

@@ -13,11 +13,11 @@
 #include <numbers>
 
 /// \file
-/// The zeros of real trigonometric polynomials, complex ones too.
+/// Zeros of real trigonometric polynomials, including complex ones.
 
 namespace duet::detail {
 
-/// The z = e^{iθ} with f = 0 for f(θ) = Σ d_k e^{ikθ}, k = −n … n, d_−k = d̄_k.
+/// Zeros z = e^{iθ} of f(θ) = Σ d_k e^{ikθ}, k = −n … n, d_−k = d̄_k.
 ///
 /// \tparam Degree  n
 template <int Degree>
@@ -27,10 +27,10 @@ public:
   using values = std::array<double, std::size_t(samples)>;
   using half_of_coefficients = std::array<std::complex<double>, std::size_t(Degree + 1)>;
 
-  /// The k-th angle at which `interpolated` is to know f.
+  /// Angle of the k-th value of f that `interpolated` requires.
   [[nodiscard]] static double angle(int k) { return 2 * std::numbers::pi * k / samples; }
 
-  /// d_0 … d_n of the f that has given values.
+  /// Coefficients d_0 … d_n of the f with given values at the angles `angle(k)`.
   [[nodiscard]] static half_of_coefficients interpolated(const values& f) {
     static const auto turns = [] {
       std::array<std::complex<double>, std::size_t(samples)> result;
@@ -50,7 +50,9 @@ public:
     return result;
   }
 
-  /// \param d  d_0 … d_n
+  /// Finds the zeros.
+  ///
+  /// \param d  coefficients d_0 … d_n
   explicit circle_roots(const half_of_coefficients& d) {
     double largest = 0;
     for (const auto& x : d) {
@@ -65,14 +67,15 @@ public:
   }
 
   [[nodiscard]] std::complex<double> operator[](int i) const { return {x_[i], y_[i]}; }
-  /// How far the root is moved by errors of the coefficients, per unit of their largest.
+  /// Displacement of the i-th zero by errors of the coefficients, per unit of
+  /// the largest coefficient.
   [[nodiscard]] double sensitivity(int i) const { return sensitivity_[i]; }
 
 private:
   using lanes = Eigen::Array<double, count, 1>;
 
-  /// All roots at once by Newton's method with the roots found divided out, after Ehrlich and
-  /// Aberth: z_i moves by −1/(f′/f − Σ_{j≠i} 1/(z_i − z_j)).
+  /// Finds all zeros simultaneously by the Ehrlich–Aberth method, Newton's method with the other
+  /// zeros divided out: z_i moves by −1/(f′/f − Σ_{j≠i} 1/(z_i − z_j)).
   void find() {
     for (int i = 0; i < count; ++i) {
       const auto z = std::polar(i % 2 == 0 ? 1.1 : .9, 2 * std::numbers::pi * (i + .3) / count);
@@ -105,7 +108,7 @@ private:
     for (int j = 0; j < count; ++j) {
       const lanes dx = x_ - x_[j], dy = y_ - y_[j];
       lanes square = dx.square() + dy.square();
-      square[j] = 1; // of dx = dy = 0
+      square[j] = 1; // not 0, as dx = dy = 0
       sum_x += dx / square;
       sum_y -= dy / square;
     }
@@ -116,14 +119,14 @@ private:
     for (int i = 0; i < count; ++i) {
       const double wx = (px[i] * nx[i] + py[i] * ny[i]) / n[i];
       const double wy = (py[i] * nx[i] - px[i] * ny[i]) / n[i];
-      // Roots far from the circle, at infinity where the degree is less, count for nothing.
+      // Zeros far from the circle, or at infinity if the degree is lower, are ignored.
       const bool is_far = size[i] > 1e4 || size[i] < 1e-4;
       if (is_far || !(p[i] > 0) || !(wx * wx + wy * wy < 1e12)) {
         continue;
       }
       x_[i] -= wx;
       y_[i] -= wy;
-      const bool is_near = size[i] < 3 && size[i] > .3; // others need not be as accurate
+      const bool is_near = size[i] < 3 && size[i] > .3; // others need less accuracy
       largest =
           std::max(largest, (is_near ? 1 : 1e-12) * (wx * wx + wy * wy) / (size[i] * size[i]));
     }

@@ -9,7 +9,7 @@
 #include <cmath>
 
 /// \file
-/// Newton's method for loops of six joints, which the library duet::compiled holds.
+/// Newton's method for loops of six joints. Compiled into duet::compiled.
 
 namespace duet::detail {
 
@@ -35,11 +35,11 @@ DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& 
     measured = theta;
     six_coordinates step = least_solution(gap.jacobian, gap.twist);
     if (left <= good && !(step.norm() < singular)) {
-      return true; // what is left is rounding that would be made larger
+      return true; // the residual is round-off, which a step would amplify
     }
-    // A gap of fourth order is closed by steps as long as that.
+    // Steps of this length close an error of fourth order.
     const double longest = std::min(.5, 2 * gap.size * std::sqrt(std::sqrt(left)));
-    if (!(step.norm() < longest)) { // beside a singularity: the least |J x − e|² + |e|² |x|²
+    if (!(step.norm() < longest)) { // damped least squares: min |J x − e|² + |e|² |x|²
       Eigen::Matrix<double, 6, 12> damped;
       damped << gap.jacobian, left * six_columns::Identity();
       step = least_solution(damped, gap.twist).head<6>();
@@ -48,7 +48,8 @@ DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& 
         return false;
       }
     }
-    // In a singularity steps become shorter by one factor q: 1 + q + q² + … of them at once.
+    // At a singularity step lengths decrease by a factor q: 1 + q + q² + … of
+    // them are taken at once.
     const double lengths = last.norm() * step.norm(), q = step.norm() / last.norm();
     if (k % 3 == 2 && q < .95 && last.dot(step) > .9 * lengths) {
       theta += q / (1 - q) * step;
@@ -57,7 +58,7 @@ DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& 
     last = step;
   }
   theta = measured;
-  return before <= 5 * good; // where many solutions coincide rounding is in the way
+  return before <= 5 * good; // round-off limits the accuracy where many solutions coincide
 }
 #endif
 

@@ -17,23 +17,26 @@
 #include <cstddef>
 
 /// \file
-/// Loops in which three joints, one after the other, have axes that meet in a point or are
-/// parallel, or in which three joints slide.
+/// Closed-form solutions of loops in which three consecutive joints have axes that meet in a point
+/// (spherical wrist) or are parallel, or in which three joints are prismatic.
 ///
-/// Axes that meet leave a point where it is, parallel ones a plane. Where the other three joints
-/// have to take that, is two equations in the first and third of them: of what turns about the
-/// second axis two numbers do not change. (Page: all_inverse_kinematics.)
+/// Rotations about axes that meet leave their common point invariant, rotations about parallel axes
+/// a plane. The other three joints have to move that point or plane to its goal. This gives two
+/// equations in the first and third of them, because rotations about the second axis leave two
+/// numbers invariant. (Page: all_inverse_kinematics.)
 
 namespace duet::detail {
 
-/// Solutions in closed form of a loop whose joints 4 to 6 have axes that meet.
+/// Closed-form solutions of a loop whose joints 4 to 6 have axes that meet.
 class spherical_loop {
 public:
   explicit spherical_loop(const joint_loop& loop, const vector3d& centre)
       : loop_(loop), centre_(centre) {}
 
-  /// exp(θ₁S₁) exp(θ₂S₂) exp(θ₃S₃) takes the centre to its goal, what is left is a rotation.
-  /// \return false where coordinates are undetermined
+  /// Calls visit(θ, multiplicity) for each solution: exp(θ₁S₁) exp(θ₂S₂) exp(θ₃S₃) moves the centre
+  /// to its goal, and a rotation remains.
+  ///
+  /// \return false if coordinates are undetermined
   template <class Visit>
   bool operator()(const Visit& visit) const {
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
@@ -56,8 +59,8 @@ public:
       }
       return is_determined;
     }
-    // In a frame with its origin on the second axis: those points e₃ c and e₁⁻¹ goal agree along
-    // that axis, and in their squares.
+    // In a frame with its origin on the second axis: the points e₃ c and e₁⁻¹ goal have the same
+    // component along that axis and the same squared norm.
     const turned_vector from(third.axis, centre_ - third.point, third.point - second.point);
     const turned_vector to(-1 * first.axis, goal - first.point, first.point - second.point);
     const auto height = [&](const turned_vector& x) { return part_along(second.axis, x); };
@@ -78,7 +81,10 @@ public:
   }
 
 private:
-  /// \param error  of the first three coordinates, if that is more than rounding
+  /// Solves for the last three angles.
+  ///
+  /// \param error  error of the first three coordinates, if it exceeds round-off
+  /// \return false if coordinates are undetermined
   template <class Visit>
   bool wrist(six_coordinates& theta, int multiplicity, double error, const Visit& visit) const {
     const quaternion<double> turn =
@@ -95,7 +101,7 @@ private:
                      : nearest > close_by || (nearest > 0 && nearest > error_of(theta));
   }
 
-  /// Of the first three coordinates, by rounding of where the centre is.
+  /// Error of the first three coordinates by round-off in the position of the centre.
   [[nodiscard]] double error_of(const six_coordinates& theta) const {
     constexpr double rounding = 3e-15;
     const six_columns all = loop_gap(loop_, theta).jacobian;
@@ -111,13 +117,16 @@ private:
   vector3d centre_;
 };
 
-/// Solutions in closed form of a loop whose joints 1 to 3 have parallel axes.
+/// Closed-form solutions of a loop whose joints 1 to 3 have parallel axes.
 class planar_loop {
 public:
   explicit planar_loop(const joint_loop& loop) : loop_(loop) {}
 
-  /// exp(θ₅S₅) exp(θ₆S₆) closing⁻¹ takes the plane across the three axes where exp(−θ₄S₄) does;
-  /// what is left is a motion of that plane. \return false where coordinates are undetermined
+  /// Calls visit(θ, multiplicity) for each solution: exp(θ₅S₅) exp(θ₆S₆) closing⁻¹ and
+  /// exp(−θ₄S₄) map the plane perpendicular to the three axes to the same plane, and a motion
+  /// of that plane remains.
+  ///
+  /// \return false if coordinates are undetermined
   template <class Visit>
   bool operator()(const Visit& visit) const {
     const auto &fourth = loop_.joints[3], &fifth = loop_.joints[4], &sixth = loop_.joints[5];
@@ -125,8 +134,8 @@ public:
     const tip_place opening = inverse_place(loop_.closing);
     const vector3d goal_normal = rotated(opening.rotation, n);
     const double goal_distance = dot(goal_normal, opening.translation);
-    // Of planes that turn about the fifth axis, the normal along it does not change, nor the
-    // distance from a point on it.
+    // Rotations of a plane about the fifth axis preserve the component of its normal along that
+    // axis and its distance from a point on that axis.
     const turned_vector from(sixth.axis, goal_normal), to(-1 * fourth.axis, n);
     const auto distance = [&](const turned_vector& x, double before, const vector3d& offset) {
       turning_value result = part_along(offset, x);
@@ -157,8 +166,8 @@ public:
   }
 
 private:
-  /// Where the fifth axis has become parallel to the first three: 0 at the θ₅ with which the third
-  /// is as far from the first as in the middle of all that they can be.
+  /// Function of θ₅ for a fifth axis that has become parallel to the first three: 0 where the
+  /// distance of the third axis from the first is at the centre of its range.
   [[nodiscard]] turning_value beyond_reach(const six_coordinates& theta) const {
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2],
                &fifth = loop_.joints[4];
@@ -182,13 +191,13 @@ private:
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
     const tip_place motion = loop_.closing * inverse_place(product_of_joints(loop_, theta, 3, 3));
     const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
-    const double whole = angle_of(motion.rotation, n); // of turns about n and −n
+    const double whole = angle_of(motion.rotation, n); // sum of angles about n and −n
     const vector3d offset = second.point - first.point;
     const turned_vector arm(second.axis, third.point - second.point, offset);
     const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
     const vector3d across = in_plane(offset), goal = in_plane(to);
     middle_turn turn(n, arm, to);
-    const double error = multiplicity > 1 ? 2 * one_angle : 0; // of the other angles
+    const double error = multiplicity > 1 ? 2 * one_angle : 0; // error of the other angles
     const bool has_second = visit_zeros(
         {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
          2 * dot(across, arm.across), 2 * dot(across, arm.beside)},
@@ -201,20 +210,22 @@ private:
           });
         },
         error);
-    // Angles that count as one may have put it on the first.
+    // Angles that count as one may have put the third axis on the first.
     return has_second && turn.nearest() > error;
   }
 
   const joint_loop& loop_;
 };
 
-/// Solutions in closed form of a loop of three joints that turn and three that slide.
+/// Closed-form solutions of a loop of three revolute and three prismatic joints.
 class sliding_loop {
 public:
   explicit sliding_loop(const joint_loop& loop) : loop_(loop) {}
 
-  /// Turns alone make the rotation, ways along the slides the rest.
-  /// \return false where coordinates are undetermined
+  /// Calls visit(θ, multiplicity) for each solution: revolute joints alone make the rotation,
+  /// prismatic displacements the rest.
+  ///
+  /// \return false if coordinates are undetermined
   template <class Visit>
   bool operator()(const Visit& visit) const {
     std::array<int, 3> turning{}, sliding{};

@@ -26,7 +26,7 @@
 
 namespace duet::detail {
 
-/// Collects the components of the self-motion of one arm at one goal.
+/// Collects the components of the self-motion set of one redundant arm at one goal.
 class component_search {
 public:
   component_search(const seven_joints& arm, double resolution)
@@ -37,8 +37,8 @@ public:
     if (is_degenerate_ || seeds_[1].empty()) {
       add_random_points();
     }
-    // Those with the fewest dimensions of the null space first: a component has them at almost all
-    // of its points, and more at some.
+    // Seeds with the smallest null spaces first: almost all points of a component have a null space
+    // of the same dimension, some have larger ones.
     for (std::size_t kernel = 1; kernel < seeds_.size(); ++kernel) {
       for (const seven_coordinates& x : seeds_[kernel]) {
         add(x, int(kernel));
@@ -48,13 +48,13 @@ public:
   }
 
 private:
-  /// All solutions of the other six joints, with each joint in turn held at values a resolution
-  /// apart.
+  /// Adds all solutions of the other six joints with one joint fixed, for each joint at values one
+  /// resolution apart.
   void add_slices() {
     const int count = int(std::ceil(2 * std::numbers::pi / resolution_));
     for (int held = 0; held < 7; ++held) {
       for (int k = 0; k < count && arm_.turns[std::size_t(held)]; ++k) {
-        // not at a table's round numbers, where arms are singular
+        // not at round numbers from tables, where arms are singular
         add_slice(held, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
       }
     }
@@ -68,7 +68,7 @@ private:
         theta[i] = i == held ? value : x.theta[k] * (arm_.turns[std::size_t(i)] ? 1 : axes.size);
         k += i != held;
       }
-      // Where other joints move while this one is held it is at a singular value, or the set has
+      // If other joints can move while this one is fixed, its value is singular, or the set has
       // more dimensions.
       is_degenerate_ = is_degenerate_ || !search.answer().is_complete;
       if (const auto on_set = set_.projected(theta, .1)) {
@@ -77,8 +77,8 @@ private:
     }
   }
 
-  /// Points of components on which no joint can be held alone: where the search from random
-  /// configurations leads.
+  /// Adds points of components on which no joint can be fixed alone, by searches from random
+  /// configurations.
   void add_random_points() {
     constexpr int count = 256;
     for (int k = 0; k < count; ++k) {
@@ -114,7 +114,7 @@ private:
     }
   }
 
-  /// Components near a singular point, which may be where several of them cross.
+  /// Adds components near a singular point, at which several of them may cross.
   void add_beside(const seven_coordinates& singular) {
     struct place {
       seven_coordinates x;
@@ -145,7 +145,7 @@ private:
     }
   }
 
-  static constexpr double step = .05, small_step = .005; ///< from a singular point to others
+  static constexpr double step = .05, small_step = .005; ///< steps from a singular point to others
 
   const seven_joints& arm_;
   self_motion_set set_;
@@ -153,8 +153,8 @@ private:
   surface_sampler sampler_;
   double resolution_;
   split_mix random_{1};
-  bool is_degenerate_ = false; ///< is the tip's pose singular, as far as is known?
-  std::array<std::vector<seven_coordinates>, 8> seeds_; ///< by the null space's dimension
+  bool is_degenerate_ = false; ///< true if the tip pose is known to be singular
+  std::array<std::vector<seven_coordinates>, 8> seeds_; ///< seeds by null-space dimension
   std::vector<traced_curve> found_;
 };
 

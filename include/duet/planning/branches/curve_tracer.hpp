@@ -12,20 +12,24 @@
 #include <optional>
 
 /// \file
-/// Continuation of curves of self-motion, through points where they cross.
+/// Numerical continuation of self-motion curves, through points where they cross.
 
 namespace duet::detail {
 
-/// Follows the curves of one arm and goal: steps along the Jacobian's null space, or along what it
-/// has of the step before where it has more dimensions, and projections back onto the set.
+/// Predictor–corrector continuation of the self-motion curves of one arm and goal: steps along the
+/// Jacobian's null space, or along the projection of the previous step onto it where it has more
+/// dimensions, and projections back onto the set.
 class curve_tracer {
 public:
-  /// \param step  from one point to the next at most
+  /// Continuation on a self-motion set.
+  ///
+  /// \param step  maximum distance between consecutive points
   curve_tracer(const self_motion_set& set, double step) : set_(set), step_(step) {}
 
-  /// The curve through a point on it: once around, or to both ends.
-  /// \param leaving  the direction of the curve there
-  /// \param kernel   dimension of the Jacobian's null space on it
+  /// Curve through one of its points: closed, or followed to both ends.
+  ///
+  /// \param leaving  direction of the curve at that point
+  /// \param kernel   dimension of the Jacobian's null space on the curve
   [[nodiscard]] traced_curve trace(const seven_coordinates& start, const seven_coordinates& leaving,
                                    int kernel) const {
     traced_curve result{{start}, false, 1, kernel};
@@ -39,6 +43,7 @@ public:
   }
 
   /// True if a point of the set is on a curve.
+  ///
   /// \param kernel  dimension of the Jacobian's null space at x
   [[nodiscard]] bool is_on(const traced_curve& curve, const seven_coordinates& x,
                            int kernel) const {
@@ -52,7 +57,8 @@ public:
       if (to_x.squaredNorm() > 4 * chord.squaredNorm()) {
         continue;
       }
-      // The point of the curve that is nearest to x, along the chord, is x.
+      // If x is on the curve, it is the point of the curve that is nearest to x,
+      // found along the chord.
       double part = std::clamp(to_x.dot(chord) / chord.squaredNorm(), 0., 1.);
       for (int round = 0; round < 8 && part > -.5 && part < 1.5; ++round) {
         const auto between = set_.projected(set_.moved(a, part * chord), step_);
@@ -71,12 +77,13 @@ public:
 
 private:
   struct landing {
-    seven_coordinates x, ahead; ///< and the direction of the curve there
-    double bend, length;        ///< of the step
-    bool is_crossing;           ///< has the null space more dimensions than on the curve?
+    seven_coordinates x, ahead; ///< new point, direction of the curve there
+    double bend, length;        ///< deflection and length of the step
+    bool is_crossing;           ///< true if the null space has more dimensions than on the curve
   };
 
-  /// The unit vector of a null space that is nearest to the direction of a step before.
+  /// Unit vector of a null space that is nearest to the direction of the previous step; empty if
+  /// that is nearly orthogonal to it.
   [[nodiscard]] static std::optional<seven_coordinates>
   direction(const self_motion_set::null_space& basis, const seven_coordinates& before) {
     const seven_coordinates along = basis * (basis.transpose() * before);
@@ -84,7 +91,7 @@ private:
     return size > .1 ? std::optional<seven_coordinates>(along / size) : std::nullopt;
   }
 
-  /// A step along the curve, if there the curve goes on in about the same direction.
+  /// Step along the curve; empty if the curve does not continue in about the same direction.
   [[nodiscard]] std::optional<landing>
   land(const seven_coordinates& x, const seven_coordinates& along, double step, int kernel) const {
     const auto next = set_.projected(set_.moved(x, step * along), step_);
@@ -103,7 +110,7 @@ private:
                : std::nullopt;
   }
 
-  /// A step past points where curves cross, if they are not too near to each other for that.
+  /// Step past points where curves cross, if they are not too close to each other.
   [[nodiscard]] std::optional<landing> land_past(const seven_coordinates& x,
                                                  const seven_coordinates& along, double step,
                                                  int kernel) const {
@@ -118,8 +125,9 @@ private:
     return result;
   }
 
-  /// Adds points until the curve is back at its first one.
-  /// \return did it get there?
+  /// Adds points until the curve returns to its first one.
+  ///
+  /// \return true if it does
   bool follow(traced_curve& curve, seven_coordinates along) const {
     constexpr double smallest = 1e-5, longest_crossing = .6;
     const int most = int(400 / step_);
@@ -129,12 +137,12 @@ private:
       const seven_coordinates last = curve.points.back();
       const auto next = land_past(last, along, step, curve.kernel);
       if (!next) {
-        step *= .6; // not a half: structured curves have their crossings at such parts
+        step *= .6; // not a half: structured curves cross at such fractions
         continue;
       }
       crossing = next->is_crossing ? crossing + next->length : 0;
       if (crossing > longest_crossing) {
-        return false; // it has come to a component of more dimensions
+        return false; // it has reached a component of more dimensions
       }
       const seven_coordinates back = set_.difference(home, last);
       const double left = back.dot(along);

@@ -16,17 +16,19 @@
 #include <numbers>
 
 /// \file
-/// A loop of six joints as the zeros of a determinant in the angle of the third, which must turn,
-/// as must the sixth.
+/// Solutions of a loop of six joints as zeros of a determinant in the angle of the
+/// third, by elimination after M. Raghavan and B. Roth (1993). The third and the sixth
+/// joint must be revolute.
 ///
-/// The line of the sixth joint, displaced by the joints 3 to 5, is where it comes to from the goal
-/// by the joints 2 and 1 backwards. Of the 14 equations of its `line_coordinates` six are left once
-/// the eight products of the two are eliminated; times cos θ₄/2 and sin θ₄/2 they are twelve,
-/// linear in twelve products of θ₄/2 and θ₅, of a matrix that depends on θ₃. (Page:
+/// The axis of the sixth joint displaced by joints 3 to 5 is the axis of the goal displaced by
+/// joints 2 and 1 backwards. Of the 14 equations of its `line_coordinates` six remain after
+/// elimination of the eight products of θ₁ and θ₂; multiplied by cos θ₄/2 and sin θ₄/2 they are
+/// twelve, linear in twelve products of θ₄/2 and θ₅, with a matrix that depends on θ₃. (Page:
 /// all_inverse_kinematics.)
 
 namespace duet::detail {
 
+/// Raghavan–Roth elimination for a loop of six joints.
 class elimination {
   using complex = std::complex<double>;
 
@@ -63,7 +65,7 @@ public:
     arm_.col(0) -= goal.col(0);
     const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 14, 8>> factors(goal.rightCols<8>());
     const auto& r = factors.matrixQR();
-    // One by one: by blocks, as Eigen applies them by itself, compilers take longer.
+    // One reflection at a time: Eigen's blocked application takes longer to compile.
     Eigen::Matrix<double, 27, 1> workspace;
     for (Eigen::Index k = 0; k < 8; ++k) {
       arm_.bottomRows(14 - k).applyHouseholderOnTheLeft(r.col(k).tail(13 - k), factors.hCoeffs()[k],
@@ -79,8 +81,8 @@ public:
     }
   }
 
-  /// The matrix at an angle θ₃. Columns: cos θ₄/2, sin θ₄/2, cos 3θ₄/2, sin 3θ₄/2, or 1, d₄, d₄²,
-  /// d₄³, each times 1, cos θ₅, sin θ₅, or 1, d₅, d₅².
+  /// Matrix at an angle θ₃. Columns: cos θ₄/2, sin θ₄/2, cos 3θ₄/2, sin 3θ₄/2, or 1, d₄, d₄², d₄³,
+  /// each times 1, cos θ₅, sin θ₅, or 1, d₅, d₅².
   [[nodiscard]] matrix at(double theta) const {
     const auto left = arm_.bottomRows<6>();
     const Eigen::Matrix<double, 6, 9> a = left.leftCols<9>() +
@@ -105,20 +107,20 @@ public:
     return m;
   }
 
-  static constexpr int most = 16;  ///< solutions
-  static constexpr int hidden = 2; ///< the joint whose angle the determinant depends on
+  static constexpr int most = 16;  ///< maximum number of solutions
+  static constexpr int hidden = 2; ///< index of the joint whose angle the determinant depends on
 
   struct zeros {
-    std::array<complex, 24> values; ///< e^{iθ₃}, eight of them not on account of solutions
-    double regularity = 0;          ///< near 0 if the determinant vanishes for all angles
+    std::array<complex, 24> values; ///< e^{iθ₃}; eight of them are extraneous
+    double regularity = 0;          ///< close to 0 if the determinant vanishes for all angles
   };
 
   /// Zeros of the determinant.
   ///
-  /// With x the tangent of half of what θ₃ is beyond an angle where no known arm has a solution,
-  /// the matrix is M₀ + 2 x M₁ + x² M₂ except for a factor: x is an eigenvalue of a matrix of 24
-  /// rows, as precise as solutions are regular, also where these have θ₃ in common. (Zeros of a
-  /// polynomial of which m coincide have an error of ε^{1/m}.)
+  /// With x the tangent of half the angle from one at which no known arm has a solution to θ₃, the
+  /// matrix is M₀ + 2 x M₁ + x² M₂ up to a factor: x is an eigenvalue of a 24 × 24 matrix, as
+  /// accurate as solutions are regular, also if these share θ₃. (Zeros of a polynomial of which m
+  /// coincide have an error of ε^{1/m}.)
   [[nodiscard]] zeros roots() const {
     constexpr double start = .7345;
     const matrix here = at(start), opposite = at(start + std::numbers::pi),
@@ -151,7 +153,7 @@ public:
     return result;
   }
 
-  /// Calls visit(θ) with coordinates near the real solution that has this θ₃, if there is one.
+  /// Calls visit(θ) with coordinates near the real solution with this θ₃, if there is one.
   template <class Visit>
   void solution_at(double theta3, const Visit& visit) const {
     Eigen::Matrix<double, 12, 1> kernel;
@@ -184,7 +186,7 @@ public:
     }
     // Products of 1, cos θ₅, sin θ₅, or 1, d₅, d₅², which are real except for a common factor.
     Eigen::Vector3cd factor = Eigen::Vector3cd::Zero();
-    for (int k = 0; k < 3; ++k) { // of phases −3θ₄/2, −θ₄/2, θ₄/2; or weights 1, d₄, d₄²
+    for (int k = 0; k < 3; ++k) { // phases −3θ₄/2, −θ₄/2, θ₄/2; or weights 1, d₄, d₄²
       const complex weight =
           turns ? std::polar(1., (1.5 - k) * std::arg(z)) : complex(std::pow(z.real(), k));
       factor += weight * low.segment<3>(3 * k);
@@ -209,7 +211,7 @@ private:
       const bool is_small = std::abs(factor[0]) > std::abs(factor[2]);
       theta[4] = is_small ? factor[1] / factor[0] : factor[2] / factor[1];
     }
-    // The eliminated products, and of them θ₁ and θ₂.
+    // The eliminated products, and θ₁ and θ₂ from them.
     const auto weights = [&](std::size_t joint) {
       const double x = theta[Eigen::Index(joint)];
       return loop_.joints[joint].turns ? Eigen::Vector3d(1, std::cos(x), std::sin(x))
@@ -236,7 +238,7 @@ private:
 
   joint_loop loop_;
   Eigen::Matrix<double, 14, 27> arm_; // all equations, the last six without the eliminated products
-  Eigen::Matrix<double, 8, 27> eliminated_; // the products
+  Eigen::Matrix<double, 8, 27> eliminated_; // eliminated products
 };
 
 } // namespace duet::detail

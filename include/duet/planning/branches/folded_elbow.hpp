@@ -11,22 +11,23 @@
 #include <vector>
 
 /// \file
-/// Three turns that take a point close to where two of their axes meet.
+/// Three rotations that move a point close to the intersection of two of their axes.
 ///
-/// How far the point is from there is known as the length of a vector, to rounding; by its square
-/// half of the digits are lost. The third turn alone makes that length, and then the two take one
-/// direction to another. (Page: all_inverse_kinematics.)
+/// The distance of the point from the intersection is known to round-off as the length of a vector;
+/// its square would lose half of the digits. The third rotation alone determines that length
+/// (Paden–Kahan subproblem 3), and the other two then map one direction to another (Paden–Kahan
+/// subproblem 2). (Page: all_inverse_kinematics.)
 
 namespace duet::detail {
 
-/// An angle at which something is so, and how many such coincide in it.
+/// Angle that satisfies an equation, with its multiplicity.
 struct angle_found {
   double theta = 0;
   int multiplicity = 1;
 };
 
-/// The θ with |v(θ)| = length, where that is less than half of the most.
-/// Of the least |v|, at a known angle, |v|² = least² + 4 r sin²(x/2) at x from there.
+/// Angles θ with |v(θ)| = length (Paden–Kahan subproblem 3), for a length less than half of the
+/// maximum. At x from the known angle of the minimum, |v|² = least² + 4 r sin²(x/2).
 [[nodiscard]] inline std::vector<angle_found> angles_of_length(const turned_vector& v,
                                                                double length) {
   constexpr double rounding = 1e-14;
@@ -43,17 +44,17 @@ struct angle_found {
   return {};
 }
 
-/// Three turns that take a point to its goal, if one of these is close to the point in which the
-/// second axis meets the first or third.
+/// Three rotations that move a point to its goal, if the goal is close to the point in which the
+/// second axis meets the first, or the point to that in which it meets the third.
 struct folded_elbow {
   struct turns {
     double first = 0, second = 0, third = 0;
     int multiplicity = 1;
   };
 
-  bool is_folded = false; ///< is it so?
-  bool is_certain = true; ///< are all among these, and determined?
-  bool is_any = false;    ///< two of the turns may be anything: these are multiples of quarters
+  bool is_folded = false; ///< true if the goal or the point is that close
+  bool is_certain = true; ///< true if all solutions are included and determined
+  bool is_any = false;    ///< true if two angles are arbitrary: multiples of 90° are given
   std::vector<turns> all = {};
 
   folded_elbow(const joint_loop& loop, const vector3d& point, const vector3d& goal) {
@@ -65,7 +66,9 @@ struct folded_elbow {
   }
 
 private:
-  /// \param is_goal  is the goal to be close to axes 1 and 2, or the point to axes 2 and 3?
+  /// Finds the solutions in one of both cases.
+  ///
+  /// \param is_goal  true: goal close to axes 1 and 2; false: point close to axes 2 and 3
   void find(const joint_loop& loop, const vector3d& point, const vector3d& goal, bool is_goal) {
     constexpr double close_by = 1e-3, rounding = 4e-15, in_it = 3e-14, certain = 3e-13;
     const loop_joint &first = loop.joints[0], &second = loop.joints[1], &third = loop.joints[2];
@@ -77,7 +80,7 @@ private:
     if (!(distance < close_by && apart < close_by)) {
       return;
     }
-    if (apart > rounding + 1e-3 * distance) { // nor far enough from each other for `angle_pairs`
+    if (apart > rounding + 1e-3 * distance) { // nor distant enough for `angle_pairs`
       is_certain = false;
       return;
     }

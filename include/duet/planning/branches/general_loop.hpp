@@ -29,14 +29,14 @@
 
 namespace duet::detail {
 
-/// A loop run through from one of its joints on, forwards or backwards.
+/// Order of the joints of a loop, from one of them on, forwards or backwards.
 struct loop_order {
   joint_loop loop;
   int first = 0;
   bool is_reversed = false;
-  double quality = 0; ///< how well equations can be solved that way; 0 if not at all
+  double quality = 0; ///< measure of how well equations can be solved in this order; 0: not at all
 
-  /// The number in the loop of the k-th joint of this order.
+  /// Index in the loop of the k-th joint of this order.
   [[nodiscard]] Eigen::Index joint(int k) const { return ((is_reversed ? 5 - k : k) + first) % 6; }
   [[nodiscard]] six_coordinates in_loop(const six_coordinates& theta) const {
     six_coordinates result;
@@ -47,9 +47,9 @@ struct loop_order {
   }
 };
 
-/// Of the elimination of the first two joints: |(p₁ − p₂)·(n₁ × n₂)|, which is 0 where their axes
-/// meet or are parallel; where they slide |n₁ × n₂|, less for one of them. The third and the sixth
-/// joint have to turn.
+/// Quality of an order for the elimination of the first two joints: |(p₁ − p₂)·(n₁ × n₂)|, which is
+/// 0 if their axes meet or are parallel; |n₁ × n₂| if both are prismatic, a quarter of it if one
+/// is. The third and the sixth joint must be revolute.
 [[nodiscard]] inline double quality_of(const joint_loop& loop, const elimination*) {
   const loop_joint &a = loop.joints[0], &b = loop.joints[1];
   const auto across = cross(a.axis, b.axis);
@@ -58,8 +58,9 @@ struct loop_order {
          : a.turns || b.turns                           ? length_of(across) / 4
                                                         : length_of(across);
 }
-/// Of three turns after that of the first joint: none of their axes is parallel to the next.
-[[nodiscard]] inline double quality_of(const joint_loop& loop, const two_slides*) {
+/// Quality of an order for two prismatic joints: the first joint must be revolute, and no axis of
+/// the other three revolute joints parallel to the next.
+[[nodiscard]] inline double quality_of(const joint_loop& loop, const two_prismatic*) {
   double result = loop.joints[0].turns ? 1 : 0;
   const loop_joint* before = nullptr;
   for (std::size_t i = 1; i < 6; ++i) {
@@ -72,9 +73,9 @@ struct loop_order {
   return result;
 }
 
-/// The orders of a loop in which a system of equations can be solved, the best first.
+/// Orders of a loop in which a system of equations can be solved, the best first.
 ///
-/// \param general  the loop in general position, by which orders are judged
+/// \param general  loop in general position, for which the quality of orders is computed
 template <class System>
 [[nodiscard]] std::vector<loop_order> orders_of(const joint_loop& loop, const joint_loop& general) {
   std::vector<loop_order> result;
@@ -99,8 +100,8 @@ template <class System>
   return result;
 }
 
-/// Pseudo-random vectors of a size up to about `by`, the same for the same seed; less for loops
-/// with long travels of prismatic joints.
+/// Pseudo-random vectors of a size up to about `by`, reproducible for a seed; smaller for loops
+/// with large prismatic displacements.
 class small_vectors {
 public:
   small_vectors(const joint_loop& loop, double by, std::uint64_t seed)
@@ -119,13 +120,13 @@ private:
   double by_;
 };
 
-/// A loop with a goal close to the given one.
+/// Loop with a goal close to the given one.
 [[nodiscard]] inline joint_loop with_disturbed_goal(joint_loop loop, double by,
                                                     std::uint64_t seed) {
   loop.closing = small_vectors(loop, by, seed).place() * loop.closing;
   return loop;
 }
-/// A loop with a goal and axes that are in general position, close to the given ones.
+/// Loop with a goal and axes in general position, close to the given ones.
 [[nodiscard]] inline joint_loop disturbed(joint_loop loop, double by, std::uint64_t seed) {
   small_vectors any(loop, by, seed);
   for (loop_joint& j : loop.joints) {
@@ -137,12 +138,12 @@ private:
   return loop;
 }
 
-/// Whether there may be solutions near a zero e^{iθ} of a system's determinant.
+/// Zero e^{iθ} of a system's determinant, near which there may be solutions.
 struct zero_on_circle {
   double angle = 0;
   double off = 0;        ///< logarithm of the distance from the origin
-  bool is_real = false;  ///< to round-off
-  bool is_single = true; ///< has no other one beside it
+  bool is_real = false;  ///< true if the distance is 1 to round-off
+  bool is_single = true; ///< true if no other zero is close
 };
 
 [[nodiscard]] inline std::vector<zero_on_circle>
@@ -163,23 +164,25 @@ zeros_on_circle(std::span<const std::complex<double>> roots) {
   return result;
 }
 
-/// The solutions of a loop, from those of loops close to it.
+/// Solutions of a loop, from those of slightly displaced loops.
 template <class System>
 class general_solver {
 public:
   explicit general_solver(const joint_loop& loop) : found_(loop) {}
 
   [[nodiscard]] const loop_solutions& found() const { return found_; }
-  /// Might solutions be on curves of which no point was found?
+  /// True if there may be solutions on curves of which no point was found.
   [[nodiscard]] bool is_doubtful() const { return is_doubtful_; }
 
-  /// Did the last loop that was solved have real zeros alone near the circle, away from each other?
+  /// True if the loop that was solved last is well conditioned and all its zeros near the circle
+  /// are real and separate.
   [[nodiscard]] bool is_certain() const { return is_certain_; }
 
-  /// Did a displaced loop have two complex solutions that may be real without the displacement?
+  /// True if a displaced loop had two complex solutions that may be real without the displacement.
   [[nodiscard]] bool has_close_pair() const { return has_close_pair_; }
 
-  /// On curves of solutions those of a loop close by may all be complex.
+  /// Adds solutions from random initial guesses: on curves of solutions those of a displaced loop
+  /// may all be complex.
   void add_from_anywhere() {
     constexpr int starts = 12;
     split_mix random(1);
@@ -192,8 +195,10 @@ public:
     }
   }
 
-  /// Adds the solutions that one order leads to, disturbed.
-  /// \return has every real zero led to a solution of its own?
+  /// Adds the solutions that those of a displaced loop, solved in one order, lead to.
+  ///
+  /// \return true if the determinant does not vanish identically and every real zero led to a
+  /// separate solution
   bool add(const loop_order& order, double by, std::uint64_t seed) {
     constexpr double singular = 1e-4, vanishing = 1e-6, sound = .05, nearly_real = .05;
     constexpr int most_coinciding = 4;
@@ -229,7 +234,7 @@ public:
 private:
   static constexpr std::size_t nowhere = loop_solutions::nowhere;
 
-  /// The only solution near an angle that the determinant vanishes at, if it was found.
+  /// Index of the only solution near an angle at which the determinant vanishes, if it was found.
   [[nodiscard]] std::size_t known(const loop_order& order, double angle) const {
     constexpr double beside = .02, close = 1e-3;
     std::size_t result = nowhere;
@@ -250,16 +255,17 @@ private:
   bool is_doubtful_ = false, is_certain_ = false, has_close_pair_ = false;
 };
 
-/// Is the goal farther away than joints can carry it?
+/// True if the goal is farther away than the joints can reach.
 [[nodiscard]] inline bool is_beyond_reach(const joint_loop& loop) {
-  double reach = 0; // at most
+  double reach = 0; // upper bound
   for (const loop_joint& j : loop.joints) {
     reach += j.turns ? 2 * length_of(j.point) : HUGE_VAL;
   }
   return length_of(loop.closing.translation) > reach;
 }
 
-/// Are there no regular solutions, whatever the goal, as where two neighbours turn about one line?
+/// True if no solution is regular, whatever the goal, as if two neighbouring joints rotate about
+/// one axis.
 [[nodiscard]] inline bool is_always_singular(const joint_loop& loop) {
   six_coordinates theta;
   theta << .3, -1.1, .7, 1.9, -.6, 2.3;
@@ -268,13 +274,14 @@ private:
 
 /// All solutions of a loop by a system of equations.
 ///
-/// Axes at right angles and goals that are made of round numbers let zeros coincide, hide solutions
-/// from an order of the joints, or let the determinant vanish for all angles. So loops are solved
-/// whose axes are disturbed, always identically, by 1e-8 to 1e-3 of the loop's size, in more
-/// than one order; and Newton's method leads from their solutions to those of the loop itself.
-/// These are complete where two such loops, one after the other, have as many real zeros as
-/// solutions were found, three where one is nearly singular, or where three add no others; not
-/// where some are on a curve, nor beside what nearly is one.
+/// Axes at right angles and goals with round numbers make zeros coincide, hide solutions in an
+/// order of the joints, or make the determinant vanish for all angles. Therefore loops with
+/// displaced axes are solved, always with the same displacements, of 1e-8 to 1e-3 of the loop's
+/// size, in more than one order. Newton's method leads from their solutions to those of the loop
+/// itself. These are complete if successive displaced loops have as many real zeros as solutions
+/// were found: one loop if it is well conditioned, two otherwise, three close to singularities,
+/// five if there are no solutions; or if three loops add no others. They are not if some are on a
+/// curve, or near what is nearly a curve.
 template <class System>
 [[nodiscard]] loop_answer solve_general_loop(const joint_loop& loop) {
   constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-5};
@@ -283,7 +290,7 @@ template <class System>
   const loop_solutions& found = solver.found();
   const auto needed = [&] {
     const double sigma = found.smallest_singular_value();
-    return found.all().empty()                      ? 5 // each may make two of a double one complex
+    return found.all().empty()                      ? 5 // each may make a double solution complex
            : sigma < .01 || solver.has_close_pair() ? 3
            : sigma < .04 || !solver.is_certain()    ? 2
                                                     : 1;
@@ -302,7 +309,7 @@ template <class System>
   }
   const bool agree = agreeing >= needed() || (quiet >= 3 && agreeing > 0 && is_even());
   if (found.all().empty()) {
-    solver.add_from_anywhere(); // a singular solution, or a curve of them?
+    solver.add_from_anywhere(); // finds a singular solution, or a curve of them
   }
   loop_answer result;
   result.solutions = found.all();

@@ -17,19 +17,19 @@
 #include <cstddef>
 
 /// \file
-/// Six joints whose displacements, one after the other, are a given one: what is left of a chain
-/// and a goal where every solution is looked for.
+/// Loop equation of six joints whose successive displacements equal a given one. All solutions of
+/// inverse kinematics are found from it; chain and goal enter through it only.
 
 namespace duet::detail {
 
-/// A joint where all coordinates are zero: it turns about the line through `point` along `axis`, or
-/// slides along `axis`. All in one frame.
+/// Joint in the zero configuration: revolute about the line through `point` along `axis`, or
+/// prismatic along `axis`. All in one frame.
 struct loop_joint {
   bool turns = true;
   three_vector<double> axis{}, point{};
 };
 
-/// Where x ↦ R x + t is undone.
+/// Inverse of the displacement x ↦ R x + t.
 [[nodiscard]] inline tip_place inverse_place(const tip_place& a) {
   return {conj(a.rotation), -1 * rotated(conj(a.rotation), a.translation)};
 }
@@ -38,7 +38,7 @@ struct loop_joint {
   return {j.turns, rotated(by.rotation, j.axis), by.point(j.point)};
 }
 
-/// The point on the axis of `a` that is nearest to that of `b`.
+/// Point on the axis of `a` that is nearest to that of `b`.
 [[nodiscard]] inline three_vector<double> nearest_point(const loop_joint& a, const loop_joint& b) {
   const three_vector<double> n = cross(a.axis, b.axis);
   return a.point + dot(cross(b.point - a.point, b.axis), n) / dot(n, n) * a.axis;
@@ -47,20 +47,20 @@ struct loop_joint {
 using six_coordinates = Eigen::Matrix<double, 6, 1>;
 using six_columns = Eigen::Matrix<double, 6, 6>;
 
-/// exp(θ₁S₁) … exp(θ₆S₆) = closing.
+/// Loop-closure equation exp(θ₁S₁) … exp(θ₆S₆) = closing, a product of exponentials.
 struct joint_loop {
   std::array<loop_joint, 6> joints{};
   tip_place closing{quaternion<double>(1), {0, 0, 0}};
 
-  /// The loop that begins with the second joint: exp(θ₂S₂) … exp(θ₆S₆) exp(θ₁ Ad(closing⁻¹)S₁) is
-  /// the same displacement.
+  /// Loop that begins with the second joint: exp(θ₂S₂) … exp(θ₆S₆) exp(θ₁ Ad(closing⁻¹)S₁) is the
+  /// same displacement.
   [[nodiscard]] joint_loop shifted() const {
     joint_loop result = *this;
     std::rotate(result.joints.begin(), result.joints.begin() + 1, result.joints.end());
     result.joints[5] = displaced(inverse_place(closing), joints[0]);
     return result;
   }
-  /// The loop run through from its end, exp(−θ₆S₆) … exp(−θ₁S₁) = closing⁻¹.
+  /// Loop in reverse order, exp(−θ₆S₆) … exp(−θ₁S₁) = closing⁻¹.
   [[nodiscard]] joint_loop reversed() const {
     joint_loop result{joints, inverse_place(closing)};
     std::reverse(result.joints.begin(), result.joints.end());
@@ -71,19 +71,19 @@ struct joint_loop {
   }
 };
 
-/// The rotation about an axis, of the sine and the cosine of half its angle.
+/// Rotation about an axis, from the sine and the cosine of half its angle.
 [[nodiscard]] inline quaternion<double> turn_about(const three_vector<double>& axis, double sine,
                                                    double cosine) {
   return {cosine, sine * axis.x, sine * axis.y, sine * axis.z};
 }
 
-/// Sines and cosines of half of the coordinates.
+/// Sines and cosines of half the coordinates.
 [[nodiscard]] inline sines_at_once<6> half_turns_of(const six_coordinates& theta) {
   return sines_at_once<6>(theta[0] / 2, theta[1] / 2, theta[2] / 2, theta[3] / 2, theta[4] / 2,
                           theta[5] / 2);
 }
 
-/// The product of the displacements of `count` joints from the one numbered `first` on.
+/// Product of the displacements of `count` joints from joint `first` on (forward kinematics).
 [[nodiscard]] inline tip_place
 product_of_joints(const joint_loop& loop, const six_coordinates& theta, int first, int count) {
   const auto halves = half_turns_of(theta);
@@ -97,12 +97,12 @@ product_of_joints(const joint_loop& loop, const six_coordinates& theta, int firs
   return result;
 }
 
-/// How far a loop is from being closed: the twist [v; ω] that closes it, and its change with the
-/// coordinates, in the frame of the axes.
+/// Closure error of a loop: the twist [v; ω] that closes it, and the Jacobian of the six joints, in
+/// the frame of the axes.
 struct loop_gap {
   six_coordinates twist;
   six_columns jacobian;
-  double size = 1; ///< the longest way along a slide, if that is more: rounding grows with it
+  double size = 1; ///< largest prismatic displacement, at least 1: round-off grows with it
 
   loop_gap(const joint_loop& loop, const six_coordinates& theta) {
     const auto halves = half_turns_of(theta);
@@ -123,16 +123,18 @@ struct loop_gap {
       link.translation = p - rotated(link.rotation, j.point);
     }
     const tip_place left = loop.closing * inverse_place(link);
-    const double twice = left.rotation.w() < 0 ? -2 : 2; // 2 sin(angle/2) grows up to half a turn
+    const double twice = left.rotation.w() < 0 ? -2 : 2; // 2 sin(angle/2) rises up to half a turn
     twist << left.translation.x, left.translation.y, left.translation.z, twice * left.rotation.x(),
         twice * left.rotation.y(), twice * left.rotation.z();
   }
 };
 
-/// Newton's method from θ to a solution, to the level of rounding.
-/// \param size_of_angles  divides angles, as `loop_gap::size` divides lengths: that, which saves a
-/// step where much is tried, unless 1
-/// \return did it get there?
+/// Newton's method from an initial guess θ to a solution, accurate to round-off; near singularities
+/// by damped least squares (Levenberg–Marquardt).
+///
+/// \param size_of_angles  divisor of angular errors, as `loop_gap::size` is of lengths, and at most
+/// that size: the default, which saves a step if many initial guesses are tried; or 1
+/// \return true if it converges
 [[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& theta,
                                                      double size_of_angles = HUGE_VAL);
 

@@ -9,12 +9,13 @@
 #include <array>
 
 /// \file
-/// Products of a point and a direction that displacements act on linearly, after M. Raghavan and B.
-/// Roth, Inverse kinematics of the general 6R manipulator and related linkages, 1993.
+/// Products of a point and a direction on which displacements act linearly, after M. Raghavan and
+/// B. Roth, Inverse kinematics of the general 6R manipulator and related linkages, 1993.
 
 namespace duet::detail {
 
-/// (1, p, p·p, l, p×l, p·l, (p·p) l − 2 (p·l) p) of a point p and a direction l, and sums of such.
+/// Vector (1, p, p·p, l, p×l, p·l, (p·p) l − 2 (p·l) p) of a point p and a
+/// direction l, or a sum of such.
 struct line_coordinates {
   three_vector<double> p{0, 0, 0}, l{0, 0, 0}, m{0, 0, 0}, c{0, 0, 0};
   double one = 0, pp = 0, pl = 0;
@@ -25,7 +26,7 @@ struct line_coordinates {
     return {p, l, cross(p, l), pp * l - 2 * pl * p, 1, pp, pl};
   }
 
-  /// Of p + t and l.
+  /// Coordinates of p + t and l.
   [[nodiscard]] line_coordinates moved(const three_vector<double>& t) const {
     const double tt = dot(t, t), tl = dot(t, l);
     return {p + one * t,
@@ -37,7 +38,7 @@ struct line_coordinates {
             pl + tl};
   }
 
-  /// All but the first, which is 1.
+  /// All coordinates except the first, which is 1.
   [[nodiscard]] Eigen::Matrix<double, 14, 1> equations() const {
     Eigen::Matrix<double, 14, 1> result;
     result << p.x, p.y, p.z, l.x, l.y, l.z, m.x, m.y, m.z, c.x, c.y, c.z, pp, pl;
@@ -45,8 +46,8 @@ struct line_coordinates {
   }
 };
 
-/// What a joint makes of them: the sum of these with the weights 1, cos θ, sin θ; of a sliding
-/// joint with 1, d, d².
+/// Coordinates displaced by a joint: the sum of the result with the weights 1, cos θ, sin θ; for a
+/// prismatic joint 1, d, d².
 [[nodiscard]] inline std::array<line_coordinates, 3> by_joint(const loop_joint& j,
                                                               const line_coordinates& x) {
   const three_vector<double>& n = j.axis;

@@ -9,37 +9,37 @@
 #include <vector>
 
 /// \file
-/// What is known of the solutions of a loop of six joints.
+/// Solutions of a loop of six joints and their completeness.
 
 namespace duet::detail {
 
-/// A solution of a loop, and how many coincide in it.
+/// Solution of a loop with its multiplicity.
 struct loop_solution {
   six_coordinates theta;
   int multiplicity = 1;
-  double sigma = 1; ///< smallest singular value of the loop's Jacobian, if it was computed
+  double sigma = 1; ///< smallest singular value of the loop's Jacobian; 1 if not computed
 };
 
-/// Two joints that slide along each other wherever the others are: the first by x and the second by
-/// `second_way` x leave the loop closed.
+/// Two prismatic joints that are parallel in every configuration: displacements by x of the first
+/// and by `second_way` x of the second leave the loop closed.
 struct slides_in_place {
   int first = 0, second = 0;
   double second_way = -1;
 };
 
-/// What is known of the solutions of a loop.
+/// Solutions of a loop, and whether they are complete.
 struct loop_answer {
   std::vector<loop_solution> solutions;
   int complex_solutions = 0;
   bool is_complete = false;
-  std::optional<slides_in_place> in_place = {}; ///< then a solution stands for all that these make
+  std::optional<slides_in_place> in_place = {}; ///< if set, a solution represents all that it makes
 };
 
-/// The angle between −π and π, π included.
+/// Angle wrapped to (−π, π].
 [[nodiscard]] inline double turned_back(double x) {
   constexpr double pi = std::numbers::pi, turn = 2 * pi;
   const double size = std::abs(x);
-  // The same but for the last of these, which takes twenty times as long.
+  // `std::remainder` alone gives the same, but takes twenty times as long.
   const double r = size <= pi       ? x
                    : size <= 3 * pi ? x - std::copysign(turn, x)
                                     : std::remainder(x, turn);

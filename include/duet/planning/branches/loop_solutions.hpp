@@ -14,23 +14,23 @@
 #include <vector>
 
 /// \file
-/// Solutions of a loop of six joints as they are gathered: each once, with those beside it.
+/// Collection of the solutions of a loop of six joints: each once, with neighbouring ones.
 
 namespace duet::detail {
 
-/// How much longer than the loop travels of prismatic joints are, squared; at least 1.
+/// Squared ratio of prismatic displacements to the size of the loop; at least 1.
 [[nodiscard]] inline double squared_travel(const joint_loop& loop) {
   const vector3d offset = .1 * loop.closing.translation;
   return std::max(1., dot(offset, offset));
 }
 
-/// The solutions of a loop that were found so far.
+/// Solutions of a loop found so far.
 class loop_solutions {
 public:
   explicit loop_solutions(const joint_loop& loop) : loop_(loop) {}
 
   [[nodiscard]] const std::vector<loop_solution>& all() const { return all_; }
-  /// The number of isolated solutions, with multiplicity.
+  /// Number of isolated solutions, with multiplicity.
   [[nodiscard]] int count() const {
     int result = -on_curves_;
     for (const loop_solution& x : all_) {
@@ -41,21 +41,23 @@ public:
 
   static constexpr std::size_t nowhere = std::size_t(-1);
 
-  /// The smallest singular value of all solutions found.
+  /// Smallest singular value of all solutions found.
   [[nodiscard]] double smallest_singular_value() const { return least_sigma_; }
-  /// The number of solutions on curves of solutions.
+  /// Number of solutions on curves of solutions.
   [[nodiscard]] int on_curves() const { return on_curves_; }
 
-  /// True if a singular solution is on what would be a curve of solutions but for 1e-5 of the size.
+  /// True if a singular solution is on what would be a curve of solutions except
+  /// for 1e-5 of the size.
   [[nodiscard]] bool is_near_curve() const { return is_near_curve_; }
   /// False if a singular solution may be more than double.
   [[nodiscard]] bool is_count_certain() const { return degenerate_ == 0; }
   [[nodiscard]] bool is_singular(std::size_t i) const { return all_[i].sigma < nearly_singular; }
 
-  /// Refines θ and adds the solution it leads to, and the one beside that near a singularity.
+  /// Refines θ and adds the solution it leads to, and its neighbour near a singularity.
+  ///
   /// \return the index of the solution, or `nowhere` if there is none
   std::size_t add(six_coordinates theta) {
-    constexpr std::size_t most = 100; // more than are isolated
+    constexpr std::size_t most = 100; // more than there are isolated ones
     if (all_.size() == most || !close_loop(loop_, theta)) {
       return nowhere;
     }
@@ -75,7 +77,7 @@ public:
   }
 
 private:
-  static constexpr double close_together = 1e-3; // half of how far what is one may be apart
+  static constexpr double close_together = 1e-3; // half the distance of coinciding solutions
   static constexpr double nearly_singular = 1e-5;
 
   /// b − a, revolute joints by the shorter arc.
@@ -89,14 +91,14 @@ private:
     }
     return result;
   }
-  /// True if two solutions are one to round-off: then the configuration halfway is one, too.
+  /// True if two solutions coincide to round-off: then the configuration halfway is one, too.
   [[nodiscard]] bool is_same(const six_coordinates& a, const six_coordinates& b) const {
     const six_coordinates half = difference(a, b) / 2;
     return half.cwiseAbs().maxCoeff() < close_together && is_closed(a + half);
   }
-  /// True if two singular solutions are one to round-off. Where more than two coincide, the closure
-  /// error vanishes to round-off on a curve; of two separate ones σ would be as large as their
-  /// distance.
+  /// True if two singular solutions coincide to round-off. If more than two coincide, the
+  /// closure error vanishes to round-off on a curve; for two separate ones σ would be as
+  /// large as their distance.
   [[nodiscard]] bool is_same_singularity(std::size_t a, std::size_t b) const {
     constexpr double singular = 1e-8, part = 1e-3;
     const double sigma = std::max(all_[a].sigma, all_[b].sigma),
@@ -109,13 +111,15 @@ private:
     return gap.twist.norm() < rounding * gap.size;
   }
 
-  /// Along the direction v that changes the loop least, by u σ t, it changes by u (σ t + κ t²/2) to
-  /// second order: near t = −2σ/κ is another solution. Where σ is 0 it may be one of a curve.
+  /// Finds the neighbour of a solution near a singularity. Along the direction v that changes the
+  /// loop least, by u σ t, the change is u (σ t + κ t²/2) to second order: near t = −2σ/κ is
+  /// another solution. If σ is 0 the solution may be on a curve.
+  ///
   /// \return the index of the solution; `nowhere` for most points of curves
   std::size_t look_beside(std::size_t at) {
     constexpr double close_by = .05, closer = 1e-2, h = 1e-3, fold = 1e-4,
-                     nudge = 1e-9;     // of pivots from zero
-    constexpr std::size_t enough = 24; // singular solutions: others are on curves
+                     nudge = 1e-9;     // displacement of pivots from zero
+    constexpr std::size_t enough = 24; // number of singular solutions: others are on curves
     const six_coordinates theta = all_[at].theta;
     const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
     six_columns rows = loop_gap(loop_, nearby).jacobian.transpose(); // J = L Q, then Qᵀ
@@ -165,7 +169,7 @@ private:
     if (!(std::abs(t) < 1)) {
       return at;
     }
-    // That solution may be the same one once it is refined.
+    // The neighbour may coincide with this solution once it is refined.
     const bool is_one = is_closed(theta + t / 2 * v) ||
                         (add(theta + t * v) == at && std::abs(t) < 2 * close_together);
     if (is_one) {
@@ -174,13 +178,14 @@ private:
     return at;
   }
 
-  /// Adds the solutions beside a nearly singular one by a Lyapunov–Schmidt reduction: with v·(x −
-  /// θ) held at t, all of the closure error but μ(t) u is made 0; solutions are zeros of μ.
-  /// \return the largest |μ|, as far as it was looked at
+  /// Adds the solutions near a nearly singular one by a Lyapunov–Schmidt reduction: with v·(x − θ)
+  /// fixed at t, the closure error is made 0 except for μ(t) u; solutions are zeros of μ.
+  ///
+  /// \return the largest |μ| in the range of the search
   double look_along(const six_coordinates& theta, const six_coordinates& u,
                     const six_coordinates& v) {
     six_coordinates x = theta, x_before = theta;
-    double largest = 0, ratio_before = 0; // of μ to t, which has the zero at t = 0 no more
+    double largest = 0, ratio_before = 0; // ratio of μ to t, without the zero at t = 0
     for (const double t : {.004, .01, .02, .04, .07, .1, .15, .22, .33, .5}) {
       double mu = 0;
       for (int k = 0; k < 2; ++k) {
@@ -209,7 +214,7 @@ private:
     return largest;
   }
 
-  /// Is another solution, or what is next to one, beside a singular one, in the direction v?
+  /// True if there is another solution, or nearly one, in the direction v from a singular one.
   [[nodiscard]] bool is_on_curve(const six_coordinates& theta, const six_coordinates& v) const {
     constexpr double part = 1e-2, nearly = 1e-7, rounding = 1e-12;
     const double size = loop_gap(loop_, theta).size;

@@ -11,13 +11,14 @@
 #include <vector>
 
 /// \file
-/// The turn about an axis that takes one vector to another, both of which turn about other axes.
+/// Rotation about an axis that maps one vector to another, both of which rotate about other axes.
 
 namespace duet::detail {
 
 using vector3d = three_vector<double>;
 
-/// R v + t of a rotation by θ about a unit vector n is `along` + cos θ `across` + sin θ `beside`.
+/// Vector R v + t with a rotation R by θ about a unit vector n: `along` + cos θ
+/// `across` + sin θ `beside`.
 struct turned_vector {
   vector3d along{}, across{}, beside{};
 
@@ -25,7 +26,7 @@ struct turned_vector {
       : along(dot(n, v) * n), across(v - along), beside(cross(n, v)) {
     along = along + t;
   }
-  /// One that stays where it is.
+  /// Constant vector.
   explicit turned_vector(const vector3d& t) : along(t) {}
 
   [[nodiscard]] vector3d at(double theta) const {
@@ -36,25 +37,27 @@ struct turned_vector {
   }
 };
 
-/// n·v
+/// Component n·v.
 [[nodiscard]] inline turning_value part_along(const vector3d& n, const turned_vector& v) {
   return {dot(n, v.along), dot(n, v.across), dot(n, v.beside)};
 }
 
-/// The angle by which a turn about n takes u to v, of n × u and n × v; 0 where they are.
+/// Angle of the rotation about n that maps u to v (Paden–Kahan subproblem 1), given n × u and
+/// n × v; 0 if these vanish.
 [[nodiscard]] inline double angle_across(const vector3d& n, const vector3d& u, const vector3d& v) {
   return std::atan2(dot(n, cross(u, v)), dot(u, v));
 }
+/// Angle of the rotation about n that maps u to v (Paden–Kahan subproblem 1).
 [[nodiscard]] inline double angle_about(const vector3d& n, const vector3d& u, const vector3d& v) {
   return angle_across(n, cross(n, u), cross(n, v));
 }
 
-/// The turn about an axis n that takes one vector, turned by θ, to another, turned by φ. They have
-/// to be as far from the axis as each other, and f(θ) = g(φ).
+/// Rotation about an axis n that maps one vector, rotated by θ, to another, rotated by φ. Both must
+/// be at the same distance from the axis, and f(θ) = g(φ).
 ///
-/// The cosine of an angle says little of it where that is small. Near the axis their ways from it
-/// are taken instead, U = n × v: that |U + U′t| = |V + V′t| along the line on which f = g has two
-/// solutions. They are next to each other in θ and φ, but not in the angle of the turn.
+/// A small angle is ill-conditioned as a function of its cosine. Near the axis the perpendiculars
+/// U = n × v are used instead: |U + U′t| = |V + V′t| along the line on which f = g has two
+/// solutions. They are close in θ and φ, but not in the angle of the rotation.
 class middle_turn {
 public:
   middle_turn(const vector3d& axis, const turned_vector& start, const turned_vector& end,
@@ -62,12 +65,12 @@ public:
       : axis_(axis), start_(start), end_(end), f_(f), g_(g),
         close_by_(reach * reach *
                   std::max(dot(start.across, start.across), dot(end.across, end.across))) {}
-  /// To a vector that stays where it is, with φ = 0.
+  /// Rotation to a constant vector, with φ = 0.
   middle_turn(const vector3d& axis, const turned_vector& start, const vector3d& end)
       : middle_turn(axis, start, turned_vector(end), {0, 0, 0}, {0, 0, 1}) {}
 
-  /// Calls visit(θ, φ, angle of the turn, multiplicity) for a θ and φ that solve both equations but
-  /// for rounding; near the axis for all that are beside them and have not been visited before.
+  /// Calls visit(θ, φ, rotation angle, multiplicity) for a θ and φ that solve both equations to
+  /// round-off; near the axis for all solutions close to them that have not been visited before.
   template <class Visit>
   void operator()(double theta, double phi, int multiplicity, const Visit& visit) {
     const place x{theta, phi};
@@ -82,17 +85,16 @@ public:
     visit_one(x, w, rounding, multiplicity, visit);
   }
 
-  /// How far from the axis the vectors have been that were visited, at least; 0 where the angle of
-  /// a turn is undetermined.
+  /// Smallest distance of the visited vectors from the axis; 0 if a rotation angle is undetermined.
   [[nodiscard]] double nearest() const { return nearest_; }
 
-  /// May that of the turn that is being visited be any?
+  /// True if the rotation angle of the current visit is arbitrary.
   [[nodiscard]] bool is_open() const { return is_open_; }
 
 private:
-  /// What is one may be that far from its middle.
+  /// Largest distance of coinciding solutions from their centre.
   static constexpr double rounding = 3e-13;
-  /// An angle within which second order is enough to begin with.
+  /// Angle within which second order suffices for an initial guess.
   static constexpr double reach = 1e-3;
 
   struct place {
@@ -101,20 +103,21 @@ private:
 
   struct ways {
     vector3d from, to;
-    double square; ///< of the distance from the axis
+    double square; ///< squared distance from the axis
 
     ways(const middle_turn& turn, const place& x)
         : from(cross(turn.axis_, turn.start_.at(x.theta))),
           to(cross(turn.axis_, turn.end_.at(x.phi))), square(dot(from, from)) {}
   };
 
-  /// a t² + 2 b t + c = |U + U′t|² − |V + V′t|² along the line through `at` on which f = g.
+  /// Quadratic a t² + 2 b t + c = |U + U′t|² − |V + V′t|² along the line
+  /// through `at` on which f = g.
   struct beside {
     place at, way{1, 0};
     double a = 0, b = 0, c = 0;
     double distance = 0;     ///< |U| + |V|
     double rate = 0;         ///< (U′² + V′²)^½
-    double error = rounding; ///< of U and V
+    double error = rounding; ///< error of U and V
     bool is_fold = false;    ///< f and g do not change to first order: `at` itself counts twice
 
     beside(const middle_turn& turn, const place& x) : at(x) {
@@ -130,8 +133,8 @@ private:
       const ways w(turn, at);
       const vector3d by_start = cross(turn.axis_, turn.start_.rate(at.theta)),
                      by_end = cross(turn.axis_, turn.end_.rate(at.phi));
-      // An error of f − g, of as much as at best, moves the line; along it |U| = |V| makes up for
-      // what it can.
+      // The error of f − g, at its smallest, moves the line; along the line |U| = |V| compensates
+      // for it as far as possible.
       const double start = length_of(by_start), end = length_of(by_end),
                    along = std::hypot(start * by_phi, end * by_theta);
       if (!is_fold && along > 0) {
@@ -154,7 +157,7 @@ private:
     [[nodiscard]] bool has_middle() const { return std::abs(b) < 2 * reach * std::abs(a); }
     [[nodiscard]] place middle() const { return after(-b / a); }
     [[nodiscard]] double discriminant() const { return b * b - a * c; }
-    /// The zero that is nearer, or the one that is farther.
+    /// Nearer or farther zero of the quadratic.
     [[nodiscard]] place zero(bool is_nearer) const {
       const double q = -b - std::copysign(std::sqrt(std::max(0., discriminant())), b);
       return after(is_nearer ? c / q : q / a);
@@ -190,7 +193,7 @@ private:
       for (int k = 0; k < steps; ++k) {
         x = beside(*this, x).zero(true);
       }
-      if (beside(*this, x).is_close(2)) { // others are solutions by themselves
+      if (beside(*this, x).is_close(2)) { // others are separate solutions
         visit_new(x, here.error, folds, visit);
       }
     }
@@ -222,10 +225,10 @@ private:
   vector3d axis_;
   turned_vector start_, end_;
   turning_value f_, g_;
-  double close_by_; ///< a squared distance from the axis
+  double close_by_; ///< squared distance from the axis
   double nearest_ = HUGE_VAL;
   bool is_open_ = false;
-  std::vector<place> visited_; ///< near the axis
+  std::vector<place> visited_; ///< solutions near the axis
 };
 
 } // namespace duet::detail

@@ -6,12 +6,13 @@
 #include <Eigen/Core>
 
 /// \file
-/// Orthonormal columns, after Gram and Schmidt, and what they solve.
+/// Orthonormal columns by the Gram–Schmidt method, and minimum-norm solutions with them.
 
 namespace duet::detail {
 
-/// Makes columns orthonormal, one after the other; of others the same sums are made. Columns of
-/// which little is left are made so once more, for what rounding has left of the ones before.
+/// Orthonormalises columns one after the other by the modified Gram–Schmidt method, and applies the
+/// same column operations to `others`. Columns of which little remains are orthogonalised again,
+/// because of round-off in the direction of the previous ones.
 template <class M, class... Others>
 void orthonormalise(M& m, Others&... others) {
   for (Eigen::Index j = 0; j < m.cols(); ++j) {
@@ -30,8 +31,8 @@ void orthonormalise(M& m, Others&... others) {
   }
 }
 
-/// The least x with J x = e, for a Jacobian J of six rows that are independent: of J = L Q it is
-/// Qᵀ(L⁻¹e). (g++ takes 0.3 s for it, 1.7 s for Eigen's LU decomposition.)
+/// Minimum-norm solution x of J x = e for a Jacobian J of six independent rows: Qᵀ(L⁻¹e)
+/// with J = L Q. (g++ takes 0.3 s for it, 1.7 s for Eigen's LU decomposition.)
 template <int Joints>
 [[nodiscard]] Eigen::Matrix<double, Joints, 1>
 least_solution(const Eigen::Matrix<double, 6, Joints>& jacobian,

@@ -18,25 +18,25 @@
 #include <optional>
 
 /// \file
-/// A loop of which two joints slide along each other, whatever the others do.
+/// Loops with two prismatic joints that are parallel in every configuration.
 ///
-/// Together they can do no more than one of them: the tip reaches poses of five dimensions only,
-/// and where it is at one, they move in place. With one held at 0 there are six equations for five
-/// coordinates. If its axis were across the other's there were as many coordinates as equations,
-/// and up to eight solutions, as of any two slides. Those of them that do not use it are all there
-/// are.
+/// Together they can do no more than one of them: the tip reaches a five-dimensional set of poses
+/// only, and at each of these the two joints have a self-motion. With one fixed at 0 there are six
+/// equations for five coordinates. If its axis were perpendicular to the other's, there would be as
+/// many coordinates as equations, and up to eight solutions, as for any two prismatic joints. Those
+/// solutions that do not use it are all there are.
 
 namespace duet::detail {
 
-/// A loop that begins with one of two such slides.
+/// Loop that begins with one of two such prismatic joints.
 struct parallel_slides {
   joint_loop loop;
-  std::size_t first;  ///< where that one is in the loop that was given
-  std::size_t second; ///< where the other one is in this loop
+  std::size_t first;  ///< index of that joint in the given loop
+  std::size_t second; ///< index of the other one in this loop
 };
 
-/// These slides, if nothing but turns about their own direction is between them, one way round or
-/// the other.
+/// Pair of such prismatic joints, if only rotations about their common direction are between them,
+/// in one direction of the loop or the other.
 [[nodiscard]] inline std::optional<parallel_slides> parallel_slides_of(const joint_loop& loop) {
   joint_loop from = loop;
   for (std::size_t first = 0; first < 6; ++first) {
@@ -53,8 +53,9 @@ struct parallel_slides {
   return {};
 }
 
-/// Gauss and Newton's method for all coordinates but one, which stays.
-/// \return is the loop closed then?
+/// Gauss–Newton method for all coordinates except one, which is fixed.
+///
+/// \return true if it closes the loop
 [[nodiscard]] inline bool close_with_held(const joint_loop& loop, Eigen::Index held,
                                           six_coordinates& theta) {
   constexpr double rounding = 1e-12;
@@ -72,17 +73,17 @@ struct parallel_slides {
   return left.twist.norm() <= rounding * left.size;
 }
 
-/// The solutions in which one of the slides, the second, is at 0.
+/// Solutions in which the second of the prismatic joints is at 0.
 [[nodiscard]] inline loop_answer solve_parallel_slides(const parallel_slides& slides) {
   const auto held = Eigen::Index(slides.second);
   const Eigen::Vector3d n = slides.loop.joints[slides.second].axis, u = n.unitOrthogonal();
-  joint_loop across = slides.loop; // in none of the directions in which known arms have axes
+  joint_loop across = slides.loop; // no known arm has an axis in that direction
   across.joints[slides.second].axis =
       components(Eigen::Vector3d(std::cos(.7) * u + std::sin(.7) * n.cross(u)));
-  const loop_answer all = solve_general_loop<two_slides>(across);
+  const loop_answer all = solve_general_loop<two_prismatic>(across);
   loop_answer result;
   for (loop_solution each : all.solutions) {
-    constexpr double close_to_zero = 1e-5; // where two solutions meet they are less precise
+    constexpr double close_to_zero = 1e-5; // double solutions are less accurate
     const bool is_unused = std::abs(each.theta[held]) < close_to_zero;
     each.theta[held] = 0;
     if (is_unused && close_with_held(slides.loop, held, each.theta)) {

@@ -24,26 +24,26 @@
 
 namespace duet::detail {
 
-/// Levels of closeness in the set of self-motions of one arm at one goal.
+/// Tolerances for the self-motion set of one arm at one goal.
 struct self_motion_tolerance {
-  static constexpr double on_set = 1e-12;    ///< error of the pose
+  static constexpr double on_set = 1e-12;    ///< error of the pose on the set
   static constexpr double singular = 1e-5;   ///< singular value, relative to the largest
-  static constexpr double same = 1e-6;       ///< points of regular curves that coincide
-  static constexpr double same_rough = 1e-4; ///< points at which the Jacobian is singular
+  static constexpr double same = 1e-6;       ///< distance of coinciding points of regular curves
+  static constexpr double same_rough = 1e-4; ///< distance where the Jacobian is singular
 };
 
-/// M = {θ : the tip is at the goal}, with angles modulo full turns.
+/// Self-motion set M = {θ : the tip is at the goal}, with angles modulo full turns.
 ///
-/// At a regular point M is a curve along the Jacobian's null space. Where the null space has more
-/// dimensions, M may be a curve still (two that coincide, as of a straight elbow), curves that
-/// cross, an isolated point, or of as many dimensions: the points of M beside tell.
+/// At a regular point M is a curve along the Jacobian's null space. If the null space has more
+/// dimensions, M may still be a curve (two that coincide, as for a straight elbow), curves that
+/// cross, an isolated point, or have as many dimensions: neighbouring points of M decide.
 class self_motion_set {
 public:
   using null_space = Eigen::Matrix<double, 7, Eigen::Dynamic, Eigen::ColMajor, 7, 7>;
 
   explicit self_motion_set(const seven_joints& arm) : arm_(arm) {}
 
-  /// b − a, the short way round; lengths in parts of the arm's size.
+  /// Difference b − a, rotation angles by the shorter arc; lengths relative to the arm's size.
   [[nodiscard]] seven_coordinates difference(const seven_coordinates& b,
                                              const seven_coordinates& a) const {
     seven_coordinates d = b - a;
@@ -64,17 +64,19 @@ public:
     return arm_.gap(x, j).norm();
   }
 
-  /// The point of M that Levenberg and Marquardt's method leads to from x. Where the Jacobian is
-  /// singular on M it converges linearly, by a half at every step.
-  /// \param most  as far as it may lead
+  /// Point of M that damped least squares (Levenberg–Marquardt) leads to from an initial guess. If
+  /// the Jacobian is singular on M convergence is linear, with a factor of one half per step.
+  ///
+  /// \param most  maximum distance from the initial guess
+  /// \return empty if it does not converge within that distance
   [[nodiscard]] std::optional<seven_coordinates> projected(const seven_coordinates& from,
                                                            double most) const {
     constexpr int iterations = 60;
     constexpr double rounding = 1e-15;
-    constexpr double enough = 2e-15; // beside a double point half of the digits are lost
+    constexpr double enough = 2e-15; // near a double point half of the digits are lost
     seven_coordinates x = from, best = from;
     double least = std::numeric_limits<double>::infinity();
-    int since = 0; // the error last fell
+    int since = 0; // steps since the error last fell
     for (int k = 0; k < iterations && since < (least < self_motion_tolerance::on_set ? 2 : 8);
          ++k) {
       seven_columns j;
@@ -101,12 +103,12 @@ public:
     return least < self_motion_tolerance::on_set ? std::optional(best) : std::nullopt;
   }
 
-  /// An orthonormal basis of the Jacobian's null space.
+  /// Orthonormal basis of the Jacobian's null space.
   [[nodiscard]] null_space kernel(const seven_coordinates& x) const {
     seven_columns j;
     static_cast<void>(arm_.gap(x, j));
-    // The product of the singular values bounds the smallest: the mean of squares of the others is
-    // not below their geometric mean. Where it is far from 0 normal equations will do.
+    // The product of the singular values gives a bound on the smallest: the mean square of the
+    // others is not below their geometric mean. If it is far from 0 normal equations suffice.
     constexpr double regular = 1e-3;
     const Eigen::LLT<Eigen::Matrix<double, 6, 6>> gram(j * j.transpose());
     const double product = gram.matrixLLT().diagonal().prod(), squares = j.squaredNorm();
@@ -129,7 +131,7 @@ public:
     return svd.matrixV().rightCols(7 - rank);
   }
 
-  /// A unit vector of a null space.
+  /// Random unit vector of a null space.
   [[nodiscard]] static seven_coordinates any_direction(const null_space& kernel,
                                                        split_mix& random) {
     seven_coordinates result;
@@ -142,15 +144,15 @@ public:
     return result.normalized();
   }
 
-  /// The dimension of M at a point, from the points that are projections of those at a distance
-  /// `step` in the directions of the Jacobian's null space. (At crossings it is that of the span of
-  /// all that meet there.)
+  /// Dimension of M at a point, from the projections of points at a distance `step` in
+  /// directions of the Jacobian's null space. (At crossings: the dimension of the span of all
+  /// curves that meet there.)
   [[nodiscard]] int dimension(const seven_coordinates& x, double step, split_mix& random) const {
     const null_space basis = kernel(x);
     if (basis.cols() == 1) {
       return 1;
     }
-    constexpr double least = .01; // of the mean square; curvature leaves step²
+    constexpr double least = .01; // fraction of the mean square; curvature contributes step²
     square spread = square::Zero();
     const int count = 4 * int(basis.cols());
     for (int k = 0; k < count; ++k) {
@@ -164,14 +166,15 @@ public:
     return int((sizes.array() > least).count());
   }
 
-  /// Another point of M at about the distance `step`, or nearer.
+  /// Neighbouring point of M at about the distance `step`, or nearer; empty if
+  /// the projection fails.
   [[nodiscard]] std::optional<seven_coordinates> neighbour(const seven_coordinates& x, double step,
                                                            const null_space& basis,
                                                            split_mix& random) const {
     return projected(moved(x, step * any_direction(basis, random)), 3 * step);
   }
 
-  /// A random point of M: nothing where the search from a random configuration fails.
+  /// Random point of M; empty if the search from a random configuration fails.
   [[nodiscard]] std::optional<seven_coordinates> any_point(split_mix& random) const {
     seven_coordinates x;
     for (int i = 0; i < 7; ++i) {

@@ -12,25 +12,25 @@
 #include <vector>
 
 /// \file
-/// An arm of seven joints with a goal, whatever their types, and components of its self-motion.
+/// Redundant arm of seven joints of any type with a goal, and components of its self-motion.
 
 namespace duet::detail {
 
 using seven_coordinates = Eigen::Matrix<double, 7, 1>;
 using seven_columns = Eigen::Matrix<double, 6, 7>;
 
-/// An arm of seven joints, and where its tip is to stay.
+/// Arm of seven joints, and the goal of its tip (end effector).
 struct seven_joints {
   std::array<bool, 7> turns{};
-  double size = 1; ///< of the arm
+  double size = 1; ///< characteristic length of the arm
   tip_place goal{};
-  /// Pose error of the tip, and the Jacobian; lengths in parts of the arm's size.
+  /// Pose error of the tip, and the Jacobian; lengths relative to the arm's size.
   std::function<six_coordinates(const seven_coordinates&, seven_columns&)> gap;
-  /// The axes of the other joints, with one held at a coordinate.
+  /// Axes of the other joints, with one fixed at a coordinate.
   std::function<chain_axes(int, double)> axes_beside;
 };
 
-/// Points of a curve, one after the other, or a sample of a component of another dimension.
+/// Consecutive points of a curve, or a sample of a component of another dimension.
 struct traced_curve {
   std::vector<seven_coordinates> points;
   bool is_closed = false;

@@ -11,7 +11,10 @@
 
 namespace duet::detail {
 
-/// The curves on which the tip is at the goal, and the components of other dimensions.
+/// Curves of configurations with the tip at the goal, and components of other dimensions.
+///
+/// \param resolution  maximum distance between consecutive points of curves, lengths relative to
+/// the arm's size
 [[nodiscard]] DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& arm,
                                                                           double resolution);
 

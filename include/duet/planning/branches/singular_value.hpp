@@ -11,7 +11,7 @@
 #include <cstddef>
 
 /// \file
-/// The smallest singular value of a Jacobian of six joints.
+/// Smallest singular value of a Jacobian of six joints.
 
 namespace duet::detail {
 
@@ -30,19 +30,19 @@ template <class S>
   return sum;
 }
 
-/// The largest eigenvalue of a symmetric matrix G of six rows, none of whose eigenvalues is
-/// negative, and whose trace is 1; G is lost.
+/// Largest eigenvalue of a symmetric positive semidefinite matrix G of six rows with
+/// trace 1; G is overwritten.
 ///
-/// Reflections make G tridiagonal, after Householder. From ‖G‖ Laguerre's method comes down to the
-/// largest zero of det(x − G), without passing it, also where it is a multiple one.
+/// Householder reflections make G tridiagonal. From ‖G‖ Laguerre's method descends to the largest
+/// zero of det(x − G) without passing it, also if it is a multiple zero.
 template <class S>
 [[nodiscard]] S largest_eigenvalue(six_rows<S>& g) {
   using std::max;
   using std::sqrt;
   constexpr double tiny = 1e-290;
-  six_numbers<S> squares; // of the numbers beside the diagonal
+  six_numbers<S> squares; // squares of the off-diagonal entries
   for (std::size_t k = 0; k < 5; ++k) {
-    six_numbers<S> v = g[k]; // ± |v| is added to the first of those beside the diagonal
+    six_numbers<S> v = g[k]; // ± |v| is added to the first off-diagonal entry
     squares[k] = sum_of_products(v, v, k + 1);
     const S first = v[k + 1], length = sqrt(squares[k]);
     v[k + 1] = select(
@@ -62,11 +62,11 @@ template <class S>
       }
     }
   }
-  S norm2 = g[5][5] * g[5][5];
+  S squared_norm = g[5][5] * g[5][5];
   for (std::size_t k = 0; k < 5; ++k) {
-    norm2 += g[k][k] * g[k][k] + S(2) * squares[k];
+    squared_norm += g[k][k] * g[k][k] + S(2) * squares[k];
   }
-  S x = sqrt(norm2);
+  S x = sqrt(squared_norm);
   for (int round = 0; round < 60; ++round) {
     S p = x - g[0][0], dp(1), ddp(0), p0(1), dp0(0), ddp0(0);
     for (std::size_t k = 1; k < 6; ++k) {
@@ -86,11 +86,11 @@ template <class S>
   return x;
 }
 
-/// The smallest singular value of a matrix of six rows, 0 where it is singular but for rounding.
+/// Smallest singular value of a matrix of six rows; 0 if it is singular to round-off.
 ///
-/// Rows made orthogonal one after the other, after Gram and Schmidt, are J = L Q, and the largest
-/// eigenvalue of L⁻¹L⁻ᵀ is 1/σ². What rounding changes does not depend on the lengths of the rows,
-/// so not on the unit of length.
+/// Gram–Schmidt orthogonalisation of the rows gives J = L Q, and the largest eigenvalue of L⁻¹L⁻ᵀ
+/// is 1/σ². The effect of round-off does not depend on the lengths of the rows, hence not on the
+/// unit of length.
 template <class Jacobian>
 [[nodiscard]] auto smallest_singular_value(const Jacobian& jacobian) {
   using std::sqrt;
@@ -115,7 +115,7 @@ template <class Jacobian>
       }
     }
   }
-  S inverse_norm2(0), condition2(0); // the latter of rows of length 1
+  S inverse_norm2(0), condition2(0); // the latter for rows of length 1, a squared condition number
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t k = 0; k < i; ++k) { // in place: m[i][k] is not read after that
       S sum(0);

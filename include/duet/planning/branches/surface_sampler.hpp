@@ -16,16 +16,16 @@
 #include <vector>
 
 /// \file
-/// Samples of components of self-motion of two and more dimensions, and whether points are on them.
+/// Samples of self-motion components of two and more dimensions, and membership of points.
 
 namespace duet::detail {
 
-/// Walks on components of two and more dimensions of the set of one arm and goal.
+/// Walks on components of two and more dimensions of the self-motion set of one arm and goal.
 class surface_sampler {
 public:
   explicit surface_sampler(const self_motion_set& set) : set_(set) {}
 
-  /// Points of the component that x is on, as far from each other as 64 can be found.
+  /// Up to 64 points of the component that contains x, as far from each other as they can be found.
   [[nodiscard]] traced_curve sample(const seven_coordinates& x, int dimension, int kernel,
                                     split_mix& random) const {
     constexpr std::size_t count = 64;
@@ -60,7 +60,7 @@ public:
 private:
   static constexpr double stride = .2;
 
-  /// Does a walk lead to one of the nearest points of a sample?
+  /// True if a walk leads to one of the nearest points of a sample.
   [[nodiscard]] bool leads_there(const traced_curve& component, const seven_coordinates& x) const {
     constexpr std::size_t most = 8;
     std::vector<seven_coordinates> nearest = component.points;
@@ -82,7 +82,7 @@ private:
                        [&](double part) { return set_.error(set_.moved(x, part * way)) < close; });
   }
 
-  /// A step on the component towards where `way` points, or none.
+  /// Step on the component in the direction of `way`; empty if there is none.
   [[nodiscard]] std::optional<seven_coordinates>
   step(const seven_coordinates& x, const seven_coordinates& way, double most) const {
     const auto basis = set_.kernel(x);
@@ -94,7 +94,7 @@ private:
     return set_.projected(set_.moved(x, std::min(1., most / size) * along), 2 * stride);
   }
 
-  /// Does a walk towards `end` get there?
+  /// True if a walk towards `end` reaches it.
   [[nodiscard]] bool leads(seven_coordinates x, const seven_coordinates& end) const {
     constexpr int steps = 100;
     for (int k = 0; k < steps; ++k) {

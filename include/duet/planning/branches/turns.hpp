@@ -15,7 +15,7 @@
 #include <cstddef>
 
 /// \file
-/// Turns about given axes that make a given one.
+/// Rotations about given axes whose product is a given rotation.
 
 namespace duet::detail {
 
@@ -23,12 +23,12 @@ namespace duet::detail {
   constexpr double rounding = 1e-9;
   return length_of(cross(n, v)) < rounding;
 }
-/// The angle of a rotation about n.
+/// Angle of a rotation about n.
 [[nodiscard]] inline double angle_of(const quaternion<double>& q, const vector3d& n) {
   return 2 * std::atan2(n.x * q.x() + n.y * q.y() + n.z * q.z(), q.w());
 }
 
-/// The product of the rotations by α and β about axes a and b.
+/// Product of the rotations by α and β about axes a and b.
 [[nodiscard]] inline quaternion<double> two_turns(const vector3d& a, double alpha,
                                                   const vector3d& b, double beta) {
   const sines_at_once<2> halves(alpha / 2, beta / 2);
@@ -36,7 +36,8 @@ namespace duet::detail {
          turn_about(b, halves.sine(1), halves.cosine(1));
 }
 
-/// Two turns, first by β about b, then by α about a, that take one unit vector to another.
+/// Two rotations, first by β about b, then by α about a, that map one unit vector to another:
+/// Paden–Kahan subproblem 2 for directions.
 class two_turns_between {
 public:
   struct solution {
@@ -44,7 +45,9 @@ public:
     int multiplicity = 1;
   };
 
-  /// \param error  of the vectors, if that is more than rounding
+  /// Solves for both angles.
+  ///
+  /// \param error  error of the vectors, if it exceeds round-off
   two_turns_between(const vector3d& a, const vector3d& b, const vector3d& from, const vector3d& to,
                     double error = 0) {
     const turned_vector by_b(b, from);
@@ -65,25 +68,28 @@ public:
 
   [[nodiscard]] const solution* begin() const { return all_.data(); }
   [[nodiscard]] const solution* end() const { return all_.data() + count_; }
-  /// How far the vector has been from the axis a, at least; 0 where α or β are undetermined. With
-  /// an error, which there decides if angles are complex, also how far it is to be.
+  /// Smallest distance of the rotated vector from the axis a; 0 if α or β is undetermined. With an
+  /// error, which near the axis decides whether angles are complex, the distance of the target
+  /// vector counts, too.
   [[nodiscard]] double nearest() const { return nearest_; }
 
 private:
-  std::array<solution, 4> all_; // two values of β, beside each of which there may be another
+  std::array<solution, 4> all_; // two values of β, each of which may have a neighbour
   int count_ = 0;
   double nearest_ = 0;
 };
 
-/// Calls visit(α, β, γ, multiplicity) where turns by α, β and γ about the axes of three joints are,
-/// one after the other, a given one.
-/// \param error  of that one, if that is more than rounding
-/// \return how far the last axis has been from the first, at least, as the sine of the angle
-/// between them; 0 where α or β are undetermined
+/// Calls visit(α, β, γ, multiplicity) for each decomposition of a rotation into successive
+/// rotations by α, β and γ about the axes of three joints.
+///
+/// \param error  error of the rotation, if it exceeds round-off
+/// \return the sine of the smallest angle between the last axis and the first; 0 if
+/// α or β is undetermined
 template <class Visit>
 double visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_joint& c,
                          const quaternion<double>& turn, const Visit& visit, double error = 0) {
-  // The last axis stays where it is in the last turn, the angle between it and the first in that.
+  // The last rotation leaves its axis invariant; the first one preserves the angle between that
+  // axis and its own.
   const two_turns_between both(a.axis, b.axis, c.axis, rotated(turn, c.axis), error);
   for (const auto& [alpha, beta, multiplicity] : both) {
     const quaternion<double> before = two_turns(a.axis, alpha, b.axis, beta);

@@ -17,33 +17,34 @@
 #include <cstddef>
 
 /// \file
-/// A loop of four joints that turn and two that slide, as the zeros of a polynomial in the angle α
-/// of the first, which turns.
+/// Solutions of a loop of four revolute and two prismatic joints as zeros of a polynomial in the
+/// angle α of the first joint, which must be revolute.
 ///
-/// Slides do not turn anything: at an α the other three angles β, γ and δ make a given rotation, in
-/// two ways, z = e^{iγ} being the zeros of a quadratic. What is left to go has then to be in the
-/// plane of the slides n₁ and n₂: f = (n₁ × n₂)·t = 0. With w the cosine of the angle between the
-/// axes of β and δ, f₊ f₋ (1 − w²) is a trigonometric polynomial of degree 4 in α, of eight zeros.
-/// (Page: all_inverse_kinematics.)
+/// Prismatic joints do not rotate anything: at an α the other three angles β, γ and δ make a given
+/// rotation, on two branches, z = e^{iγ} being the zeros of a quadratic. The remaining translation
+/// must then be in the plane of the prismatic axes n₁ and n₂: f = (n₁ × n₂)·t = 0. With w the
+/// cosine of the angle between the axes of β and δ, f₊ f₋ (1 − w²) is a trigonometric polynomial of
+/// degree 4 in α, with eight zeros. (Page: all_inverse_kinematics.)
 
 namespace duet::detail {
 
-class two_slides {
+/// System of equations for a loop of four revolute and two prismatic joints.
+class two_prismatic {
   using complex = std::complex<double>;
 
 public:
-  explicit two_slides(const joint_loop& loop) : loop_(loop) {
+  explicit two_prismatic(const joint_loop& loop) : loop_(loop) {
     for (std::size_t i = 0, turns = 0, slides = 0; i < 6; ++i) {
       (loop.joints[i].turns ? turning_[turns++] : sliding_[slides++]) = i;
     }
   }
 
-  static constexpr int most = 8;   ///< solutions
-  static constexpr int hidden = 0; ///< the joint whose angle the polynomial depends on
+  static constexpr int most = 8;   ///< maximum number of solutions
+  static constexpr int hidden = 0; ///< index of the joint whose angle the polynomial depends on
 
   struct zeros {
     std::array<complex, 8> values; ///< e^{iα}
-    double regularity = 0;         ///< near 0 if the polynomial vanishes for all angles
+    double regularity = 0;         ///< close to 0 if the polynomial vanishes for all angles
   };
 
   /// Zeros of the polynomial.
@@ -62,7 +63,7 @@ public:
     return result;
   }
 
-  /// Calls visit(θ) with coordinates near the real solutions that have the angle of a zero.
+  /// Calls visit(θ) with coordinates near the real solutions with the angle of a zero.
   template <class Visit>
   void solution_at(double alpha, const Visit& visit) const {
     const loop_at at(*this, alpha);
@@ -82,12 +83,12 @@ private:
   using matrix = Eigen::Matrix3cd;
   using vector = Eigen::Vector3cd;
 
-  /// The polynomial is sampled from here on: not where axes of known arms are parallel.
+  /// First angle at which the polynomial is sampled: no known arm has parallel axes there.
   static constexpr double start = .37;
 
   [[nodiscard]] const loop_joint& turning(std::size_t k) const { return loop_.joints[turning_[k]]; }
 
-  /// a·b, of complex vectors too.
+  /// Product a·b without conjugation, also of complex vectors.
   [[nodiscard]] static complex product(const vector& a, const vector& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
@@ -99,7 +100,7 @@ private:
     return along + cosine * (Eigen::Matrix3d::Identity() - along) + sine * beside;
   }
 
-  /// All at an angle of the first joint, other angles in either way, real or not.
+  /// Values at an angle of the first joint, on both branches of the other angles, real or complex.
   struct loop_at {
     struct way {
       complex z;           ///< e^{iγ}
@@ -108,12 +109,12 @@ private:
     std::array<way, 2> ways;
     double across; ///< 1 − w²
 
-    loop_at(const two_slides& loop, double alpha) {
+    loop_at(const two_prismatic& loop, double alpha) {
       const loop_joint &b = loop.turning(1), &c = loop.turning(2), &d = loop.turning(3);
       std::array<matrix, 4> turns;
       turns[0] = turn(loop.turning(0).axis, std::cos(alpha), std::sin(alpha));
       const matrix whole = rotation_matrix_of(loop.loop_.closing.rotation);
-      const matrix rest = turns[0].transpose() * whole; // by β, γ and δ
+      const matrix rest = turns[0].transpose() * whole; // rotation by β, γ and δ
       const vector first = Eigen::Vector3d(b.axis).cast<complex>();
       const vector last = Eigen::Vector3d(d.axis).cast<complex>();
       const vector goal = rest * last;
@@ -154,7 +155,7 @@ private:
     return result;
   }
 
-  /// (n₁ × n₂)·t, t what is left to go where nothing slides.
+  /// Closure condition (n₁ × n₂)·t, with t the remaining translation if prismatic joints are at 0.
   [[nodiscard]] complex gap(const std::array<matrix, 4>& turns) const {
     matrix link = matrix::Identity(), ways; // n₁, n₂, t
     vector at = vector::Zero();
@@ -173,7 +174,7 @@ private:
     return ways.determinant();
   }
 
-  /// All coordinates, of α and γ.
+  /// All coordinates for given α and γ.
   [[nodiscard]] six_coordinates coordinates(double alpha, double gamma) const {
     const loop_joint &a = turning(0), &b = turning(1), &c = turning(2), &d = turning(3);
     six_coordinates result = six_coordinates::Zero();
@@ -191,8 +192,8 @@ private:
     const auto way = [&](std::size_t k) {
       return rows(left.jacobian.col(Eigen::Index(sliding_[k])));
     };
-    // What of the gap is in the plane of both ways. Where these are parallel nothing is finite,
-    // which `close_loop` does not take for a start.
+    // Component of the closure error in the plane of both axes. If these are parallel nothing is
+    // finite, which `close_loop` rejects as an initial guess.
     const Eigen::Vector3d first = way(0), second = way(1), gap = rows(left.twist);
     const Eigen::Vector3d across = first.cross(second);
     const double square = across.squaredNorm();

@@ -15,18 +15,19 @@
 #include <vector>
 
 /// \file
-/// Motions within limits of jerk. For those who extend duet.
+/// Trajectories within velocity, acceleration and jerk limits, from a squared path velocity. For
+/// those who extend duet.
 
 namespace duet::detail {
 
-/// Parts of a path one after another, and how long they take together.
+/// Timed segments of a path in order, and their total duration.
 template <class V>
 struct timed_path {
   std::vector<timed_piece<V>> pieces;
   double duration = 0;
 };
 
-/// Where on a path a motion is at n + 1 times that divide it evenly.
+/// Path arguments s of a motion at n + 1 equidistant times; the last one is the length of the path.
 template <class V>
 [[nodiscard]] std::vector<double> places_of(const timed_path<V>& path, std::size_t n,
                                             double length) {
@@ -45,7 +46,8 @@ template <class V>
   return result;
 }
 
-/// How long τ takes over a length where τ̇² is a quadratic polynomial, ∫ dτ / τ̇.
+/// Time ∫ dτ / τ̇ over an interval of τ on which the squared path velocity τ̇² is a
+/// quadratic polynomial.
 [[nodiscard]] inline double time_over(double length, double first_rate, double last_rate,
                                       double curvature) {
   const double half = length / (first_rate + last_rate);
@@ -56,6 +58,8 @@ template <class V>
   return 2 * half * ratio;
 }
 
+/// Checks that second derivatives of a curve are continuous, as finite jerks require.
+///
 /// \throws invalid_input where second derivatives jump
 template <int N>
 void require_smooth(const timing_problem<N>& problem,
@@ -68,15 +72,16 @@ void require_smooth(const timing_problem<N>& problem,
     if (largest * std::min(before.length, after.length) > 1e-9) {
       const auto& at = problem.polygon.given_at;
       const auto given = std::lower_bound(at.begin(), at.end(), problem.polygon.s[k]) - at.begin();
-      raise(invalid_input(message("duet: time_parametrised: limits of jerk ask for a curve with "
-                                  "continuous second derivatives, as joint_curve::smooth where no "
-                                  "joint leaves its range: at waypoint ",
-                                  given, " that of joint ", joint, " jumps")));
+      raise(invalid_input(
+          message("duet: time_optimal_trajectory: limits of jerk ask for a curve with "
+                  "continuous second derivatives, as waypoint_interpolation::smooth where no "
+                  "joint leaves its range: at waypoint ",
+                  given, " that of joint ", joint, " jumps")));
     }
   }
 }
 
-/// Of all joints at the first and the last end.
+/// Velocities of all joints at the first and the last end of a curve.
 template <int N>
 [[nodiscard]] std::array<joint_vector<double, N>, 2>
 rates_at(const timing_problem<N>& problem,
@@ -86,7 +91,9 @@ rates_at(const timing_problem<N>& problem,
           problem.final_speed * last.first(last.length)};
 }
 
-/// \throws invalid_input for a rate at an end that exceeds its limit by more than rounding
+/// Checks the joint velocities at both ends against their limits.
+///
+/// \throws invalid_input for a velocity at an end that exceeds its limit by more than round-off
 template <int N>
 void require_slow_ends(const timing_problem<N>& problem,
                        const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
@@ -94,13 +101,15 @@ void require_slow_ends(const timing_problem<N>& problem,
   for (const bool is_last : {false, true}) {
     for (Eigen::Index i = 0; i < problem.velocity.size(); ++i) {
       require(std::abs(rates[is_last][i]) <= problem.velocity[i] * (1 + 1e-12),
-              "duet: time_parametrised: the ", is_last ? "final" : "initial", " rate of joint ", i,
-              " is ", rates[is_last][i], ", beyond its limit ", problem.velocity[i]);
+              "duet: time_optimal_trajectory: the ", is_last ? "final" : "initial",
+              " rate of joint ", i, " is ", rates[is_last][i], ", beyond its limit ",
+              problem.velocity[i]);
     }
   }
 }
 
-/// The motion along a curve as a pace over n intervals of a path's parameter says.
+/// Trajectory along a curve with a squared path velocity τ̇²(τ) over n intervals of τ, given by its
+/// B-spline coefficients `pace`.
 template <class V>
 [[nodiscard]] timed_path<V> timed_by_pace(const std::vector<joint_cubic<V>>& curve,
                                           const std::vector<reference_piece>& path, std::size_t n,
@@ -121,20 +130,23 @@ template <class V>
   return result;
 }
 
-/// What a search for a pace finds.
+/// Result of a search for a squared path velocity within velocity, acceleration and jerk limits.
 template <class V>
 struct jerk_search_result {
   timed_path<V> motion;
-  std::array<double, 2> reached{}; ///< of the rates at both ends, where these are not kept
-  std::size_t nearest_joint = 0;   ///< whose limits are
+  std::array<double, 2> reached{}; ///< fraction of the velocity at each end; 1: attained
+  std::size_t nearest_joint = 0;   ///< joint whose limits are the nearest
 
-  /// The end at which less is reached.
+  /// End at which the smaller fraction of the velocities is attained.
   [[nodiscard]] std::size_t end() const { return reached[1] < reached[0]; }
   [[nodiscard]] bool is_allowed() const { return reached[end()] == 1; }
 };
 
-/// A fast motion that keeps limits of jerk as well: its pace over a parameter that is in proportion
-/// to the times of another motion, in a number of intervals.
+/// Near-minimum-time trajectory within velocity, acceleration and jerk limits. Its squared path
+/// velocity is a B-spline of a parameter τ that is proportional to the time of another motion, in a
+/// given number of intervals.
+///
+/// \param motion    motion that defines τ
 /// \param accuracy  as of `quickest_pace`
 template <int N>
 [[nodiscard]] auto timed_by_jerks(const timing_problem<N>& problem,

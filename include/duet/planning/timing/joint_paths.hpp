@@ -11,17 +11,18 @@
 #include <vector>
 
 /// \file
-/// Curves through waypoints in the space of joints. For those who extend duet.
+/// Curves through waypoints in joint space, the configuration space of an arm. For
+/// those who extend duet.
 
 namespace duet::detail {
 
-/// Points that are apart from each other, and where in s they are, the length of the polygon.
+/// Polygon of distinct points, with the arc length s of each along the polygon.
 template <class V>
 struct joint_polygon {
   std::vector<V> points;
   std::vector<double> s;
-  std::vector<double> given_at; ///< where in s each point is that was given
-  V first_slope, last_slope;    ///< of the curve, at its ends; 0: as the curve's kind has it
+  std::vector<double> given_at; ///< arc length s of each given waypoint
+  V first_slope, last_slope; ///< slopes of the curve at its ends; 0: default of the type of curve
 
   explicit joint_polygon(const std::vector<V>& given)
       : points{given.front()}, s{0.0}, first_slope(V::Zero(given.front().size())),
@@ -40,9 +41,10 @@ struct joint_polygon {
   [[nodiscard]] V chord(std::size_t k) const { return (points[k + 1] - points[k]) / length(k); }
 };
 
-/// The slopes of Fritsch and Butland (A method for constructing local monotone piecewise cubic
-/// interpolants, 1984): a weighted harmonic mean of those of both edges, and 0 where their signs
-/// differ. So every component rises and falls where the points do, and stays between them.
+/// Slopes of the monotone piecewise cubic interpolant (PCHIP) of F. N. Fritsch and J. Butland (A
+/// method for constructing local monotone piecewise cubic interpolants, 1984): a weighted harmonic
+/// mean of the slopes of both edges, and 0 where their signs differ. Every component therefore
+/// rises and falls with the points and stays between them.
 template <class V>
 [[nodiscard]] std::vector<V> monotone_slopes(const joint_polygon<V>& polygon) {
   std::vector<V> slopes{polygon.first_slope.isZero(0) ? polygon.chord(0) : polygon.first_slope};
@@ -63,13 +65,13 @@ template <class V>
   return slopes;
 }
 
-/// The slopes of the cubic spline, which has continuous second derivatives; they are 0 at ends
-/// whose slopes are not given. Its equations are h₁ d₀ + 2 (h₀ + h₁) d₁ + h₀ d₂ = 3 (h₁ c₀ + h₀ c₁)
-/// with the lengths h and chords c of both edges.
+/// Slopes of the interpolating cubic spline, which has continuous second derivatives; these are 0
+/// at ends whose slopes are not given (natural end conditions). Its equations are h₁ d₀ + 2 (h₀ +
+/// h₁) d₁ + h₀ d₂ = 3 (h₁ c₀ + h₀ c₁) with the lengths h and chords c of both edges.
 template <class V>
 [[nodiscard]] std::vector<V> smooth_slopes(const joint_polygon<V>& polygon) {
   const std::size_t n = polygon.edges();
-  // Eliminated from the start on, row k is slope_k + above_k slope_{k+1} = slopes[k].
+  // Forward elimination: row k is slope_k + above_k slope_{k+1} = slopes[k].
   const bool starts_freely = polygon.first_slope.isZero(0),
              ends_freely = polygon.last_slope.isZero(0);
   std::vector<double> above{starts_freely ? .5 : 0};
@@ -89,7 +91,8 @@ template <class V>
   return slopes;
 }
 
-/// The curve through the points of a polygon with given slopes, a cubic on each edge.
+/// Piecewise cubic Hermite curve through the points of a polygon with given
+/// slopes, one cubic per edge.
 template <class V>
 [[nodiscard]] std::vector<joint_cubic<V>> hermite_curve(const joint_polygon<V>& polygon,
                                                         const std::vector<V>& slopes) {
@@ -104,7 +107,7 @@ template <class V>
   return result;
 }
 
-/// How far a joint of a curve is outside [lower, upper] where it is farthest.
+/// Maximum distance of joint i from [lower, upper] inside an edge; 0 if the joint stays within.
 template <class V>
 [[nodiscard]] double excess(const joint_cubic<V>& q, Eigen::Index i, double lower, double upper) {
   double result = 0;
@@ -114,7 +117,7 @@ template <class V>
       result = std::max({result, lower - x, x - upper});
     }
   };
-  // Where the slope c1 + 2 c2 s + 3 c3 s² is zero.
+  // Zeros of the slope c1 + 2 c2 s + 3 c3 s².
   const double root = q.c2[i] * q.c2[i] - 3 * q.c1[i] * q.c3[i];
   if (root >= 0) {
     const double u = -(q.c2[i] + std::copysign(std::sqrt(root), q.c2[i]));

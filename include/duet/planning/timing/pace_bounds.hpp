@@ -14,20 +14,22 @@
 #include <vector>
 
 /// \file
-/// What limits of velocity, acceleration and jerk ask of a pace, which is τ̇² over τ. For those who
-/// extend duet.
+/// Velocity, acceleration and jerk limits as constraints on the squared path velocity b(τ) = τ̇²
+/// (D. Verscheure et al., Time-optimal path tracking for robots: a convex optimization approach,
+/// 2009). For those who extend duet.
 
 namespace duet::detail {
 
-/// What is linear in the three coefficients of a pace that matter in a piece.
+/// Linear form of the three B-spline coefficients of the squared path velocity that
+/// are active in a segment.
 using pace_row = std::array<double, 3>;
 
 [[nodiscard]] inline double times(const pace_row& row, const double* c) {
   return row[0] * c[0] + row[1] * c[1] + row[2] * c[2];
 }
 
-/// Of a pace that is a quadratic B-spline, its outer coefficients the values at the ends: in
-/// interval k, by powers of τ − k.
+/// Polynomial in τ − k, by its powers, of a squared path velocity in interval k. The latter is a
+/// quadratic B-spline whose outer coefficients are its values at the ends.
 [[nodiscard]] inline std::array<pace_row, 3> pace_powers(std::size_t k, std::size_t intervals) {
   const pace_row start = k == 0 ? pace_row{1, 0, 0} : pace_row{.5, .5, 0};
   const pace_row end = k + 1 == intervals ? pace_row{0, 0, 1} : pace_row{0, .5, .5};
@@ -40,26 +42,28 @@ using pace_row = std::array<double, 3>;
   return result;
 }
 
-/// |x c| ≤ limit, in parts of one joint's limits: accelerations, and jerks divided by τ̇, by
-/// their four Bernstein coefficients in a piece. `beyond` c is as much as the middle two may be
-/// off: the others are values at the ends.
+/// Constraints |x c| ≤ limit of one joint, relative to its limits: accelerations, and jerks divided
+/// by τ̇, by their four Bernstein coefficients in a segment. `beyond` c bounds the error of the
+/// middle two; the outer ones are values at the ends.
 struct joint_bounds {
   std::array<pace_row, 4> acceleration{}, jerk{};
   pace_row beyond_acceleration{}, beyond_jerk{};
 };
 
-/// The Bernstein coefficients of the pace in a piece, and of the square of the largest rate.
+/// Bernstein coefficients in a segment of the squared path velocity, and of the square of the
+/// largest joint velocity relative to its limit.
 struct piece_bounds {
-  std::size_t first; ///< which coefficient of the pace is c[0]
-  double length;     ///< in τ
+  std::size_t first; ///< index of the coefficient that c[0] is
+  double length;     ///< length of the segment in τ
   std::array<pace_row, 4> pace{};
   std::array<pace_row, 10> square_rate{};
 };
 
-/// The Bernstein coefficients of p u² for cubic polynomials u and p by theirs, p linear in others.
+/// Bernstein coefficients of p u² for cubic polynomials u and p given by theirs; those of p are
+/// linear forms.
 [[nodiscard]] inline std::array<pace_row, 10> times_square(const std::array<pace_row, 4>& p,
                                                            const std::array<double, 4>& u) {
-  constexpr std::array<double, 4> of_3{1, 3, 3, 1}; // binomials
+  constexpr std::array<double, 4> of_3{1, 3, 3, 1}; // binomial coefficients
   constexpr std::array<double, 10> of_9{1, 9, 36, 84, 126, 126, 84, 36, 9, 1};
   std::array<pace_row, 10> result{};
   for (std::size_t a = 0; a < 4; ++a) {
@@ -75,18 +79,21 @@ struct piece_bounds {
   return result;
 }
 
-/// What a pace has to keep that is a quadratic B-spline of τ with a positive coefficient more than
-/// there are nodes of τ; the outer ones are its values at the ends. Rates are q' s' √pace with
-/// s' = ds/dτ; accelerations and jerks / √pace are linear in it:
+/// Constraints on a squared path velocity `pace` = τ̇² that is a quadratic B-spline of τ
+/// with positive coefficients, one more than nodes of τ; the outer ones are its values at
+/// the ends. Joint velocities are q' s' √pace with s' = ds/dτ; accelerations and jerks /
+/// √pace are linear in it:
 ///
 ///     q̈     = q'' s'² pace + q' change,            change = s̈ = s'' pace + s' pace' / 2
 ///     q⃛ / τ̇ = q''' s'³ pace + 3 q'' s' change + q' third,
 ///     third  = s''' pace + 3/2 s'' pace' + s' pace'' / 2
 struct pace_bounds {
   std::vector<piece_bounds> pieces;
-  std::vector<joint_bounds> joints; ///< of each piece, as many as there are joints
+  std::vector<joint_bounds> joints; ///< constraints of each segment, one per joint
 
-  /// \param intervals  of τ
+  /// Collects the constraints of all segments of a path.
+  ///
+  /// \param intervals  number of intervals of τ
   template <class V>
   pace_bounds(const std::vector<joint_cubic<V>>& curve, const std::vector<reference_piece>& path,
               std::size_t intervals, const V& velocity, const V& acceleration, const V& jerk) {
@@ -103,14 +110,14 @@ private:
            const V& velocity, const V& acceleration, const V& jerk) {
     using polynomial = piece_polynomial;
     const double l = piece.length, f = piece.from;
-    // With way = s − start: q' = p_0 + p_1 way + p_2 way² / 2, q'' = p_1 + p_2 way, q''' = p_2.
+    // With `way` = s − start: q' = p_0 + p_1 way + p_2 way² / 2, q'' = p_1 + p_2 way, q''' = p_2.
     const std::array<V, 3> p{q.first(piece.start), q.second(piece.start), V(6 * q.c3)};
     const polynomial way{{0, piece.a * l, piece.b * l * l, piece.c * l * l * l}};
     const polynomial slope{{piece.a, 2 * piece.b * l, 3 * piece.c * l * l}};
     const polynomial bend{{2 * piece.b, 6 * piece.c * l}};
     const polynomial half_square = .5 * (way * way);
 
-    // What p_0, p_1 and p_2 are multiplied by; of accelerations and jerks for each coefficient.
+    // Factors of p_0, p_1 and p_2; those of accelerations and jerks for each coefficient.
     const std::array rates{near_cubic(slope), near_cubic(way * slope),
                            near_cubic(half_square * slope)};
     std::array<std::array<near_cubic, 3>, 3> changes, jerks;

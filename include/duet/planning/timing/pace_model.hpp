@@ -9,29 +9,30 @@
 #include <vector>
 
 /// \file
-/// A bound on a pace, and a function of its coefficients to second order. For those who extend
-/// duet.
+/// Constraint on a squared path velocity, and the Newton model (gradient and banded Hessian) of a
+/// function of its coefficients. For those who extend duet.
 
 namespace duet::detail {
 
-/// One bound on a pace: |x| + beyond ≤ limit, with the derivatives of all three by its coefficients
-/// from `first` on. Of an order n it is that of the n-th derivative by time.
+/// Constraint |x| + beyond ≤ limit on a squared path velocity, with the derivatives of all three
+/// with respect to its coefficients from `first` on. `order` n: limit of the n-th time derivative,
+/// for velocities of their squares.
 struct pace_bound {
   int order;
-  std::optional<std::size_t> joint; ///< where it is that of one alone
+  std::optional<std::size_t> joint; ///< joint, if the constraint is of a single joint
   std::size_t first;
   double limit, beyond, x;
   const pace_row &limit_by, &beyond_by, &x_by;
 };
 
-/// The first derivatives of a function of the coefficients, and a band of second ones: (i, i),
-/// (i, i + 1) and (i, i + 2).
+/// Gradient of a function of the coefficients, and the band of its Hessian: (i, i), (i, i + 1) and
+/// (i, i + 2).
 struct pace_model {
   std::vector<double> gradient;
   std::vector<pace_row> matrix;
 
   explicit pace_model(std::size_t n) : gradient(n), matrix(n) {}
-  /// Of f of what is linear in the coefficients: f' and f''.
+  /// Adds a function f of a linear form of the coefficients, given f' and f''.
   void add(std::size_t first, const pace_row& by, double slope, double curvature) {
     for (std::size_t i = 0; i < 3; ++i) {
       gradient[first + i] += slope * by[i];
@@ -40,7 +41,7 @@ struct pace_model {
       }
     }
   }
-  /// A coefficient stays what it is.
+  /// Keeps coefficient i constant.
   void fix(std::size_t i) {
     gradient[i] = 0;
     matrix[i] = {1, 0, 0};
@@ -48,7 +49,8 @@ struct pace_model {
       matrix[i - k][k] = 0;
     }
   }
-  /// Where it is least: the matrix is L D Lᵀ.
+  /// Newton step to the minimum of the model, by a factorisation L D Lᵀ of the matrix,
+  /// which is overwritten.
   [[nodiscard]] std::vector<double> solution() {
     const std::size_t n = gradient.size();
     matrix[n - 1][1] = matrix[n - 1][2] = matrix[n - 2][2] = 0;

@@ -15,23 +15,26 @@
 #include <vector>
 
 /// \file
-/// The search for the quickest pace, which the library duet::compiled holds. For those who extend
-/// duet.
+/// Minimum-time squared path velocity by a log-barrier interior-point method. Compiled into
+/// duet::compiled. For those who extend duet.
 
 namespace duet::detail {
 
-/// A pace within bounds that becomes quicker and never leaves them, so that it may stop at any
-/// time. Each step is one of Newton's method for weight · time − Σ log(what is left of limits), in
-/// which second derivatives that may be negative are left out, halved until it stays inside.
+/// Minimum-time squared path velocity b = τ̇² within limits by a primal log-barrier
+/// (interior-point) method. Each iterate is feasible, so the search may stop at any time. A step is
+/// a Newton step for weight · time − Σ log(margin to each limit), with those second derivatives
+/// that may be negative left out, halved until it is feasible and decreases the objective.
 ///
-/// A limit in proportion to 1 / √p of the pace p is replaced by (3 m − p) / (2 m √m), its tangent
-/// at the pace m in the middle of a piece, which is below it.
+/// A limit proportional to 1 / √p, with p = b, is replaced by (3 m − p) / (2 m √m), its tangent at
+/// the value m of b in the middle of a segment, which is below it.
 class pace_search {
 public:
-  /// From a constant pace that is slow enough: in a time k times as long velocities, accelerations
-  /// and jerks are k, k² and k³ times as small.
-  /// \param bounds  has to outlive it
-  /// \param ends  what the pace is to be at the ends, where rates keep their limits; 0: anything
+  /// Starts from a constant path velocity that is low enough: in a time k times as long,
+  /// velocities, accelerations and jerks are smaller by k, k² and k³.
+  ///
+  /// \param bounds  constraints; must outlive the search
+  /// \param ends    squared path velocities required at the ends, where joint velocities satisfy
+  /// their limits; 0: free
   explicit pace_search(const pace_bounds& bounds, const std::array<double, 2>& ends = {0, 0})
       : bounds_(bounds), ends_(ends), pace_(bounds.pieces.back().first + 3, 1.0) {
     double stretch = 0;
@@ -46,12 +49,14 @@ public:
     is_kept_ = {ends_[0] == slow, ends_[1] == slow};
   }
 
-  /// Makes the pace at the ends as fast as asked for. The paces that keep all bounds, each with
-  /// all slower ones in proportion, are searched for those with the fastest ends.
-  /// \return what it is of what it should be, at both ends; 1 where nothing is asked for
+  /// Phase one: raises the squared path velocities at the ends to the required values. Among all
+  /// feasible ones, each together with those smaller by a common factor, those with the fastest
+  /// ends are searched for.
+  ///
+  /// \return the fraction of the required value attained at each end; 1 where
+  /// it is attained or free
   [[nodiscard]] std::array<double, 2> reach_ends() {
-    double count =
-        0; // of logarithms: for a convex set their part of what is missing is count / lift
+    double count = 0; // number of logarithms: for a convex set the fraction missing is count / lift
     for_each_bound(pace_, [&](const pace_bound&) { count += 2; });
     const auto missing = [&] {
       double result = 0;
@@ -68,7 +73,7 @@ public:
     return {is_slow(0) ? pace_.front() / ends_[0] : 1, is_slow(1) ? pace_.back() / ends_[1] : 1};
   }
 
-  /// The joint whose limits of acceleration and jerk are the nearest, in sum over the path.
+  /// Joint whose acceleration and jerk limits are the nearest, summed over the path.
   [[nodiscard]] std::size_t nearest_joint() const {
     std::vector<double> sums(bounds_.joints.size() / bounds_.pieces.size());
     for_each_bound(pace_, [&](const pace_bound& b) {
@@ -79,8 +84,9 @@ public:
     return std::size_t(std::max_element(sums.begin(), sums.end()) - sums.begin());
   }
 
-  /// The coefficients of a pace that is nearly the quickest: what bounds are kept off their limits
-  /// costs about 10 / accuracy of the time. Ends that were not reached are nearly what they are.
+  /// Coefficients of a nearly minimum-time squared path velocity: the margins to the limits that
+  /// the barrier leaves cost about 10 / accuracy of the time. Ends that were not attained stay near
+  /// their values.
   [[nodiscard]] const std::vector<double>& quickest(double accuracy) {
     if (are_ends_slow()) {
       for (double& each : pace_) {
@@ -100,7 +106,7 @@ public:
   }
 
 private:
-  /// What is to be least, but for the logarithms: time · `time` − lift · Σ pace / end.
+  /// Weights of the objective without the logarithms: `time` · time − `lift` · Σ pace / end.
   struct aim {
     double time, lift;
   };
@@ -128,7 +134,7 @@ private:
       }
       const bool is_first = &piece == &bounds_.pieces.front();
       const bool is_last = &piece == &bounds_.pieces.back();
-      // At ends in motion nothing is left of them to search for.
+      // At ends with a required velocity nothing remains to be optimised.
       for (std::size_t r = is_first && ends_[0] > 0; r + (is_last && ends_[1] > 0) < 10; ++r) {
         f(pace_bound{2,
                      {},
@@ -175,13 +181,13 @@ private:
     });
     return result;
   }
-  /// Of limits in proportion to 1 / √pace half a logarithm of the pace each goes off: else these
-  /// would be the farther off the slower it is.
+  /// Weight of log(b) per limit proportional to 1 / √b, half a logarithm each: otherwise the
+  /// margins to these limits would grow as the velocity falls.
   [[nodiscard]] double rooted_limits() const {
     return 4 * (double(bounds_.joints.size()) / double(bounds_.pieces.size()));
   }
 
-  /// What is to be least, infinite outside the bounds.
+  /// Objective with its barrier terms; infinite outside the feasible set.
   [[nodiscard]] double value(const std::vector<double>& pace, aim weights) const {
     double sum = weights.time * time(pace), product = 1;
     for (std::size_t e = 0; e < 2; ++e) {
@@ -241,7 +247,9 @@ private:
     return result;
   }
 
-  /// \return by how much the model falls, twice; 0 where no step is found
+  /// Takes one Newton step with a backtracking line search.
+  ///
+  /// \return twice the decrease that the model predicts; 0 if no step is found
   double step(aim weights) {
     pace_model here = model_of(weights);
     const std::vector<double> slope = here.gradient, way = here.solution();
@@ -249,7 +257,7 @@ private:
     for (std::size_t i = 0; i < way.size(); ++i) {
       fall -= slope[i] * way[i];
     }
-    // The part at which an end has the pace it should have.
+    // Step length at which an end attains its required value.
     std::array<double, 2> arrival{2, 2};
     for (std::size_t e = 0; e < 2; ++e) {
       const std::size_t i = end_of(e);

@@ -15,18 +15,19 @@
 #include <vector>
 
 /// \file
-/// How fast a path may be followed: the largest x = ṡ² in the phase plane of s and ṡ, under limits
-/// of velocity and acceleration. For those who extend duet.
+/// Maximum squared path velocity x = ṡ² along a path in the phase plane (s, ṡ) under velocity and
+/// acceleration limits. For those who extend duet.
 
 namespace duet::detail {
 
-/// |y + slope x| ≤ reach, of x = ṡ² at the beginning of a part of a path and y at its end.
+/// Constraint |y + slope x| ≤ reach on the squared path velocities x = ṡ² at the start of a segment
+/// and y at its end.
 struct speed_bound {
   double slope, reach;
 };
 
-/// Which y from `least` to `most` keep all bounds together with an x: from the value of one line at
-/// x to that of another.
+/// Interval of the y between `least` and `most` that satisfy all constraints for a given x, from
+/// the value of one line at x to that of another.
 struct next_speeds {
   struct line {
     double at_zero, slope, value;
@@ -47,9 +48,10 @@ struct next_speeds {
   }
 };
 
-/// The x nearest to a given one for which a y from `least` to `most` keeps all bounds; NaN if there
-/// is none. How many y there are is a concave function of x, to whose nearer zero Newton's method
-/// goes from outside without passing it, from where two lines cross to where two others do.
+/// Nearest value to x for which some y between `least` and `most` satisfies all constraints;
+/// NaN if there is none. The length of the interval of such y is a concave function of x.
+/// Newton's method approaches its nearer zero from outside without passing it, from one pair of
+/// active lines to the next.
 [[nodiscard]] inline double nearest_speed(std::span<const speed_bound> bounds, double x,
                                           double least, double most) {
   for (double direction = 0;;) {
@@ -60,7 +62,7 @@ struct next_speeds {
     const double next = (y.most.at_zero - y.least.at_zero) / (y.least.slope - y.most.slope);
     const double step = next - x;
     if (!(step * direction > 0) && direction != 0) {
-      // There by rounding, or between the zeros of a function that has none.
+      // Converged to round-off, or between the zeros of a function that has none.
       return std::abs(step) <= 1e-9 * std::abs(x) ? x : std::numeric_limits<double>::quiet_NaN();
     }
     if (!(std::abs(step) < std::numeric_limits<double>::infinity())) {
@@ -71,10 +73,11 @@ struct next_speeds {
   }
 }
 
-/// Bounds on ṡ² at the beginnings and ends of the parts of a path, between which it is linear in s.
+/// Constraints on ṡ² at the starts and ends of the segments of a path, between which it is linear
+/// in s.
 struct path_bounds {
-  std::vector<double> before, after; ///< the largest ṡ² there, by velocities
-  std::vector<speed_bound> bounds;   ///< as many for each part
+  std::vector<double> before, after; ///< largest ṡ² there by velocity limits
+  std::vector<speed_bound> bounds;   ///< constraints, as many for each segment
   std::size_t bounds_each;
 
   explicit path_bounds(Eigen::Index joints) : bounds_each(std::size_t(3 * joints)) {}
@@ -88,9 +91,9 @@ struct path_bounds {
   [[nodiscard]] std::span<const speed_bound> of(std::size_t part) const {
     return std::span(bounds).subspan(part * bounds_each, bounds_each);
   }
-  /// Bounds that keep velocities and accelerations all along a part. With ṡ² linear in s the
-  /// acceleration q' s̈ + q'' ṡ² is of second degree, and so between its Bernstein coefficients,
-  /// which are linear in both ṡ².
+  /// Adds the constraints by which velocities and accelerations stay within limits on an entire
+  /// segment. With ṡ² linear in s the acceleration q' s̈ + q'' ṡ² is a quadratic polynomial and
+  /// lies between its Bernstein coefficients, which are linear in both ṡ².
   template <class V>
   void add(const joint_cubic<V>& q, const V& velocity, const V& acceleration) {
     before.push_back(1e100);
@@ -110,7 +113,7 @@ struct path_bounds {
   }
 
 private:
-  /// |a x + b y| ≤ c
+  /// Constraint |a x + b y| ≤ c, solved for y.
   [[nodiscard]] speed_bound bound(double a, double b, double c) {
     if (std::abs(b) > 1e-12 * std::abs(a)) [[likely]] {
       const double inverse = 1 / b;
@@ -119,9 +122,9 @@ private:
     before.back() = std::min(before.back(), c / std::max(std::abs(a), 1e-100));
     return {0, std::numeric_limits<double>::infinity()};
   }
-  /// Where |q'| is below a line from l to r l, ṡ² may be below (limit / line)², which is a convex
-  /// function, and above its chord divided by the largest ratio of the two. That is at
-  /// (2 r + 1) / (3 r + 3) of the part.
+  /// Applies a velocity limit. If |q'| is below a line from l to r l, ṡ² may be below (limit /
+  /// line)², which is a convex function, and is above its chord divided by the largest ratio of the
+  /// two. That ratio is attained at (2 r + 1) / (3 r + 3) of the segment.
   void keep_velocity(const std::array<double, 3>& p, double limit) {
     const double l_0 = std::abs(p[0]), l_1 = std::abs(p[1]), l_2 = std::abs(p[2]);
     double at_start = limit / std::max({l_0, l_1, l_2, 1e-50}), at_end = at_start; // ṡ
@@ -130,7 +133,7 @@ private:
     }
     const double over = std::max(0.0, l_1 - (l_0 + l_2) / 2);
     const double x_0 = l_0 + over, x_1 = l_2 + over, r = x_1 / x_0;
-    // Where it changes much in a part, the largest of it serves better.
+    // Where the line changes much within a segment, its maximum gives a better limit.
     if (r > .5 && r < 2) {
       const double u = (2 * r + 1) / (3 * r + 3), line = 1 + (r - 1) * u;
       const double ratio = line * std::sqrt(1 + (1 / (r * r) - 1) * u);
@@ -142,15 +145,17 @@ private:
   }
 };
 
-/// The largest ṡ² with which a path may begin or end, where it can't do so as it is told.
+/// Infeasible boundary velocity: the end of the path, and the largest ṡ² that is feasible there.
 struct speed_refusal {
   bool at_start = false, at_end = false;
   double largest = 0;
 };
 
-/// The fastest ṡ² at the ends of all parts: backwards, between which the given end can be reached;
-/// forwards, as fast as that and the bounds allow.
-/// \param refusal  what is not possible; then the result has no meaning
+/// Maximum squared path velocities ṡ² at the ends of all segments. The backward pass finds the
+/// range from which the given end can be reached; the forward pass takes the largest values that
+/// this range and the constraints admit.
+///
+/// \param refusal  set if a boundary velocity is infeasible; then the result has no meaning
 [[nodiscard]] inline std::vector<double> path_speeds(const path_bounds& path, double first,
                                                      double last, speed_refusal& refusal) {
   const std::size_t n = path.size();

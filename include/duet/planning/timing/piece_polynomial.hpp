@@ -9,11 +9,11 @@
 #include <cstddef>
 
 /// \file
-/// Polynomials over a short piece, and cubic ones near them. For those who extend duet.
+/// Polynomials on a short segment and their cubic approximations. For those who extend duet.
 
 namespace duet::detail {
 
-/// A polynomial of at most ninth degree of u, 0 ≤ u ≤ 1, by its powers.
+/// Polynomial of degree at most nine in u, 0 ≤ u ≤ 1, by its powers.
 struct piece_polynomial {
   std::array<double, 10> of{};
 
@@ -40,16 +40,16 @@ struct piece_polynomial {
   }
 };
 
-/// A cubic polynomial by its Bernstein coefficients, and by how much the middle two have to be
-/// moved, up and down, for another polynomial to lie between.
+/// Cubic polynomial by its Bernstein coefficients, with the amount by which the middle two have to
+/// be moved up and down to enclose another polynomial.
 struct near_cubic {
   std::array<double, 4> at{};
   double error = 0;
 
   near_cubic() = default;
-  /// That which has a polynomial's values at 0, 1/3, 2/3 and 1. The difference, with Bernstein
-  /// coefficients e_j, e_0 = e_9 = 0, is u (1 − u) Σ 72 / (j (9 − j)) e_j B_{j−1}(u) with those of
-  /// seventh degree, and 3 u (1 − u) is what the middle two are multiplied by.
+  /// Interpolates a polynomial at 0, 1/3, 2/3 and 1. The difference, with Bernstein coefficients
+  /// e_j, e_0 = e_9 = 0, is u (1 − u) Σ 72 / (j (9 − j)) e_j B_{j−1}(u) with those of seventh
+  /// degree, and the middle two coefficients are multiplied by 3 u (1 − u).
   explicit near_cubic(piece_polynomial p) {
     double end = 0, third = 0, two_thirds = 0;
     for (std::size_t i = 10; i-- > 0;) {

@@ -9,20 +9,22 @@
 #include <vector>
 
 /// \file
-/// The quickest pace within bounds. For those who extend duet.
+/// Minimum-time squared path velocity b(τ) = τ̇² under limits. For those who extend duet.
 
 namespace duet::detail {
 
-/// A pace within bounds, as the coefficients of its B-spline.
+/// Squared path velocity within limits, by the coefficients of its B-spline.
 struct found_pace {
   std::vector<double> coefficients;
-  std::array<double, 2> reached{}; ///< at both ends, of what was asked for
-  std::size_t nearest_joint = 0;   ///< whose limits of acceleration and jerk are
+  std::array<double, 2> reached{}; ///< fraction of the required value attained at each end
+  std::size_t nearest_joint = 0;   ///< joint whose acceleration and jerk limits are the nearest
 };
 
-/// Nearly the quickest one: what bounds are kept off their limits costs about 10 / accuracy of the
-/// time.
-/// \param ends  what the pace is to be at the ends, where rates keep their limits; 0: anything
+/// Nearly minimum-time squared path velocity by a log-barrier interior-point method: the margins to
+/// the limits cost about 10 / accuracy of the time.
+///
+/// \param ends  squared path velocities required at the ends, where joint velocities satisfy their
+/// limits; 0: free
 [[nodiscard]] DUET_COMPILED_FUNCTION found_pace quickest_pace(const pace_bounds& bounds,
                                                               const std::array<double, 2>& ends,
                                                               double accuracy);

@@ -9,36 +9,38 @@
 #include <vector>
 
 /// \file
-/// A path over a parameter that makes motions smooth, also from and to rest. For those who extend
-/// duet.
+/// Reparametrisation s(τ) of a path for smooth motions, also from and to rest. For
+/// those who extend duet.
 
 namespace duet::detail {
 
-/// A part of a path on one edge of a curve and in one interval [k, k + 1] of τ: where it starts on
-/// the edge, and s from there on, a t + b t² + c t³ with t = τ − k − from, 0 ≤ t ≤ length.
+/// Segment of a path on one edge of a curve and in one interval [k, k + 1] of τ: its start on the
+/// edge, and s relative to that start, a t + b t² + c t³ with t = τ − k − from, 0 ≤ t ≤ length.
 struct reference_piece {
   std::size_t edge, interval;
   double from, length, start, a, b, c;
 };
 
-/// Of both ends of a path, whether a motion is at rest there.
+/// True for each end of a path at which a motion is at rest.
 struct ends_at_rest {
   bool first = true, last = true;
 };
 
-/// The length s of a path as a cubic B-spline of τ, 0 ≤ τ ≤ n: twice continuously differentiable,
-/// and it rises, as its coefficients do but for the outer ones. At ends at rest s grows with τ³, so
-/// that a motion with any τ̇ > 0 there is at rest, and without acceleration.
+/// Arc length s of a path as a cubic B-spline of τ, 0 ≤ τ ≤ n: twice continuously differentiable
+/// and increasing, as its coefficients are except for the outer ones. At ends at rest s grows with
+/// τ³, so that a motion with any τ̇ > 0 there is at rest without acceleration.
 class reference_law {
 public:
-  /// \param places  about where it is at τ = 0, 1, …, n, n ≥ 4; there exactly at τ = 0 and n
+  /// Approximates given arc lengths.
+  ///
+  /// \param places  approximate s at τ = 0, 1, …, n, n ≥ 4; exact at τ = 0 and n
   explicit reference_law(const std::vector<double>& places, ends_at_rest rest = {}) {
     const std::size_t n = places.size() - 1;
     c_.assign(n + 3, places.back());
     std::fill_n(c_.begin(), 3, places.front());
     const std::size_t first = rest.first ? 2 : 1, last = rest.last ? n - 2 : n - 1;
     for (std::size_t i = first; i <= last; ++i) {
-      // With a sixth of the second difference taken off cubic polynomials stay what they are.
+      // Subtracting a sixth of the second difference reproduces cubic polynomials.
       const double before = places[i] - places[i - 1], after = places[i + 1] - places[i];
       c_[i + 1] = places[i] - std::clamp((after - before) / 6, -after / 2, before / 2);
     }
@@ -50,12 +52,13 @@ public:
     }
   }
 
-  /// ds/dτ at an end.
+  /// Derivative ds/dτ at an end.
   [[nodiscard]] double first_slope() const { return (c_[2] - c_[0]) / 2; }
   [[nodiscard]] double last_slope() const { return (c_[c_.size() - 1] - c_[c_.size() - 3]) / 2; }
 
-  /// All of it, cut where intervals end and where edges do.
-  /// \param knots  where in s edges begin and end
+  /// All segments, split at the ends of intervals and of edges.
+  ///
+  /// \param knots  arc lengths s at which edges begin and end
   [[nodiscard]] std::vector<reference_piece> pieces(const std::vector<double>& knots) const {
     std::vector<reference_piece> result;
     std::size_t edge = 0;
@@ -81,22 +84,24 @@ public:
   }
 
 private:
-  /// The last two coefficients c_1 and c_0, where it is in motion at an end at place p_0, by the
-  /// two places and the coefficient before it.
+  /// Computes the last two coefficients c_1 and c_0 at an end in motion at p_0, from the next two
+  /// positions and the coefficient before them.
   static void go_on(double p_0, double p_1, double p_2, double c_2, double& c_1, double& c_0) {
-    // Of one sign. There ds/dτ is c_2 + 2 c_1 − 3 p_0: it keeps a twentieth of c_2 − p_0 at least.
+    // The differences have one sign. ds/dτ at the end is c_2 + 2 c_1 − 3 p_0: at least a twentieth
+    // of c_2 − p_0 is kept.
     const double near_end = p_1 - p_0, next = p_2 - p_1, most = 2.85 * (c_2 - p_0);
     const double bend = std::clamp((next - near_end) / near_end, -.5, most / near_end) * near_end;
     c_1 = p_0 - bend / 6;
     c_0 = 6 * p_0 - 4 * c_1 - c_2;
   }
-  /// Of s in [k, k + 1], by powers of τ − k.
+  /// Coefficients of s in [k, k + 1] by powers of τ − k.
   [[nodiscard]] std::array<double, 4> powers(std::size_t k) const {
     const double d_0 = c_[k + 1] - c_[k], d_1 = c_[k + 2] - c_[k + 1], d_2 = c_[k + 3] - c_[k + 2];
     return {c_[k + 1] + (d_1 - d_0) / 6, (d_0 + d_1) / 2, (d_1 - d_0) / 2,
             (d_2 - 2 * d_1 + d_0) / 6};
   }
-  /// The first number from `low` to 1 at which an increasing function is not below a value.
+  /// Smallest number from `low` to 1 at which an increasing function is not below
+  /// a value, by bisection.
   [[nodiscard]] static double crossing(const auto& f, double value, double low) {
     double high = 1;
     for (double middle; middle = (low + high) / 2, low < middle && middle < high;) {

@@ -16,14 +16,14 @@
 #include <vector>
 
 /// \file
-/// From curves to trajectories. For those who extend duet.
+/// Time parametrisation of joint curves. For those who extend duet.
 
 namespace duet::detail {
 
-/// The parts of a curve that have an s̈ of their own: in proportion to the length, but sixteen on
-/// each edge; there shorter towards the ends, where the second derivative or its slope jumps. On an
-/// edge between nearly equal waypoints eight are enough: s̈ = (y − x)/(2h) loses digits in short
-/// ones.
+/// Segments of a curve with constant s̈ each: their number is proportional to the length, but at
+/// least sixteen per edge; they are shorter towards the ends of edges, where the second derivative
+/// or its slope jumps. Eight are enough on an edge between nearly equal waypoints, as s̈ = (y −
+/// x)/(2h) suffers from cancellation in short segments.
 template <class V>
 [[nodiscard]] std::vector<joint_cubic<V>> parts_of(const std::vector<joint_cubic<V>>& curve,
                                                    double length, int parts) {
@@ -42,18 +42,20 @@ template <class V>
   return result;
 }
 
-/// \throws invalid_input if there is a refusal, with the part of the rates that is allowed
+/// Checks that the boundary velocities are feasible.
+///
+/// \throws invalid_input if they are not, with the fraction of them that is feasible
 inline void require_rates(const speed_refusal& refusal, double first, double last) {
   if (refusal.at_start || refusal.at_end) {
     const double asked = refusal.at_start ? first : last;
     raise(invalid_input(message(
-        "duet: time_parametrised: the ", refusal.at_start ? "initial" : "final",
+        "duet: time_optimal_trajectory: the ", refusal.at_start ? "initial" : "final",
         " rates are too fast: at most ",
         std::floor(9999 * std::sqrt(refusal.largest) / asked) / 1e4, " of them can be kept")));
   }
 }
 
-/// The motion with given ṡ² at the ends of parts.
+/// Motion with given squared path velocities ṡ² at the ends of segments.
 template <class V>
 [[nodiscard]] timed_path<V> timed_by_squares(const std::vector<joint_cubic<V>>& parts,
                                              const std::vector<double>& squares) {
@@ -80,7 +82,7 @@ template <class V>
   return result;
 }
 
-/// The largest share of a limit of acceleration that a motion takes, by Bernstein coefficients.
+/// Largest fraction of an acceleration limit that a motion uses, by Bernstein coefficients.
 template <class V>
 [[nodiscard]] double largest_share(const timed_path<V>& motion, const V& limits) {
   double result = 0;
@@ -97,9 +99,11 @@ template <class V>
   return result;
 }
 
-/// The fastest motion along a curve with constant s̈ in each part. Where parts are so short that
-/// rounding takes accelerations beyond their limits, it is found again with smaller ones.
-/// \throws invalid_input for rates at ends that are too fast
+/// Minimum-time motion along a curve with constant s̈ in each segment. If segments are
+/// so short that round-off takes accelerations beyond their limits, it is computed
+/// again with smaller limits.
+///
+/// \throws invalid_input for velocities at ends that are too fast
 template <int N>
 [[nodiscard]] auto
 timed_by_accelerations(const timing_problem<N>& problem,
@@ -113,7 +117,7 @@ timed_by_accelerations(const timing_problem<N>& problem,
     const std::vector<double> squares = path_speeds(bounds_of(parts, problem.velocity, limits),
                                                     first * first, last * last, refusal);
     if (result && (refusal.at_start || refusal.at_end)) {
-      break; // rates that are at the limits
+      break; // velocities at their limits
     }
     require_rates(refusal, first, last);
     result = timed_by_squares(parts, squares);
@@ -126,9 +130,10 @@ timed_by_accelerations(const timing_problem<N>& problem,
   return *result;
 }
 
-/// A motion with about the given rates at its ends that needs the least accelerations for them, in
-/// parts of the limits, as limits of jerk leave it. (Beside the fastest one, speeds near ends would
-/// have to become others, and searches that set out there end in a corner.)
+/// Motion with approximately the given velocities at its ends that needs the smallest fraction of
+/// the acceleration limits for them, as an initial guess for jerk limits. (Near the minimum-time
+/// motion, path velocities near the ends would have to change, and searches that start there stall
+/// in a corner of the feasible set.)
 template <int N>
 [[nodiscard]] auto gentle_motion(const timing_problem<N>& problem,
                                  const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
@@ -158,9 +163,10 @@ template <int N>
   return timed_by_squares(parts, squares);
 }
 
-/// The search for motions within limits of jerk, from rates and to rates. It goes from a gentle
-/// motion to one after another in finer steps. Where that leads to none it begins with limits of
-/// jerk so wide that it does, and narrows them: so that rates at ends are right all along.
+/// Search for motions within jerk limits with given velocities at both ends. It proceeds from a
+/// motion with small accelerations by successive refinement, each result being the initial guess
+/// (warm start) of the next. If that fails it starts with jerk limits relaxed until it succeeds and
+/// tightens them step by step, so that the velocities at the ends are right throughout.
 template <int N>
 class jerk_search {
 public:
@@ -170,7 +176,7 @@ public:
   jerk_search(const timing_problem<N>& problem, const std::vector<joint_cubic<vector>>& curve)
       : problem_(problem), curve_(curve), gentle_(gentle_motion(problem, curve)) {}
 
-  /// Empty where none is found.
+  /// Motion within the limits; empty if none is found.
   [[nodiscard]] std::optional<motion> found() {
     std::optional<motion> result;
     motion last = gentle_;
@@ -185,11 +191,11 @@ public:
     }
     return result ? result : narrowed();
   }
-  /// Of motions that were not allowed that which comes nearest.
+  /// Motion that comes nearest, among those that violate the limits.
   [[nodiscard]] const jerk_search_result<vector>& nearest() const { return nearest_; }
 
 private:
-  /// With limits of jerk in a scale, coarsely where that is not 1.
+  /// Searches with jerk limits multiplied by `scale`, coarsely if that is not 1.
   [[nodiscard]] jerk_search_result<vector> find(const motion& from, double share, double scale) {
     timing_problem<N> loose = problem_;
     loose.jerk *= scale;
@@ -227,8 +233,9 @@ private:
   jerk_search_result<vector> nearest_;
 };
 
-/// The fastest motion along a curve within limits of jerk as well.
-/// \throws invalid_input for rates at ends with which none is found
+/// Near-minimum-time motion along a curve within velocity, acceleration and jerk limits.
+///
+/// \throws invalid_input for velocities at ends with which no motion is found
 template <int N>
 [[nodiscard]] auto
 timed_within_jerks(const timing_problem<N>& problem,
@@ -242,25 +249,25 @@ timed_within_jerks(const timing_problem<N>& problem,
   const auto& nearest = search.nearest();
   const std::size_t end = nearest.end(), joint = nearest.nearest_joint;
   const char* towards = end == 0 ? "from" : "up to";
-  raise(invalid_input(message("duet: time_parametrised: the limits could not be kept ", towards,
-                              " the ", end == 0 ? "initial" : "final", " rates, only ", towards,
-                              " ", std::floor(1e4 * nearest.reached[end]) / 1e4,
+  raise(invalid_input(message("duet: time_optimal_trajectory: the limits could not be kept ",
+                              towards, " the ", end == 0 ? "initial" : "final", " rates, only ",
+                              towards, " ", std::floor(1e4 * nearest.reached[end]) / 1e4,
                               " of them, by reason of joint ", joint, ", whose rate is ",
                               rates_at(problem, curve)[end][Eigen::Index(joint)])));
 }
 
-/// The fastest motion along a curve, as `joint_trajectory`.
+/// Minimum-time motion along a curve, as `joint_trajectory`.
 template <int N>
 [[nodiscard]] joint_trajectory<N>
 timed(const timing_problem<N>& problem,
       const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   auto path = problem.jerk.array().isInf().all() ? timed_by_accelerations(problem, curve)
                                                  : timed_within_jerks(problem, curve);
-  std::vector<double> times; // of the waypoints
+  std::vector<double> times; // times at the waypoints
   double s = 0;
   for (const auto& piece : path.pieces) {
     const double h = piece.path.length;
-    // Pieces end where edges do, to rounding.
+    // Segments end where edges do, to round-off.
     while (times.size() < problem.waypoints && problem.polygon.given_at[times.size()] < s + h / 2) {
       times.push_back(piece.law.time);
     }

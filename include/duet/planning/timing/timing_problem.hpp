@@ -15,11 +15,11 @@
 #include <vector>
 
 /// \file
-/// What `time_parametrised` is asked, looked through. For those who extend duet.
+/// Validated arguments of `time_optimal_trajectory`. For those who extend duet.
 
 namespace duet::detail {
 
-/// Waypoints and limits, in numbers that can be used.
+/// Waypoints, limits and boundary velocities of a time parametrisation, validated.
 template <int N>
 struct timing_problem {
   using vector = joint_vector<double, N>;
@@ -27,38 +27,41 @@ struct timing_problem {
   joint_polygon<vector> polygon;
   std::size_t waypoints;
   vector velocity, acceleration, jerk;
-  double initial_speed = 0, final_speed = 0; ///< ṡ
+  double initial_speed = 0, final_speed = 0; ///< path velocities ṡ at the ends
   int parts;
-  vector lower, upper; ///< where joints may be on the curve, infinite where that is not asked
+  vector lower, upper; ///< joint ranges on the curve; infinite: unbounded
 };
 
 template <class L>
 [[nodiscard]] auto rate_limits(const L& limits, const char* name, Eigen::Index n,
                                bool may_be_infinite) {
   using argument = vector_argument<L>;
-  require(argument::size(limits) == n, "duet: time_parametrised: ", argument::size(limits), " ",
-          name, " limits for ", n, " joints");
+  require(argument::size(limits) == n, "duet: time_optimal_trajectory: ", argument::size(limits),
+          " ", name, " limits for ", n, " joints");
   Eigen::VectorXd result(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double x = argument::get(limits, i);
-    require(x > 0 && (may_be_infinite || x - x == 0), "duet: time_parametrised: the ", name,
+    require(x > 0 && (may_be_infinite || x - x == 0), "duet: time_optimal_trajectory: the ", name,
             " limit of joint ", i, " is ", x);
     result[i] = x;
   }
   return result;
 }
 
-/// The speed along a path whose slope at an end becomes the direction of given rates.
+/// Path velocity ṡ at an end; the slope of the path there becomes the direction of the
+/// given joint velocities.
 template <class V>
 [[nodiscard]] double speed_of(const std::vector<double>& rates, const char* which, V& slope) {
   if (rates.empty()) {
     return 0;
   }
-  require(Eigen::Index(rates.size()) == slope.size(), "duet: time_parametrised: ", rates.size(),
-          " ", which, " rates for ", slope.size(), " joints");
+  require(Eigen::Index(rates.size()) == slope.size(),
+          "duet: time_optimal_trajectory: ", rates.size(), " ", which, " rates for ", slope.size(),
+          " joints");
   const V given = Eigen::Map<const Eigen::VectorXd>(rates.data(), slope.size());
   const double speed = given.norm();
-  require(speed - speed == 0, "duet: time_parametrised: the ", which, " rates are not finite");
+  require(speed - speed == 0, "duet: time_optimal_trajectory: the ", which,
+          " rates are not finite");
   if (speed > 0) {
     slope = given / speed;
   }
@@ -71,7 +74,7 @@ template <class V, class Velocity, class Acceleration, class Options>
   constexpr int joints = V::RowsAtCompileTime > 0 ? V::RowsAtCompileTime : -V::MaxRowsAtCompileTime;
   using problem = timing_problem<joints>;
   using vector = typename problem::vector;
-  require(!waypoints.empty(), "duet: time_parametrised: no waypoints");
+  require(!waypoints.empty(), "duet: time_optimal_trajectory: no waypoints");
   const Eigen::Index n = waypoints.front().size();
   const vector v = rate_limits(velocity, "velocity", n, true);
   const vector a = rate_limits(acceleration, "acceleration", n, false);
@@ -81,9 +84,10 @@ template <class V, class Velocity, class Acceleration, class Options>
   const vector none = vector::Constant(n, std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     require(waypoints[k].size() == n && waypoints[k].allFinite(),
-            "duet: time_parametrised: waypoint ", k, " is not finite or of another size");
+            "duet: time_optimal_trajectory: waypoint ", k, " is not finite or of another size");
   }
-  require(options.parts >= 1, "duet: time_parametrised: ", options.parts, " parts");
+  require(options.min_intervals >= 1, "duet: time_optimal_trajectory: ", options.min_intervals,
+          " parts");
   problem result{joint_polygon<vector>(waypoints),
                  waypoints.size(),
                  v,
@@ -91,19 +95,22 @@ template <class V, class Velocity, class Acceleration, class Options>
                  j,
                  0,
                  0,
-                 options.parts,
+                 options.min_intervals,
                  -none,
                  none};
-  result.initial_speed = speed_of(options.initial_rates, "initial", result.polygon.first_slope);
-  result.final_speed = speed_of(options.final_rates, "final", result.polygon.last_slope);
+  result.initial_speed =
+      speed_of(options.initial_velocities, "initial", result.polygon.first_slope);
+  result.final_speed = speed_of(options.final_velocities, "final", result.polygon.last_slope);
   require(result.polygon.edges() > 0 || (result.initial_speed == 0 && result.final_speed == 0),
-          "duet: time_parametrised: all waypoints are in one place: there is no way to be fast on");
+          "duet: time_optimal_trajectory: all waypoints are in one place: there is no way to be "
+          "fast on");
   return result;
 }
 
-/// Given slopes, but at the ends of edges on which a joint would leave its range: there those of
-/// the monotone curve.
-/// \throws invalid_input where a joint leaves its range although, by its rate at an end
+/// Replaces slopes at the ends of edges on which a joint would leave its range by those of the
+/// monotone curve.
+///
+/// \throws invalid_input if a joint still leaves its range because of its velocity at an end
 template <int N>
 [[nodiscard]] auto slopes_within_ranges(const timing_problem<N>& problem,
                                         std::vector<joint_vector<double, N>> slopes) {
@@ -125,9 +132,9 @@ template <int N>
           const auto given = std::upper_bound(polygon.given_at.begin(), polygon.given_at.end(),
                                               polygon.s[k] + polygon.length(k) / 2) -
                              polygon.given_at.begin();
-          raise(invalid_input(message("duet: time_parametrised: between waypoints ", given - 1,
-                                      " and ", given, " joint ", i, " would be ", outside,
-                                      " outside its limits, by its rate at an end")));
+          raise(invalid_input(message("duet: time_optimal_trajectory: between waypoints ",
+                                      given - 1, " and ", given, " joint ", i, " would be ",
+                                      outside, " outside its limits, by its rate at an end")));
         }
         slopes[k][i] = safe[k][i];
         slopes[k + 1][i] = safe[k + 1][i];

@@ -12,29 +12,29 @@
 #include <vector>
 
 /// \file
-/// Linear systems with a band of blocks and no order of equations that would need no exchanges, in
-/// O(n).
+/// Block-banded linear systems that need pivoting, solved in O(n).
 
 namespace duet::detail {
 
-/// Gaussian elimination with row exchanges. The unknowns are blocks of N numbers; an equation has
-/// those of a few neighbouring blocks, of a cyclic system also those of the last block.
+/// Gaussian elimination with partial pivoting. The unknowns are blocks of N numbers; an equation
+/// contains those of a few neighbouring blocks, in a cyclic system also those of the last block.
 template <class R, int N>
 class block_band_lu {
 public:
   using panel = Eigen::Matrix<R, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   using block = Eigen::Matrix<R, N, 1>;
 
-  /// Equations, one a row.
+  /// Group of equations, one per row.
   struct equations {
-    std::size_t first;  ///< the first block that they have
-    std::size_t offset; ///< where their right sides begin, counted in numbers
-    panel coefficients; ///< of that block and its next neighbours, side by side
-    panel of_last;      ///< of a cyclic system: those of the last block
+    std::size_t first;  ///< first block in the equations
+    std::size_t offset; ///< index of their first right side, counted in numbers
+    panel coefficients; ///< coefficients of that block and its next neighbours, side by side
+    panel of_last;      ///< coefficients of the last block, in a cyclic system
   };
 
-  /// False where the matrix is singular.
-  /// \param units   one for each unknown: the unknowns are found in multiples of them
+  /// Factorises the matrix; false if it is singular.
+  ///
+  /// \param units   one for each unknown: unknowns are solved for in multiples of them
   /// \param groups  as many equations as unknowns
   [[nodiscard]] bool factorise(std::vector<block> units, std::vector<equations> groups,
                                bool is_cyclic) {
@@ -62,7 +62,7 @@ public:
       m.topLeftCorner(at, carried.cols() - border) = carried.leftCols(carried.cols() - border);
       m.topRightCorner(at, border) = carried.rightCols(border);
       for (std::size_t g = from; g < next; ++g) {
-        const equations e = std::move(groups[g]); // gone when it is done
+        const equations e = std::move(groups[g]); // freed when done
         const Eigen::Index count = e.coefficients.rows();
         for (Eigen::Index c = 0; c < e.coefficients.cols(); ++c) {
           m.col(c).segment(at, count) = e.coefficients.col(c) * unit(i, c);
@@ -82,7 +82,7 @@ public:
     return !is_cyclic || eliminate({}, panel(carried), carried);
   }
 
-  /// Solves in place, over any scalar above R: N right sides an element, N unknowns an element.
+  /// Solves in place, over any scalar above R: N right sides per element, N unknowns per element.
   template <class V>
   void solve(std::vector<V>& x) const {
     using S = typename V::Scalar;
@@ -127,19 +127,20 @@ public:
   }
 
 private:
-  /// One block's elimination.
+  /// Elimination of one block.
   struct step {
     std::vector<std::size_t> taken;  ///< right sides that join those left over from before
-    std::vector<std::size_t> pivots; ///< which row is exchanged with row 0, 1 …
-    panel lower;                     ///< the first N columns: both factors
-    panel upper;                     ///< the rest of the first N rows
+    std::vector<std::size_t> pivots; ///< index of the row exchanged with row 0, 1 …
+    panel lower;                     ///< first N columns: both factors
+    panel upper;                     ///< remaining columns of the first N rows
   };
 
   [[nodiscard]] R unit(std::size_t first, Eigen::Index column) const {
     return units_[first + std::size_t(column / N)][column % N];
   }
 
-  /// The first N columns of m; `left` are the rows that go on to the next block, without them.
+  /// Eliminates the first N columns of m; `left` receives the rows that remain for the next block,
+  /// without these columns.
   [[nodiscard]] bool eliminate(step s, panel m, panel& left) {
     if (m.rows() < N) {
       return false;

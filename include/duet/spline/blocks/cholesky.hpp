@@ -11,36 +11,35 @@
 #include <vector>
 
 /// \file
-/// Symmetric positive definite linear systems with a band of blocks, in O(n), which Eigen has no
-/// solver for.
+/// Symmetric positive definite block-banded linear systems in O(n), for which Eigen has no solver.
 
 namespace duet::detail {
 
-/// A symmetric matrix of N×N blocks that are zero farther than `Band` from the diagonal.
+/// Symmetric matrix of N×N blocks that are zero farther than `Band` from the diagonal.
 template <class R, int N, std::size_t Band>
 class block_band_matrix {
 public:
   using block = Eigen::Matrix<R, N, N>;
   using vector = Eigen::Matrix<R, Eigen::Dynamic, 1>;
 
-  /// Zero, with so many rows of blocks.
+  /// Sets the matrix to zero, with this number of block rows.
   void set_zero(std::size_t rows) { blocks_.assign(rows * (Band + 1), block::Zero()); }
 
   [[nodiscard]] std::size_t rows() const { return blocks_.size() / (Band + 1); }
-  /// Block (i, j), i − Band ≤ j ≤ i; of those on the diagonal the lower half counts.
+  /// Block (i, j), i − Band ≤ j ≤ i; only the lower half of diagonal blocks is used.
   [[nodiscard]] block& at(std::size_t i, std::size_t j) { return blocks_[i * (Band + 1) + i - j]; }
   [[nodiscard]] const block& at(std::size_t i, std::size_t j) const {
     return blocks_[i * (Band + 1) + i - j];
   }
 
-  /// Its diagonal times a factor.
+  /// Multiplies the diagonal by a factor.
   void scale_diagonal(const R& factor) {
     for (std::size_t i = 0; i < rows(); ++i) {
       at(i, i).diagonal() *= factor;
     }
   }
 
-  /// Its lower Cholesky factor, in its place; false where it is not positive definite.
+  /// Replaces the matrix by its lower Cholesky factor; false if it is not positive definite.
   [[nodiscard]] bool factorise() {
     for (std::size_t i = 0; i < rows(); ++i) {
       const std::size_t first = first_of(i);

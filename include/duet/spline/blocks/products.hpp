@@ -6,12 +6,12 @@
 #include <cmath>
 
 /// \file
-/// Sums and products of small matrices as plain loops: of Eigen's expressions the compiler would
-/// have more to do than the processor.
+/// Sums and products of small matrices as plain loops, which compile faster than Eigen's
+/// expressions.
 
 namespace duet::detail {
 
-/// y + factor · a, in place.
+/// Adds factor · a to y, in place.
 template <class M, class R>
 void add_multiple(M& y, const R& factor, const M& a) {
   for (int column = 0; column < M::ColsAtCompileTime; ++column) {
@@ -21,7 +21,7 @@ void add_multiple(M& y, const R& factor, const M& a) {
   }
 }
 
-/// y + factor · a x, in place; x and y over any scalar above that of a.
+/// Adds factor · a x to y, in place; x and y over any scalar above that of a.
 template <class Y, class R, class A, class X>
 void add_product(Y& y, const R& factor, const A& a, const X& x) {
   for (int column = 0; column < X::ColsAtCompileTime; ++column) {
@@ -34,7 +34,7 @@ void add_product(Y& y, const R& factor, const A& a, const X& x) {
   }
 }
 
-/// a b of square matrices
+/// Product a b of square matrices.
 template <class M>
 [[nodiscard]] M product(const M& a, const M& b) {
   M result;
@@ -50,7 +50,7 @@ template <class M>
   return result;
 }
 
-/// The length of three components of a vector, from the first on.
+/// Length of three components of a vector, from `first` on.
 template <class V>
 [[nodiscard]] typename V::Scalar length(const V& v, int first = 0) {
   using std::sqrt;

@@ -9,17 +9,17 @@
 #include <vector>
 
 /// \file
-/// Block-tridiagonal linear systems in O(n), which Eigen has no solver for.
+/// Block-tridiagonal linear systems in O(n), for which Eigen has no solver.
 
 namespace duet::detail {
 
 /// Row i of the system: lower x_{i−1} + diagonal x_i + upper x_{i+1}. The block that would stand
-/// outside has a place of its own: see `corners`.
+/// outside the matrix belongs to another column, see `corners`.
 template <class R>
 struct block_row {
   Eigen::Matrix<R, 3, 3> lower, diagonal, upper;
 
-  /// By its place: 0 lower, 1 diagonal, 2 upper.
+  /// Block at a position: 0 lower, 1 diagonal, 2 upper.
   [[nodiscard]] Eigen::Matrix<R, 3, 3>& at(std::size_t place) {
     return place == 0 ? lower : place == 1 ? diagonal : upper;
   }
@@ -30,7 +30,8 @@ struct corners {
   std::size_t first, last;
 };
 
-/// Block elimination without exchanges between rows, as matrices of spline interpolation allow.
+/// Block elimination without row exchanges (block Thomas algorithm), as matrices of spline
+/// interpolation allow.
 ///
 /// The first row's corner fills its column up to the diagonal, the last row's corner its row: with
 /// corners n − 1 and 0 the system is cyclic, the border's elimination included; with 2 and n − 3
@@ -40,10 +41,10 @@ class block_tridiagonal {
 public:
   using matrix = Eigen::Matrix<R, 3, 3>;
 
-  /// To be filled before `factorise`, two rows or more: the storage is that of the last time.
+  /// Rows, two or more, to be filled before `factorise`; the storage is reused from the last time.
   [[nodiscard]] std::vector<block_row<R>>& rows() { return rows_; }
 
-  /// True where no pivot is singular.
+  /// Factorises the matrix; true if no pivot is singular.
   [[nodiscard]] bool factorise(const corners& at) {
     at_ = at;
     column_.clear();
@@ -80,7 +81,7 @@ public:
     return true;
   }
 
-  /// Solves in place, vectors of N over any scalar above R.
+  /// Solves in place, for vectors of N over any scalar above R.
   template <class V>
   void solve(std::vector<V>& x) const {
     const std::size_t last = x.size() - 1;
@@ -108,7 +109,7 @@ public:
   }
 
 private:
-  /// The last row's corner, moved to the right column by column until it meets `lower`.
+  /// Moves the last row's corner to the right, column by column, until it meets `lower`.
   void eliminate_bottom(block_row<R>& row) {
     matrix corner = row.upper;
     for (std::size_t j = at_.last; j + 2 < rows_.size(); ++j) {
@@ -123,7 +124,7 @@ private:
     add_multiple(row.lower, R(1), corner);
   }
 
-  /// In place, by cofactors; false where it is singular.
+  /// Inverts in place by cofactors; false if the matrix is singular.
   [[nodiscard]] static bool invert(matrix& m) {
     matrix cofactors;
     for (int i = 0; i < 3; ++i) {

@@ -23,16 +23,16 @@
 #include <vector>
 
 /// \file
-/// What the increments of an interpolating cubic have to fulfil.
+/// Equations for the increments of the interpolating cumulative cubic.
 
 namespace duet::detail {
 
-/// Equations for the half-angle vectors ω_1, ω_2 … of the cubic through Q_0 … Q_n: with the piece
-/// S of its span,
+/// Equations for the half-angle vectors ω_1, ω_2 … of the cubic through Q_0 … Q_n: with the piece S
+/// of its span,
 ///   S(u_i)⁻¹ S(u_{i+1}) = Q_i⁻¹ Q_{i+1},   i = 0 … n − 1,
-/// and, where the ends ask for it, one for the rates at either end. Three increments meet in every
-/// equation, not as logarithms of controls but as vectors of any length. Unknown k is ω_{k+1}; of
-/// a periodic curve ω_{k+2}, counted round.
+/// and, if the end conditions need it, one for the velocity or acceleration at either end. Every
+/// equation involves three increments, not as logarithms of control points but as vectors of any
+/// length. Unknown k is ω_{k+1}; for a periodic curve ω_{k+2}, counted cyclically.
 template <class T>
 class cubic_equations {
   using R = real_type_t<T>;
@@ -65,12 +65,12 @@ public:
     end_rates_ = {rotate(conj(data_.front()), rates[0]), rotate(conj(data_.back()), rates[1])};
   }
 
-  /// Fewer leave equations without their unknowns.
+  /// Minimum number of samples; fewer leave equations without their unknowns.
   [[nodiscard]] static std::size_t least_rows(end_kind kind) {
     return kind == end_kind::not_a_knot ? 4 : kind == end_kind::periodic ? 3 : 2;
   }
 
-  /// Number of equations, which is that of the unknowns.
+  /// Number of equations, equal to that of the unknowns.
   [[nodiscard]] std::size_t size() const { return arcs_.size() + (has_end_rates() ? 2 : 0); }
   [[nodiscard]] corners corner_columns() const {
     return is_cyclic() ? corners{size() - 1, 0} : corners{2, size() - 3};
@@ -82,7 +82,8 @@ public:
   }
   [[nodiscard]] const R& unevenness() const { return unevenness_; }
 
-  /// The largest angle from one row to the next, and the row before it.
+  /// Largest rotation angle between neighbouring samples, rad, and the index of the sample before
+  /// it.
   [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
     using std::sqrt;
     std::pair<R, std::size_t> result{R(0), 0};
@@ -95,8 +96,8 @@ public:
     return result;
   }
 
-  /// Makes them the equations of a motion that turns less: Q_i⁻¹ Q_{i+1} to the power λ, end rates
-  /// by the factor λ.
+  /// Changes the equations to those of a smaller motion: Q_i⁻¹ Q_{i+1} to the power λ, end rates
+  /// times λ.
   void scale(const R& lambda) {
     for (std::size_t i = 0; i < turns_.size(); ++i) {
       angles_[i] = lambda * components(angles_[i]);
@@ -107,17 +108,17 @@ public:
     }
   }
 
-  /// The j-th of the three unknowns in an equation.
+  /// Index of the j-th of the three unknowns in an equation.
   [[nodiscard]] std::size_t unknown(std::size_t row, std::size_t j) const {
     const std::size_t n = size();
     return is_cyclic() ? (row + n - 1 + j) % n : std::min(row - std::size_t(row > 0), n - 3) + j;
   }
-  /// Its block's place: 0 lower, 1 diagonal, 2 upper, corners included.
+  /// Position of its block: 0 lower, 1 diagonal, 2 upper, corners included.
   [[nodiscard]] std::size_t place(std::size_t row, std::size_t j) const {
     return (j + (is_cyclic() ? 0 : row == 0 ? 1 : row == size() - 1 ? 2 : 0)) % 3;
   }
 
-  /// What an equation leaves, a half-angle vector; end rates are brought to the size of an
+  /// Residual of an equation, a half-angle vector; end rates are scaled to the size of an
   /// increment.
   [[nodiscard]] vector3<T> residual(std::size_t row, const std::array<vector3<T>, 3>& omega) const {
     if (has_end_rates()) {
@@ -127,8 +128,8 @@ public:
       --row;
     }
     const arc& a = arcs_[row];
-    // Factors that stand on both sides are left out: they turn those between them. What is left is
-    // as small as the turn, and keeps all its digits.
+    // Factors on both sides are left out: they rotate those between them. The rest is as small as
+    // the rotation, and keeps all its digits.
     std::array<vector3<T>, 3> turned;
     for (std::size_t j = 0; j < 3; ++j) {
       turned[j] = a.change[j] * components(omega[j]);
@@ -143,7 +144,7 @@ public:
     return turn_vector(quaternion<T>(conj(turn) * turns_[row]));
   }
 
-  /// An equation for turns so small that their order does not matter: Σ weights_j x_j = right.
+  /// Equation Σ weights_j x_j = right for rotations so small that their order does not matter.
   [[nodiscard]] small_turn_equation<T> small_turns(std::size_t row) const {
     if (has_end_rates()) {
       if (row == 0 || row + 1 == size()) {
@@ -154,7 +155,7 @@ public:
     return {arcs_[row].change, angles_[row]};
   }
 
-  /// All of them.
+  /// Residuals of all equations.
   void residuals(const unknowns& x, unknowns& result) const {
     result.resize(size());
     for (std::size_t row = 0; row < size(); ++row) {
@@ -162,7 +163,7 @@ public:
     }
   }
 
-  /// Residuals and factorised Jacobian; false where that is singular. For real T.
+  /// Computes residuals and the factorised Jacobian; false if it is singular. For real T.
   [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
     static_assert(Real<T>);
     residuals(x, r);
@@ -193,7 +194,7 @@ private:
                                           : clamped_knots(u, 4);
   }
 
-  /// ω_0 = 0 and the increments of all controls.
+  /// ω_0 = 0 and the increments of all control points.
   [[nodiscard]] std::vector<vector3<T>> increments(const std::vector<vector3<T>>& x) const {
     std::vector<vector3<T>> omega(basis_.size(), vector3<T>::Zero());
     for (std::size_t i = 1; i < omega.size(); ++i) {
@@ -202,7 +203,8 @@ private:
     return omega;
   }
 
-  /// Each control from the data at the start of its span, so that no error grows along the curve.
+  /// Control points, each from the data point at the start of its span, so that errors do not
+  /// accumulate along the curve.
   [[nodiscard]] std::vector<quaternion<T>>
   controls(const std::vector<vector3<T>>& increments) const {
     std::vector<quaternion<T>> result;
@@ -222,8 +224,8 @@ private:
     return result;
   }
 
-  /// From row i to row i + 1: the span, the weights of its three increments at row i, and by how
-  /// much these change.
+  /// Interval from sample i to sample i + 1: its span, the weights of its three increments at
+  /// sample i, and the changes of these weights.
   struct arc {
     std::size_t span;
     std::array<R, 3> from, change;
@@ -233,8 +235,9 @@ private:
     return {x[unknown(row, 0)], x[unknown(row, 1)], x[unknown(row, 2)]};
   }
 
-  /// What an equation leaves changes by its unknowns. (The logarithm r of what turns differ by
-  /// changes by that times J⁻¹(r), which no step of Newton's method sees: J(r) r = r.)
+  /// Derivatives of the residual of an equation with respect to its unknowns. (The logarithm r of
+  /// the difference of rotations changes by that of the difference times J⁻¹(r), which does not
+  /// affect Newton steps: J(r) r = r.)
   [[nodiscard]] gradient_by_three<R> gradient(std::size_t row,
                                               const std::array<vector3<R>, 3>& omega) const {
     if (has_end_rates()) {
@@ -252,8 +255,8 @@ private:
                                   omega);
   }
 
-  /// By how much the increments are in the rate that is given at an end of the curve, and that,
-  /// both brought to the size of an increment.
+  /// Weights of the increments in the rate that is given at an end of the curve, and that rate,
+  /// both scaled to the size of an increment.
   [[nodiscard]] small_turn_equation<T> end_equation(bool at_start) const {
     const std::size_t span = at_start ? 0 : basis_.breaks().size() - 2;
     const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
@@ -269,8 +272,8 @@ private:
     return result;
   }
 
-  /// The weights are zero at the start, one at the end, and the last rate there is that of the last
-  /// increment alone: no more turns than by this one.
+  /// Residual of an end equation. The weights are zero at the start, one at the end, and the last
+  /// rate there is that of the last increment alone: only this increment rotates the others.
   [[nodiscard]] vector3<T> end_residual(bool at_start,
                                         const std::array<vector3<T>, 3>& omega) const {
     const auto [b, right] = end_equation(at_start);
@@ -285,7 +288,7 @@ private:
   bspline_basis<4, R> basis_;
   std::vector<quaternion<T>> data_;
   std::vector<quaternion<T>> turns_;
-  std::vector<vector3<T>> angles_; ///< of the turns: half-angle vectors
+  std::vector<vector3<T>> angles_; ///< half-angle vectors of `turns_`
   std::vector<arc> arcs_;
   R unevenness_;
   std::array<vector3<T>, 2> end_rates_;

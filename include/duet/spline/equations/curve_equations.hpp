@@ -11,12 +11,11 @@
 #include <vector>
 
 /// \file
-/// What `interpolate` needs to know of a kind of curve. For those who extend duet.
+/// Requirements of `interpolate` on a type of curve. For those who extend duet.
 
 namespace duet {
 
-/// A type of curves through rotations or poses: over which scalar, by which parameter, of which
-/// order.
+/// Type of curves through rotations or poses, with its scalar, its parameter's type and its order.
 template <class S>
 concept CurveType = requires {
   typename S::scalar_type;
@@ -26,21 +25,24 @@ concept CurveType = requires {
 
 namespace detail {
 
-/// The equations over T of curves of type `Spline`: a new kind of curve specialises this, and
-/// `interpolate` finds it.
+/// Equations over T of curves of type `Spline`, found by `interpolate`; a new type of curve
+/// specialises this.
 template <class Spline, class T = typename Spline::scalar_type>
 struct equations_of {};
 template <class Spline, class T = typename Spline::scalar_type>
 using equations_of_t = typename equations_of<Spline, T>::type;
 
-/// Equations F(x) = 0 for what a curve through given rows is made of, in blocks of N numbers.
+/// Equations F(x) = 0 for the parameters of an interpolating curve, in blocks of N numbers.
 ///
-/// They are constructed from parameters, rows whose signs are aligned and ends, and have
-/// `least_rows(kind)` that those ends need; `start()`, near the solution where turns are small;
-/// `residuals(x, r)`, r = F(x); `scale(λ)`, become those of a motion that turns less;
-/// `relative_step(x, step)`, how large a step is in relation to what it changes; `curve(u, q, x)`,
-/// the curve that a solution makes. Over real numbers also `linearise(x, r, matrix)`, F and its
-/// factorised Jacobian, false where that is singular.
+/// They are constructed from parameters, samples with aligned signs and end conditions, and have
+/// - `least_rows(kind)`, the minimum number of samples for these end conditions;
+/// - `start()`, the initial guess, near the solution for small rotations;
+/// - `residuals(x, r)`, which sets r = F(x);
+/// - `scale(λ)`, which changes the equations to those of a smaller motion;
+/// - `relative_step(x, step)`, the size of a step relative to the values it changes;
+/// - `curve(u, q, x)`, the curve of a solution;
+/// - over real numbers, `linearise(x, r, matrix)`: F and its factorised Jacobian, false if that is
+///   singular.
 template <class E>
 concept CurveEquations = requires(E e, const E f, const typename E::unknowns x,
                                   typename E::unknowns r, typename E::real_type lambda,

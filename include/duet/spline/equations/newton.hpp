@@ -12,15 +12,16 @@
 #include <string>
 
 /// \file
-/// The real solution of the equations of an interpolating curve.
+/// Newton's method and continuation for the equations of an interpolating curve, over real numbers.
 
 namespace duet::detail {
 
-/// Newton's method on real equations, from their own start. Where the turns are
-/// too large for that, by continuation from smaller ones: that also finds the curve that belongs to
-/// them, where several fulfil the equations.
+/// Newton's method on real equations, from their own initial guess. If the rotations are too large,
+/// by predictor–corrector continuation from smaller rotations, which also selects the solution that
+/// continues from them if there are several.
 ///
-/// \tparam Equations  what is to be solved: `residuals`, `linearise`, and the same of smaller turns
+/// \tparam Equations  equations to be solved: `residuals`, `linearise`, and `scale` for smaller
+///                    rotations
 template <class Equations>
 class spline_newton {
   using R = typename Equations::real_type;
@@ -40,13 +41,13 @@ public:
   [[nodiscard]] const unknowns& solution() const { return x_; }
   [[nodiscard]] int iterations() const { return iterations_; }
 
-  /// The largest residual at the solution.
+  /// Largest residual at the solution.
   [[nodiscard]] R residual() {
     full_.residuals(x_, residual_);
     return largest(residual_);
   }
 
-  /// The Jacobian at the solution.
+  /// Factorised Jacobian at the solution.
   [[nodiscard]] const matrix& jacobian() {
     if (!linearise(full_)) {
       raise(no_convergence("duet: interpolate: the equations are singular at their solution"));
@@ -57,19 +58,20 @@ public:
 private:
   static constexpr double smallest_lambda = 1e-4;
 
-  /// From x_ to the solution near it: steps with the last Jacobian while they gain much, with a new
-  /// one otherwise. False where a step with a new one is not half as long as the one before.
+  /// Iterates from x_ to a nearby solution. The last Jacobian is kept while steps decrease fast,
+  /// and renewed otherwise. False if a step with a new Jacobian is more than half as long as the
+  /// one before.
   ///
-  /// Steps are measured in relation to what they change, so that it does not matter how different
-  /// the equations' or the unknowns' sizes are.
+  /// Steps are measured relative to the values they change, so that different sizes of the
+  /// equations or the unknowns do not matter.
   [[nodiscard]] bool descend(const equations& f) {
     using std::sqrt;
     const R epsilon = std::numeric_limits<R>::epsilon();
     if (!linearise(f)) {
       return false;
     }
-    bool is_new = true; // the Jacobian
-    R moved(0);         // since it was new
+    bool is_new = true; // true if the Jacobian is new
+    R moved(0);         // change of x since then
     R before = std::numeric_limits<R>::max();
     for (;;) {
       matrix_.solve(residual_);
@@ -83,14 +85,15 @@ private:
         continue;
       }
       if (!(size <= before / 2)) {
-        return size <= sqrt(epsilon); // nothing but rounding is left
+        return size <= sqrt(epsilon); // true if only round-off is left
       }
       moved += largest(residual_);
       for (std::size_t k = 0; k < x_.size(); ++k) {
         add_multiple(x_[k], R(-1), residual_[k]);
       }
       ++iterations_;
-      // The Jacobian is about as far off as x has moved: the next step would be less than rounding.
+      // The Jacobian is about as far off as x has moved: the next step would be less than
+      // round-off.
       if (4 * moved * size <= epsilon) {
         return true;
       }
@@ -100,7 +103,8 @@ private:
     }
   }
 
-  /// λ from 0 to 1: turns to the power λ, where each solution is the start for the next.
+  /// Continuation in λ from 0 to 1: rotations to the power λ; each solution is extrapolated to the
+  /// initial guess for the next.
   DUET_COLD DUET_OUT_OF_LINE void continue_from_smaller_turns() {
     R lambda(0);
     R h(0.25);

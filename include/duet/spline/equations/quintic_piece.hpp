@@ -13,12 +13,14 @@
 #include <cstddef>
 
 /// \file
-/// One piece of a quintic rotation-vector spline by all rates that it shares with its neighbours.
+/// One piece of a quintic rotation-vector spline, described by all rates that it shares with its
+/// neighbours.
 
 namespace duet::detail {
 
-/// With x_1 … x_4 and y_1 … y_4, the Taylor coefficients about its start and its end that make the
-/// rates w_0 … w_3 there, a piece of length h that goes from zero to d has, of degree five,
+/// Equations of a piece of degree five and length h from zero to d. With the Taylor coefficients
+/// x_1 … x_4 about its start and y_1 … y_4 about its end, which give the rates w_0 … w_3 there,
+/// they are
 ///   x_1 + h x_2 + h² x_3 + h³ (4 x_4 + y_4)/5 = d/h
 ///   y_1 = x_1 + 2h x_2 + 3h² x_3 + h³ (3 x_4 + y_4)
 ///   y_2 = x_2 + 3h x_3 + 2h² (2 x_4 + y_4)
@@ -44,19 +46,21 @@ public:
             segment_.template taylor_at_end<count>(at_end)};
   }
 
-  /// By all rates of a knot, w_0 … w_3.
+  /// Derivatives with respect to all rates of a knot, w_0 … w_3.
   using gradient = Eigen::Matrix<R, 3, 3 * int(count)>;
   struct end_gradients {
     std::array<gradient, count> x, y;
   };
-  /// How x_1 … x_4 change by the rates at the start, and y_1 … y_4 by those at the end. For real T.
+  /// Derivatives of x_1 … x_4 with respect to the rates at the start, and of y_1 … y_4 with respect
+  /// to those at the end. For real T.
   [[nodiscard]] end_gradients taylor_gradients(const ends& e) const {
     return {inverted(segment_.gradients_at_start(e.x), matrix3<R>::Identity()),
             inverted(segment_.gradients_at_end(e.y), segment_.inverse())};
   }
 
-  /// What stands before x_1 … x_4 in the equations, right sides taken to the left; those of second
-  /// and third rates times l and l², which brings them to the size of the others.
+  /// Factors of x_1 … x_4 in the equations, with right sides taken to the left; the equations of
+  /// second and third rates are multiplied by l and l², which scales them to the size of the
+  /// others.
   [[nodiscard]] factors factors_of_start(const R& l) const {
     const R h = h_, hh = h * h, ll = l * l, o(0);
     return {{{R(1), h, hh, R(hh * h * 4 / 5)},
@@ -64,7 +68,7 @@ public:
              {o, R(-l), R(-3 * h * l), R(-4 * hh * l)},
              {o, o, R(-ll), R(-2 * h * ll)}}};
   }
-  /// And before y_1 … y_4.
+  /// Factors of y_1 … y_4, likewise.
   [[nodiscard]] factors factors_of_end(const R& l) const {
     const R h = h_, hh = h * h, ll = l * l, o(0);
     return {{{o, o, o, R(hh * h / 5)},
@@ -72,7 +76,7 @@ public:
              {o, l, o, R(-2 * hh * l)},
              {o, o, ll, R(-2 * h * ll)}}};
   }
-  /// What x and y leave of them.
+  /// Residuals of the equations for x and y.
   [[nodiscard]] coefficients left(const ends& e, const R& l) const {
     const factors a = factors_of_start(l), b = factors_of_end(l);
     coefficients result;
@@ -86,13 +90,13 @@ public:
     return result;
   }
 
-  /// The fifth rate w_4 at the start: what the rates at the start and those at the end contribute.
+  /// Contributions of the rates at the start and at the end to the fifth rate w_4 at the start.
   [[nodiscard]] std::array<vector3<T>, 2> last_rate_at_start(const ends& e) const {
     const R per_h = 1 / h_;
     const vector3<T> w = segment_.template rates_at_start<count + 1>(with_zero(e.x))[count];
     return {components(w) + R(-per_h) * components(e.x[3]), per_h * components(e.y[3])};
   }
-  /// The fifth rate at the end: what the rates at the start and those at the end contribute.
+  /// Contributions of the rates at the start and at the end to the fifth rate w_4 at the end.
   [[nodiscard]] std::array<vector3<T>, 2> last_rate_at_end(const ends& e) const {
     const R per_h = 1 / h_;
     const vector3<T> w = segment_.template rates_at_end<count + 1>(with_zero(e.y))[count];
@@ -102,7 +106,8 @@ public:
     };
     return {turned(e.x[3], R(-per_h)), components(w) + components(turned(e.y[3], per_h))};
   }
-  /// How these two change, each by the rates of its knot. For real T.
+  /// Derivatives of these two contributions, each with respect to the rates of its knot. For real
+  /// T.
   [[nodiscard]] std::array<gradient, 2> gradients_of_last_rate_at_start(const ends& e) const {
     const end_gradients by = taylor_gradients(e);
     return last_rate_gradients(segment_.gradients_at_start(with_zero(e.x)), by.x, by.y[3],
@@ -115,7 +120,7 @@ public:
     return {of_start, of_end};
   }
 
-  /// x_0 … x_5.
+  /// Coefficients x_0 … x_5.
   [[nodiscard]] std::array<vector3<T>, 6> polynomial(const ends& e) const {
     std::array<vector3<T>, 6> result;
     result[0] = vector3<T>::Constant(T(R(0)));
@@ -138,7 +143,8 @@ private:
   template <std::size_t Count>
   using rate_gradients = std::array<std::array<matrix3<R>, Count>, Count>;
 
-  /// By own and other rates; x_5 is `per_h` (own x_4 − other x_4)/5.
+  /// Derivatives with respect to the rates of the own and the other knot; x_5 is `per_h` (own x_4 −
+  /// other x_4)/5.
   [[nodiscard]] static std::array<gradient, 2>
   last_rate_gradients(const rate_gradients<count + 1>& of, const std::array<gradient, count>& own,
                       const gradient& other, const R& per_h) {
@@ -152,7 +158,8 @@ private:
     return result;
   }
 
-  /// From how w_0 … w_3 change by x_1 … x_4 how these change by those.
+  /// Derivatives of x_1 … x_4 with respect to w_0 … w_3, from those of w_0 … w_3 with respect to
+  /// x_1 … x_4.
   [[nodiscard]] static std::array<gradient, count> inverted(const rate_gradients<count>& of,
                                                             const matrix3<R>& inverse) {
     std::array<gradient, count> result;

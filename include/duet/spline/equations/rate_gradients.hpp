@@ -13,14 +13,14 @@
 #include <utility>
 
 /// \file
-/// How the rates of exp(x(t)) change where x(t) does, and products of exponentials and their rates
-/// where their factors do.
+/// Derivatives of the rates of exp(x(t)) with respect to x(t), and of products of exponentials and
+/// their rates with respect to their factors.
 
 namespace duet::detail {
 
-/// Element [k][m − 1] is ∂w_k/∂x_m of `half_body_rates` over a real R, for k < `count` and m ≤ k
-/// + 1. By η = J(x) δx, which is to a change what w is to the rate, and δw = η̇ + 2 w × η. The last
-/// of the rates does not count.
+/// Derivatives of the rates of exp(x(t)): element [k][m − 1] is ∂w_k/∂x_m of `half_body_rates` over
+/// a real R, for k < `count` and m ≤ k + 1. η = J(x) δx is to a change what w is to the rate, and
+/// δw = η̇ + 2 w × η. The last of the rates has no effect.
 template <std::size_t Count, std::size_t Given, class R>
 [[nodiscard]] std::array<std::array<matrix3<R>, Count>, Count>
 half_body_rate_gradients(const jacobian_coefficients<Given, R>& jacobian, const vector3<R>& at,
@@ -83,26 +83,26 @@ half_body_rate_gradients(const jacobian_coefficients<Given, R>& jacobian, const 
   return result;
 }
 
-/// What something changes by three vectors.
+/// Derivatives of a vector with respect to three vectors.
 template <class R>
 using gradient_by_three = std::array<matrix3<R>, 3>;
 
-/// e = exp(v) as a rotation, transposed, and J(v).
+/// Transposed rotation matrix of e = exp(v), and J(v).
 template <class R>
 struct turning_factor {
   matrix3<R> back, jacobian;
   explicit turning_factor(const vector3<R>& v) {
     const R s = dot(components(v), components(v));
     const auto [cosine, ratio] = first_stumpff_pair(s);
-    // c_1(4s), 2c_2(4s) and 4c_3(4s) by those of s
+    // c_1(4s), 2c_2(4s) and 4c_3(4s) from those of s
     jacobian = axial_matrix<R>(cosine * ratio, -ratio * ratio, 4 * stumpff<3>(R(4 * s)), v);
     back = axial_matrix<R>(cosine * cosine - s * ratio * ratio, -2 * cosine * ratio,
                            2 * ratio * ratio, v);
   }
 };
 
-/// −P* δP of P = e_1 e_2 …, e = exp(b ω_j) of the factors (j, b), by ω_0, ω_1 and ω_2: it is turned
-/// back by each factor, which adds b J(b ω_j) δω_j.
+/// Derivatives of −P* δP with respect to ω_0, ω_1 and ω_2 for the product P = e_1 e_2 …, e = exp(b
+/// ω_j) for each factor (j, b). Each factor rotates the derivatives back and adds b J(b ω_j) δω_j.
 template <class R, std::size_t Factors>
 [[nodiscard]] gradient_by_three<R>
 minus_product_gradient(const std::array<std::pair<std::size_t, R>, Factors>& factors,
@@ -125,7 +125,8 @@ minus_product_gradient(const std::array<std::pair<std::size_t, R>, Factors>& fac
   return by;
 }
 
-/// Of e* (b_0 ω_0 + b_1 ω_1) e + b_2 ω_2, e = exp(ω_2), by ω_0, ω_1 and ω_2; or without e.
+/// Derivatives of e* (b_0 ω_0 + b_1 ω_1) e + b_2 ω_2, e = exp(ω_2), with respect to ω_0, ω_1 and
+/// ω_2; or without e.
 template <class R>
 [[nodiscard]] gradient_by_three<R>
 end_gradient(const std::array<R, 3>& b, const std::array<vector3<R>, 3>& omega, bool is_turned) {

@@ -16,13 +16,13 @@
 #include <vector>
 
 /// \file
-/// What the velocities at the knots of a cubic rotation-vector spline have to fulfil.
+/// Equations for the velocities at the knots of a cubic rotation-vector spline.
 
 namespace duet::detail {
 
-/// Unknown is the first rate w_0 of each knot, half the angular velocity in body axes. The next one
-/// must be the same on both sides of an inner knot, which involves the knot and its two neighbours;
-/// an end condition at each end completes the system.
+/// Equations for the first rate w_0 of each knot, half the angular velocity in body axes. The next
+/// rate must be equal on both sides of an inner knot, which involves the knot and its two
+/// neighbours; an end condition at each end completes the system.
 template <class T>
 class rotation_vector_cubic_equations
     : public rotation_vector_equations<T, 4, rotation_vector_segment<T, 4>> {
@@ -41,8 +41,8 @@ public:
 
   using base::base;
 
-  /// Where Newton's method starts: the velocities of parabolas through three rows, as if turns were
-  /// small.
+  /// Initial guess of Newton's method: velocities of parabolas through three samples, as for small
+  /// rotations.
   [[nodiscard]] unknowns start() const {
     unknowns x(this->knots());
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -51,7 +51,7 @@ public:
     return x;
   }
 
-  /// What x leaves of the equations.
+  /// Residuals of the equations at x.
   void residuals(const unknowns& x, unknowns& r) const {
     r.resize(x.size());
     for (unknown& each : r) {
@@ -74,7 +74,7 @@ public:
     }
   }
 
-  /// Residuals and factorised Jacobian; false where that is singular. For real T.
+  /// Computes residuals and the factorised Jacobian; false if it is singular. For real T.
   [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
     static_assert(Real<T>);
     residuals(x, r);
@@ -89,7 +89,7 @@ public:
       for_each_term(i, [&](std::size_t row, int sign, std::size_t end, std::size_t derivative) {
         const std::size_t equation = ends_.is_cyclic && row < i ? i + 1 : row;
         for (const std::size_t k : {0U, 1U}) {
-          // The third block of an equation of the ends has the place of the one outside.
+          // The third block of an end equation is stored at the position of the one outside.
           add_multiple(rows[row].at((4 + i + k - equation) % 3), R(sign),
                        gradients[end][derivative][k]);
         }
@@ -100,7 +100,7 @@ public:
                                               : corners{1 + reach, last - 1 - reach});
   }
 
-  /// Pieces that meet at a knot are made of the same numbers there.
+  /// Curve of a solution. Pieces that meet at a knot are made from the same numbers there.
   [[nodiscard]] curve_type curve(const std::vector<R>& u, std::vector<quaternion<T>> q,
                                  const unknowns& x) const {
     std::vector<polynomial> pieces(pieces_.size());
@@ -112,8 +112,8 @@ public:
   }
 
 private:
-  /// The polynomials once more, from accelerations at the knots that are those of the longer piece
-  /// there, which knows them best.
+  /// Recomputes the polynomials from accelerations at the knots, each taken from the longer piece
+  /// at the knot, which determines it best.
   void share_accelerations(std::vector<polynomial>& polynomials) const {
     const std::size_t knots = this->knots();
     std::vector<std::array<vector3<T>, 2>> rates(knots);
@@ -137,15 +137,15 @@ private:
     return pieces_[i].polynomial({x[i]}, {x[(i + 1) % x.size()]});
   }
 
-  /// How many of its rates piece i has in equations: only next to the ends all.
+  /// Number of rates that piece i contributes to equations; all of them only next to the ends.
   [[nodiscard]] std::size_t rates_of(std::size_t i) const {
     const std::size_t reach = ends_.reach();
     const bool is_at_end = !ends_.is_cyclic && (i <= reach || i + reach + 1 >= pieces_.size());
     return is_at_end ? highest + 1 : highest;
   }
 
-  /// Calls take(row, sign, end, derivative) for all that piece i has in equations: a derivative of
-  /// w at its start (end 0) or its end (1).
+  /// Calls take(row, sign, end, derivative) for every term of piece i in the equations: a
+  /// derivative of w at its start (end 0) or its end (1).
   template <class Take>
   void for_each_term(std::size_t i, const Take& take) const {
     const std::size_t last = pieces_.size();

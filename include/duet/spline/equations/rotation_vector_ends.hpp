@@ -11,19 +11,19 @@
 #include <cstddef>
 
 /// \file
-/// What each end condition asks of a rotation-vector spline.
+/// End conditions of rotation-vector splines as equations.
 
 namespace duet::detail {
 
-/// One vector equation at an end: the derivative of w with this number has a given value (joint 0),
-/// or is the same on both sides of the joint-th inner knot, counted from the end.
+/// Vector equation at an end: the derivative of w of this order has a given value (joint 0), or is
+/// equal on both sides of the joint-th inner knot, counted from the end.
 struct end_equation {
   std::size_t joint, derivative;
 };
 
-/// What an end condition asks of a rotation-vector spline of order k: k/2 − 1 equations at each
-/// end, the same at both but for the values given; nothing of a periodic one. The last derivative
-/// of w that the pieces have is the (k−2)-th.
+/// End conditions of a rotation-vector spline of order k: k/2 − 1 equations at each end, the same
+/// at both except for the given values; no equations if periodic. The highest derivative of w of a
+/// piece is the (k−2)-th.
 template <class T, int Order>
 struct rotation_vector_ends {
   static constexpr std::size_t own = std::size_t(Order) / 2 - 1;
@@ -39,7 +39,7 @@ struct rotation_vector_ends {
       : is_cyclic(ends.kind == end_kind::periodic), equations(equations_of(ends.kind)) {
     for (std::size_t k = 0; k < own; ++k) {
       for (const std::size_t end : {0U, 1U}) {
-        // A third derivative that is given is none: no snap.
+        // A given third derivative is zero: no snap.
         const auto& rates = equations[k].derivative == 0 ? ends.velocity : ends.acceleration;
         given[end][k] = equations[k].derivative < 2
                             ? rotate(conj(end == 0 ? first : last), rates[end])
@@ -48,16 +48,18 @@ struct rotation_vector_ends {
     }
   }
 
-  /// The highest joint: equations reach one knot further.
+  /// Highest joint; equations reach one knot further.
   [[nodiscard]] std::size_t reach() const { return reach(equations); }
-  /// Fewer rows leave an equation without its knots, or make it the same as another.
+  /// Minimum number of samples; fewer leave an equation without its knots, or make two equations
+  /// equal.
   [[nodiscard]] static std::size_t least_rows(end_kind kind) {
     return kind == end_kind::periodic ? 3 : 2 + 2 * reach(equations_of(kind));
   }
 
 private:
   [[nodiscard]] static std::array<end_equation, own> equations_of(end_kind kind) {
-    // Of the cubic the first column; no snap of natural ends: reflected there, the curve is smooth.
+    // The cubic uses the first column. Natural ends have no snap: reflected there, the curve is
+    // smooth.
     std::array<end_equation, 2> both{};
     switch (kind) {
     case end_kind::natural:

@@ -18,15 +18,16 @@
 #include <vector>
 
 /// \file
-/// What the equations of rotation-vector splines of both orders are made of.
+/// Common part of the equations of cubic and quintic rotation-vector splines.
 
 namespace duet::detail {
 
-/// The rows between which a rotation-vector spline is made, as steps and turns from each to the
-/// next, and its ends. The parameter is counted in units of about one step, so that all derivatives
-/// have one size.
+/// Samples of a rotation-vector spline, as steps and rotations between neighbours, and its end
+/// conditions. The parameter is counted in units of about one step, so that all derivatives have
+/// one size.
 ///
-/// \tparam Piece  made of a step and a turn: what does not change while rates are sought
+/// \tparam Piece  made from a step and a rotation: the part that is constant while rates are solved
+///                for
 template <class T, int Order, class Piece>
 class rotation_vector_equations {
 protected:
@@ -36,8 +37,9 @@ protected:
 public:
   using real_type = R;
 
-  /// \param u  increasing, as many as `ends` need or more
-  /// \param q  as many unit elements, signs aligned
+  /// \param u     increasing parameters, as many as `ends` need or more
+  /// \param q     as many unit quaternions or poses, signs aligned
+  /// \param ends  end conditions
   rotation_vector_equations(const std::vector<R>& u, const std::vector<quaternion<T>>& q,
                             const curve_ends<T>& ends)
       : ends_(ends, q.front(), q.back()) {
@@ -58,7 +60,7 @@ public:
 
   [[nodiscard]] static std::size_t least_rows(end_kind kind) { return ends_type::least_rows(kind); }
 
-  /// Makes them the equations of a motion that turns less: turns from row to row and rates at the
+  /// Changes the equations to those of a smaller motion: rotations between samples and rates at the
   /// ends times λ.
   void scale(const R& lambda) {
     for (vector3<T>& turn : turns_) {
@@ -72,13 +74,14 @@ public:
     make_pieces();
   }
 
-  /// The longest interval of the parameter as a multiple of the shortest.
+  /// Ratio of the longest to the shortest interval of the parameter.
   [[nodiscard]] R unevenness() const {
     const auto [shortest, longest] = std::minmax_element(steps_.begin(), steps_.end());
     return *longest / *shortest;
   }
 
-  /// The largest angle from one row to the next, rad, and the row it starts from.
+  /// Largest rotation angle between neighbouring samples, rad, and the index of the sample before
+  /// it.
   [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
     using std::sqrt;
     std::pair<R, std::size_t> largest{R(-1), 0};
@@ -91,18 +94,18 @@ public:
     return largest;
   }
 
-  /// How large a step from x is in relation to what it changes. For real T.
+  /// Size of a step from x relative to the values it changes. For real T.
   template <class Unknowns>
   [[nodiscard]] R relative_step(const Unknowns& x, const Unknowns& step) const {
     return relative_step_of_rates(x, step, turns_, steps_);
   }
 
 protected:
-  /// Number of knots: the last one of a closed curve is the first again.
+  /// Number of knots; the last one of a closed curve is the first again.
   [[nodiscard]] std::size_t knots() const { return steps_.size() + (ends_.is_cyclic ? 0 : 1); }
 
-  /// Velocity and acceleration at a row of the parabola through it and its neighbours, as if turns
-  /// were small.
+  /// Velocity and acceleration at a sample of the parabola through it and its neighbours, as for
+  /// small rotations.
   [[nodiscard]] std::pair<vector3<T>, vector3<T>> parabola(std::size_t i) const {
     const std::size_t last = steps_.size();
     const std::size_t left = i > 0 ? i - 1 : ends_.is_cyclic ? last - 1 : 0;
@@ -117,7 +120,7 @@ protected:
     return result;
   }
 
-  /// A power of the unit.
+  /// Power of the unit.
   [[nodiscard]] R unit_to(std::size_t exponent) const {
     R result(1);
     for (std::size_t i = 0; i < exponent; ++i) {
@@ -127,7 +130,7 @@ protected:
   }
 
   using curve = rotation_vector_spline<T, Order>;
-  /// The curve with these polynomials, which are of the parameter in units.
+  /// Curve with these polynomials, whose parameter is in units.
   [[nodiscard]] curve made_of(const std::vector<R>& u, std::vector<quaternion<T>> q,
                               std::vector<typename curve::polynomial> polynomials) const {
     for (auto& each : polynomials) {
@@ -142,8 +145,8 @@ protected:
 
   ends_type ends_;
   R unit_;
-  std::vector<R> steps_;          ///< of the parameter, in units
-  std::vector<vector3<T>> turns_; ///< half-angle vectors
+  std::vector<R> steps_;          ///< steps of the parameter, in units
+  std::vector<vector3<T>> turns_; ///< rotations between samples, half-angle vectors
   std::vector<Piece> pieces_;
 
 private:

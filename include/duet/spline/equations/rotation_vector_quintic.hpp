@@ -20,13 +20,13 @@
 #include <vector>
 
 /// \file
-/// What the rates at the knots of a quintic rotation-vector spline have to fulfil.
+/// Equations for the rates at the knots of a quintic rotation-vector spline.
 
 namespace duet::detail {
 
-/// Unknown are all rates w_0 … w_3 that the pieces share at each knot; there are the equations of
-/// every piece, and two of each end. With fewer unknowns, w_0 and w_1, the others would be
-/// differences over powers of h: of a piece much shorter than its neighbours no digits were left.
+/// Equations for all rates w_0 … w_3 that the pieces share at each knot: those of every piece, and
+/// two at each end. With fewer unknowns, w_0 and w_1, the others would be differences over powers
+/// of h, which lose all digits for a piece much shorter than its neighbours.
 template <class T>
 class rotation_vector_quintic_equations : public rotation_vector_equations<T, 6, quintic_piece<T>> {
   using piece = quintic_piece<T>;
@@ -52,8 +52,8 @@ public:
     }
   }
 
-  /// Where Newton's method starts: the rates of parabolas through three rows, as if turns were
-  /// small.
+  /// Initial guess of Newton's method: rates of parabolas through three samples, as for small
+  /// rotations.
   [[nodiscard]] unknowns start() const {
     unknowns x(lengths_.size(), unknown::Zero());
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -64,7 +64,7 @@ public:
     return x;
   }
 
-  /// What x leaves of the equations: of each piece, then of the ends.
+  /// Residuals of the equations at x: of each piece, then of the ends.
   void residuals(const unknowns& x, unknowns& r) const {
     r.assign(x.size(), unknown::Constant(T(R(0))));
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -87,7 +87,7 @@ public:
     });
   }
 
-  /// Residuals and factorised Jacobian; false where that is singular. For real T.
+  /// Computes residuals and the factorised Jacobian; false if it is singular. For real T.
   [[nodiscard]] bool linearise(const unknowns& x, unknowns& r, matrix& jacobian) const {
     static_assert(Real<T>);
     using equations = typename matrix::equations;
@@ -163,10 +163,10 @@ public:
 
 private:
   [[nodiscard]] std::size_t next(std::size_t i) const { return (i + 1) % lengths_.size(); }
-  /// What brings the rates at a piece's ends to one size.
+  /// Factor that scales the rates at a piece's ends to one size.
   [[nodiscard]] R scale_of(std::size_t i) const { return std::min(lengths_[i], lengths_[next(i)]); }
 
-  /// The rates at a knot.
+  /// Rates at a knot.
   [[nodiscard]] static typename piece::coefficients rates(const unknown& x) {
     typename piece::coefficients result;
     for (int a = 0; a < n; ++a) {
@@ -175,13 +175,13 @@ private:
     return result;
   }
 
-  /// Of piece i, with the rates at its knots.
+  /// Taylor coefficients of piece i for the rates at its knots.
   [[nodiscard]] auto taylor(std::size_t i, const unknowns& x) const {
     return pieces_[i].taylor(rates(x[i]), rates(x[next(i)]));
   }
 
-  /// Calls f(end, k, knot, scale) for equation k of either end, which is about a knot; times the
-  /// scale it has the size of the others.
+  /// Calls f(end, k, knot, scale) for equation k of either end, which concerns a knot; the scale
+  /// brings it to the size of the others.
   template <class F>
   void for_each_end_equation(F&& f) const {
     for (std::size_t end = 0; end < 2 && !ends_.is_cyclic; ++end) {
@@ -205,7 +205,7 @@ private:
     return 6 * int(end) + 3 * int(k);
   }
 
-  /// Rates as large as those of a turn by one over the longer piece next to each knot.
+  /// Units of the unknowns: rates of a rotation by one over the longer piece next to each knot.
   [[nodiscard]] std::vector<typename matrix::block> units() const {
     std::vector<typename matrix::block> result(lengths_.size());
     for (std::size_t i = 0; i < lengths_.size(); ++i) {
@@ -218,7 +218,7 @@ private:
     return result;
   }
 
-  std::vector<R> lengths_; ///< of each knot's longer piece
+  std::vector<R> lengths_; ///< length of the longer piece at each knot
 };
 
 template <class Own, class T>

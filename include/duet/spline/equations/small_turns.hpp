@@ -16,19 +16,19 @@
 #include <vector>
 
 /// \file
-/// The increments of an interpolating curve where turns are small: the start of Newton's method.
+/// Increments of an interpolating curve for small rotations: the initial guess of Newton's method.
 
 namespace duet::detail {
 
-/// Σ weights_j x_j = right: where turns are so small that their order does not matter, coordinates
-/// do not mix.
+/// Equation Σ weights_j x_j = right for rotations so small that their order does not matter and
+/// coordinates do not mix.
 template <class T>
 struct small_turn_equation {
   std::array<real_type_t<T>, 3> weights;
   vector3<T> right;
 };
 
-/// The solution of all these equations; zero where they are singular.
+/// Solution of all these equations; zero if they are singular.
 template <class R, class Equations>
 [[nodiscard]] std::vector<vector3<R>> small_turn_solution(const Equations& equations) {
   const std::size_t n = equations.size();
@@ -55,9 +55,9 @@ template <class R, class Equations>
   return x;
 }
 
-/// How large a step of the unknowns from x is in relation to what it changes: the largest such
-/// ratio of all equations, each measured by the largest of its own terms. Those of short intervals
-/// are small, and count as much as those of long ones.
+/// Size of a step of the unknowns from x relative to the values it changes: the largest such ratio
+/// of all equations, each measured by the largest of its terms. Equations of short intervals are
+/// small, and count as much as those of long ones.
 template <class R, class Equations>
 [[nodiscard]] R relative_step(const Equations& equations, const std::vector<vector3<R>>& x,
                               const std::vector<vector3<R>>& step) {
@@ -77,7 +77,7 @@ template <class R, class Equations>
     }
     largest = std::max(largest, term[row]);
   }
-  // What is far from all that turns decays to nothing, at last below the smallest numbers.
+  // Increments far from all rotations decay to nothing, finally below the smallest numbers.
   const R epsilon = std::numeric_limits<R>::epsilon();
   const R least = largest * (epsilon * epsilon) * (epsilon * epsilon);
   R result(0);
@@ -88,10 +88,12 @@ template <class R, class Equations>
   return result;
 }
 
-/// How large a step is in relation to what it changes, where rates at knots are the unknowns,
-/// several vectors each, from velocities upwards: each is measured by itself and by what the turns
-/// next to the knot would make of it. \param lengths  of the pieces that turn so; as many as the
-/// knots where the curve is closed
+/// Size of a step relative to the values it changes, for rates at knots as unknowns, several
+/// vectors each, from velocities upwards. Each is measured by itself and by the size that the
+/// rotations next to the knot give it.
+///
+/// \param lengths  lengths of the pieces with these rotations; as many as the knots if the curve is
+///                 closed
 template <class R, int N>
 [[nodiscard]] R relative_step_of_rates(const std::vector<Eigen::Matrix<R, N, 1>>& x,
                                        const std::vector<Eigen::Matrix<R, N, 1>>& step,

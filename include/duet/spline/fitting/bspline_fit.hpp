@@ -25,12 +25,13 @@
 #include <vector>
 
 /// \file
-/// The least-squares problem behind `fit`.
+/// Least-squares problem of `fit`, solved by the Levenberg–Marquardt method.
 
 namespace duet::detail {
 
-/// The least-squares problem: control elements c, moved by tangent vectors in body axes, such that
-/// Σ wᵢ ρ(rᵢ) is least. Normal equations are banded, as a row meets `Order` neighbouring controls.
+/// Least-squares problem of `fit`: minimises Σ wᵢ ρ(rᵢ) over the control points, which are
+/// perturbed in their tangent spaces (body axes). The normal equations are banded, as a sample
+/// depends on `Order` neighbouring control points.
 template <class T, int Order>
 class bspline_fit : bspline_residuals<T, Order> {
   using residual_type = bspline_residuals<T, Order>;
@@ -52,13 +53,13 @@ public:
       : bspline_fit(basis, u, central_row(elements, R(options.length)), elements, options) {}
 
 private:
-  /// The problem with the rows seen from one of them: rotations and shifts that are small from
-  /// row to row keep digits that products with the whole rotation would round away.
+  /// Constructs the problem with samples relative to one of them: small rotations and translations
+  /// between samples keep digits that products with the whole rotation would lose.
   bspline_fit(const basis_type& basis, const std::vector<R>& u, const element& origin,
               std::vector<element> elements, const fit_options& options)
       : residual_type(basis, u, rows_seen_from(origin, std::move(elements)), options),
         options_(options), basis_(&basis), u_(&u), origin_(origin),
-        limits_(u.size(), R(options.outlier)) {
+        limits_(u.size(), R(options.outlier_threshold)) {
     if (is_robust()) {
       controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
       approach();
@@ -67,16 +68,17 @@ private:
       const std::vector<R> sizes = residuals();
       if (!(*std::max_element(sizes.begin(), sizes.end()) < too_far<R>())) {
         const auto [row, size] = farthest_from_middle();
-        raise(invalid_row(row, message("is ", size, " from the rows around it, too far for least ",
-                                       "squares: fit_options::outlier makes the fit robust")));
+        raise(invalid_sample(
+            row, message("is ", size, " from the rows around it, too far for least ",
+                         "squares: fit_options::outlier_threshold makes the fit robust")));
       }
     }
   }
 
 public:
-  /// Does row i count? Outliers that are too far off do not.
+  /// True if sample i counts; outliers that are too far off do not.
   [[nodiscard]] bool counts(std::size_t i) const { return limits_[i] > 0; }
-  [[nodiscard]] R outlier() const { return R(options_.outlier); }
+  [[nodiscard]] R outlier_threshold() const { return R(options_.outlier_threshold); }
 
   [[nodiscard]] cumulative_bspline<T, Order> curve(const basis_type& basis) const {
     std::vector<element> controls;
@@ -92,20 +94,23 @@ public:
 
   [[nodiscard]] std::vector<R> residuals() const { return residual_type::residuals(controls_); }
 
-  /// Moves the controls to where the cost is least: the number of steps.
-  /// \throws no_convergence
+  /// Minimises the cost over the control points; returns the number of steps.
+  ///
+  /// \throws no_convergence if the iteration does not converge
   int solve() { return iterations_ + descend(options_.max_iterations, true); }
 
 private:
   static constexpr R tolerance = R(1e-11); // rad
   static constexpr R longest_turn = R(0.5);
-  static constexpr R least_outlier = R(1e-9); ///< rows that fit to rounding have no outliers
+  static constexpr R least_outlier = R(1e-9); ///< samples that fit to round-off have no outliers
 
   [[nodiscard]] bool is_robust() const {
-    return options_.outlier < std::numeric_limits<double>::infinity();
+    return options_.outlier_threshold < std::numeric_limits<double>::infinity();
   }
 
-  /// Levenberg's and Marquardt's iteration: the number of steps. \throws no_convergence
+  /// Damped least squares (Levenberg–Marquardt); returns the number of steps.
+  ///
+  /// \throws no_convergence if `must_converge` and the iteration does not
   int descend(int most, bool must_converge) {
     const R gain = must_converge ? std::numeric_limits<R>::epsilon() : R(0.1);
     using std::sqrt;
@@ -114,7 +119,7 @@ private:
     for (int iteration = 1; iteration <= most; ++iteration) {
       bool is_bold = must_converge && is_robust();
       const R cost = assemble(is_bold);
-      if (iteration > 10) { // mostly Gauss's and Newton's steps are enough, and quicker at the end
+      if (iteration > 10) { // Gauss–Newton steps are mostly enough, and quicker at the end
         changes_.arrive(-gradient_);
       }
       R next(0);
@@ -128,7 +133,7 @@ private:
           damping = damping > R(1e-9) ? R(damping / 10) : R(0);
           break;
         }
-        if (is_tiny) { // as low as rounding lets it be
+        if (is_tiny) { // as low as round-off permits
           return iteration;
         }
         if (!changes_.empty()) {
@@ -148,8 +153,8 @@ private:
           fail("finds no step that brings the curve nearer", iteration, step);
         }
       }
-      // At last the cost tells no more, as an error of e in the controls adds e² to it. Steps do:
-      // they shrink, at a rate that the last two tell, until only rounding is left of them.
+      // Finally the cost does not change, as an error of e in the control points adds e² to it.
+      // Steps shrink, at a rate given by the last two, until only round-off is left of them.
       const bool is_low = step <= tolerance || cost - next <= gain * next;
       const bool is_shrinking = 2 * step <= before;
       const R last_rate = std::exchange(rate, damping > 0 ? R(1) : R(step / before));
@@ -165,8 +170,8 @@ private:
     return most;
   }
 
-  /// To the rows, by medians: what is an outlier depends on how far the rows around it are from
-  /// the curve so far.
+  /// Approaches the samples robustly: the outlier limits follow from medians of the distances of
+  /// the surrounding samples from the curve so far.
   void approach() {
     constexpr int rounds = 12;
     R scale = std::numeric_limits<R>::infinity(); // sum of the limits
@@ -178,30 +183,33 @@ private:
       }
       iterations_ += descend(round == 0 ? 1 : 4, false);
     }
-    if (!(options_.outlier > 0)) {
-      options_.outlier = double(std::max(R(3 * median_of(residuals())), least_outlier));
+    if (!(options_.outlier_threshold > 0)) {
+      options_.outlier_threshold = double(std::max(R(3 * median_of(residuals())), least_outlier));
     }
     static_cast<void>(set_limits());
     for (R& limit : limits_) {
-      limit = std::min(limit, R(options_.outlier));
+      limit = std::min(limit, R(options_.outlier_threshold));
     }
   }
 
   R set_limits() {
-    const R least = std::max(R(options_.outlier), least_outlier);
+    const R least = std::max(R(options_.outlier_threshold), least_outlier);
     return set_outlier_limits(residuals(), first(), least, limits_);
   }
 
-  /// JᵀWJ and −JᵀW r at the controls, W the weights of Huber's loss; the cost there.
-  /// \param is_bold  without most of the curvature that the loss lacks along residuals beyond the
-  ///                 limit: right near the end, maybe too long before; with it, too short
+  /// Assembles JᵀWJ and −JᵀW r at the control points, W the weights of Huber's loss; returns the
+  /// cost there.
+  ///
+  /// \param is_bold  true to omit most of the curvature that the loss lacks along residuals beyond
+  ///                 the limit: steps are right near the end, possibly too long before; with that
+  ///                 curvature, they are too short
   [[nodiscard]] R assemble(bool is_bold) {
     R cost(0);
     gradient_.setZero(Eigen::Index(controls_.size()) * dimension);
     normal_.set_zero(controls_.size());
     typename residual_type::last_span last;
     Eigen::Matrix<R, unknowns, unknowns> squares = Eigen::Matrix<R, unknowns, unknowns>::Zero();
-    const auto flush = [&](std::size_t span) { // once for all rows on it
+    const auto flush = [&](std::size_t span) { // once for all samples on the span
       for (std::size_t a = 0; a < std::size_t(Order); ++a) {
         for (std::size_t b = 0; b <= a; ++b) {
           normal_.at(span + a, span + b) += squares.template block<dimension, dimension>(
@@ -224,7 +232,7 @@ private:
       gradient_.template segment<unknowns>(Eigen::Index(last.first) * dimension) -=
           weight * (slope * value);
       const Eigen::Matrix<R, unknowns, dimension> weighted = weight * slope;
-      for (int a = 0; a < unknowns; ++a) { // columns are what Eigen is fast at
+      for (int a = 0; a < unknowns; ++a) { // by columns, which Eigen handles fast
         squares.col(a).noalias() += slope.lazyProduct(weighted.row(a).transpose());
       }
       if (weight < given && is_bold) {
@@ -238,7 +246,7 @@ private:
     return cost;
   }
 
-  /// The controls after one step, none where there is no step with this damping.
+  /// Control points after one step; empty if there is no step with this damping.
   [[nodiscard]] std::vector<element> moved_controls(const R& damping, R& step) {
     factors_ = normal_;
     if (damping > 0) {
@@ -253,7 +261,7 @@ private:
     if (!delta.allFinite()) {
       return {};
     }
-    R turn(0); // of the controls: shifts are linear, and may be of any length
+    R turn(0); // rotation of the control points: translations are linear, and may be of any length
     for (Eigen::Index i = dimension; i <= delta.size(); i += dimension) {
       turn = std::max(turn, R(delta.template segment<3>(i - 3).norm()));
     }
@@ -263,7 +271,7 @@ private:
     return this->moved_by(controls_, last_step_);
   }
 
-  /// The row farthest from those around it, and how far it is.
+  /// Sample farthest from those around it, and its distance.
   [[nodiscard]] std::pair<std::size_t, R> farthest_from_middle() const {
     const std::vector<R> sizes = residual_type::residuals(
         robust_centre<T>().controls(*basis_, *u_, rows(), R(options_.length)));
@@ -271,13 +279,14 @@ private:
     return {std::size_t(most - sizes.begin()), *most};
   }
 
-  /// Plain least squares may fail for a data point far from all others, which is named.
+  /// Reports failure. Plain least squares may fail for a sample far from all others, which is
+  /// named.
   [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
     const auto [row, size] = farthest_from_middle();
     std::string cause;
     if (!is_robust() && size > 30) {
       cause = message(": row ", row, " is ", size, " from the rows around it, and ",
-                      "fit_options::outlier makes the fit robust");
+                      "fit_options::outlier_threshold makes the fit robust");
     }
     raise(no_convergence(message("duet: fit: the iteration ", what, " after ",
                                  iterations_ + iterations, " steps, the last one ", step, cause)));
@@ -286,12 +295,12 @@ private:
   fit_options options_;
   const basis_type* basis_;
   const std::vector<R>* u_;
-  element origin_;        ///< what the rows are seen from
-  std::vector<R> limits_; ///< of Huber's loss, row by row; zero: does not count
+  element origin_;        ///< sample to which the others are relative
+  std::vector<R> limits_; ///< outlier limits of Huber's loss for each sample; 0: does not count
   std::vector<element> controls_;
   int iterations_ = 0;
   block_band_matrix<R, dimension, std::size_t(Order) - 1> normal_, factors_;
-  vector gradient_, last_step_; ///< the gradient downwards
+  vector gradient_, last_step_; ///< negative gradient
   gradient_changes<R> changes_;
 };
 

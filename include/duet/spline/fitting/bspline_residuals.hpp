@@ -26,11 +26,12 @@
 #include <vector>
 
 /// \file
-/// How far rows are from a cumulative B-spline, and how that changes with its control elements.
+/// Distances of samples from a cumulative B-spline, and their derivatives with respect to its
+/// control points.
 
 namespace duet::detail {
 
-/// The residuals of rows at given parameters, over the control elements of the curve.
+/// Residuals of samples at given parameters, as functions of the control points of the curve.
 template <class T, int Order>
 class bspline_residuals {
 protected:
@@ -50,17 +51,17 @@ protected:
     first_.reserve(u.size());
     weights_.reserve(u.size());
     for (const R& parameter : u) {
-      const std::size_t span = basis.span_of(parameter);
+      const std::size_t span = basis.find_span(parameter);
       first_.push_back(basis.first_function(span));
       weights_.push_back(basis.template weights<0>(span, parameter)[0]);
     }
   }
 
   [[nodiscard]] const std::vector<element>& rows() const { return rows_; }
-  /// Row by row the first control element that it depends on; `Order` of them.
+  /// Index of the first of the `Order` control points on which each sample depends.
   [[nodiscard]] const std::vector<std::size_t>& first() const { return first_; }
 
-  /// The norm, without overflow.
+  /// Norm, without overflow.
   [[nodiscard]] static R size_of(const tangent& r) {
     const R norm = r.norm();
     return norm <= std::numeric_limits<R>::max() ? norm : R(r.stableNorm());
@@ -76,12 +77,12 @@ protected:
     return result;
   }
 
-  /// The half-angle vector from control element i − 1 to i.
+  /// Half-angle vector from control point i − 1 to i.
   [[nodiscard]] static vector3<T> increment(const std::vector<element>& controls, std::size_t i) {
     return log_vector(turn_between(controls[i - 1], controls[i]), "fit");
   }
 
-  /// Control elements moved by tangent vectors in their own body axes, one after the other.
+  /// Control points perturbed by tangent vectors in their body axes, one after the other.
   [[nodiscard]] static std::vector<element>
   moved_by(std::vector<element> controls, const Eigen::Matrix<R, Eigen::Dynamic, 1>& step) {
     for (std::size_t i = 0; i < controls.size(); ++i) {
@@ -94,7 +95,8 @@ protected:
   [[nodiscard]] R weight_of(std::size_t i) const {
     return given_weights_.empty() ? R(1) : R(given_weights_[i]);
   }
-  /// Σ wᵢ ρ(rᵢ) with a limit of Huber's loss for each row; rows of limit 0 do not count.
+  /// Cost Σ wᵢ ρ(rᵢ) with a limit of Huber's loss for each sample; samples with limit 0 do not
+  /// count.
   [[nodiscard]] R cost_of(const std::vector<element>& controls,
                           const std::vector<R>& limits) const {
     R sum(0);
@@ -107,16 +109,16 @@ protected:
     return sum;
   }
 
-  /// What rows on one span have in common: the control element at its start, the increments, and
-  /// what they do when the control elements move.
+  /// Common data of samples on one span: the control point at its start, the increments, and their
+  /// derivatives with respect to the control points.
   struct segment {
     element start;
     std::array<vector3<T>, factors> increments; ///< half-angle vectors
-    /// J_r⁻¹ and J_l⁻¹ of the increments: their rates by those of the elements after and before.
+    /// J_r⁻¹ and J_l⁻¹ of the increments: their derivatives with respect to the control points
+    /// after and before.
     std::array<matrix3<T>, factors> by_next, by_last;
   };
-  /// The caller's memory of the span that the last row was on, for as long as the control elements
-  /// stay as they are.
+  /// Span of the caller's last sample, valid until the control points change.
   struct last_span {
     std::size_t first = std::size_t(-1);
     bool has_rates = false;
@@ -135,14 +137,15 @@ protected:
 
   struct linear_residual {
     tangent value;
-    /// By the rates of the control elements in body axes, one after the other, transposed.
+    /// Derivatives with respect to the control points in body axes, one after the other,
+    /// transposed.
     Eigen::Matrix<R, unknowns, dimension> slope;
   };
 
-  /// With c exp(δ/2) for a control element c, φ = 2 log(c* c⁺) has the rate J_r⁻¹(φ) δ⁺ −
-  /// J_l⁻¹(φ) δ and the factor exp(wφ/2) the rate w J_r(wφ) times that, in its own body axes, where
-  /// the factors behind it take it to those of the value; the residual r goes by −J_l⁻¹(r) times
-  /// the value's.
+  /// Residual i and its derivatives. With c exp(δ/2) for a control point c, φ = 2 log(c* c⁺) has
+  /// the rate J_r⁻¹(φ) δ⁺ − J_l⁻¹(φ) δ, and the factor exp(wφ/2) has the rate w J_r(wφ) times that,
+  /// in its body axes; the factors behind it transform it to those of the value. The residual r
+  /// changes by −J_l⁻¹(r) times the rate of the value.
   [[nodiscard]] linear_residual linearised(std::size_t i, const std::vector<element>& controls,
                                            last_span& last) const {
     move_to(first_[i], controls, last);
@@ -172,7 +175,7 @@ protected:
   }
 
 private:
-  /// Onto the span of the control elements from `first` on.
+  /// Moves to the span of the control points from `first` on.
   static void move_to(std::size_t first, const std::vector<element>& controls, last_span& last) {
     if (last.first == first) {
       return;
@@ -197,7 +200,7 @@ private:
     return weights_[i][j] * components(last.shared.increments[j]);
   }
 
-  /// log(S* Q), the shorter way.
+  /// Logarithm log(S* Q) along the shorter arc.
   [[nodiscard]] vector3<T> residual(const element& value, std::size_t i) const {
     const bool is_opposite = innermost(dot(value, rows_[i])) < 0;
     return log_vector(turn_between(value, is_opposite ? element(-rows_[i]) : rows_[i]), "fit");
@@ -208,8 +211,10 @@ private:
     return a.lazyProduct(b);
   }
 
-  /// L⁻¹ of every covariance L Lᵀ.
-  /// \throws invalid_input
+  /// Whitening matrices L⁻¹ of the covariances L Lᵀ.
+  ///
+  /// \throws invalid_input for a wrong number or size of covariances, and for a covariance that is
+  /// not symmetric or not positive definite
   [[nodiscard]] std::vector<square> inverse_roots(const std::vector<Eigen::MatrixXd>& covariances) {
     const std::size_t count = covariances.size();
     require(count <= 1 || count == rows_.size(), "duet: fit: ", count, " covariances for ",
@@ -231,7 +236,8 @@ private:
     return whitening_[whitening_.size() > 1 ? i : 0];
   }
 
-  /// Of poses [v/length; ω]; in standard deviations where there are covariances.
+  /// Residual in its unit: [v/length; ω] for poses; in standard deviations if there are
+  /// covariances.
   [[nodiscard]] tangent scaled(const vector3<T>& r, std::size_t i) const {
     tangent result;
     if constexpr (dimension == 3) {
@@ -247,7 +253,7 @@ private:
     return result;
   }
 
-  /// The linear map m from rates of control element j to residual i, transposed.
+  /// Stores the transposed linear map m from rates of control point j to residual i.
   void put(const matrix3<T>& m, std::size_t j, std::size_t i,
            Eigen::Matrix<R, unknowns, dimension>& slope) const {
     auto block = slope.template middleRows<dimension>(Eigen::Index(j) * dimension);
@@ -266,7 +272,7 @@ private:
   std::vector<element> rows_;
   R length_;
   std::vector<double> given_weights_;
-  std::vector<square> whitening_; ///< none, one for all or one for each row
+  std::vector<square> whitening_; ///< empty, one for all or one for each sample
   std::vector<std::size_t> first_;
   std::vector<std::array<R, factors>> weights_;
 };

@@ -21,12 +21,12 @@
 #include <vector>
 
 /// \file
-/// Where fits start, and what is an outlier to a robust one: medians, which up to half of the rows
-/// may spoil without moving them far.
+/// Initial guesses of fits, and outlier limits of robust ones, from medians, which up to half of
+/// the samples may spoil without moving them far.
 
 namespace duet::detail {
 
-/// The mean of the Order − 1 inner knots of basis function i (Greville's abscissa).
+/// Greville abscissa: mean of the Order − 1 inner knots of basis function i.
 template <int Order, Real R>
 [[nodiscard]] R knot_average(const bspline_basis<Order, R>& basis, std::size_t i) {
   R sum(0);
@@ -36,7 +36,7 @@ template <int Order, Real R>
   return sum / R(Order - 1);
 }
 
-/// Where the rows are at the knots' averages (Greville's abscissae).
+/// Initial guess of plain fits: the samples interpolated at the Greville abscissae.
 template <class T, int Order>
 [[nodiscard]] std::vector<quaternion<T>>
 elements_at_averages(const bspline_basis<Order, real_type_t<T>>& basis,
@@ -56,7 +56,7 @@ elements_at_averages(const bspline_basis<Order, real_type_t<T>>& basis,
   return result;
 }
 
-/// The upper median of x, which it puts into another order; at least one x. NaN counts as infinite.
+/// Upper median of x, whose order it changes; x must not be empty. NaN counts as infinite.
 template <Real R>
 [[nodiscard]] R median_within(std::vector<R>& x) {
   for (R& each : x) {
@@ -72,8 +72,8 @@ template <Real R>
   return median_within(x);
 }
 
-/// Row by row the median of x over the rows around, 61 or more if there are as many: those that
-/// belong to the same piece of the curve, which is told by a number that does not decrease.
+/// Median of x around each sample, over 61 samples or more if there are as many: those on the same
+/// piece of the curve, identified by a number that does not decrease, and their neighbours.
 template <Real R>
 [[nodiscard]] std::vector<R> local_medians(const std::vector<R>& x,
                                            const std::vector<std::size_t>& piece) {
@@ -95,15 +95,15 @@ template <Real R>
   return result;
 }
 
-/// Squares of larger residuals, and products of those, would overflow.
+/// Bound on residuals: squares of larger ones, and products of those, would overflow.
 template <Real R>
 [[nodiscard]] R too_far() {
   using std::sqrt;
   return sqrt(sqrt(std::numeric_limits<R>::max()));
 }
 
-/// The limits of Huber's loss: three times the median residual around each row, at least `least`;
-/// zero for rows that are four times as far off and more. Returns the sum of the limits.
+/// Sets the limits of Huber's loss: three times the median residual around each sample, at least
+/// `least`; zero for samples at four times that distance or more. Returns the sum of the limits.
 template <Real R>
 [[nodiscard]] R set_outlier_limits(const std::vector<R>& sizes,
                                    const std::vector<std::size_t>& piece, const R& least,
@@ -118,8 +118,8 @@ template <Real R>
   return sum;
 }
 
-/// Rows in coordinates that have medians: the matrix of a rotation, whatever the sign of its
-/// quaternion, and of a pose its shift as a multiple of the length that counts as much as 1 rad.
+/// Coordinates of samples that have medians: the matrix of a rotation, independent of the sign of
+/// its quaternion, and for a pose also its translation divided by the characteristic length.
 template <class T>
 class median_coordinates {
   static constexpr bool is_pose = contains_tag<T, screw_tag>();
@@ -145,7 +145,7 @@ public:
     return result;
   }
 
-  /// The sum of the coordinates' distances.
+  /// Sum of the absolute differences of the coordinates.
   [[nodiscard]] static R separation(const point& a, const point& b) {
     using std::abs;
     R sum(0);
@@ -156,7 +156,7 @@ public:
   }
 };
 
-/// One of nine rows spread over all, that with the least median separation from the others.
+/// Sample with the least median separation from the others, among nine spread over all.
 template <class T>
 [[nodiscard]] quaternion<T> central_row(const std::vector<quaternion<T>>& rows,
                                         const real_type_t<T>& length) {
@@ -177,7 +177,7 @@ template <class T>
   return rows[std::size_t(best) * (rows.size() - 1) / (count - 1)];
 }
 
-/// Rows relative to one of them, with all digits of small differences.
+/// Samples relative to one of them, with all digits of small differences.
 template <class T>
 [[nodiscard]] std::vector<quaternion<T>> rows_seen_from(const quaternion<T>& origin,
                                                         std::vector<quaternion<T>> rows) {
@@ -187,14 +187,14 @@ template <class T>
   return rows;
 }
 
-/// Huber's loss: ½ r² up to the limit, from there on along the tangent.
+/// Huber's loss: ½ r² up to the limit, beyond it linear along the tangent.
 template <Real R>
 [[nodiscard]] R huber_loss(const R& r, const R& limit) {
   return r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
 }
 
-/// The middle of rows of which up to half are anywhere: coordinate by coordinate the median, and
-/// the row that is nearest to that.
+/// Robust centre of samples, up to half of which may be outliers: the sample nearest to the median
+/// of each coordinate.
 template <class T>
 class robust_centre {
   using coordinates = median_coordinates<T>;
@@ -202,9 +202,9 @@ class robust_centre {
   using R = real_type_t<T>;
 
 public:
-  /// Control elements for a robust fit: around each knot average (Greville's abscissa) the middle
-  /// of the rows, sought from many rows to few, so that outliers do not pass for a motion where by
-  /// chance they are many.
+  /// Initial control points of a robust fit: around each Greville abscissa the centre of the
+  /// samples, sought in windows from many samples to few, so that outliers are not taken for a
+  /// motion where they happen to be many.
   template <int Order>
   [[nodiscard]] std::vector<quaternion<T>>
   controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u,
@@ -237,8 +237,8 @@ public:
   }
 
 private:
-  /// To the middle of those of `count` points that are within the radius, which becomes three times
-  /// the median separation from there.
+  /// Moves the centre to that of those of `count` points within the radius, which becomes three
+  /// times the median separation from there.
   void move(std::size_t first, std::size_t count) {
     near_rows_.clear();
     for (std::size_t k = first; k < first + count; ++k) {
@@ -248,9 +248,9 @@ private:
     }
     if (3 * near_rows_.size() < count) {
       if (count < 21) {
-        return; // by chance: few rows do not prove the others wrong
+        return; // by chance: few samples do not prove the others wrong
       }
-      near_rows_.resize(count); // the motion is another one here
+      near_rows_.resize(count); // the motion is different here
       std::iota(near_rows_.begin(), near_rows_.end(), first);
     }
     point middle;
@@ -273,7 +273,7 @@ private:
     radius_ = 3 * median_within(numbers_);
   }
 
-  std::vector<point> points_; ///< of the rows around
+  std::vector<point> points_; ///< coordinates of the samples around
   std::vector<std::size_t> near_rows_;
   std::vector<R> numbers_;
   std::size_t centre_ = 0;

@@ -10,12 +10,13 @@
 #include <vector>
 
 /// \file
-/// Limited-memory BFGS: second derivatives as the last steps of a descent show them.
+/// Limited-memory BFGS corrections from the last steps of a descent.
 
 namespace duet::detail {
 
-/// Corrects the steps of Gauss and Newton, whose matrix lacks the second derivatives of the
-/// residuals: where residuals are large, they alone would need hundreds of steps.
+/// Corrects Gauss–Newton steps by limited-memory BFGS (two-loop recursion). The Gauss–Newton matrix
+/// lacks the second derivatives of the residuals and would need hundreds of steps if residuals are
+/// large.
 template <Real R>
 class gradient_changes {
   using vector = Eigen::Matrix<R, Eigen::Dynamic, 1>;
@@ -24,12 +25,12 @@ public:
   [[nodiscard]] bool empty() const { return changes_.empty(); }
   void clear() { changes_.clear(); }
 
-  /// The step from one point to the next.
+  /// Records the step to the next point, and the gradient before it.
   void step(vector taken, const vector& gradient) {
     step_ = std::move(taken);
     gradient_ = gradient;
   }
-  /// The gradient after the step. What it changed counts if the cost is convex along it.
+  /// Records the gradient after the step. The change counts if the cost is convex along the step.
   void arrive(const vector& gradient) {
     if (step_.size() != gradient.size()) {
       return;
@@ -44,7 +45,7 @@ public:
     }
   }
 
-  /// x becomes H⁻¹ x, H the factorised matrix with the changes.
+  /// Replaces x by H⁻¹ x, where H is the factorised matrix with the corrections.
   template <class Factors>
   void solve(const Factors& factors, vector& x) const {
     std::vector<R> along(changes_.size());

@@ -16,11 +16,11 @@
 #include <vector>
 
 /// \file
-/// Which column of a table of rotations or poses holds what, by the names in a header.
+/// Columns of a table of rotations or poses, identified by their names in a header.
 
 namespace duet::detail {
 
-/// What a column of such a table may hold; `other` is passed over.
+/// Contents of a column; `other` is ignored.
 enum class table_column : std::size_t { u, x, y, z, qw, qx, qy, qz, other };
 
 inline constexpr const char* known_columns =
@@ -28,13 +28,13 @@ inline constexpr const char* known_columns =
     "(q_w, "
     "q_RS_w ...), with units as in `t [s]`; Euler angles where `euler_columns` names them";
 
-/// A name in a header: of what, and in which unit.
+/// Name in a header, with its meaning and unit.
 struct column_name {
   table_column what = table_column::other;
-  bool is_a_time = false; ///< a `u` in seconds, or in a unit of time
-  bool is_of_ros = false; ///< a time as `rostopic echo -p` writes it
+  bool is_a_time = false; ///< `u` in seconds, or in a unit of time
+  bool is_of_ros = false; ///< time as `rostopic echo -p` writes it
   std::string name;
-  std::string unit; ///< as written, empty where none is
+  std::string unit; ///< as written, empty if there is none
 
   explicit column_name(std::string_view cell) {
     if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') { // as spreadsheets write
@@ -57,7 +57,7 @@ private:
     return result;
   }
 
-  /// Of the name, and whether it is a time.
+  /// Meaning of the name; also determines whether it is a time.
   [[nodiscard]] table_column meaning() {
     if (name == "u" || name == "tau") {
       return table_column::u;
@@ -99,22 +99,22 @@ private:
   }
 };
 
-/// Where in a row its eight numbers stand: u, x y z, qw qx qy qz, or seven, with three Euler angles
-/// in place of the last four.
+/// Columns of the eight numbers of a row: u, x y z, qw qx qy qz; or of seven, with three Euler
+/// angles instead of the last four.
 struct table_layout {
   static constexpr std::size_t absent = std::size_t(-1);
 
   std::array<std::size_t, 8> at;
-  std::array<std::string, 8> names; ///< as in the header
+  std::array<std::string, 8> names; ///< names as in the header
   std::size_t columns = 0;
   std::array<std::string, 8> units;
-  bool has_time = false;   ///< its parameter is a time
-  bool is_euroc = false;   ///< named as in the files of the EuRoC data set
-  bool is_of_ros = false;  ///< its time is as `rostopic echo -p` writes it
-  bool has_angles = false; ///< Euler angles in place of a quaternion
+  bool has_time = false;   ///< true if the parameter is a time
+  bool is_euroc = false;   ///< true if named as in the files of the EuRoC data set
+  bool is_of_ros = false;  ///< true if the time is as `rostopic echo -p` writes it
+  bool has_angles = false; ///< true for Euler angles instead of a quaternion
 
   table_layout() { at.fill(absent); }
-  /// Columns in this order.
+  /// Layout with columns in this order.
   table_layout(const std::vector<table_column>& order, const std::vector<std::string>& their_names)
       : table_layout() {
     columns = order.size();
@@ -124,9 +124,12 @@ struct table_layout {
     }
   }
 
-  /// \param has_u, has_place  what the rows must have besides rotations
-  /// \param angles  which columns are Euler angles; none: rotations are quaternions
-  /// \return what is wrong with the header, empty if nothing
+  /// Reads a header.
+  ///
+  /// \param has_u      true if the rows must have a parameter
+  /// \param has_place  true if the rows must have positions
+  /// \param angles     columns of Euler angles; null: rotations are quaternions
+  /// \return problem with the header, empty if there is none
   [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_u,
                                  bool has_place, const euler_columns* angles = nullptr) {
     columns = header.size();
@@ -153,7 +156,8 @@ struct table_layout {
   }
 
 private:
-  /// Angles stand where the first three numbers of a quaternion would.
+  /// Index of a column of angles, which take the positions of the first three numbers of a
+  /// quaternion.
   [[nodiscard]] static std::size_t place_among(const euler_columns& angles,
                                                const column_name& cell) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -171,7 +175,7 @@ private:
                 : unit == "rad" || unit == "radian" || unit == "radians");
   }
 
-  /// What the header should name but does not, and units of angles that are not those given.
+  /// Problem with the header: missing columns, or units of angles other than the given one.
   [[nodiscard]] std::string missing(bool has_u, bool has_place, const euler_columns* angles) const {
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < (has_angles ? 7 : 8); ++k) {
@@ -188,7 +192,7 @@ private:
   }
 };
 
-/// A comment before the first row that seems to name the columns.
+/// Comment before the first row that seems to name the columns.
 class commented_header {
 public:
   void look_at(std::size_t line, std::string_view comment, const euler_columns* angles) {
@@ -217,10 +221,11 @@ public:
     }
   }
 
-  /// The layout that the comment gives rows of so many columns. Nothing if it is no header: if its
-  /// names or their number do not fit the rows, and no name contradicts the usual layout of such
-  /// rows.
-  /// \throws file_error if it is in doubt
+  /// Layout that the comment gives to rows with this number of columns. Empty if it is not a
+  /// header: if its names or their number do not fit the rows, and no name contradicts the usual
+  /// layout of such rows.
+  ///
+  /// \throws file_error if it is ambiguous
   [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
                                                    bool has_u, bool has_place,
                                                    const euler_columns* angles,
@@ -243,7 +248,8 @@ public:
     raise(file_error(path, line_, problem));
   }
 
-  /// A remark on a comment that could be a header of so many columns, but is not; empty if none.
+  /// Remark on a comment that could be a header of this number of columns, but is not; empty
+  /// otherwise.
   [[nodiscard]] std::string remark(std::size_t columns) const {
     return is_certain_ || (columns > 0 && cells_.size() == columns)
                ? "the names in the comment of line " + std::to_string(line_) + " do not fit"
@@ -251,8 +257,8 @@ public:
   }
 
 private:
-  /// Whether every known name is that of the column at its place. An unknown name may be of a
-  /// scalar part, which must be where the usual one is, or of four numbers whose order is in doubt.
+  /// True if every known name is that of the column at its index. An unknown name may be of a
+  /// scalar part, which must be in the usual column, or of four numbers in ambiguous order.
   [[nodiscard]] bool agrees_with(const table_layout& usual) const {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const column_name cell(cells_[i]);

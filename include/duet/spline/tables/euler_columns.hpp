@@ -12,25 +12,26 @@
 #include <utility>
 
 /// \file
-/// Euler angles in files, whose order, axes and unit no header tells.
+/// Euler angles in files: their columns, sequence and unit, which headers do not state.
 
 namespace duet {
 
-/// The unit of angles in a file.
+/// Unit of angles in a file.
 enum class angle_unit {
-  radian, ///< as everywhere else in duet
-  degree  ///< 180 to π
+  radian, ///< radian, as everywhere else in duet
+  degree  ///< degree, 180 to π
 };
 
-/// Which columns of a file hold Euler angles, of which sequence and in which unit.
+/// Columns of a file that hold intrinsic Euler angles, with their sequence and unit.
 ///
-/// Example, of an aircraft's log: `euler_columns(zyx, {"yaw", "pitch", "roll"},
+/// Example, for an aircraft's log: `euler_columns(zyx, {"yaw", "pitch", "roll"},
 /// angle_unit::degree)`
 class euler_columns {
 public:
-  /// \param sequence  axes of the moving body, turned about one after the other
-  /// \param names     of the columns with the angles about these axes, in the same order
-  /// \throws invalid_input for what is no sequence, and for names that are empty or equal
+  /// \param sequence  axes of the moving body, rotated about one after the other (intrinsic)
+  /// \param names     names of the columns with the angles about these axes, in the same order
+  /// \param unit      unit of the angles
+  /// \throws invalid_input for an invalid sequence, and for names that are empty or equal
   euler_columns(euler_sequence sequence, std::array<std::string, 3> names, angle_unit unit)
       : sequence_(sequence), names_(std::move(names)), unit_(unit) {
     const auto is_axis = [](int i) { return i >= 0 && i < 3; };
@@ -46,11 +47,11 @@ public:
     }
   }
 
-  /// The columns' names, in the order of the sequence.
+  /// Names of the columns, in the order of the sequence.
   [[nodiscard]] const std::array<std::string, 3>& names() const { return names_; }
-  /// The unit of the angles.
+  /// Unit of the angles.
   [[nodiscard]] angle_unit unit() const { return unit_; }
-  /// The rotation of angles in this unit, in the order of the sequence: R_first R_second R_third.
+  /// Rotation by angles in this unit, in the order of the sequence: R_first R_second R_third.
   [[nodiscard]] quaternion<double> rotation(const std::array<double, 3>& angles) const {
     const double size = unit_ == angle_unit::degree ? std::numbers::pi / 180 : 1;
     return detail::axis_rotation(sequence_.first, size * angles[0]) *

@@ -12,26 +12,28 @@
 #include <string>
 
 /// \file
-/// Rotations as files have them, with all digits or few.
+/// Rotations in files, with all digits or few.
 
 namespace duet {
 
-/// How far R Rᵀ of a matrix in a file may be from 1, entry by entry: files are printed with few
-/// digits.
+/// Tolerance for R Rᵀ = 1 of a matrix in a file, entry by entry; loose, as files are printed with
+/// few digits.
 inline constexpr double rotation_matrix_tolerance = 1e-3;
 
 } // namespace duet
 
 namespace duet::detail {
 
-/// Files keep all digits, so what is a unit to rounding stays as it is.
+/// Normalised quaternion; one that is a unit to round-off stays as it is, since files keep all
+/// digits.
 [[nodiscard]] inline quaternion<double> unit_of_file(const quaternion<double>& q) {
   return std::abs(norm(q) - 1) <= 4e-16 ? q : normalized(q);
 }
 
-/// The rotation nearest to a matrix, by Newton's method for the polar factor, R ← ½(R + R⁻ᵀ): from
-/// `rotation_matrix_tolerance` three steps lead to rounding.
-/// \return what is wrong with the matrix, empty if nothing
+/// Reads the rotation nearest to a matrix, by Newton's method for the polar factor, R ← ½(R + R⁻ᵀ):
+/// from `rotation_matrix_tolerance` three steps reach round-off.
+///
+/// \return problem with the matrix, empty if there is none
 [[nodiscard]] inline std::string read_rotation(matrix3<double> r, quaternion<double>& q) {
   const double defect = (r * r.transpose() - matrix3<double>::Identity()).cwiseAbs().maxCoeff();
   if (!(defect <= rotation_matrix_tolerance)) {

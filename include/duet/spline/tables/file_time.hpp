@@ -11,19 +11,19 @@
 #include <string_view>
 
 /// \file
-/// Times in files, whose digits a double of seconds cannot hold.
+/// Times in files, whose digits exceed a double in seconds.
 
 namespace duet::detail {
 
-/// A time in seconds. From one double to the next there are 2.4e-7 s in the seconds since 1970, so
-/// whole seconds and the rest are kept, too: differences of times have all digits of the file.
+/// Time in seconds. For seconds since 1970, adjacent doubles are 2.4e-7 s apart, so whole seconds
+/// and the rest are kept, too: differences of times have all digits of the file.
 class file_time {
 public:
   explicit file_time(double seconds = 0)
       : seconds_(seconds), whole_(std::trunc(seconds)), rest_(seconds - whole_) {}
 
-  /// The time of a cell that holds a finite number, decimal or with an exponent, in units of
-  /// 10^−digits s. The decimal point is moved in the text, because divisions round.
+  /// Time in a cell that holds a finite number, decimal or with an exponent, in units of 10^−digits
+  /// s. The decimal point is moved in the text, because divisions round.
   file_time(std::string_view cell, std::size_t digits) {
     cell = trimmed(cell);
     const double sign = cell.starts_with('-') ? -1 : 1;
@@ -55,9 +55,9 @@ public:
     rest_ = sign * number_of("0" + after);
   }
 
-  /// The nearest double.
+  /// Nearest double, in seconds.
   [[nodiscard]] double seconds() const { return seconds_; }
-  /// Seconds since another time, to 1e-16 s and rounding; since 0 the nearest double.
+  /// Seconds since another time, to 1e-16 s and round-off; since 0 the nearest double.
   [[nodiscard]] double since(const file_time& start) const {
     return start.seconds_ == 0 ? seconds_ : (whole_ - start.whole_) + (rest_ - start.rest_);
   }
@@ -66,7 +66,7 @@ public:
   }
 
 private:
-  /// The number; 0 if the text is empty or the number nearer to 0 than any double.
+  /// Value of a number; 0 if the text is empty or the number nearer to 0 than any double.
   [[nodiscard]] static double number_of(std::string_view text) {
     double number = 0;
     static_cast<void>(read_number(text, number));

@@ -13,45 +13,46 @@
 #include <vector>
 
 /// \file
-/// Which format a file of rotations or poses has. It is told by
+/// Format of a file of rotations or poses, detected from
 ///
 /// - a header, a first line of names or a comment before the first row: columns by their names,
-///   others passed over. A comment counts if its names and their number fit the columns. Times are
-///   in the unit that it says, in nanoseconds in files with the names of the EuRoC data set, else
-///   in seconds; whole numbers that as seconds would be later than the year 5000 are taken for
-///   milliseconds (from 1e11 on), microseconds (1e14) or nanoseconds (1e17). rostopic's
-///   (%time, or field.header.stamp where it is there, too) are nanoseconds where they are whole
-///   numbers, seconds where they have a point, as it prints them. Columns u and tau are no times
-///   and are taken as they are;
-/// - 8 numbers apart by blanks: TUM's `timestamp tx ty tz qx qy qz qw`, times by the same rule;
-/// - 8 numbers apart by commas, the first 1e17 or more: EuRoC's `timestamp,x,y,z,qw,qx,qy,qz`.
-///   Smaller ones are refused, as w may be first or last (semicolons in place of commas: alike);
-/// - 12 numbers: KITTI's matrix [R t], row by row; the time is the row's number from 0 on, or in a
+///   others ignored. A comment counts if its names and their number fit the columns. Times are in
+///   the unit given there, in nanoseconds in files with the names of the EuRoC data set, else in
+///   seconds; whole numbers that as seconds would be later than the year 5000 are taken for
+///   milliseconds (from 1e11 on), microseconds (1e14) or nanoseconds (1e17). Times of rostopic
+///   (%time, or field.header.stamp if present) are nanoseconds if they are whole numbers, seconds
+///   if they have a decimal point, as it prints them. Columns u and tau are not times and are taken
+///   as they are;
+/// - 8 numbers separated by blanks: TUM's `timestamp tx ty tz qx qy qz qw`, times by the same rule;
+/// - 8 numbers separated by commas, the first 1e17 or more: EuRoC's `timestamp,x,y,z,qw,qx,qy,qz`.
+///   Smaller ones are rejected, as w may be first or last (likewise with semicolons instead of
+///   commas);
+/// - 12 numbers: KITTI's matrix [R t], row by row; the time is the row's index from 0 on, or in a
 ///   file of times.
 
 namespace duet::detail {
 
-/// How the rows of a file are to be read.
+/// Format of the rows of a file.
 struct row_format {
   table_layout layout;
-  bool is_matrix = false;   ///< [R t] row by row, not by the layout
+  bool is_matrix = false;   ///< true for [R t] row by row, without the layout
   std::size_t digits = 0;   ///< times are in units of 10^−digits s
-  std::string guessed_unit; ///< the unit times were taken for by their size, then whole numbers
-  std::string remark;       ///< how the file was understood, where that is not plain
+  std::string guessed_unit; ///< unit guessed from the size of times, then whole numbers
+  std::string remark;       ///< assumptions about the format, empty if there were none
 };
 
-/// A unit of time that no header names, told by the size of the first time.
+/// Unit of time that no header names, guessed from the size of the first time.
 struct guessed_time_unit {
-  std::size_t digits = 0; ///< the unit is 10^−digits s
-  std::string name;       ///< empty for seconds
+  std::size_t digits = 0; ///< unit is 10^−digits s
+  std::string name;       ///< name of the unit, empty for seconds
 
   explicit guessed_time_unit(std::size_t digits_of_second)
       : digits(digits_of_second), name(digits == 9   ? "nanoseconds"
                                        : digits == 6 ? "microseconds"
                                        : digits == 3 ? "milliseconds"
                                                      : "") {}
-  /// Times from the years 1973 to 5138 in each unit; a number with a fraction is in seconds, except
-  /// one from 1e17 to 1e20. So what was read in seconds is never taken for another unit again.
+  /// Guesses the unit of times from the years 1973 to 5138; a number with a fraction is in seconds,
+  /// except one from 1e17 to 1e20. So times read in seconds are never taken for another unit again.
   explicit guessed_time_unit(std::string_view cell)
       : guessed_time_unit([&]() -> std::size_t {
           const double size = std::abs(parse_number(cell).value_or(0));
@@ -64,7 +65,7 @@ struct guessed_time_unit {
         }()) {}
 };
 
-/// The layout of a row of numbers without a header: TUM's or EuRoC's, nothing for others.
+/// Layout of a row of numbers without a header: TUM's or EuRoC's, empty for others.
 [[nodiscard]] inline std::optional<table_layout>
 usual_layout(const std::vector<std::string_view>& cells, bool has_commas) {
   using enum table_column;
@@ -77,8 +78,10 @@ usual_layout(const std::vector<std::string_view>& cells, bool has_commas) {
                                    {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"});
 }
 
-/// \param cells  the first row
-/// \throws file_error where it could be more than one format, or is none
+/// Detects the format from the first row, without a header.
+///
+/// \param cells  cells of the first row
+/// \throws file_error if it could be more than one format, or is not a known one
 [[nodiscard]] inline row_format format_of_row(const std::string& path, std::size_t line,
                                               const std::vector<std::string_view>& cells,
                                               bool has_commas) {
@@ -111,7 +114,8 @@ usual_layout(const std::vector<std::string_view>& cells, bool has_commas) {
   return result;
 }
 
-/// The digits of a unit of time in a header: 9 for ns, 0 for s.
+/// Number of digits of a unit of time in a header: 9 for ns, 0 for s.
+///
 /// \throws file_error for an unknown unit
 [[nodiscard]] inline std::size_t digits_of_time_unit(const std::string& path, std::size_t line,
                                                      const std::string& unit) {
@@ -122,9 +126,11 @@ usual_layout(const std::vector<std::string_view>& cells, bool has_commas) {
   return digits;
 }
 
-/// \param cells      the first row
-/// \param has_place  are places wanted?
-/// \throws file_error for units that are not known
+/// Detects the format from a header and the first row.
+///
+/// \param cells      cells of the first row
+/// \param has_place  true if positions are needed
+/// \throws file_error for unknown units
 [[nodiscard]] inline row_format format_of_header(const std::string& path, std::size_t line,
                                                  const table_layout& header,
                                                  const std::vector<std::string_view>& cells,

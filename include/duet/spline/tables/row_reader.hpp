@@ -24,14 +24,14 @@
 #include <vector>
 
 /// \file
-/// Rows of rotations and poses in files of any format.
+/// Reader of rotations and poses from files of any format, row by row.
 
 namespace duet::detail {
 
-/// A row of a file.
+/// Row of a file.
 struct table_row {
   std::size_t line = 0;
-  std::string fault; ///< what is wrong with it, empty if nothing; then the rest is there
+  std::string fault; ///< problem, empty if there is none; then the other fields are valid
   file_time time;
   vector3<double> place = vector3<double>::Zero();
   quaternion<double> rotation{1};
@@ -40,10 +40,10 @@ struct table_row {
 /// Reads a file line by line.
 class table_row_reader {
 public:
-  /// \param times_path  a file of times, empty if none
-  /// \param has_place   must rows have places?
-  /// \param angles      which columns are Euler angles; none: rotations are quaternions
-  /// \throws file_error for a bad file of times
+  /// \param times_path  file of times, empty if there is none
+  /// \param has_place   true if rows must have positions
+  /// \param angles      columns of Euler angles; null: rotations are quaternions
+  /// \throws file_error for an invalid file of times
   table_row_reader(std::string path, std::string times_path, bool has_place,
                    const euler_columns* angles)
       : path_(std::move(path)), times_path_(std::move(times_path)), has_place_(has_place),
@@ -53,8 +53,9 @@ public:
     }
   }
 
-  /// The row that a line holds, if it does.
-  /// \throws file_error with the line of what is no row, or a header in doubt
+  /// Row in a line, empty if the line holds none.
+  ///
+  /// \throws file_error with the line of an invalid row, or for an ambiguous header
   [[nodiscard]] std::optional<table_row> read(std::size_t line, std::string_view whole) {
     const split_line parts(whole);
     const bool is_begin = !format_ && !header_;
@@ -92,7 +93,8 @@ public:
     return row;
   }
 
-  /// After the last line.
+  /// Checks the number of times, after the last line.
+  ///
   /// \throws file_error for more times than rows
   void finish() const {
     if (row_count_ > 0 && row_count_ < times_.size()) {
@@ -101,19 +103,19 @@ public:
     }
   }
 
-  /// How the file was understood, where that is not plain.
+  /// Assumptions about the format, empty if there were none.
   [[nodiscard]] std::string remark() const {
     return format_ ? format_->remark + times_remark_ : "";
   }
 
 private:
-  /// A time in the file of times.
+  /// Time in the file of times.
   struct time_row {
     std::size_t line;
     file_time time;
   };
 
-  /// A time a line, in the unit of a header if there is one.
+  /// Reads one time a line, in the unit of a header if there is one.
   void read_times() {
     std::optional<guessed_time_unit> unit;
     for_each_line(times_path_, [&](std::size_t line, std::string_view whole) {
@@ -221,7 +223,7 @@ private:
     }
   }
 
-  /// The first fault is told.
+  /// Records a problem with the row; the first one is kept.
   static void note(table_row& row, std::string fault) {
     if (row.fault.empty()) {
       row.fault = std::move(fault);
@@ -241,7 +243,8 @@ private:
 };
 
 /// Calls row(r) for every `table_row` of a file.
-/// \return how the file was understood, where that is not plain
+///
+/// \return assumptions about the format, empty if there were none
 /// \throws file_error as `table_row_reader`
 template <class Row>
 std::string for_each_table_row(const std::string& path, const std::string& times_path,
