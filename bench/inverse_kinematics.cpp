@@ -65,7 +65,7 @@ bool is_solution(const C& chain, const X& theta, const dual_quaternion<double>& 
   const pose_error left = pose_error_between(chain.pose(theta), goal);
   const bool is_inside = (theta - lower_limits(chain)).minCoeff() >= 0 &&
                          (upper_limits(chain) - theta).minCoeff() >= 0;
-  return is_inside && std::max(left.length, left.angle) <= 1e-6 * (1 + 1e-9);
+  return is_inside && std::max(left.translation, left.rotation) <= 1e-6 * (1 + 1e-9);
 }
 
 /// `solve(problem)` returns joints.
