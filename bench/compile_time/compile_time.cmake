@@ -117,6 +117,6 @@ endforeach()
 
 message("\n| linked to duet::compiled | s | headers over Eigen/Core | beyond them |\n|---|---|---|---|")
 list(APPEND compile -DDUET_COMPILED)
-foreach(name IN ITEMS all_inverse_kinematics find_start_configuration interpolate interpolate_cumulative inverse_kinematics jacobian_of_tree plan_screw_motion)
+foreach(name IN ITEMS all_inverse_kinematics choose_start interpolate interpolate_cumulative inverse_kinematics jacobian_of_tree plan_screw_motion)
   measure_program(${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
 endforeach()

@@ -66,7 +66,7 @@ void write_motion(const spline& s, double u, int reading, live::writer& out) {
 
 /// The rows to begin with: those of examples/printed_velocity, about one radian apart.
 /// \param out  6 rotations
-DUET_LIVE void initial_samples(double* out) {
+DUET_LIVE void first_rows(double* out) {
   live::writer to(out);
   to << duet::from_euler<duet::zyx>(-1.15, 0.35, 0.0)
      << duet::from_euler<duet::zyx>(-0.75, -0.45, 0.9)

@@ -9,8 +9,8 @@ duetLive.start("rotations", (host, call) => {
   const { element, figure, fixed, hue, sum, dot, cross } = duetLive;
   const count = 6;
   const samples = 301;
-  const initial_samples = call("initial_samples", [], 4 * count).numbers;
-  const state = { rows: initial_samples.slice(), ends: 0, reading: 0, u: 2.4, chosen: 2 };
+  const first_rows = call("first_rows", [], 4 * count).numbers;
+  const state = { rows: first_rows.slice(), ends: 0, reading: 0, u: 2.4, chosen: 2 };
   let motion = [];
   let here;
 
@@ -201,7 +201,7 @@ duetLive.start("rotations", (host, call) => {
     },
   });
   const reset = element("button", { type: "button", onclick: () => {
-    state.rows = initial_samples.slice();
+    state.rows = first_rows.slice();
     chosen();
     redraw();
   } }, "Back to the first rows");

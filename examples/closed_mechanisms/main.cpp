@@ -138,7 +138,7 @@ void print(const duet::closed_chain_mechanism& mechanism, const duet::motion_tra
               : whole.meets_branches ? "ends where branches touch"
                                      : "goes on");
   for (const duet::branch_point& each : whole.branch_points) {
-    std::printf("  %zu ways leave from", each.ways.size());
+    std::printf("  %zu ways leave from", each.tangents.size());
     for (const double x : each.coordinates) {
       std::printf(" %.10f", std::abs(x) < 5e-11 ? 0 : x);
     }

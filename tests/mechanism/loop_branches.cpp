@@ -53,13 +53,13 @@ void check_crossing(const std::array<double, 4>& bar, const branch_point& at) {
   for (int i = 0; i < 3; ++i) { // all joints on a line
     CHECK(std::abs(std::sin(at.coordinates[i])) < 1e-13);
   }
-  REQUIRE(at.ways.size() == 4);
-  CHECK((at.ways[0] + at.ways[3]).norm() < 1e-14);
-  CHECK((at.ways[1] + at.ways[2]).norm() < 1e-14);
-  CHECK(std::abs(at.ways[0].dot(at.ways[1])) < .999);
-  const double first = at.ways[1][0]; // increases on the first way of a pair
-  CHECK((std::abs(first) < 1e-13 ? at.ways[1][1] : first) > 0);
-  for (const VectorXd& way : at.ways) {
+  REQUIRE(at.tangents.size() == 4);
+  CHECK((at.tangents[0] + at.tangents[3]).norm() < 1e-14);
+  CHECK((at.tangents[1] + at.tangents[2]).norm() < 1e-14);
+  CHECK(std::abs(at.tangents[0].dot(at.tangents[1])) < .999);
+  const double first = at.tangents[1][0]; // increases on the first way of a pair
+  CHECK((std::abs(first) < 1e-13 ? at.tangents[1][1] : first) > 0);
+  for (const VectorXd& way : at.tangents) {
     CHECK(std::abs(way.norm() - 1) < 1e-14);
     CHECK(std::abs(first_order(bar, at.coordinates, way)) < 1e-13);
     CHECK(std::abs(second_order(bar, at.coordinates, way)) < 1e-13);
@@ -106,20 +106,21 @@ TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram")
   }
   for (const branch_point& at : straight.branch_points) {
     check_crossing(bar, at);
-    CHECK(at.taken == 0);
-    CHECK(std::abs(at.ways[0][0] - at.ways[0][2]) < 1e-14);
+    CHECK(at.chosen == 0);
+    CHECK(std::abs(at.tangents[0][0] - at.tangents[0][2]) < 1e-14);
     // tan(θ/2) / tan(ψ/2) = (a − d) / (a + d), at θ = ψ = 0 or π
     const double ratio = (.3 - .8) / (.3 + .8);
     const double cosine = std::cos(at.coordinates[0]);
-    CHECK(std::abs(at.ways[1][0] / at.ways[1][2] - (cosine > 0 ? ratio : 1 / ratio)) < 1e-13);
+    CHECK(std::abs(at.tangents[1][0] / at.tangents[1][2] - (cosine > 0 ? ratio : 1 / ratio)) <
+          1e-13);
   }
 
   for (const std::size_t way : {1, 2}) {
-    const motion_trace other = trace(motion, 0, {.ways = {way}});
+    const motion_trace other = trace(motion, 0, {.branches = {way}});
     CHECK(other.is_closed);
     REQUIRE(other.branch_points.size() == 3); // back through the first one
-    CHECK(other.branch_points[0].taken == way);
-    CHECK(other.branch_points[1].taken == 0);
+    CHECK(other.branch_points[0].chosen == way);
+    CHECK(other.branch_points[1].chosen == 0);
     int crossed = 0;
     for (const VectorXd& q : other.positions) {
       if (std::abs(q[0] - q[2]) > 1e-9) {
@@ -131,11 +132,11 @@ TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram")
     CHECK(crossed > 40);
   }
   // Back where it came from.
-  const motion_trace back = trace(motion, 0, {.ways = {3}});
-  CHECK(back.branch_points[0].taken == 3);
+  const motion_trace back = trace(motion, 0, {.branches = {3}});
+  CHECK(back.branch_points[0].chosen == 3);
   CHECK(std::abs(back.positions.back()[0] - back.positions.back()[2]) < 1e-12);
-  CHECK(message_of([&] { (void)trace(motion, 0, {.ways = {4}}); }) ==
-        "duet: trace: no way 4 of 4 from branch point 0");
+  CHECK(message_of([&] { (void)trace(motion, 0, {.branches = {4}}); }) ==
+        "duet: trace: no branch 4 of 4 from branch point 0");
 }
 
 TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways against 100 digits") {
@@ -162,7 +163,7 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
       check_crossing(bar, at);
     }
     for (const std::size_t way : {1, 2, 3}) {
-      const motion_trace other = trace(motion, 0, {.ways = {way}});
+      const motion_trace other = trace(motion, 0, {.branches = {way}});
       CHECK(other.is_closed);
       CHECK(!other.meets_branches);
       for (const VectorXd& q : other.positions) {
@@ -171,7 +172,7 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
     }
     // Newton's method with 100 digits so near to the crossing that chords are tangents.
     const branch_point& at = whole.branch_points[0];
-    for (const VectorXd& way : at.ways) {
+    for (const VectorXd& way : at.tangents) {
       const real_100 step("1e-25");
       std::vector<real_100> flat, q;
       for (int i = 0; i < 3; ++i) {
@@ -214,9 +215,9 @@ TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
   REQUIRE(whole.branch_points.size() == 2);
   for (const branch_point& at : whole.branch_points) {
     check_crossing(bar, at);
-    CHECK(std::abs(at.ways[1][0]) < 1e-14); // coupler and rocker turn as one
+    CHECK(std::abs(at.tangents[1][0]) < 1e-14); // coupler and rocker turn as one
   }
-  const motion_trace folded = trace(motion, 0, {.ways = {1}});
+  const motion_trace folded = trace(motion, 0, {.branches = {1}});
   CHECK(folded.is_closed);
   CHECK(std::abs(folded.positions.back()[0]) < 1e-12);
 
@@ -240,7 +241,7 @@ TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
   int cranks_meet = 0;
   for (const branch_point& at : five.branch_points) {
     CHECK(at.coordinates[2] == doctest::Approx(held).epsilon(1e-14));
-    CHECK(at.ways.size() == 4);
+    CHECK(at.tangents.size() == 4);
     const double x = -.3 + .5 * std::cos(at.coordinates[0]), y = .5 * std::sin(at.coordinates[0]);
     cranks_meet += std::hypot(x, y - .4) < 1e-12 ? 1 : 0; // both cranks end at (0, .4)
   }
@@ -293,8 +294,8 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
     CHECK(whole.is_closed);
     REQUIRE(whole.branch_points.size() == 2);
     for (const branch_point& at : whole.branch_points) {
-      REQUIRE(at.ways.size() == 8);
-      for (const VectorXd& way : at.ways) {
+      REQUIRE(at.tangents.size() == 8);
+      for (const VectorXd& way : at.tangents) {
         CHECK(std::abs(first_order({.3, .8, .3, .8}, at.coordinates, way)) < 1e-11);
         CHECK(std::abs(second_order({.3, .8, .3, .8}, at.coordinates, way)) < 1e-11);
         VectorXd second = at.coordinates, v = way;
@@ -302,7 +303,7 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
         v.segment(1, 2) = way.tail(2);
         CHECK(std::abs(first_order({.3, -.6, .3, -.6}, second, v)) < 1e-11);
         CHECK(std::abs(second_order({.3, -.6, .3, -.6}, second, v)) < 1e-11);
-        for (const VectorXd& other : at.ways) {
+        for (const VectorXd& other : at.tangents) {
           CHECK((&way == &other || way.dot(other) < .999));
         }
       }
@@ -323,8 +324,8 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
   CHECK(whole.is_closed);
   REQUIRE(whole.branch_points.size() == 2);
   for (const branch_point& at : whole.branch_points) {
-    REQUIRE(at.ways.size() == 2);
-    CHECK((at.ways[0] - Eigen::Vector4d(.5, -.5, .5, .5)).norm() < 1e-13);
+    REQUIRE(at.tangents.size() == 2);
+    CHECK((at.tangents[0] - Eigen::Vector4d(.5, -.5, .5, .5)).norm() < 1e-13);
   }
 }
 
@@ -348,11 +349,11 @@ TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere"
       const double sine = std::sin(at.coordinates[0]);
       CHECK(std::abs(std::abs(sine) - 1) < 1e-15);
       CHECK(std::abs(at.coordinates[2]) < 1e-14 * mm);
-      REQUIRE(at.ways.size() == 4);
+      REQUIRE(at.tangents.size() == 4);
       Vector3d along(1, -2, -2 * sine), folded(1, 0, 0);
       along /= 3; // unit length in radians and parts of r
-      CHECK((at.ways[0].cwiseQuotient(mechanism.units()) - along).norm() < 1e-13);
-      CHECK((at.ways[1].cwiseQuotient(mechanism.units()) - folded).norm() < 1e-13);
+      CHECK((at.tangents[0].cwiseQuotient(mechanism.units()) - along).norm() < 1e-13);
+      CHECK((at.tangents[1].cwiseQuotient(mechanism.units()) - folded).norm() < 1e-13);
     }
   }
   // All axes in a point, opposite sides alike: tan(θ₁/2) tan(θ₂/2) is one of two constants.
@@ -368,11 +369,11 @@ TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere"
     CHECK(whole.is_closed);
     REQUIRE(whole.branch_points.size() == 2);
     for (const branch_point& at : whole.branch_points) {
-      REQUIRE(at.ways.size() == 4);
+      REQUIRE(at.tangents.size() == 4);
       const bool first_is_straight = std::cos(at.coordinates[0]) > 0;
       std::array<double, 2> ratios{};
       for (std::size_t k = 0; k < 2; ++k) { // θ₂' = −K θ₁' at θ₁ = π, θ₂ = 0, and vice versa
-        const double ratio = -at.ways[k][1] / at.ways[k][0];
+        const double ratio = -at.tangents[k][1] / at.tangents[k][0];
         ratios[k] = first_is_straight ? 1 / ratio : ratio;
       }
       std::sort(ratios.begin(), ratios.end());
@@ -404,10 +405,10 @@ TEST_CASE("of ways that fill a plane none is returned") {
     const branch_point& at = whole.branch_points[i];
     if (i % 2 == 0) { // both are folded
       CHECK(std::abs(at.coordinates[4]) < 1e-14);
-      CHECK(at.ways.size() == 2);
+      CHECK(at.tangents.size() == 2);
     } else { // both are stretched: cranks go on the same way, or opposite ones
       CHECK(std::abs(std::abs(at.coordinates[4]) - .6) < 1e-14);
-      CHECK(at.ways.size() == 4);
+      CHECK(at.tangents.size() == 4);
     }
   }
 }

@@ -85,7 +85,7 @@ private:
   }
 
   [[nodiscard]] constraint_kind kind(std::string_view name) const {
-    // The words of models of mechanisms, which files may use as well.
+    // Names of mechanical connections, which files may use as well.
     constexpr std::array<std::string_view, 8> others{"weld",      "hinge", "slider", "cylindrical",
                                                      "universal", "ball",  "planar", "rod"};
     std::vector<std::string> names;
@@ -133,14 +133,15 @@ private:
 } // namespace detail
 
 /// The loop-closure constraints in a text file, which accompanies a robot description, one a line,
-/// as `hinge coupler 0.5 0 0 rocker 0.4 0 0` or `rod base 1 0 0 plate 0.1 0 0 length 0.8`: a type
-/// of `constraint_kind`, two frames, and for a rod its length. A frame is a link, a point x y z in
-/// its frame, and, if its axes are not those of the link, `axis x y z`, the direction of its z axis
-/// as in `frame_with_z_axis`, or `rpy roll pitch yaw` as in URDF. Metres and radians; names without
+/// as `revolute coupler 0.5 0 0 rocker 0.4 0 0` or `distance base 1 0 0 plate 0.1 0 0 length 0.8`:
+/// a type of `constraint_kind`, two frames, and for a distance its length; `weld`, `hinge`,
+/// `slider`, `ball` and `rod` are read as well. A frame is a link, a point x y z in its frame, and,
+/// if its axes are not those of the link, `axis x y z`, the direction of its z axis as in
+/// `frame_with_z_axis`, or `rpy roll pitch yaw` as in URDF. Metres and radians; names without
 /// blanks; the rest of a line after a number sign is a comment.
 ///
 /// \throws file_error with line and value for files that cannot be read, unknown types, missing and
-/// superfluous words, numbers that are not finite, axes and rods without length
+/// superfluous words, numbers that are not finite, axes and distances without length
 [[nodiscard]] inline loop_constraints read_loops(const std::string& path) {
   loop_constraints result;
   result.file = path;

@@ -31,8 +31,8 @@ struct branch_point {
   /// straight on, the last back along the motion; between them are those of other branches in pairs
   /// of opposites, of which the first increases the first moving coordinate. If there are only two,
   /// no other branch meets the motion, but there are rates that do not move the mechanism.
-  std::vector<Eigen::VectorXd> ways;
-  std::size_t taken = 0; ///< index of the tangent along which the motion continues
+  std::vector<Eigen::VectorXd> tangents;
+  std::size_t chosen = 0; ///< index of the tangent along which the motion continues
 };
 
 /// The whole motion of a mechanism by one driven coordinate.
@@ -49,9 +49,9 @@ struct motion_trace {
 struct trace_options {
   double largest_step = .1; ///< maximum norm of a step: radians, or relative to `length()`
   double longest = 200;     ///< maximum length of the motion in these units, then the trace stops
-  /// Indices of the tangents `branch_point::ways` to continue along from the first branch point,
-  /// the second …; straight on from all others.
-  std::vector<std::size_t> ways = {};
+  /// Indices of the tangents `branch_point::tangents` to continue along from the first branch
+  /// point, the second …; straight on from all others.
+  std::vector<std::size_t> branches = {};
 };
 
 /// Traces the motion along one driven coordinate, the others held, by predictor–corrector
@@ -60,7 +60,7 @@ struct trace_options {
 /// first. Joint limits are ignored.
 ///
 /// Dead points of a coordinate, where its rate changes sign, are found to round-off. At branch
-/// points the trace continues straight on, or along `trace_options::ways`; it ends where
+/// points the trace continues straight on, or along `trace_options::branches`; it ends where
 /// branches touch.
 ///
 /// \param drive  index of the driven coordinate among those of the motion, from 0

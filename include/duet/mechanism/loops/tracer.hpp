@@ -98,7 +98,7 @@ private:
           continue;
         }
         step = (next->x - here.x).norm();
-        turns_off = result_.branch_points.back().taken != 0;
+        turns_off = result_.branch_points.back().chosen != 0;
       }
       const Eigen::VectorXd to = curve_.coordinates(next->x);
       if (turns_off) {
@@ -144,18 +144,18 @@ private:
     }
     branch_point at{curve_.coordinates(found->x), {}, 0};
     for (const Eigen::VectorXd& way : found->ways) {
-      at.ways.push_back(curve_.rates(way));
+      at.tangents.push_back(curve_.rates(way));
     }
     const std::size_t met = result_.branch_points.size();
-    at.taken = met < options_.ways.size() ? options_.ways[met] : 0;
-    require(at.taken < at.ways.size(), "duet: trace: no way ", at.taken, " of ", at.ways.size(),
-            " from branch point ", met);
+    at.chosen = met < options_.branches.size() ? options_.branches[met] : 0;
+    require(at.chosen < at.tangents.size(), "duet: trace: no branch ", at.chosen, " of ",
+            at.tangents.size(), " from branch point ", met);
     result_.branch_points.push_back(at);
-    const curve_point& to = found->beside[at.taken];
+    const curve_point& to = found->beside[at.chosen];
     const Eigen::VectorXd before = curve_.rates(from.tangent), after = curve_.rates(to.tangent);
     for (int i = 0; i < of_.size(); ++i) {
-      const bool rests = std::abs(at.ways[0][i]) < 1e-9 * of_.units()[i];
-      if (at.taken == 0 && rests && turns(before[i], after[i], i)) {
+      const bool rests = std::abs(at.tangents[0][i]) < 1e-9 * of_.units()[i];
+      if (at.chosen == 0 && rests && turns(before[i], after[i], i)) {
         add_dead_point(i, found->x, found->ways[0]);
       }
     }

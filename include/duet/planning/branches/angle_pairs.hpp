@@ -39,7 +39,7 @@ inline constexpr double one_angle = 3e-7;
 ///
 /// \param error  error of a, b and c, if it exceeds round-off
 /// \return false if the function is zero to round-off, if an error decides whether there are zeros,
-/// or if a change by 1e-5 of the amplitude would add some: `f` may be no more accurate
+/// or if a change by 1e-8 of the amplitude would add some: `f` may be no more accurate
 template <class Visit>
 bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
   constexpr double rounding = 1e-12, nearly = 1e-9, not_quite = 1e-8;

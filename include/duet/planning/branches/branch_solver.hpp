@@ -87,10 +87,12 @@ DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop) {
 
 DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
   search(loop);
-  if (answer_.solutions.empty() && method_ != solution_method::elimination) {
+  const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop),
+             is_general = method_ == solution_method::elimination ||
+                          method_ == solution_method::two_prismatic; // both displace by themselves
+  if (answer_.solutions.empty() && !is_certain && !is_general) {
     search_beside(loop);
   }
-  const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop);
   if (method_ != solution_method::two_prismatic) { // which detects permanent self-motion itself
     answer_.is_complete = is_certain || (answer_.is_complete && !is_always_singular(loop));
   }
@@ -108,6 +110,7 @@ inline void branch_search::search_beside(const joint_loop& loop) {
       answer_.is_complete = false;
       if (answer_.solutions.empty() && close_loop(loop, x.theta)) {
         answer_.solutions.push_back(x);
+        answer_.complex_solutions = std::max(0, answer_.complex_solutions - x.multiplicity);
       }
     }
   }

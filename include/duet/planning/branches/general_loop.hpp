@@ -110,9 +110,9 @@ public:
     const double x = random_(), y = random_(), z = random_();
     return by_ * vector3d{2 * x - 1, 2 * y - 1, 2 * z - 1};
   }
-  [[nodiscard]] tip_place place() {
-    const vector3d turn = (*this)(), way = (*this)();
-    return {normalized(quaternion<double>(1, turn.x, turn.y, turn.z)), way};
+  [[nodiscard]] tip_place displacement() {
+    const vector3d rotation = (*this)(), translation = (*this)();
+    return {normalized(quaternion<double>(1, rotation.x, rotation.y, rotation.z)), translation};
   }
 
 private:
@@ -123,7 +123,7 @@ private:
 /// Loop with a goal close to the given one.
 [[nodiscard]] inline joint_loop with_disturbed_goal(joint_loop loop, double by,
                                                     std::uint64_t seed) {
-  loop.closing = small_vectors(loop, by, seed).place() * loop.closing;
+  loop.closing = small_vectors(loop, by, seed).displacement() * loop.closing;
   return loop;
 }
 /// Loop with a goal and axes in general position, close to the given ones.
@@ -134,7 +134,7 @@ private:
     j.axis = 1 / length_of(axis) * axis;
     j.point = j.point + any();
   }
-  loop.closing = any.place() * loop.closing;
+  loop.closing = any.displacement() * loop.closing;
   return loop;
 }
 

@@ -18,7 +18,8 @@
 
 namespace duet::detail {
 
-/// Squared ratio of prismatic displacements to the size of the loop; at least 1.
+/// Squared ratio of the goal's translation to ten times the size of the loop, as by long travels of
+/// prismatic joints; at least 1.
 [[nodiscard]] inline double squared_travel(const joint_loop& loop) {
   const vector3d offset = .1 * loop.closing.translation;
   return std::max(1., dot(offset, offset));
@@ -224,9 +225,9 @@ private:
     }
     six_coordinates other = theta + h * v;
     static_cast<void>(close_loop(loop_, other));
-    const double way = (other - theta).norm();
+    const double distance = (other - theta).norm();
     return loop_gap(loop_, other).twist.norm() < std::max(nearly, rounding * size) &&
-           way > h / 10 && way < 10 * h;
+           distance > h / 10 && distance < 10 * h;
   }
 
   joint_loop loop_;

@@ -102,8 +102,8 @@ template <class V, class Velocity, class Acceleration, class Options>
       speed_of(options.initial_velocities, "initial", result.polygon.first_slope);
   result.final_speed = speed_of(options.final_velocities, "final", result.polygon.last_slope);
   require(result.polygon.edges() > 0 || (result.initial_speed == 0 && result.final_speed == 0),
-          "duet: time_optimal_trajectory: all waypoints are in one place: there is no way to be "
-          "fast on");
+          "duet: time_optimal_trajectory: all ", waypoints.size(),
+          " waypoints coincide; on a path of length zero initial and final velocities must be 0");
   return result;
 }
 
