@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -418,16 +419,20 @@ struct arm_at {
   chain arm;
   vector theta;
 };
-arm_at arm_of(const dh_task& task, double alpha, double theta) {
+/// \param angle  of the numbers in the task, by multiplication first: its round-off decides
+arm_at arm_of(const dh_task& task, const auto& angle, const auto& coordinate) {
   std::array<dh_row<>, 6> rows;
+  vector theta(6);
   for (std::size_t i = 0; i < 6; ++i) {
     rows[i].a = task.rows[i][0];
     rows[i].d = task.rows[i][1];
-    rows[i].alpha = alpha * task.rows[i][2];
+    rows[i].alpha = angle(task.rows[i][2]);
+    theta[Eigen::Index(i)] = coordinate(task.theta[i]);
   }
-  return {from_dh(rows),
-          theta * vector(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(task.theta.data()))};
+  return {from_dh(rows), theta};
 }
+double twelfths(double x) { return x * pi / 12; }
+double halves(double x) { return x * pi / 2; }
 
 TEST_CASE("closed forms do not call a singular goal unreachable") {
   const std::array<dh_task, 3> tasks{
@@ -438,9 +443,11 @@ TEST_CASE("closed forms do not call a singular goal unreachable") {
        {{{{-.32, -.45, -2}, {.26, .3, -8}, {0, 0, 8}, {0, 0, 10}, {.15, -.11, -2}, {.3, .1, -4}}},
         {12, -6, 0, 12, -6, -6}}}};
   for (const dh_task& task : tasks) {
-    const auto [arm, theta] = arm_of(task, pi / 12, pi / 12);
+    const auto [arm, theta] = arm_of(task, twelfths, twelfths);
     const result found = all_inverse_kinematics(arm, arm.pose(theta));
     CHECK_FALSE((found.solutions.empty() && found.is_complete));
+    // The equations of the first vanish identically: they decide nothing.
+    CHECK((&task != tasks.data() || found.method == solution_method::elimination));
   }
 }
 
@@ -454,11 +461,11 @@ TEST_CASE("pairs of solutions beside singular ones") {
   };
   const dh_task crx{{{{0, .245, -1}, {.71, 0, 2}, {0, 0, -1}, {0, .54, 1}, {0, .15, -1}, {0, .16}}},
                     {-20, 9, -21, 25, -7, 0}};
-  check(arm_of(crx, pi / 2, .125), 8);
+  check(arm_of(crx, halves, [](double x) { return x / 8; }), 8);
   const dh_task folded{
       {{{.29, .27, 1}, {0, 0, 1}, {.42, 0, -1}, {0, -.11, 1}, {.09, 0, 1}, {.31, 0, -1}}},
       {1.542912, .002972, -1.598413, -1.481084, -.002983, -3.051963}};
-  auto at = arm_of(folded, pi / 2, 1);
+  const auto at = arm_of(folded, halves, std::identity());
   const vector singular = pi / 2 * (vector(6) << 1, 0, -1, -1, 0, 2).finished();
   const result found = all_inverse_kinematics(at.arm, at.arm.pose(singular));
   CHECK(holds(at.arm, found, singular, 1e-5));

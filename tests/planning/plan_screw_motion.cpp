@@ -254,7 +254,8 @@ TEST_CASE("bad problems") {
                        doctest::Contains("duet: plan: the goal: its translation is not finite: ("),
                        invalid_input);
   CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, goal, {.deviation = 0}),
-                       "duet: plan: deviation.length is 0, not a number above 0", invalid_input);
+                       "duet: plan: deviation.translation is 0, not a number above 0",
+                       invalid_input);
   CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, goal, {.search_step = 1e-9}),
                        "duet: plan: search_step is 1e-09, not 0 or from 1e-6 to 1", invalid_input);
   CHECK_THROWS_AS((void)plan_screw_motion(arm, start, goal, {.centring = std::nan("")}),

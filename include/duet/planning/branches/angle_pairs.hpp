@@ -38,11 +38,10 @@ inline constexpr double one_angle = 3e-7;
 /// from ill-conditioned angles.
 ///
 /// \param error  error of a, b and c, if it exceeds round-off
-/// \return false if the function is zero to round-off, if an error decides whether there are zeros,
-/// or if a change by 1e-8 of the amplitude would add some: `f` may be no more accurate
+/// \return false if the function is zero to round-off, or an error decides whether there are zeros
 template <class Visit>
 bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
-  constexpr double rounding = 1e-12, nearly = 1e-9, not_quite = 1e-8;
+  constexpr double rounding = 1e-12, nearly = 1e-9;
   const double r = std::sqrt(f.b * f.b + f.c * f.c);
   if (!(r > rounding)) {
     return std::abs(f.a) > rounding;
@@ -54,8 +53,6 @@ bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
     visit(middle - turn, 1);
   } else if (std::abs(cosine) <= 1 + std::max(nearly, error / r)) {
     visit(cosine > 0 ? middle : middle + std::acos(-1.), 2);
-  } else if (std::abs(cosine) <= 1 + not_quite) {
-    return false;
   }
   return std::abs(std::abs(cosine) - 1) * r >= error;
 }
@@ -137,8 +134,7 @@ private:
 
   /// Solves (cos θ, sin θ) = u + V (cos φ, sin φ), whose square is 1.
   ///
-  /// \return false if the equation is zero to round-off, or if zeros are
-  /// nearly real but not visited
+  /// \return false if the equation is zero to round-off
   template <class Visit>
   static bool by_both(const two_values& f, const two_values& g, const Visit& visit) {
     const double d = determinant(f);
@@ -156,13 +152,12 @@ private:
     const double noise =
         (squares + 1) /
         std::sqrt(std::max({std::norm(left[0]), std::norm(left[1]), std::norm(left[2])}));
-    constexpr double nearly_real = 1e-3, vanishing = 1e12;
+    constexpr double vanishing = 1e12;
     if (noise > vanishing) {
       return false; // for every φ there is a θ
     }
     const circle_roots<2> roots(left);
     std::array<bool, 4> is_done{};
-    bool is_determined = true;
     for (int i = 0; i < 4; ++i) {
       const complex z = roots[i];
       const double off = std::sqrt(std::norm(z)) - 1, sensitivity = noise * roots.sensitivity(i),
@@ -176,8 +171,6 @@ private:
       if (off > error && off < std::min(1e-2, 1e-11 * sensitivity)) {
         visit_at(std::arg(z) - off, 1);
         visit_at(std::arg(z) + off, 1);
-      } else if (off > error && off < nearly_real) {
-        is_determined = false;
       }
       if (is_done[std::size_t(i)] || !(std::abs(off) < error)) {
         continue;
@@ -191,7 +184,7 @@ private:
       }
       visit_at(std::arg(z), multiplicity);
     }
-    return is_determined;
+    return true;
   }
 };
 
